@@ -3,8 +3,9 @@
 use crate::screen;
 use anyhow::Result;
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
-use shore::page::{Page, PageError, PageSettings};
+use shore::page::{Background, Page, PageError, PageSettings};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, UdpSocket};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -24,6 +25,9 @@ pub(crate) struct PageArgs {
     /// A further name under which the page may be asked for; it needs a token
     #[arg(long, value_name = "NAME")]
     host: Vec<String>,
+    /// What is drawn below the field: GeoJSON, or PNG or JPEG with its world file
+    #[arg(long, value_name = "FILE")]
+    chart: Option<PathBuf>,
     /// Opens the page in the browser
     #[arg(long)]
     open: bool,
@@ -33,20 +37,23 @@ impl PageArgs {
     /// Whether the page can be served, to be asked before a game begins.
     pub(crate) fn check(&self) -> Result<()> {
         let any = SocketAddr::from((Ipv4Addr::LOCALHOST, 0));
-        Ok(Page::check(&self.settings(self.listen.unwrap_or(any), &Arc::default()))?)
+        Ok(Page::check(&self.settings(self.listen.unwrap_or(any), &Arc::default())?)?)
     }
 
-    fn settings(&self, listen: SocketAddr, stop: &Arc<AtomicBool>) -> PageSettings {
-        PageSettings { listen, token: self.token.clone(), hosts: self.host.clone(), stop: Arc::clone(stop) }
+    fn settings(&self, listen: SocketAddr, stop: &Arc<AtomicBool>) -> Result<PageSettings> {
+        let background = self.chart.as_deref().map(Background::read).transpose()?;
+        let (token, hosts, stop) = (self.token.clone(), self.host.clone(), Arc::clone(stop));
+        Ok(PageSettings { listen, token, hosts, background, stop })
     }
 
     /// Serves a page that shows nothing yet.
     pub(crate) fn open(&self, stop: &Arc<AtomicBool>) -> Result<Page> {
-        let at = |listen| self.settings(listen, stop);
         let usual = SocketAddr::from((Ipv4Addr::LOCALHOST, PORT));
-        let page = match (self.listen, Page::open(at(self.listen.unwrap_or(usual)))) {
+        let page = match (self.listen, Page::open(self.settings(self.listen.unwrap_or(usual), stop)?)) {
             // Another page is there already.
-            (None, Err(PageError::Listen { .. })) => Page::open(at(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)))),
+            (None, Err(PageError::Listen { .. })) => {
+                Page::open(self.settings(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)), stop)?)
+            }
             (_, page) => page,
         };
         Ok(page?)
@@ -54,17 +61,17 @@ impl PageArgs {
 
     /// Whether anything is said of the page.
     pub(crate) fn is_given(&self) -> bool {
-        self.listen.is_some() || self.token.is_some() || !self.host.is_empty() || self.open
+        self.listen.is_some() || self.token.is_some() || !self.host.is_empty() || self.chart.is_some() || self.open
+    }
+
+    /// Whether pages have to show a token that somebody chose, which the page's address has.
+    pub(crate) fn has_token(&self) -> bool {
+        self.token.is_some()
     }
 
     /// Where a browser finds the page, with its rights.
     pub(crate) fn url(&self, page: &Page) -> String {
-        let token = self.token.as_ref().map(|token| format!("#token={}", in_address(token))).unwrap_or_default();
-        let mut address = page.address();
-        if let (true, Some(own)) = (address.ip().is_unspecified(), own_ip()) {
-            address.set_ip(own);
-        }
-        format!("http://{address}/{token}")
+        address_of(page, self.token.as_deref())
     }
 
     /// The same, and the page is opened in the browser.
@@ -84,9 +91,24 @@ impl PageArgs {
         let listen = self.listen.iter().map(|listen| ("--listen", listen.to_string()));
         let token = self.token.iter().map(|token| ("--token", token.clone()));
         let hosts = self.host.iter().map(|host| ("--host", host.clone()));
-        let words = listen.chain(token).chain(hosts).flat_map(|(name, value)| [name.to_owned(), value]);
+        let chart = self.chart.iter().map(|chart| ("--chart", chart.display().to_string()));
+        let words = listen.chain(token).chain(hosts).chain(chart).flat_map(|(name, value)| [name.to_owned(), value]);
         words.chain(self.open.then(|| "--open".to_owned())).collect()
     }
+}
+
+/// Where a browser finds the page, for those who may operate real boats.
+pub(crate) fn operator_url(page: &Page) -> String {
+    address_of(page, Some(page.operator_token()))
+}
+
+fn address_of(page: &Page, token: Option<&str>) -> String {
+    let token = token.map(|token| format!("#token={}", in_address(token))).unwrap_or_default();
+    let mut address = page.address();
+    if let (true, Some(own)) = (address.ip().is_unspecified(), own_ip()) {
+        address.set_ip(own);
+    }
+    format!("http://{address}/{token}")
 }
 
 /// A text as it may stand in an address.

@@ -1,12 +1,14 @@
 //! `squall view`: on a page, a running game from any machine, or a report with its games.
 
+use crate::gateway_command;
 use crate::net_args::LeafArgs;
-use crate::page_args::PageArgs;
+use crate::page_args::{self, PageArgs};
 use crate::replay_command;
 use crate::screen::{self, Screen};
 use crate::stop;
 use crate::style::Names;
 use anyhow::{Context, Result, bail};
+use shore::page::View;
 use shore::page::live::LiveView;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -45,11 +47,18 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             screen::remark(problem);
         }
     });
-    let live = LiveView::open(args.leaf.place()?, args.leaf.game.clone(), tell).context("cannot look for games")?;
-    page.show(Arc::new(live));
+    let (place, game) = (args.leaf.place()?, args.leaf.game.clone());
+    let live = LiveView::open(place, game, tell, gateway_command::read_mission).context("cannot look for games")?;
+    let live = Arc::new(live);
+    page.show(Arc::clone(&live) as Arc<dyn View>);
     Screen::new(Names::default()).line(&format!("look at it on {} (Ctrl-C ends it)", args.page.url(&page)));
     args.page.open_browser(&page);
+    let mut operators_know = args.page.has_token();
     while !stop::is_set_soon(&stop) {
+        if !operators_know && live.has_real_boats() {
+            operators_know = true;
+            screen::remark(&format!("to operate real boats, open {}", page_args::operator_url(&page)));
+        }
         let Some(file) = recordings.as_ref().and_then(|named| named.try_recv().ok()) else { continue };
         match replay_command::show(Path::new(&file)) {
             Ok(show) => page.show(Arc::new(show)),

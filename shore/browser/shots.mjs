@@ -3,10 +3,13 @@
 import { copyFileSync, mkdirSync, readdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { Program, Sight, folder, gameFile, openBrowser, scenario, squall } from './harness.mjs';
+import { arm, badge, realBoats } from './real_boats.mjs';
+import { site } from './site.mjs';
 
 const [place = 'shots', ...only] = process.argv.slice(2);
 const DESK = { size: { width: 1400, height: 900 } };
 const HALL = { size: { width: 1920, height: 1080 } };
+const TABLET = { size: { width: 820, height: 1180 }, hasTouch: true };
 const PHONE = { size: { width: 390, height: 844 }, deviceScaleFactor: 2, hasTouch: true };
 const WAVES = ['--sea', scenario('seas/fresh_breeze.toml')];
 const PAV01 = scenario('games/pav01_vs_pav01.toml');
@@ -105,6 +108,34 @@ const shown = (selector) => (sight) => sight.page.waitForSelector(selector);
 const worst = (sight) => sight.page.evaluate(() => document.getElementById('worst').scrollIntoView());
 const lower = (sight) => sight.page.evaluate(() => scrollTo(0, document.body.scrollHeight));
 
+/** With a shoreline, or an image, below the field. */
+const withChart = (kind) => async (t) => live(PAV01, '--speed', '10x', '--chart', site(folder(t))[kind])(t);
+const fence = async (sight) => {
+  await badge(sight, 'red_one', 'disarmed');
+  await sight.press('#draw-fence');
+  for (const [x, y] of [[320, 300], [600, 300], [640, 520], [330, 600]]) await sight.page.mouse.click(x, y);
+};
+
+let boats;
+const station = async (t) => {
+  boats = await realBoats(t);
+  return boats.url;
+};
+const armed = async (sight) => {
+  for (const name of ['red_one', 'blue_one']) await arm(sight, name);
+  await sight.page.waitForTimeout(4000);
+};
+/** A boat has lost its agent; the other goes on by itself. */
+const alarm = async (sight) => {
+  await armed(sight);
+  await sight.press('#operate-station_keep');
+  await sight.press('#operate-confirm');
+  await badge(sight, 'blue_one', 'delegated');
+  await boats.agents.kill();
+  await badge(sight, 'red_one', 'failsafe');
+  await sight.until('it is told', () => squall.alarms.length > 0);
+};
+
 const fast = live(PAV01, ...WAVES, '--speed', '10x');
 const calm = live(PAV01, '--speed', '10x');
 const SCENES = {
@@ -124,6 +155,18 @@ const SCENES = {
   'swarm': [live(scenario('games/swarm_20v20.toml'), '--speed', '5x', '--agents-per-process', '40'), DESK, 'dark', at(30)],
   'league-game': [leagueGame, DESK, 'light', at(5)],
   'phone-league-game': [leagueGame, PHONE, 'dark', at(5)],
+  'station': [station, DESK, 'light', (sight) => badge(sight, 'red_one', 'disarmed'), (sight) => sight.press('[data-vehicle=blue_one]')],
+  'station-armed': [station, HALL, 'dark', armed],
+  'station-alarm': [station, DESK, 'light', alarm],
+  'station-list': [station, DESK, 'dark', alarm, keys('1')],
+  'station-fence': [station, DESK, 'light', fence],
+  'tablet-station': [station, TABLET, 'light', alarm],
+  'phone-station': [station, PHONE, 'light', alarm],
+  'phone-station-list': [station, PHONE, 'dark', alarm, keys('1')],
+  'chart': [withChart('geojson'), DESK, 'light', at(30)],
+  'chart-dark': [withChart('geojson'), HALL, 'dark', at(30)],
+  'chart-image': [withChart('image'), DESK, 'dark', at(30)],
+  'phone-chart': [withChart('geojson'), PHONE, 'light', at(30)],
   'phone': [fast, PHONE, 'light', at(60)],
   'phone-selected': [fast, PHONE, 'dark', at(60), select('blue_two')],
   'phone-game': [fast, PHONE, 'light', at(20), keys('4')],

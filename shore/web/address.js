@@ -9,14 +9,15 @@ export function wanted() {
   return { t_s: Number.isFinite(t_s) ? t_s : null, boat: given.get('boat') };
 }
 
-/** Puts a moment and a boat into the address; what else it carries stays. Gives the whole address. */
+/** Puts a moment and a boat into the address; what else it carries stays. Gives the address for others: without the token. */
 export function name(t_s, boat) {
   const given = words();
   given.set('t', t_s.toFixed(1));
   if (boat === null) given.delete('boat');
   else given.set('boat', boat);
   history.replaceState(null, '', `#${given}`);
-  return location.href;
+  given.delete('token');
+  return `${location.href.split('#')[0]}#${given}`;
 }
 
 /** The game of a report that the address names, or null. */

@@ -1,6 +1,8 @@
 // The boats: hulls, marks, names, carried flags, and the circles within which they may tag.
 
 import { DISABLED, MARKS, NAV_LOST, TAGGED } from './game.js';
+import { drawBadge } from './badge.js';
+import { drawFences, drawStops } from './fence.js';
 import { Labels } from './label.js';
 import { palette, teamColour } from './palette.js';
 
@@ -118,6 +120,12 @@ export class Boats {
     this.labels = new Labels();
     this.lengths = new Float32Array(0);
     this.hovered = -1;
+    /** What gateways say of real boats. */
+    this.readings = [];
+    /** Their geofences. */
+    this.fences = [];
+    /** What their badges take on the chart: left, top, right, bottom, px. */
+    this.badges = [];
   }
 
   /** Draws all boats as posed. */
@@ -127,7 +135,9 @@ export class Boats {
     this.selected = selected;
     context.clearRect(0, 0, view.width, view.height);
     this.measure(game, view);
+    drawFences(context, view, this.fences);
     this.drawFlagsAtHome(game, view);
+    drawStops(context, view, this.readings, game);
     if (shown.circles) this.drawCircles(game, view);
     this.drawLeads(game, view);
     for (let i = 0; i < game.count; i++) if (i !== selected) this.drawHull(game, view, i);
@@ -137,6 +147,7 @@ export class Boats {
       this.drawRing(game, view, selected);
     }
     this.drawMarks(game, view);
+    this.drawBadges(game, view);
     this.drawNames(game, view, shown, selected, ratio);
   }
 
@@ -283,6 +294,17 @@ export class Boats {
     context.globalAlpha = 1;
   }
 
+  /** Badges below real boats. */
+  drawBadges(game, view) {
+    this.badges = [];
+    for (const reading of this.readings) {
+      const [x, y] = [view.xOf(game.x[reading.index]), view.yOf(game.y[reading.index])];
+      if (game.frames === 0 || x < 0 || y < 0 || x > view.width || y > view.height) continue;
+      const room = this.lengths[reading.index] * 0.5 + (reading.index === this.selected ? 14 : 7);
+      this.badges.push(drawBadge(this.context, view, reading, x, y, room));
+    }
+  }
+
   drawLostRing(x, y, length) {
     const { context } = this;
     context.beginPath();
@@ -342,6 +364,7 @@ export class Boats {
   /** Keeps names off boats, and what they carry. */
   blockHulls(game, view) {
     const { labels } = this;
+    for (const badge of this.badges) labels.block(...badge);
     for (let i = 0; i < game.count; i++) {
       const x = view.xOf(game.x[i]);
       const y = view.yOf(game.y[i]);

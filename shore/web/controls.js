@@ -13,7 +13,7 @@ const byId = (id) => document.getElementById(id);
 
 /** What the chart showed last time; some browsers keep nothing. */
 function remembered() {
-  const all = { names: true, trails: true, circles: true, waves: true, legend: false };
+  const all = { names: true, trails: true, circles: true, waves: true, chart: true, legend: false };
   try {
     return { ...all, ...JSON.parse(localStorage.getItem(SHOWN_KEY) ?? '{}') };
   } catch {
@@ -142,6 +142,8 @@ export class Controls {
     closeAsk();
     this.mode = hello.mode;
     this.rights = Boolean(hello.rights);
+    /** Whether it may release boats: real ones need an operator. */
+    this.releases = this.rights && (hello.operates || !hello.chart.vehicles.some(({ external }) => external));
     this.stopped = false;
     this.eStopped = false;
     const live = hello.mode === 'live';
@@ -175,7 +177,8 @@ export class Controls {
     this.button('pause', live ? (this.paused ? 'Go on' : 'Pause') : this.paused ? 'Play' : 'Pause', act && going, 'Pause or go on (space)');
     this.button('step', live ? 'Step' : 'Step +', act && going, 'One decision, then stand (s)');
     this.button('halt', this.stopped ? 'Go on' : 'Halt all', act && !this.eStopped, 'All boats hold, or go on (h)');
-    this.button('estop', this.eStopped ? 'Release E-stop' : 'E-stop', act, this.eStopped ? 'Release the E-stop (e)' : 'Stop every boat now (e)');
+    const release = this.releases ? 'Release the E-stop (e)' : 'Real boats are released by who opens the page with the operator’s token.';
+    this.button('estop', this.eStopped ? 'Release E-stop' : 'E-stop', act && (!this.eStopped || this.releases), this.eStopped ? release : 'Stop every boat now (e)');
     this.button('stop', 'End game', act && phase !== 'over' && phase !== 'gone', 'End the game now');
     byId('estop').classList.toggle('released', this.eStopped);
     this.tellSpeed(live ? state?.speed : player?.speed, act, live && state?.can_speed === false, !live || state?.pace === 'lockstep');

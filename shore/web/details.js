@@ -1,6 +1,7 @@
 // What is to be known of the selected boat: what it does, why, how it steers, and how well it knows where it is.
 
 import { MARKS } from './game.js';
+import { Operate } from './operate.js';
 import { Rose } from './rose.js';
 import { bearing, fill, make, number, options, plain, show, write } from './words.js';
 
@@ -10,12 +11,10 @@ const UNSEEN = 'Weighed before anybody looked: step once to see what courses are
 /** Whether a report has functions, but not what courses and speeds are worth to them. */
 export const isBare = (report) => report?.functions?.length > 0 && !report.functions.some((each) => each.utilities?.length > 0);
 
-// How old a value of a gateway is, after it.
-const age = (seconds) => (Number.isFinite(seconds) ? `, ${number(seconds, 1, 's')} old` : '');
-
 export class Details {
-  /** `on` has `follow()`, `drive()` and `close()`. */
+  /** `on` has `follow()`, `drive()` and `close()`, and what `Operate` wants. */
   constructor(on) {
+    this.operate = new Operate(on);
     this.pane = document.getElementById('pane-boat');
     this.build(on);
     this.rose = new Rose(this.canvas);
@@ -35,6 +34,7 @@ export class Details {
     const head = make('div', 'boat-head', '', make('div', 'boat-name', '', this.name, this.about, this.matter), this.follow, this.drive, this.close);
     this.steeringNote = make('p', 'note');
     this.facts = make('dl', 'facts');
+    this.facts.id = 'boat-facts';
     this.thrust = make('div', 'thrust', '', this.bar('Port'), this.bar('Starboard'));
     this.canvas = make('canvas');
     this.canvas.id = 'rose';
@@ -55,15 +55,13 @@ export class Details {
     this.policyBox = make('div', '', '', make('h3', '', 'Policy'), this.policy, this.observedBox);
     this.variables = make('dl', 'facts');
     this.variables.id = 'variables';
-    this.gateway = make('dl', 'facts');
-    this.gateway.id = 'gateway';
     // The helm's picture stands first: it is what people come for, and is to be seen whole.
     this.picture = make('div', 'helm-picture', '', this.chooser, this.canvas, this.key);
     this.helmBox = make('div', '', '', this.policyBox, this.behaviourHead = make('h3', '', 'Behaviours'), this.behaviours, this.variableHead = make('h3', '', 'Variables'), this.variables);
-    this.gatewayBox = make('div', '', '', make('h3', '', 'Gateway'), this.gateway);
-    this.body = make('div', 'boat', '', head, this.steeringNote, this.picture, this.reason, this.facts,
-      make('h3', '', 'Thrust'), this.thrust, this.gatewayBox, this.helmBox);
+    this.body = make('div', 'boat', '', head, this.steeringNote, this.operate.element, this.picture, this.reason, this.facts,
+      make('h3', '', 'Thrust'), this.thrust, this.helmBox);
     this.pane.replaceChildren(this.none, this.body);
+    this.operate.bind();
   }
 
   button(id, text, title, press) {
@@ -82,7 +80,8 @@ export class Details {
     return this.pane.offsetParent !== null;
   }
 
-  tell(game, following, driver) {
+  /** `readings` is what gateways say of real boats. */
+  tell(game, following, driver, readings) {
     const index = game.indexOf.get(game.selected) ?? -1;
     show(this.none, index < 0);
     show(this.body, index >= 0);
@@ -103,7 +102,7 @@ export class Details {
     show(this.steeringNote, steering !== '');
     this.tellFacts(game, index);
     this.tellThrust(game, index);
-    this.tellGateway(game.statuses.get(vehicle.name));
+    this.operate.tell(game, readings.find((reading) => reading.index === index) ?? null);
     this.tellHelm(game, index);
   }
 
@@ -153,20 +152,6 @@ export class Details {
       bar.style.width = `${part}%`;
       write(row.children[2], number(value, 0, 'N'));
     });
-  }
-
-  tellGateway(status) {
-    show(this.gatewayBox, Boolean(status));
-    if (!status) return;
-    const pairs = [['State', status.state ?? '–'], ['Link', status.link ?? '–']];
-    if (status.mode) pairs.push(['Mode', `${status.mode}${age(status.mode_age_s)}`]);
-    if (status.operator) pairs.push(['In control', `${status.operator}${age(status.mode_age_s)}`]);
-    if (Number.isFinite(status.nav_age_s)) pairs.push(['Last fix', `${number(status.nav_age_s, 1, 's')} ago`]);
-    if (Number.isFinite(status.battery_v)) pairs.push(['Battery', `${number(status.battery_v, 1, 'V')}${age(status.battery_age_s)}`]);
-    if (status.missing?.length > 0) pairs.push(['Missing', status.missing.join('; ')]);
-    const failsafe = status.failsafes?.at(-1);
-    if (failsafe) pairs.push([`Failsafes: ${status.failsafes.length}`, `last: ${failsafe.cause ?? failsafe}`]);
-    this.tellPairs(this.gateway, pairs);
   }
 
   tellHelm(game, index) {

@@ -38,10 +38,11 @@ export function haloText(context, text, x, y, colour = palette.ink) {
   context.fillText(text, x, y);
 }
 
-/** Draws all that stands still. */
-export function drawField(context, view, chart, shown) {
+/** Draws all that stands still, over the background. */
+export function drawField(context, view, chart, shown, background) {
   context.clearRect(0, 0, view.width, view.height);
   context.font = FONT;
+  if (shown.chart) background.draw(context, view);
   const field = chart.field;
   if (field) {
     drawZones(context, view, field);
@@ -96,7 +97,7 @@ function drawGridNumbers(context, view, step, left, bottom) {
   for (let x = left; x <= view.eastOf(view.width); x += step) {
     const at = view.xOf(x);
     // The corners belong to the scale and to the buttons.
-    if (at > 150 && at < view.width - 170) context.fillText(number(x, places), at, view.height - 3);
+    if (at > 150 && at < view.width - 170) haloText(context, number(x, places), at, view.height - 3, palette.faint);
   }
   context.textAlign = 'left';
   context.textBaseline = 'middle';

@@ -92,6 +92,7 @@ export class Game {
     this.state = null;
     this.player = null;
     this.statuses = new Map();
+    this.heard_ms = new Map();
     this.modes = null;
     this.drivers = new Map();
     this.select(null);
@@ -227,6 +228,12 @@ export class Game {
       this.heading[i] = this.fromH[i] + turn * done;
     }
     return done < 1;
+  }
+
+  /** Takes what a gateway tells. */
+  takeStatus({ vehicle, status }, now_ms) {
+    this.statuses.set(vehicle, status);
+    this.heard_ms.set(vehicle, now_ms);
   }
 
   takeEvents(message) {

@@ -12,7 +12,7 @@ const PAD = `its left stick, once you have pressed one of its buttons${isSecureC
 
 const HELP = [
   ['The chart', [['+  −', 'zoom'], ['arrows', 'move the chart'], ['f  0', 'fit the field'], ['[  ]', 'choose the boat before or after'],
-    ['o', 'follow the boat'], ['m', 'measure; then Enter takes the selected boat, or the middle of the chart'], ['l', 'legend'], ['Escape', 'close, let go, or select no boat'], ['1 to 4', 'boats, details, events, game']]],
+    ['o', 'follow the boat'], ['m', 'measure; then Enter takes the selected boat, or the middle of the chart'], ['l', 'legend'], ['Geofence', 'draws one: Enter takes a corner, Backspace takes it back'], ['Escape', 'close, let go, or select no boat'], ['1 to 4', 'boats, details, events, game']]],
   ['The game', [['space', 'pause or go on'], ['s', 'pause, and one decision'], [',  .', 'slower, faster'], ['h', 'halt all boats, or let them go on'],
     ['e', 'E-stop at once, or ask to release it']]],
   ['Driving', [['d', 'steer a boat that can be steered'], ['arrows, w a s d', 'course and speed'], ['Escape', 'let go'],
@@ -55,7 +55,10 @@ export class Keys {
     else if (event.key === ' ' && !isPressed(event.target)) {
       event.preventDefault();
       this.page.controls.pause();
-    } else if (event.key === 'Enter' && event.target.id === 'sheet' && this.page.measureHere()) event.preventDefault();
+    } else if (event.key === 'Backspace' && this.page.fenceEditor.active) {
+      event.preventDefault();
+      this.page.fenceEditor.undo();
+    } else if (event.key === 'Enter' && event.target.id === 'sheet' && this.page.takeHere()) event.preventDefault();
     else if (this.arrow(event) || this.replay(event)) event.preventDefault();
     else if (this.plain[event.key]) {
       // Held keys zoom, but they ask nothing twice.
@@ -68,6 +71,7 @@ export class Keys {
     if (closeAsk()) return;
     if (this.help.open) this.toggleHelp();
     else if (this.page.drive.driving) this.page.drive.letGo();
+    else if (this.page.fenceEditor.active) this.page.fenceEditor.toggle();
     else if (this.page.measure.active) this.page.measure.toggle();
     else this.page.select(null);
   }

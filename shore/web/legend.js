@@ -48,6 +48,10 @@ function entriesOf(chart) {
   if (radii.grab_m > 0) entries.push([`where a flag is taken, ${radii.grab_m} m`, (context) => ring(context, 10, [], teamColour(0))]);
   if (radii.keepout_m > 0) entries.push([`keep out, ${radii.keepout_m} m`, (context) => ring(context, 10, [2, 4], teamColour(0))]);
   if (field?.scrimmage) entries.push(['scrimmage line', (context) => line(context, [12, 5, 2, 5], palette.edge)]);
+  if (chart.vehicles.some(({ external }) => external)) {
+    entries.push(['geofence of real boats; dotted, keep out', (context) => line(context, [12, 5], palette.danger, 2)]);
+    entries.push(['within which a real boat can stop', (context) => ring(context, 10, [2, 3], palette.ink)]);
+  }
   if (field?.obstacles?.length > 0) {
     entries.push(['obstacle', (context) => {
       context.beginPath();

@@ -17,8 +17,8 @@ const SILENCE_S = 4;
 /** How often to look whether it is, s. */
 const WATCH_S = 1;
 
-/** What the server answers with how the game or the replay stands. */
-const ANSWERED = ['control'];
+/** What the server answers, with how the game or the replay stands or what came of it. */
+const ANSWERED = ['control', 'operate', 'mission'];
 
 /** The token in the page's address, kept over a reload since it stays in the address. */
 function token() {

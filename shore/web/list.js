@@ -1,5 +1,6 @@
 // The list of boats: one line each, by team, with mode, flag, heading, speed and its curve, and what is the matter with it.
 
+import { BadgeLine } from './badge.js';
 import { MARKS } from './game.js';
 import { palette, teamColour } from './palette.js';
 import { bearing, fill, make, number, plain, show, write } from './words.js';
@@ -97,10 +98,13 @@ export class BoatList {
     const [what, carries, heading, canvas, speed] = button.children;
     write(what.firstElementChild, plain(vehicle.name));
     this.watch.observe(button);
-    this.rows.push({ button, at, state: what.lastElementChild, carries, heading, canvas, speed });
+    const line = vehicle.external ? new BadgeLine() : null;
+    if (line) button.append(line.element);
+    this.rows.push({ button, at, state: what.lastElementChild, carries, heading, canvas, speed, line });
   }
 
-  tell(game) {
+  /** `readings` is what gateways say of real boats. */
+  tell(game, readings) {
     this.selected = game.selected;
     if (!this.visible) return;
     for (const row of this.rows) {
@@ -109,6 +113,7 @@ export class BoatList {
       if ((button.getAttribute('aria-pressed') === 'true') !== chosen) button.setAttribute('aria-pressed', String(chosen));
       this.tellState(row, game);
       this.tellFlag(row, game);
+      if (row.line) row.line.tell(readings.find((reading) => reading.index === at));
       const known = game.frames > 0;
       const deg = (game.toH[at] * 180) / Math.PI;
       write(row.heading.lastElementChild, known ? bearing(deg) : '');
@@ -122,10 +127,8 @@ export class BoatList {
   /** What is the matter with a boat, else its mode. */
   tellState({ at, state }, game) {
     const matter = MARKS.filter(([bit]) => game.marks[at] & bit).map(([, , text]) => text);
-    const status = game.statuses.get(game.vehicles[at].name);
-    if (status) matter.push(`gateway ${status.state}`);
-    else if (game.vehicles[at].external) matter.push('real boat');
-    const words = matter.length > 0 ? matter.join(', ') : plain(game.modes?.[at] ?? '').replaceAll(':', ' › ');
+    const mode = plain(game.modes?.[at] ?? '').replaceAll(':', ' › ');
+    const words = matter.length > 0 ? matter.join(', ') : mode || (game.vehicles[at].external ? 'real boat' : '');
     write(state, words);
     if (state.title !== words) state.title = words;
     state.classList.toggle('trouble', matter.length > 0);

@@ -13,25 +13,35 @@
 //   modes                         of the helms of all boats, as sent; null before
 //   hulls, labels                 [{ name, left, top, right, bottom }]: what boats, and names beside them, take on the chart, px
 //   statuses                      of gateways, by boat
+//   badges, alarms, sounded       [{ name, kind, label, detail }] of real boats; [{ boat, text, active }] that wait; tones played so far
+//   fences                        [{ outline, keepOuts }] of real boats, and stops [{ name, stopping_m, clearance_m }]
+//   background                    whether there is an image or a shoreline below the field
 //   drawn, fps, draw_ms           frames drawn; pictures a second; mean time of a picture's making
 //   view                          { x, y, scale }: middle, and pixels to a metre
 //   measured                      { range_m, bearing_deg }; null before two ends are chosen
 //
 // Elements with an id that stays: score-<team>, clock, rate, phase, rights, connection, notices, events, boat-list, rose,
 // rose-function, events-fold, show-plots, plots, plot-other, share, png, film, behaviours, variables, gateway, helm-reason, follow,
-// drive, deselect, steering, pause, step, step-back, speed, halt, halt-confirm, halt-cancel, estop, estop-confirm, estop-cancel, stop,
+// drive, boat-facts, boat-badge, checks, operated, operate, operate-<command>, mission-file, operator-token, alarms, mute, acknowledge-all, show-chart, draw-
+// fence, fence-toml, fence-part, fence-<action>,
+// deselect, steering, pause, step, step-back, speed, halt, halt-confirm, halt-cancel, estop, estop-confirm, estop-cancel, stop,
 // stop-confirm, stop-cancel, timeline, event-kind, event-back, event-next, event-filter, tab-boats, tab-boat, tab-events, tab-game,
 // zoom-in, zoom-out, fit, show-names, show-trails, show-circles, show-waves, show-legend, dark, measure, measured, place, help, help-
 // box, sheet.
 
 import { addressOfReport, gameOfReport, name as nameMoment, wanted } from './address.js';
+import { Alarms } from './alarm.js';
+import { Background } from './background.js';
 import { Boats } from './boats.js';
 import { Capture } from './capture.js';
 import { Controls } from './controls.js';
 import { Details, isBare } from './details.js';
 import { Drive } from './drive.js';
+import { fencesOf } from './fence.js';
+import { FenceEditor } from './fence_editor.js';
 import { drawField } from './field.js';
 import { Game } from './game.js';
+import { readStatuses } from './gateway.js';
 import { Keys } from './keys.js';
 import { Link } from './link.js';
 import { Legend } from './legend.js';
@@ -43,8 +53,10 @@ import { Plots } from './plots.js';
 import { Pointer } from './pointer.js';
 import { Sea, Weather } from './sea.js';
 import { notice, Status } from './status.js';
+import { Tabs } from './tabs.js';
 import { Theme } from './theme.js';
 import { Timeline } from './timeline.js';
+import { TrailLayer } from './trail.js';
 import { View } from './view.js';
 import { expose } from './window.js';
 import { plain, show, write } from './words.js';
@@ -56,8 +68,6 @@ const LIST_EVERY = 3;
 /** How near a pointer must be to a boat, px. */
 const REACH_MOUSE_PX = 8;
 const REACH_TOUCH_PX = 22;
-/** Trails are drawn no more often than this while only they or the place of the chart change, ms. */
-const TRAILS_MS = 150;
 
 const byId = (id) => document.getElementById(id);
 
@@ -75,12 +85,13 @@ class Page {
     this.layers = ['sea', 'field', 'trails', 'boats'].map((name) => byId(`layer-${name}`));
     this.sea = new Sea(this.layers[0]);
     this.field = this.layers[1].getContext('2d');
-    this.trails = this.layers[2].getContext('2d');
+    this.trails = new TrailLayer(this.layers[2]);
     this.boats = new Boats(this.layers[3]);
     this.weather = new Weather();
     this.theme = new Theme();
     this.legend = new Legend();
     this.measure = new Measure({ changed: () => { this.drawnBoats = ''; } });
+    this.fenceEditor = new FenceEditor({ changed: () => { this.drawnBoats = ''; } });
     this.status = new Status();
     this.controls = new Controls(send);
     this.drive = new Drive(send);
@@ -90,14 +101,19 @@ class Page {
     this.list = new BoatList({ choose: (name) => this.look(name), hover: (at) => { this.boats.hovered = at; } });
     this.log = new Log((event) => this.goTo(event));
     this.details = new Details({
-      follow: () => this.toggleFollow(), drive: () => this.toggleDrive(), close: () => this.select(null),
+      follow: () => this.toggleFollow(), drive: () => this.toggleDrive(), close: () => this.select(null), send,
+      acknowledge: (name) => this.alarms.acknowledge((alarm) => alarm.boat === name),
     });
+    this.alarms = new Alarms({ choose: (name) => this.look(name) });
+    this.background = new Background({ changed: () => { this.drawnField = ''; } });
+    this.background.load();
+    /** What gateways say of real boats. */
+    this.readings = [];
     this.following = false;
     this.asked = '';
     this.askedModes = false;
     this.stats = { drawn: 0, fps: 0, draw_ms: 0, last_ms: 0 };
     this.drawnField = '';
-    this.trailed = { look: '', soft: '', at_ms: 0, x: 0, y: 0 };
     this.drawnBoats = '';
     this.ticks = 0;
     this.bind();
@@ -112,10 +128,7 @@ class Page {
     byId('share').addEventListener('click', () => this.share());
     addEventListener('hashchange', () => this.game.hello && this.goToAddress());
     byId('fit').addEventListener('click', () => this.fit());
-    for (const name of ['boats', 'boat', 'events', 'game']) byId(`tab-${name}`).addEventListener('click', () => this.tab(name));
-    byId('tabs').addEventListener('keydown', (event) => this.tabKey(event));
-    this.wide = matchMedia('(min-width: 900px)');
-    this.wide.addEventListener('change', () => this.tab(this.tabName));
+    this.tabs = new Tabs({ changed: (name, wide) => this.tabbed(name, wide) });
     this.tab('boats');
     this.pointer = new Pointer(this.sheet, this.view, {
       tap: (x, y, touch) => this.tap(x, y, touch),
@@ -172,7 +185,8 @@ class Page {
         else this.plots.take(message);
         break;
       case 'estimate': if (message.vehicle === game.selected) game.estimate = message; break;
-      case 'status': game.statuses.set(message.vehicle, message.status); break;
+      case 'status': game.takeStatus(message, performance.now()); break;
+      case 'operated': this.details.operate.hear(message); break;
       case 'drive':
         game.drivers.set(message.vehicle, message.by);
         this.drive.hear(message);
@@ -180,6 +194,7 @@ class Page {
       case 'refused':
         // A page that is refused does not steer.
         if (message.what === 'drive') this.drive.letGo();
+        if (['operate', 'mission'].includes(message.what)) return this.details.operate.refuse(message.reason);
         notice(`Not done: ${plain(message.what)}. ${message.reason}`);
         break;
       // Kinds that we do not know are of a newer server.
@@ -215,12 +230,16 @@ class Page {
     }
     document.body.classList.remove('connecting', 'lost');
     document.body.classList.toggle('replay', hello.mode === 'replay');
+    document.body.classList.toggle('real', hello.mode === 'live' && game.vehicles.some(({ external }) => external));
+    this.background.greet(hello.chart);
+    this.alarms.greet(hello);
     show(byId('connection'), false);
     const field = hello.chart.field;
     if (!sameField && field) this.view.setBounds([...field.corners, ...(field.flags ?? []).map(({ x, y }) => [x, y])]);
     this.sea.greet(hello.chart.waves);
     this.boats.hovered = -1;
     this.measure.forget();
+    this.fenceEditor.greet(hello.chart);
     this.status.greet(game);
     this.controls.greet(hello);
     this.list.greet(game);
@@ -271,7 +290,7 @@ class Page {
     }
     if (name === null) this.setFollowing(false);
     if (look) this.tab('boat');
-    else if (name === null && this.tabName === 'boat') this.tab('boats');
+    else if (name === null && this.tabs.name === 'boat') this.tab('boats');
     this.tell();
   }
 
@@ -309,12 +328,17 @@ class Page {
   tap(x, y, touch) {
     this.sheet.focus({ preventScroll: true });
     const at = this.boats.at(this.game, this.view, x, y, touch ? REACH_TOUCH_PX : REACH_MOUSE_PX);
-    if (this.measure.active) this.measure.take(at >= 0 ? { boat: at } : { x: this.view.eastOf(x), y: this.view.northOf(y) });
+    if (this.fenceEditor.active) this.fenceEditor.take(this.view.eastOf(x), this.view.northOf(y));
+    else if (this.measure.active) this.measure.take(at >= 0 ? { boat: at } : { x: this.view.eastOf(x), y: this.view.northOf(y) });
     else if (at >= 0) this.select(this.game.vehicles[at].name, true);
   }
 
-  /** By keys an end of what is measured is taken at the selected boat, else in the middle of the chart. */
-  measureHere() {
+  /** By keys a corner of a geofence is taken in the middle of the chart, an end of what is measured at the selected boat, else there. */
+  takeHere() {
+    if (this.fenceEditor.active) {
+      this.fenceEditor.take(this.view.centreX, this.view.centreY);
+      return true;
+    }
     if (!this.measure.active) return false;
     const boat = this.game.indexOf.get(this.game.selected);
     this.measure.take(boat === undefined ? { x: this.view.centreX, y: this.view.centreY } : { boat });
@@ -349,7 +373,7 @@ class Page {
   setFollowing(following) {
     if (this.following === following) return;
     this.following = following && this.game.selected !== null;
-    this.details.tell(this.game, this.following, this.driver);
+    this.details.tell(this.game, this.following, this.driver, this.readings);
   }
 
   toggleFollow() {
@@ -383,31 +407,12 @@ class Page {
   }
 
   tab(name) {
-    // On a wide page the events have a place of their own.
-    this.tabName = name === 'events' && this.wide.matches ? 'boats' : name;
-    document.body.dataset.tab = this.tabName;
-    this.log.under(this.tabName, this.wide.matches);
-    // A phone has no room for these below the chart.
-    const place = this.wide.matches ? byId('controls') : byId('pane-game');
-    if (byId('shown').parentElement !== place) place.insertBefore(byId('shown'), this.wide.matches ? byId('help') : place.firstChild);
-    for (const each of ['boats', 'boat', 'events', 'game']) {
-      const chosen = each === this.tabName;
-      byId(`tab-${each}`).setAttribute('aria-selected', String(chosen));
-      byId(`tab-${each}`).tabIndex = chosen ? 0 : -1;
-    }
-    if (this.link) this.tell();
+    this.tabs.show(name);
   }
 
-  tabKey(event) {
-    const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
-    if (!step) return;
-    const tabs = [...byId('tabs').children].filter((each) => each.offsetParent !== null);
-    const at = tabs.indexOf(document.activeElement);
-    const next = tabs[(at + step + tabs.length) % tabs.length];
-    next.focus();
-    next.click();
-    event.preventDefault();
-    event.stopPropagation();
+  tabbed(name, wide) {
+    this.log.under(name, wide);
+    if (this.game.hello) this.tell();
   }
 
   /** Writes all words that are not of a single frame. */
@@ -419,8 +424,9 @@ class Page {
     if (!this.waiting) this.status.tell(game, this.link.connected, this.controls.eStopped);
     if (!game.hello) return;
     this.controls.tell(game);
-    this.details.tell(game, this.following, this.driver);
-    if (this.ticks % LIST_EVERY === 0 || this.list.selected !== game.selected) this.list.tell(game);
+    this.tellReal(performance.now());
+    this.details.tell(game, this.following, this.driver, this.readings);
+    if (this.ticks % LIST_EVERY === 0 || this.list.selected !== game.selected) this.list.tell(game, this.readings);
     this.log.tell(game);
     this.timeline.tell(game);
     this.plots.tell(game);
@@ -428,6 +434,18 @@ class Page {
     this.legend.tell(game, this.controls.shown.legend);
     this.measure.tell(game, this.view);
     if (document.hidden) this.status.tellFrame(game);
+  }
+
+  /** What gateways say of real boats: badges and alarms. */
+  tellReal(now_ms) {
+    const { game } = this;
+    this.readings = readStatuses(game, now_ms);
+    this.boats.readings = this.readings;
+    this.boats.fences = fencesOf(this.readings);
+    this.fenceEditor.tell(this.boats.fences);
+    this.view.widen(this.boats.fences.flatMap(({ outline }) => outline));
+    this.badged = this.readings.map(({ label, detail }) => `${label} ${detail}`).join();
+    this.alarms.tell(this.readings, { live: game.mode === 'live', connected: this.link.connected }, now_ms);
   }
 
   resize() {
@@ -441,7 +459,7 @@ class Page {
     }
     this.view.resize(clientWidth, clientHeight);
     this.view.version += 1;
-    this.trailed.look = '';
+    this.trails.forget();
   }
 
   draw(now_ms) {
@@ -453,13 +471,14 @@ class Page {
     const shown = this.controls.shown;
     this.sea.draw(view, game.t_s, shown, now_ms);
     const look = `${view.version} ${palette.version} ${this.controls.shownVersion}`;
-    if (look !== this.drawnField) drawField(this.field, view, game.chart, shown);
+    if (look !== this.drawnField) drawField(this.field, view, game.chart, shown, this.background);
     this.drawnField = look;
-    this.drawTrails(shown, index, now_ms);
-    const boats = `${look} ${game.frames} ${index} ${this.boats.hovered} ${game.estimate?.at_s}`;
+    this.trails.draw(game, view, shown, `${this.controls.shownVersion} ${index}`, index, now_ms);
+    const boats = `${look} ${game.frames} ${index} ${this.boats.hovered} ${game.estimate?.at_s} ${this.badged}`;
     if (moving || boats !== this.drawnBoats) {
       this.boats.draw(game, view, shown, this.ratio);
       this.measure.draw(this.boats.context, game, view);
+      this.fenceEditor.draw(this.boats.context, view);
     }
     this.drawnBoats = moving ? '' : boats;
     this.timeline.draw();
@@ -472,26 +491,6 @@ class Page {
     stats.draw_ms = stats.draw_ms * 0.95 + (performance.now() - began_ms) * 0.05;
     if (stats.last_ms > 0) stats.fps = stats.fps * 0.95 + (1000 / Math.max(1, now_ms - stats.last_ms)) * 0.05;
     stats.last_ms = now_ms;
-  }
-
-  /** Draws the trails anew now and then; in between they move along with the chart, which costs next to nothing. */
-  drawTrails(shown, index, now_ms) {
-    const { game, view, trailed } = this;
-    const look = `${view.scale} ${view.width} ${view.height} ${palette.version} ${this.controls.shownVersion} ${index} ${game.trails.epoch}`;
-    const soft = `${view.version} ${game.trails.version}`;
-    if (look === trailed.look && soft === trailed.soft) return;
-    const layer = this.layers[2];
-    if (look === trailed.look && now_ms - trailed.at_ms < TRAILS_MS) {
-      const right = (trailed.x - view.centreX) * view.scale;
-      const down = (view.centreY - trailed.y) * view.scale;
-      layer.style.transform = `translate(${right}px, ${down}px)`;
-      return;
-    }
-    this.trailed = { look, soft, at_ms: now_ms, x: view.centreX, y: view.centreY };
-    layer.style.transform = '';
-    this.trails.clearRect(0, 0, view.width, view.height);
-    if (!shown.trails || !Number.isFinite(game.t_s)) return;
-    game.trails.draw(this.trails, view, game.teams, palette.teams, game.t_s, index);
   }
 }
 

@@ -1,7 +1,7 @@
 // The colours of the chart, taken from the style sheet so that light and dark live in one place.
 
 const NAMES = [
-  'water', 'crest', 'trough', 'grid', 'ink', 'faint', 'edge', 'wall', 'land', 'halo', 'accent', 'danger', 'paper',
+  'water', 'crest', 'trough', 'grid', 'ink', 'faint', 'edge', 'wall', 'land', 'halo', 'accent', 'on-accent', 'danger', 'on-danger', 'good', 'warn', 'paper',
   'team-0', 'team-1', 'team-2', 'team-3',
   'heat-0', 'heat-1', 'heat-2', 'heat-3', 'heat-4', 'heat-5', 'heat-6', 'heat-7', 'heat-8',
 ];

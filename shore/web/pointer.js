@@ -22,7 +22,7 @@ export class Pointer {
 
   /** Buttons upon the chart look after themselves. */
   elsewhere(event) {
-    return event.target.closest('button, #steering-place') !== null;
+    return event.target.closest('button, #steering-place, #fence-editor') !== null;
   }
 
   down(event) {
@@ -66,6 +66,7 @@ export class Pointer {
   }
 
   wheel(event) {
+    if (this.elsewhere(event)) return;
     event.preventDefault();
     const lines = event.deltaMode === 1 ? 16 : 1;
     const { x, y } = this.place(event);

@@ -1,5 +1,7 @@
 // Where boats have been in the last minute, and how fast: one ring of samples for all of them.
 
+import { palette } from './palette.js';
+
 /** Length of a trail, s. */
 export const TRAIL_S = 60;
 const SAMPLES = 256;
@@ -135,5 +137,41 @@ export class Trails {
       lastY = y;
       last_s = this.times[row];
     }
+  }
+}
+
+/** Trails are drawn no more often than this while only they or the place of the chart change, ms. */
+const AGAIN_MS = 150;
+
+/** The canvas of the trails: drawn anew now and then; in between it moves along with the chart, which costs next to nothing. */
+export class TrailLayer {
+  constructor(canvas) {
+    this.canvas = canvas;
+    this.context = canvas.getContext('2d');
+    this.drawn = { look: '', soft: '', at_ms: 0, x: 0, y: 0 };
+  }
+
+  /** It is empty, and to be drawn anew. */
+  forget() {
+    this.drawn.look = '';
+  }
+
+  /** `key` is what else it depends on; `index` is the selected boat. */
+  draw(game, view, shown, key, index, now_ms) {
+    const { drawn } = this;
+    const look = `${view.scale} ${view.width} ${view.height} ${palette.version} ${key} ${game.trails.epoch}`;
+    const soft = `${view.version} ${game.trails.version}`;
+    if (look === drawn.look && soft === drawn.soft) return;
+    if (look === drawn.look && now_ms - drawn.at_ms < AGAIN_MS) {
+      const right = (drawn.x - view.centreX) * view.scale;
+      const down = (view.centreY - drawn.y) * view.scale;
+      this.canvas.style.transform = `translate(${right}px, ${down}px)`;
+      return;
+    }
+    this.drawn = { look, soft, at_ms: now_ms, x: view.centreX, y: view.centreY };
+    this.canvas.style.transform = '';
+    this.context.clearRect(0, 0, view.width, view.height);
+    if (!shown.trails || !Number.isFinite(game.t_s)) return;
+    game.trails.draw(this.context, view, game.teams, palette.teams, game.t_s, index);
   }
 }

@@ -47,10 +47,17 @@ export class View {
   }
 
   setBounds(points) {
-    const xs = points.map((point) => point[0]);
-    const ys = points.map((point) => point[1]);
-    this.bounds = { left: Math.min(...xs), right: Math.max(...xs), bottom: Math.min(...ys), top: Math.max(...ys) };
+    this.bounds = { left: Infinity, right: -Infinity, bottom: Infinity, top: -Infinity };
+    this.widen(points);
     this.fit();
+  }
+
+  /** All of these belong to what is fitted as well. */
+  widen(points) {
+    const { left, right, bottom, top } = this.bounds;
+    const [xs, ys] = [0, 1].map((axis) => points.map((point) => point[axis]));
+    this.bounds = { left: Math.min(left, ...xs), right: Math.max(right, ...xs), bottom: Math.min(bottom, ...ys), top: Math.max(top, ...ys) };
+    if (this.fitted && JSON.stringify(this.bounds) !== JSON.stringify({ left, right, bottom, top })) this.fit();
   }
 
   fit() {

@@ -38,6 +38,11 @@ export function expose(page) {
     events: () => [...game.events], selected: () => game.selected, following: () => page.following, driving: () => drive.vehicle,
     modes: () => game.modes, hulls: () => page.boats.hulls(game, view), labels: () => page.boats.labels.boxes(),
     helm: () => game.helm, estimate: () => game.estimate, statuses: () => Object.fromEntries(game.statuses),
+    badges: () => page.readings.map(({ name, kind, label, detail }) => ({ name, kind, label, detail })),
+    alarms: () => page.alarms.waiting.map(({ boat, text, active }) => ({ boat, text, active })),
+    sounded: () => page.alarms.sound.played, fences: () => page.boats.fences,
+    stops: () => page.readings.filter(({ fence }) => fence).map(({ name, fence }) => ({ name, stopping_m: fence.stopping_m, clearance_m: fence.clearance_m })),
+    background: () => page.background.drawn,
     drawn: () => stats.drawn, fps: () => stats.fps, draw_ms: () => stats.draw_ms,
     measured: () => {
       const { range_m, bearing_deg } = (page.measure.ends.length === 2 && page.measure.reading(game, view)) || {};

@@ -17,6 +17,11 @@ pub(super) fn read(path: &Path) -> Result<Mission> {
     })
 }
 
+/// The mission in the text of such a file, or in which line is what mistake.
+pub(super) fn parse(text: &str) -> Result<Mission, String> {
+    mission_of(text).map_err(|(line, why)| line.map_or(why.clone(), |line| format!("line {line}: {why}")))
+}
+
 /// A mistake: in which line, if in one, and what it is.
 type Mistake = (Option<usize>, String);
 

@@ -14,6 +14,7 @@ mod tell;
 
 use anyhow::{Context, Result};
 use clap::Subcommand;
+use game::external::Mission;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -48,6 +49,11 @@ fn gateway_file(path: Option<&Path>) -> Result<game::gateway::Gateway> {
     let load =
         |path: &Path| game::scenario::load_gateway(path).with_context(|| format!("cannot drive by {}", path.display()));
     path.map_or_else(|| Ok(game::scenario::default_gateway()), load)
+}
+
+/// The mission in the text of a mission file, or what is wrong with it.
+pub(crate) fn read_mission(text: &str) -> Result<Mission, String> {
+    mission_file::parse(text)
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {

@@ -21,8 +21,9 @@ const LATE: Duration = Duration::from_secs(3);
 /// Looks at the page until the game is over.
 pub(crate) fn look(plan: &Plan, wire: &Wire, over: &Watched<bool>) {
     let (began, stream) = (clock::now(), &mut Stream::new(plan.seed, "page"));
-    let view = LiveView::open(net(false).into(), Some(name()), Box::new(|_| ())).expect("a thread");
-    let mut viewer = view.open_viewer(Access { rights: true });
+    let view =
+        LiveView::open(net(false).into(), Some(name()), Box::new(|_| ()), |_| Err(String::new())).expect("a thread");
+    let mut viewer = view.open_viewer(Access::Control);
     let mut shown = Shown { at: clock::now(), frames: 0 };
     while !over.wait(LOOKS, |over| *over) {
         let since = clock::since(began) + BEGINS;

@@ -25,7 +25,7 @@ static REPLAY: LazyLock<ReplayView> = LazyLock::new(|| {
 /// It looks for a game and never finds one.
 static LIVE: LazyLock<LiveView> = LazyLock::new(|| {
     let nowhere = Place::new(|_| Err("there is no game".to_owned()));
-    LiveView::open(nowhere, None, Box::new(|_| ())).expect("a thread")
+    LiveView::open(nowhere, None, Box::new(|_| ()), |_| Err(String::new())).expect("a thread")
 });
 
 fn seeds() -> Vec<Vec<u8>> {
@@ -46,10 +46,10 @@ fn seeds() -> Vec<Vec<u8>> {
 
 fn check(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
-    for rights in [false, true] {
-        talk(PageSession::new(REPLAY.open_viewer(Access { rights }), Access { rights }), &text, |_, _| ());
+    for access in [Access::Watch, Access::Control, Access::Operate] {
+        talk(PageSession::new(REPLAY.open_viewer(access), access), &text, |_, _| ());
     }
-    let access = Access { rights: false };
+    let access = Access::Watch;
     talk(PageSession::new(LIVE.open_viewer(access), access), &text, |line, said| {
         // Who may only look gets nothing done.
         let acts = serde_json::from_str::<PageRequest>(line).is_ok_and(|ask| ask.acts());
@@ -66,7 +66,7 @@ fn replay_of(recording: Recording) -> ReplayView {
 /// Shows a recording to a page that looks around in it.
 pub(super) fn look_around(recording: Recording) {
     let view = replay_of(recording);
-    let access = Access { rights: false };
+    let access = Access::Watch;
     let seed = String::from_utf8(seeds().swap_remove(1)).expect("a text");
     talk(PageSession::new(view.open_viewer(access), access), &seed, |_, _| ());
 }

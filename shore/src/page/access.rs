@@ -1,8 +1,9 @@
-//! Access control of the page: accepted host names, origins, and the token of those who may act.
+//! Access control of the page: accepted host names, origins, and the tokens of those who may act.
 //!
 //! A page that somebody on this machine opens from elsewhere can send requests to this machine too: by its address, or
 //! by a name that is made to lead here. `Host` and `Origin`, which browsers set and pages cannot, tell them apart.
 
+use super::view::Access;
 use std::net::{IpAddr, SocketAddr};
 
 /// Which requests are accepted.
@@ -10,13 +11,22 @@ use std::net::{IpAddr, SocketAddr};
 pub(super) struct AccessControl {
     bound: SocketAddr,
     hosts: Vec<String>,
-    token: Option<String>,
+    tokens: Tokens,
+}
+
+/// What pages have to show to act.
+#[derive(Clone, Debug)]
+pub(super) struct Tokens {
+    /// To control the game. Without one all may.
+    pub(super) control: Option<String>,
+    /// To operate real boats. Nobody may without it, not even another user of this machine.
+    pub(super) operate: String,
 }
 
 impl AccessControl {
-    /// For a server at this address, with further host names and the token of those who may act.
-    pub(super) fn new(bound: SocketAddr, hosts: &[String], token: Option<String>) -> AccessControl {
-        AccessControl { bound, hosts: hosts.iter().map(|host| host.to_ascii_lowercase()).collect(), token }
+    /// For a server at this address, with further host names and the tokens of those who may act.
+    pub(super) fn new(bound: SocketAddr, hosts: &[String], tokens: Tokens) -> AccessControl {
+        AccessControl { bound, hosts: hosts.iter().map(|host| host.to_ascii_lowercase()).collect(), tokens }
     }
 
     /// Whether a request for this host (as in the header) is meant for this server.
@@ -57,15 +67,15 @@ impl AccessControl {
         }
     }
 
-    /// Whether acting needs a token.
-    pub(super) fn has_token(&self) -> bool {
-        self.token.is_some()
-    }
-
-    /// Whether a page whose address has this query may act.
-    pub(super) fn has_rights(&self, query: Option<&str>) -> bool {
-        let Some(token) = &self.token else { return true };
-        value(query, "token").is_some_and(|shown| is_same(&shown, token.as_bytes()))
+    /// What a page whose address has this query may do.
+    pub(super) fn access(&self, query: Option<&str>) -> Access {
+        let shown = value(query, "token");
+        let is_shown = |token: &String| shown.as_ref().is_some_and(|shown| is_same(shown, token.as_bytes()));
+        match &self.tokens {
+            Tokens { operate, .. } if is_shown(operate) => Access::Operate,
+            Tokens { control, .. } if control.as_ref().is_none_or(is_shown) => Access::Control,
+            _ => Access::Watch,
+        }
     }
 }
 
@@ -101,7 +111,8 @@ mod tests {
 
     fn guard(bound: &str, hosts: &[&str]) -> AccessControl {
         let hosts: Vec<String> = hosts.iter().map(|host| (*host).to_owned()).collect();
-        AccessControl::new(bound.parse().expect("an address"), &hosts, None)
+        let tokens = Tokens { control: None, operate: "of operators".to_owned() };
+        AccessControl::new(bound.parse().expect("an address"), &hosts, tokens)
     }
 
     /// The cases in `access_cases.csv` of one check: the two other columns, where `none` is nothing, and what comes of it.
@@ -133,9 +144,30 @@ mod tests {
 
     #[test]
     fn the_token_gives_rights() {
-        for ([token, query], rights) in cases("token") {
-            let guard = AccessControl { token, ..guard("127.0.0.1:1", &[]) };
-            assert_eq!(guard.has_rights(query.as_deref()), rights, "{query:?} with {:?}", guard.token);
+        for ([control, query], rights) in cases("token") {
+            let tokens = Tokens { control, operate: "of operators".to_owned() };
+            let guard = AccessControl { tokens, ..guard("127.0.0.1:1", &[]) };
+            let access = guard.access(query.as_deref());
+            assert_eq!(
+                access,
+                if rights { Access::Control } else { Access::Watch },
+                "{query:?} with {:?}",
+                guard.tokens
+            );
+        }
+    }
+
+    #[test]
+    fn nobody_operates_real_boats_without_the_token() {
+        for control in [None, Some("a b+c%".to_owned()), Some("of operators".to_owned())] {
+            let tokens = Tokens { control, operate: "of operators".to_owned() };
+            let guard = AccessControl { tokens, ..guard("127.0.0.1:1", &[]) };
+            assert_eq!(guard.access(Some("token=of%20operators")), Access::Operate, "{:?}", guard.tokens);
+            for query in
+                [None, Some(""), Some("token="), Some("token=of"), Some("token=a+b%2Bc%25"), Some("x=of%20operators")]
+            {
+                assert!(guard.access(query) < Access::Operate, "{query:?} with {:?}", guard.tokens);
+            }
         }
     }
 
@@ -145,7 +177,7 @@ mod tests {
             let guard = guard("0.0.0.0:80", &[]);
             drop(guard.check_host(Some(&host)));
             drop(AccessControl::check_origin(Some(&host), Some(&origin)));
-            guard.has_rights(Some(&query));
+            guard.access(Some(&query));
             decoded(&query);
         }
     }

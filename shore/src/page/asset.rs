@@ -57,7 +57,7 @@ pub(super) fn add_security_headers(headers: &mut HeaderMap) {
     }
 }
 
-fn plain(status: StatusCode, kind: &'static str, body: Body) -> Response<Body> {
+pub(super) fn plain(status: StatusCode, kind: &'static str, body: Body) -> Response<Body> {
     let mut response = Response::new(body);
     *response.status_mut() = status;
     response.headers_mut().insert(header::CONTENT_TYPE, HeaderValue::from_static(kind));

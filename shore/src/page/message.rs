@@ -1,6 +1,7 @@
 //! Messages from the server to a page, as `PROTOCOL.md` defines them.
 
 use super::rose::Helm;
+use super::view::Access;
 use game::SimTime;
 use game::external::GatewayStatus;
 use game::outcome::EventOutcome;
@@ -49,6 +50,7 @@ pub(super) enum PageMessage<'a> {
         version: &'a str,
         mode: Mode,
         rights: bool,
+        operates: bool,
         game: &'a str,
         about: Option<&'a str>,
         definitions: BTreeMap<&'static str, &'static str>,
@@ -113,6 +115,11 @@ pub(super) enum PageMessage<'a> {
         vehicle: &'a str,
         by: Option<&'static str>,
     },
+    Operated {
+        vehicle: &'a str,
+        command: &'a str,
+        refused: Option<&'a str>,
+    },
     Preparing {
         text: &'a str,
         failed: bool,
@@ -162,12 +169,13 @@ impl PageMessage<'_> {
     pub(super) fn hello<'a>(
         version: &'a str,
         mode: Mode,
-        rights: bool,
+        access: Access,
         (game, about): (&'a str, Option<&'a str>),
         chart: &'a Value,
     ) -> PageMessage<'a> {
         let definitions = game::ros::DEFINITIONS.into_iter().collect();
-        PageMessage::Hello { protocol: PROTOCOL, version, mode, rights, game, about, definitions, chart }
+        let (rights, operates) = (access >= Access::Control, access >= Access::Operate);
+        PageMessage::Hello { protocol: PROTOCOL, version, mode, rights, operates, game, about, definitions, chart }
     }
 
     /// The estimated position of a boat at this time.

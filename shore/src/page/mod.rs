@@ -6,6 +6,7 @@
 
 mod access;
 mod asset;
+mod background;
 mod chart;
 pub mod live;
 mod message;
@@ -19,6 +20,7 @@ mod session;
 mod socket;
 mod view;
 
+pub use background::{Background, BackgroundError};
 pub use message::Mode;
 pub use preparing::PreparingView;
 pub use report::{Report, Showing, Shown};
@@ -27,7 +29,8 @@ pub use rose::{HelmAnswer, is_sound};
 pub use session::PageSession;
 pub use view::{Access, Budget, Changes, Outgoing, View, Viewer};
 
-use access::AccessControl;
+use access::{AccessControl, Tokens};
+use bus::Token;
 use std::net::{SocketAddr, TcpListener};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
@@ -44,6 +47,8 @@ pub struct PageSettings {
     pub token: Option<String>,
     /// Further names under which it may be asked for. They need a token: whoever has a name for it comes from elsewhere.
     pub hosts: Vec<String>,
+    /// What is drawn below the field.
+    pub background: Option<Background>,
     /// Set from outside to end it.
     pub stop: Arc<AtomicBool>,
 }
@@ -82,12 +87,15 @@ pub enum PageError {
 /// A web server in a thread of its own; dropped, it closes the connections to all pages.
 pub struct Page {
     address: SocketAddr,
+    operator_token: String,
     shown: Option<watch::Sender<Option<Arc<dyn View>>>>,
     report: Arc<OnceLock<Arc<dyn Report>>>,
     ended: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
 
+/// Hexadecimal digits of a token that nobody chose: 128 bits.
+const OPERATOR_TOKEN_DIGITS: usize = 32;
 /// How often the server checks whether it shall end.
 const LOOK_AGAIN: Duration = Duration::from_millis(50);
 /// How long pages have to receive the close message.
@@ -108,20 +116,22 @@ impl Page {
     /// [`PageError`] if it cannot listen there, or should not.
     pub fn open(settings: PageSettings) -> Result<Page, PageError> {
         let (listener, address) = listener(&settings)?;
-        let PageSettings { token, hosts, stop, .. } = settings;
+        let PageSettings { token, hosts, background, stop, .. } = settings;
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(PageError::Begin)?;
         let (shown, to_show) = watch::channel(None);
+        let operator_token = token.clone().unwrap_or_else(|| Token::random().hex()[..OPERATOR_TOKEN_DIGITS].to_owned());
+        let tokens = Tokens { control: token, operate: operator_token.clone() };
         let ended = Arc::new(AtomicBool::new(false));
         let end = Arc::clone(&ended);
         let report = Arc::new(OnceLock::new());
         let to_publish = Arc::clone(&report);
         let serve = move || {
-            let access_control = AccessControl::new(address, &hosts, token);
+            let access_control = AccessControl::new(address, &hosts, tokens);
             // What cannot be taken over by the runtime was never a listener.
             drop(runtime.block_on(routes::serve(
                 listener,
                 access_control,
-                (Shown::to_all(to_show), to_publish),
+                (Shown::to_all(to_show), to_publish, background),
                 async {
                     while !end.load(Ordering::Relaxed) && !stop.load(Ordering::Relaxed) {
                         tokio::time::sleep(LOOK_AGAIN).await;
@@ -132,13 +142,19 @@ impl Page {
             runtime.shutdown_timeout(GOODBYE);
         };
         let thread = std::thread::Builder::new().name("page".to_owned()).spawn(serve).map_err(PageError::Begin)?;
-        Ok(Page { address, shown: Some(shown), report, ended, thread: Some(thread) })
+        Ok(Page { address, operator_token, shown: Some(shown), report, ended, thread: Some(thread) })
     }
 
     /// Where it listens.
     #[must_use]
     pub fn address(&self) -> SocketAddr {
         self.address
+    }
+
+    /// What a page has to show to operate real boats: the token, or where none is set one of its own.
+    #[must_use]
+    pub fn operator_token(&self) -> &str {
+        &self.operator_token
     }
 
     /// Publishes a report with its games; the first stays.
@@ -191,7 +207,7 @@ mod tests {
     fn open(listen: &str, token: Option<&str>) -> Result<Page, PageError> {
         let listen = listen.parse().expect("an address");
         let token = token.map(str::to_owned);
-        Page::open(PageSettings { listen, token, hosts: vec![], stop: Arc::default() })
+        Page::open(PageSettings { listen, token, hosts: vec![], background: None, stop: Arc::default() })
     }
 
     #[test]
@@ -207,7 +223,13 @@ mod tests {
     fn a_further_name_needs_a_token() {
         let open = |token: Option<&str>| {
             let (listen, hosts) = ("127.0.0.1:0".parse().unwrap(), vec!["boat.local".to_owned()]);
-            Page::open(PageSettings { listen, token: token.map(str::to_owned), hosts, stop: Arc::default() })
+            Page::open(PageSettings {
+                listen,
+                token: token.map(str::to_owned),
+                hosts,
+                background: None,
+                stop: Arc::default(),
+            })
         };
         let error = open(None).err().expect("it is refused").to_string();
         assert!(["boat.local", "--host", "--token"].iter().all(|word| error.contains(word)), "{error}");

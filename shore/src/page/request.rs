@@ -1,5 +1,7 @@
 //! Requests of a page to its server, as `PROTOCOL.md` defines them.
 
+use super::view::Access;
+use game::external::OperatorCommand;
 use game::message::Control;
 use serde::Deserialize;
 
@@ -64,6 +66,20 @@ pub enum PageRequest {
         /// The vehicle's name.
         vehicle: String,
     },
+    /// Commands a real boat.
+    Operate {
+        /// The vehicle's name.
+        vehicle: String,
+        /// What it is to do.
+        command: OperatorCommand,
+    },
+    /// Has a real boat sail a mission by itself.
+    Mission {
+        /// The vehicle's name.
+        vehicle: String,
+        /// The text of a mission file.
+        lines: String,
+    },
 }
 
 impl PageRequest {
@@ -73,16 +89,30 @@ impl PageRequest {
         self.into()
     }
 
+    /// What a page must be allowed to ask it of a game that others play.
+    #[must_use]
+    pub fn needs(&self) -> Access {
+        match self {
+            PageRequest::Ack
+            | PageRequest::Select { .. }
+            | PageRequest::Modes { .. }
+            | PageRequest::Curves { .. }
+            | PageRequest::Step { .. }
+            | PageRequest::Seek { .. } => Access::Watch,
+            PageRequest::Control { .. }
+            | PageRequest::Speed { .. }
+            | PageRequest::Drive { .. }
+            | PageRequest::LetGo { .. } => Access::Control,
+            // As at the gateway, whoever may stop all boats may stop one.
+            PageRequest::Operate { command, .. } if !command.needs_token() => Access::Control,
+            PageRequest::Operate { .. } | PageRequest::Mission { .. } => Access::Operate,
+        }
+    }
+
     /// Whether it changes a game that others play.
     #[must_use]
     pub fn acts(&self) -> bool {
-        matches!(
-            self,
-            PageRequest::Control { .. }
-                | PageRequest::Speed { .. }
-                | PageRequest::Drive { .. }
-                | PageRequest::LetGo { .. }
-        )
+        self.needs() > Access::Watch
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::access::{AccessControl, value};
 use super::asset;
+use super::background::Background;
 use super::report::{Report, Shown};
 use super::socket::{self, RECEIVED_MAX};
 use super::view::Access;
@@ -27,9 +28,9 @@ use tokio::sync::oneshot;
 use tokio::time::sleep;
 use tokio_io_timeout::TimeoutStream;
 
-/// The most pages at a time, of those without the token.
+/// The most pages at a time, of those that show no token.
 const PAGES_MAX: usize = 64;
-/// The most pages with the token: those without it take no room from them.
+/// The most pages that operators have: others take no room from them.
 const OPERATORS_MAX: usize = 8;
 /// The most connections at a time that are no websockets yet.
 const CONNECTIONS_MAX: usize = 192;
@@ -48,6 +49,7 @@ struct AppState {
     access_control: Arc<AccessControl>,
     shown: Shown,
     report: Arc<OnceLock<Arc<dyn Report>>>,
+    background: Option<Arc<Background>>,
     viewers: Connections,
     operators: Connections,
 }
@@ -62,9 +64,8 @@ impl AppState {
 
     /// Room for a page from this address with this query, and what it may do.
     fn admit(&self, from: IpAddr, query: Option<&str>) -> (Room, Access) {
-        let access = Access { rights: self.access_control.has_rights(query) };
-        let is_operator = access.rights && self.access_control.has_token();
-        (admit(if is_operator { &self.operators } else { &self.viewers }, from), access)
+        let access = self.access_control.access(query);
+        (admit(if access == Access::Operate { &self.operators } else { &self.viewers }, from), access)
     }
 }
 
@@ -81,7 +82,7 @@ fn admit(connections: &Connections, from: IpAddr) -> Room {
 pub(super) async fn serve(
     listener: std::net::TcpListener,
     access_control: AccessControl,
-    (shown, report): (Shown, Arc<OnceLock<Arc<dyn Report>>>),
+    (shown, report, background): (Shown, Arc<OnceLock<Arc<dyn Report>>>, Option<Background>),
     end: impl Future<Output = ()>,
 ) -> std::io::Result<()> {
     let listener = TcpListener::from_std(listener)?;
@@ -89,6 +90,7 @@ pub(super) async fn serve(
         access_control: Arc::new(access_control),
         shown,
         report,
+        background: background.map(Arc::new),
         viewers: Connections::new(PAGES_MAX),
         operators: Connections::new(OPERATORS_MAX),
     };
@@ -160,6 +162,9 @@ async fn file(State(app): State<AppState>, method: Method, uri: Uri) -> Response
     if method != Method::GET && method != Method::HEAD {
         return asset::text(StatusCode::METHOD_NOT_ALLOWED, "There are only files here.\n");
     }
+    if let Some(response) = background_file(app.background.as_deref(), uri.path()) {
+        return response;
+    }
     let path = uri.path().to_owned();
     if let Some(report) = app.report.get().filter(|_| path == "/" && value(uri.query(), "game").is_none()) {
         return asset::elsewhere(report.page());
@@ -167,6 +172,19 @@ async fn file(State(app): State<AppState>, method: Method, uri: Uri) -> Response
     match app.of_report(move |report| report.file(&path)).await.flatten() {
         Some(contents) => asset::own(uri.path(), Body::from(contents)),
         None => asset::answer(uri.path()),
+    }
+}
+
+/// What the page draws below the field: `null` where there is nothing.
+fn background_file(background: Option<&Background>, path: &str) -> Option<Response<Body>> {
+    let image = background.and_then(|background| background.image.as_ref());
+    match path {
+        "/background.json" => {
+            let json = background.map_or("null", |background| &background.json);
+            Some(asset::plain(StatusCode::OK, "application/json", Body::from(json.to_owned())))
+        }
+        "/background-image" => image.map(|(kind, bytes)| asset::plain(StatusCode::OK, kind, Body::from(bytes.clone()))),
+        _ => None,
     }
 }
 

@@ -49,9 +49,15 @@ impl PageSession {
             self.undrawn = self.undrawn.saturating_sub(1);
             return;
         }
-        if ask.acts() && self.viewer.mode() == Mode::Live && !self.access.rights {
-            return self
-                .refuse(ask.name(), "this page may only look: open it by its address with the token".to_owned());
+        let is_allowed = self.viewer.mode() == Mode::Replay || self.access >= ask.needs();
+        if !is_allowed {
+            let reason = match self.access {
+                Access::Watch => "this page may only look: open it by its address with the token",
+                _ => {
+                    "this page may only look at real boats and stop them: open it by its address with the operator's token"
+                }
+            };
+            return self.refuse(ask.name(), reason.to_owned());
         }
         if let Err(reason) = self.viewer.ask(&ask, now) {
             self.refuse(ask.name(), reason);
@@ -151,15 +157,15 @@ mod tests {
         }
     }
 
-    fn session(mode: Mode, rights: bool) -> (PageSession, Arc<Mutex<Vec<PageRequest>>>) {
+    fn session(mode: Mode, access: Access) -> (PageSession, Arc<Mutex<Vec<PageRequest>>>) {
         let asked = Arc::new(Mutex::new(vec![]));
         let viewer = TestViewer { mode, asked: Arc::clone(&asked), frames: 0 };
-        (PageSession::new(Box::new(viewer), Access { rights }), asked)
+        (PageSession::new(Box::new(viewer), access), asked)
     }
 
     #[test]
     fn two_frames_are_on_their_way_and_a_third_when_one_is_drawn() {
-        let (mut session, _) = session(Mode::Live, false);
+        let (mut session, _) = session(Mode::Live, Access::Watch);
         let now = clock::now();
         let frames: Vec<Outgoing> = std::iter::from_fn(|| session.next_message(now)).take(9).collect();
         assert_eq!(frames, [Outgoing::now(&[1]), Outgoing::now(&[2])]);
@@ -173,7 +179,7 @@ mod tests {
 
     #[test]
     fn a_long_text_is_on_its_way_until_its_mark_is_back() {
-        let (mut session, _) = session(Mode::Live, false);
+        let (mut session, _) = session(Mode::Live, Access::Watch);
         assert_eq!((session.budget(), session.ping()), (Budget::All, None));
         session.unconfirmed = UNCONFIRMED_MAX - 1;
         assert_eq!((session.budget(), session.ping()), (Budget::All, None), "a short one does not matter");
@@ -195,22 +201,30 @@ mod tests {
 
     #[test]
     fn acts_need_rights_in_a_game_and_none_in_a_replay() {
-        let act = r#"{"do":"control","what":"pause"}"#;
-        for (mode, rights, passed) in
-            [(Mode::Live, false, 0), (Mode::Live, true, 1), (Mode::Replay, false, 1), (Mode::Replay, true, 1)]
+        let pause = r#"{"do":"control","what":"pause"}"#;
+        let disarm = r#"{"do":"operate","vehicle":"a","command":"disarm"}"#;
+        let arm = r#"{"do":"operate","vehicle":"a","command":"arm"}"#;
+        let mission = r#"{"do":"mission","vehicle":"a","lines":""}"#;
+        for (act, least) in
+            [(pause, Access::Control), (disarm, Access::Control), (arm, Access::Operate), (mission, Access::Operate)]
         {
-            let (mut session, asked) = session(mode, rights);
-            session.receive(act, clock::now());
-            assert_eq!(asked.lock().unwrap().len(), passed, "{mode:?} {rights}");
-            let refused =
-                matches!(session.next_message(clock::now()), Some(Outgoing::Text(text)) if text.contains("refused"));
-            assert_eq!(refused, passed == 0, "{mode:?} {rights}");
+            for access in [Access::Watch, Access::Control, Access::Operate] {
+                for mode in [Mode::Live, Mode::Replay] {
+                    let (mut session, asked) = session(mode, access);
+                    session.receive(act, clock::now());
+                    let is_allowed = mode == Mode::Replay || access >= least;
+                    assert_eq!(asked.lock().unwrap().len(), usize::from(is_allowed), "{act} {mode:?} {access:?}");
+                    let next = session.next_message(clock::now());
+                    let refused = matches!(next, Some(Outgoing::Text(text)) if text.contains("refused"));
+                    assert_eq!(refused, !is_allowed, "{act} {mode:?} {access:?}");
+                }
+            }
         }
     }
 
     #[test]
     fn nonsense_is_answered_but_not_without_end() {
-        let (mut session, _) = session(Mode::Live, true);
+        let (mut session, _) = session(Mode::Live, Access::Control);
         let now = clock::now();
         (0..100).for_each(|_| session.receive("ahoy", now));
         session.receive_binary();
@@ -222,11 +236,12 @@ mod tests {
     }
 
     fn anything() -> impl Strategy<Value = String> {
-        let word =
-            prop::sample::select(vec!["ack", "select", "control", "speed", "step", "seek", "drive", "let_go", "x"]);
+        let word = prop::sample::select(vec![
+            "ack", "select", "control", "speed", "step", "seek", "drive", "let_go", "operate", "x",
+        ]);
         let what = prop::sample::select(vec!["pause", "stop", "e_stop", "release", "fly"]);
         let asked = (word, what, any::<f64>(), any::<i64>(), ".{0,9}").prop_map(|(word, what, x, by, vehicle)| {
-            serde_json::json!({"do": word, "what": what, "factor": x, "by": by, "t_s": x, "vehicle": vehicle,
+            serde_json::json!({"do": word, "what": what, "command": what, "factor": x, "by": by, "t_s": x, "vehicle": vehicle,
                 "course_deg": x, "speed_m_s": x})
             .to_string()
         });
@@ -236,7 +251,7 @@ mod tests {
     proptest! {
         #[test]
         fn nothing_that_a_page_says_acts_without_rights(texts in prop::collection::vec(anything(), 0..40)) {
-            let (mut session, asked) = session(Mode::Live, false);
+            let (mut session, asked) = session(Mode::Live, Access::Watch);
             let now = clock::now();
             for text in &texts {
                 session.receive(text, now);

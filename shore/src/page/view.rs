@@ -27,11 +27,15 @@ pub trait View: Send + Sync {
     fn news(&self) -> &Changes;
 }
 
-/// What a page may do.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Access {
-    /// Whether it may act.
-    pub rights: bool,
+/// What a page may do; each may do what those before it may.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Access {
+    /// Watch.
+    Watch,
+    /// Control the game: pause it, stop its boats, steer those that people steer.
+    Control,
+    /// Operate real boats: arm them, give them tasks.
+    Operate,
 }
 
 /// One page's view. It gets the time as an argument, and never blocks.

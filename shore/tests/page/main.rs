@@ -3,6 +3,7 @@
 mod access;
 mod client;
 mod live;
+mod operate;
 mod replay;
 mod report;
 mod session;
@@ -14,13 +15,17 @@ use std::sync::Arc;
 
 /// A server on a free port that shows nothing yet.
 fn empty_page(token: Option<&str>, hosts: &[&str]) -> Page {
-    let settings = PageSettings {
+    Page::open(settings(token, hosts)).expect("a free port")
+}
+
+fn settings(token: Option<&str>, hosts: &[&str]) -> PageSettings {
+    PageSettings {
         listen: "127.0.0.1:0".parse().expect("an address"),
         token: token.map(str::to_owned),
         hosts: hosts.iter().map(|host| (*host).to_owned()).collect(),
+        background: None,
         stop: Arc::default(),
-    };
-    Page::open(settings).expect("a free port")
+    }
 }
 
 /// A server on a free port that shows this.

@@ -214,7 +214,7 @@ fn is_of_selected(said: &Outgoing) -> bool {
 #[test]
 fn what_can_wait_waits_until_there_is_room() {
     let show = ReplayView::new(two_minutes(), None);
-    let (mut viewer, now) = (show.open_viewer(Access { rights: false }), clock::now());
+    let (mut viewer, now) = (show.open_viewer(Access::Watch), clock::now());
     while viewer.next_message(now, Budget::All).is_some() {}
     viewer
         .ask(&PageRequest::Select { vehicle: Some("red_one".to_owned()), functions: true }, now)
@@ -232,7 +232,7 @@ proptest! {
         asks in prop::collection::vec((any_ask(), 0..2_000_u64, any_room()), 1..30),
     ) {
         let show = ReplayView::new(two_minutes(), None);
-        let mut viewer = show.open_viewer(Access { rights: false });
+        let mut viewer = show.open_viewer(Access::Watch);
         let mut now = clock::now();
         for (ask, wait_ms, room) in asks {
             drop(viewer.ask(&ask, now));

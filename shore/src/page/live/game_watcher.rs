@@ -281,7 +281,7 @@ mod tests {
     #[test]
     fn what_was_asked_of_one_game_is_forgotten_before_the_next_is_looked_for() {
         let (commands, to_do) = inbox(1);
-        let shared = Arc::new(SharedState::new(commands.clone(), Box::new(|_| ())));
+        let shared = Arc::new(SharedState::new(commands.clone(), Box::new(|_| ()), |_| Err(String::new())));
         assert!(commands.offer(Command::Control(Control::Stop)));
         let (found, finds) = sync_channel(1);
         let searched = Arc::clone(&shared);

@@ -2,6 +2,7 @@
 
 use super::event_log::EventLog;
 use super::frame_buffer::FrameBuffer;
+use super::operating::Operating;
 use super::steering::SteeringLocks;
 use crate::page::chart::chart;
 use bus::Bus;
@@ -63,6 +64,7 @@ pub(super) struct LiveState {
     pub(super) helms: Latest<HelmMessage>,
     pub(super) estimates: Latest<(OwnBoat, SimTime)>,
     pub(super) statuses: Latest<GatewayStatus>,
+    pub(super) operating: Operating,
     pub(super) steering_locks: SteeringLocks,
     /// What is to be passed on to steered boats: course, rad, and speed, m/s.
     pub(super) steering: BTreeMap<VehicleId, (f64, f64)>,

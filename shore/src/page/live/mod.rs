@@ -8,6 +8,7 @@ mod event_log;
 mod frame_buffer;
 mod game_watcher;
 mod live_state;
+mod operating;
 mod query_thread;
 mod steering;
 mod stopping;
@@ -15,6 +16,7 @@ mod viewer;
 
 use super::view::{Access, Changes, View, Viewer};
 use bus::{InboxSender, Place, inbox, start_thread};
+use game::external::Mission;
 use game::message::Control;
 use game::topic::GameName;
 use game_watcher::GameWatcher;
@@ -31,6 +33,9 @@ const COMMANDS_MAX: usize = 64;
 /// Shows a person what went wrong, in a sentence.
 pub type Tell = Box<dyn Fn(&str) + Send + Sync>;
 
+/// Reads the text of a mission file, or says what is wrong with it.
+pub type ReadMission = fn(&str) -> Result<Mission, String>;
+
 /// A game on the network, shown to pages.
 pub struct LiveView {
     shared: Arc<SharedState>,
@@ -45,6 +50,7 @@ struct SharedState {
     stopping: Stopping,
     /// Where a person reads what went wrong.
     tell: Tell,
+    read_mission: ReadMission,
     pages: AtomicU64,
     is_closing: AtomicBool,
 }
@@ -60,16 +66,27 @@ enum Command {
 
 impl LiveView {
     /// Looks for a game at `place`, this one or the only one there is, for as long as the view is kept. `tell` gets what is missing
-    /// meanwhile, whenever that changes, and what the sim refuses.
+    /// meanwhile, whenever that changes, and what the sim refuses; `read_mission` reads mission files that operators send.
     ///
     /// # Errors
     /// If the system has no thread to give.
-    pub fn open(place: Place, game: Option<GameName>, tell: Tell) -> std::io::Result<LiveView> {
+    pub fn open(
+        place: Place,
+        game: Option<GameName>,
+        tell: Tell,
+        read_mission: ReadMission,
+    ) -> std::io::Result<LiveView> {
         let (commands, to_do) = inbox(COMMANDS_MAX);
-        let shared = Arc::new(SharedState::new(commands, tell));
+        let shared = Arc::new(SharedState::new(commands, tell, read_mission));
         let watcher = GameWatcher { shared: Arc::clone(&shared), place, game, commands: to_do };
         start_thread("page-live", move || watcher.run())?;
         Ok(LiveView { shared })
+    }
+
+    /// Whether the game that is shown has real boats.
+    #[must_use]
+    pub fn has_real_boats(&self) -> bool {
+        self.shared.state.lock().on().is_ok_and(|game| game.has_real_boats())
     }
 }
 
@@ -93,13 +110,14 @@ impl View for LiveView {
 
 impl SharedState {
     /// With an empty state.
-    fn new(commands: InboxSender<Command>, tell: Tell) -> SharedState {
+    fn new(commands: InboxSender<Command>, tell: Tell, read_mission: ReadMission) -> SharedState {
         SharedState {
             state: Mutex::default(),
             news: Changes::default(),
             commands,
             stopping: Stopping::default(),
             tell,
+            read_mission,
             pages: AtomicU64::new(1),
             is_closing: AtomicBool::new(false),
         }

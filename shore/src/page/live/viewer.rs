@@ -1,12 +1,13 @@
 //! One page's view of a running game.
 
 use super::live_state::{HelmMessage, Latest, LiveGame, LiveState};
-use super::{Command, SharedState, stopping};
+use super::operating::Operated;
+use super::{Command, SharedState, operating, stopping};
 use crate::page::message::{EventMessage, Mode, PageMessage, seconds};
 use crate::page::request::PageRequest;
 use crate::page::view::{Access, Budget, ESTIMATE_INTERVAL, MODES_INTERVAL, Outgoing, SEND_INTERVAL, Viewer};
 use axum::body::Bytes;
-use game::external::GatewayStatus;
+use game::external::{GatewayStatus, OperatorCommand};
 use game::message::Control;
 use game::picture::OwnBoat;
 use game::{SimTime, VehicleId};
@@ -57,7 +58,10 @@ impl PageViewer {
         if control.stops() {
             return stopping::stop(&self.shared, state, control);
         }
-        state.on()?;
+        let game = state.on()?;
+        if control == Control::Release && game.has_real_boats() && self.access < Access::Operate {
+            return Err("real boats are released by who opens the page with the operator's token".to_owned());
+        }
         self.send(Command::Control(control))
     }
 
@@ -131,6 +135,10 @@ impl PageViewer {
         if is_on_its_way { Ok(()) } else { self.send(Command::Steer) }
     }
 
+    fn operate(&self, name: &str, command: OperatorCommand) -> Result<(), String> {
+        operating::operate(&self.shared, &mut self.shared.state.lock(), self.page, name, command)
+    }
+
     fn release(&self, name: &str) -> Result<(), String> {
         let mut state = self.shared.state.lock();
         let vehicle = state.on()?.scenario().vehicle_named(name).map_err(|e| e.to_string())?;
@@ -162,6 +170,11 @@ impl Viewer for PageViewer {
             PageRequest::Control { what } => self.control(&self.shared.state.lock(), *what),
             PageRequest::Drive { vehicle, course_deg, speed_m_s } => self.drive(vehicle, *course_deg, *speed_m_s, now),
             PageRequest::LetGo { vehicle } => self.release(vehicle),
+            PageRequest::Operate { vehicle, command } => self.operate(vehicle, command.clone()),
+            PageRequest::Mission { vehicle, lines } => {
+                let mission = (self.shared.read_mission)(lines)?;
+                self.operate(vehicle, OperatorCommand::Mission(mission))
+            }
             PageRequest::Step { .. } | PageRequest::Seek { .. } => {
                 Err("a game that is being played cannot be wound".to_owned())
             }
@@ -182,15 +195,20 @@ impl Viewer for PageViewer {
             let hello = PageMessage::hello(
                 &game.info.version,
                 Mode::Live,
-                self.access.rights,
+                self.access,
                 (game.name.as_str(), None),
                 &game.chart,
             );
             return Some(Outgoing::Text(hello.json()));
         }
+        let reply = state.operating.reply(self.page);
         let sent = &mut self.sent;
-        let text = sent
-            .next_events(&state)
+        let text = reply
+            .map(|Operated { vehicle, command, refused }| {
+                let (vehicle, refused) = (game.name_of(vehicle), refused.as_deref());
+                PageMessage::Operated { vehicle, command, refused }.json()
+            })
+            .or_else(|| sent.next_events(&state))
             .or_else(|| sent.next_run(&state, &game, now))
             .or_else(|| sent.next_steering(&state, &game, self.page))
             .or_else(|| sent.next_status(&state, &game))
@@ -218,6 +236,7 @@ impl Drop for PageViewer {
         state.selected.remove(&self.page);
         state.listed.remove(&self.page);
         state.steering_locks.release_all(self.page);
+        state.operating.forget(self.page);
         drop(state);
         self.shared.news.send_replace(());
     }
@@ -333,13 +352,13 @@ mod tests {
 
     #[test]
     fn what_is_told_of_the_selected_boat_waits_until_there_is_room() {
-        let shared = Arc::new(SharedState::new(inbox(1).0, Box::new(|_| ())));
+        let shared = Arc::new(SharedState::new(inbox(1).0, Box::new(|_| ()), |_| Err(String::new())));
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/pav01_vs_pav01.toml");
         let (scenario, now) = (game::scenario::load(&file).unwrap(), clock::now());
         let info = GameInfo { version: String::new(), pace: "lockstep".to_owned(), scenario };
         let name = GameName::new("pond").unwrap();
         shared.state.lock().begin(Arc::new(LiveGame::new(name, info, &Water::default())));
-        let mut viewer = PageViewer::new(Arc::clone(&shared), Access { rights: false }, 1);
+        let mut viewer = PageViewer::new(Arc::clone(&shared), Access::Watch, 1);
         let mut say = |budget| std::iter::from_fn(|| viewer.next_message(now, budget)).collect::<Vec<Outgoing>>();
         say(Budget::None);
         shared.state.lock().select(1, Some(&("red_one".to_owned(), false))).unwrap();

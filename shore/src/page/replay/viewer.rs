@@ -54,13 +54,8 @@ impl PageViewer {
         let (from, to) = (times.first().copied().unwrap_or_default(), times.last().copied().unwrap_or_default());
         let (info, game) = (shared.source.info(), &shared.source.header().game);
         let gateways = info.scenario.externals().map(|vehicle| (vehicle, None)).collect();
-        let hello = PageMessage::hello(
-            &info.version,
-            Mode::Replay,
-            access.rights,
-            (game, shared.about.as_deref()),
-            &shared.chart,
-        );
+        let hello =
+            PageMessage::hello(&info.version, Mode::Replay, access, (game, shared.about.as_deref()), &shared.chart);
         let events = shared.source.events.iter().map(EventMessage::new).collect();
         PageViewer {
             viewer,
@@ -281,7 +276,11 @@ impl Viewer for PageViewer {
             PageRequest::Seek { .. } | PageRequest::Speed { .. } => {
                 return Err("not a number that makes sense".to_owned());
             }
-            PageRequest::Control { .. } | PageRequest::Drive { .. } | PageRequest::LetGo { .. } => {
+            PageRequest::Control { .. }
+            | PageRequest::Drive { .. }
+            | PageRequest::LetGo { .. }
+            | PageRequest::Operate { .. }
+            | PageRequest::Mission { .. } => {
                 return Err("this is a recording".to_owned());
             }
         }

@@ -1,0 +1,114 @@
+// Geofences of real boats: drawn on the chart by hand or keys, copied for the gateway file, and shown as the gateways have them.
+
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { Sight, openBrowser } from './harness.mjs';
+import { badge, realBoats } from './real_boats.mjs';
+
+let browser;
+before(async () => { browser = await openBrowser(); });
+after(() => browser.close());
+
+/** Presses the chart at a place, m. */
+const press = async (sight, x, y) => {
+  const [right, down] = await sight.get(([x, y]) => {
+    const { view } = squall;
+    const { left, top, width, height } = document.getElementById('sheet').getBoundingClientRect();
+    return [left + (x - view.x) * view.scale + width / 2, top + height / 2 - (y - view.y) * view.scale];
+  }, [x, y]);
+  await sight.page.mouse.click(right, down);
+};
+const text = (sight) => sight.page.inputValue('#fence-toml');
+const corners = (toml) => [...toml.matchAll(/\[(-?\d+\.\d{7}), (-?\d+\.\d{7})\]/g)].map(([, lat, lon]) => [Number(lat), Number(lon)]);
+
+test('a geofence is drawn by hand and by keys, and copied as the gateway file has it', async (t) => {
+  const boats = await realBoats(t);
+  const sight = await Sight.open(t, browser, boats.url, { permissions: ['clipboard-read', 'clipboard-write'] });
+  await badge(sight, 'blue_one', 'disarmed');
+  const { datum } = await sight.get(() => squall.hello.chart.field);
+  await sight.press('#draw-fence');
+  for (const [x, y] of [[10, 10], [100, 10], [100, 70]]) await press(sight, x, y);
+  assert.match(await sight.text('#fence-editor'), /3 corners/);
+  // By keys the fourth is taken in the middle of the chart; it makes no crossing.
+  await sight.page.focus('#sheet');
+  await sight.keys('Enter');
+  assert.match(await sight.text('#fence-editor'), /4 corners/);
+  await sight.keys('Backspace');
+  assert.match(await sight.text('#fence-editor'), /3 corners/);
+  await press(sight, 10, 70);
+  const [first, , third] = corners(await text(sight));
+  const north_m = (third[0] - first[0]) * 111_064;
+  const east_m = (third[1] - first[1]) * 83_700;
+  assert(Math.abs(north_m - 60) < 2 && Math.abs(east_m - 90) < 2, `${east_m} m by ${north_m} m`);
+  assert(Math.abs(first[0] - datum[0]) < 0.001 && Math.abs(first[1] - datum[1]) < 0.001);
+  await sight.page.selectOption('#fence-part', { label: 'Another keep-out' });
+  for (const [x, y] of [[60, 30], [80, 30], [70, 50]]) await press(sight, x, y);
+  assert.match(await text(sight), /^\[geofence\]\npolygon = \[\n( {2}\[[^\]]+\],\n){4}\]\nkeep_out = \[\n {2}\[\n( {4}\[[^\]]+\],\n){3} {2}\],\n\]\n$/);
+  await sight.press('#fence-copy');
+  assert.equal(await sight.get(() => navigator.clipboard.readText()), await text(sight));
+  // Two sides that cross are no polygon.
+  await sight.page.selectOption('#fence-part', { label: 'Outline' });
+  await sight.press('#fence-undo');
+  await press(sight, 60, -5);
+  await press(sight, 110, 40);
+  await sight.until('it says so', () => /Two sides cross/.test(document.getElementById('fence-editor').textContent));
+  assert.equal(await sight.get(() => squall.selected), null, 'no boat is chosen meanwhile');
+  await sight.keys('Escape');
+  assert(!(await sight.page.isVisible('#fence-editor')));
+});
+
+/** Geofences and stopping distances in the status of each boat, in place of those that its gateway tells. */
+const FENCED = () => {
+  const places = (corners) => corners.map(([east, north]) => ({ east, north }));
+  window.WebSocket = class extends WebSocket {
+    set onmessage(take) {
+      super.onmessage = take && (({ data }) => {
+        const message = typeof data === 'string' ? JSON.parse(data) : {};
+        if (message.kind !== 'status') return take({ data });
+        message.status.geofence = {
+          outline: places([[-30, -20], [-30, 100], [190, 100], [190, -20]]), keep_out: [places([[70, 5], [90, 5], [80, 20]])],
+          clearance_m: 6.25, stopping_m: message.vehicle === 'red_one' ? 14 : 4, stops_at: { east: 40, north: 60 },
+        };
+        return take({ data: JSON.stringify(message) });
+      });
+    }
+  };
+};
+
+test('the geofence that gateways tell is drawn with its keep-outs, and who is too near to stop is seen', async (t) => {
+  const boats = await realBoats(t);
+  const sight = await Sight.open(t, browser, boats.url, { before: FENCED, allows: /willReadFrequently/, colorScheme: 'light' });
+  await badge(sight, 'blue_one', 'disarmed');
+  await sight.until('there is a fence', () => squall.fences.length === 1 && squall.stops.length === 2);
+  // All of it is on the chart.
+  const { x, y, scale } = await sight.get(() => squall.view);
+  const { width, height } = await sight.page.locator('#sheet').boundingBox();
+  for (const [east, north] of [[-30, -20], [190, 100]]) {
+    assert(Math.abs(east - x) * scale < width / 2 && Math.abs(north - y) * scale < height / 2, `${east}, ${north} is on the chart`);
+  }
+  /** How many pixels about a place are of the colour of danger. */
+  const red = (east, north) => sight.get(([east, north]) => {
+    const canvas = document.getElementById('layer-boats');
+    const { view } = squall;
+    const [right, down] = [(east - view.x) * view.scale + canvas.clientWidth / 2, canvas.clientHeight / 2 - (north - view.y) * view.scale];
+    const ratio = canvas.width / canvas.clientWidth;
+    const { data } = canvas.getContext('2d').getImageData(Math.round((right - 8) * ratio), Math.round((down - 8) * ratio), 16, 16);
+    let count = 0;
+    for (let i = 0; i < data.length; i += 4) if (data[i] > 150 && data[i + 1] < 60 && data[i + 2] < 60 && data[i + 3] > 200) count += 1;
+    return count;
+  }, [east, north]);
+  await sight.get(() => new Promise(requestAnimationFrame));
+  assert(await red(190, 40) > 8, 'its eastern edge');
+  assert(await red(80, 5) > 3, 'the edge of the keep-out');
+  assert.equal(await red(150, 40), 0, 'water');
+  const near = await sight.get(() => squall.frame.boats.find(({ name }) => name === 'red_one'));
+  const clear = await sight.get(() => squall.frame.boats.find(({ name }) => name === 'blue_one'));
+  assert(await red(near.x, near.y + 14) > 3, 'the circle of the boat that cannot stop in time is red');
+  assert.equal(await red(clear.x, clear.y + 4), 0, 'that of the other is not');
+  await sight.press('[data-vehicle=red_one]');
+  assert.match(await sight.text('#gateway'), /Geofence6\.3\sm to its edge, stops in 14\.0\sm/);
+  // What is drawn can begin with it.
+  await sight.press('#draw-fence');
+  await sight.press('#fence-present');
+  assert.equal(corners(await text(sight)).length, 7);
+});

@@ -1,0 +1,189 @@
+// The page as the station of the operators of real boats: emulated ones, with their gateways.
+
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { Sight, folder, openBrowser } from './harness.mjs';
+import { arm, badge, realBoats } from './real_boats.mjs';
+
+let browser;
+before(async () => { browser = await openBrowser(); });
+after(() => browser.close());
+
+/** A sentence with its checksum. */
+const sentence = (body) => `$${body}*${[...body].reduce((sum, letter) => sum ^ letter.charCodeAt(0), 0).toString(16).toUpperCase().padStart(2, '0')}`;
+
+/** Asks for something as a page that is not ours does, over a connection of its own, so many times; gives what is refused first. */
+const forge = (sight, message, times = 1) => sight.get(([message, times]) => new Promise((done, fail) => {
+  const socket = new WebSocket(`ws://${location.host}/ws${location.hash.replace('#', '?')}`);
+  socket.onopen = () => { for (let i = 0; i < times; i++) socket.send(JSON.stringify(message)); };
+  socket.onmessage = ({ data }) => {
+    const heard = typeof data === 'string' ? JSON.parse(data) : {};
+    if (heard.kind === 'refused') done(heard);
+  };
+  setTimeout(() => fail(new Error('nothing was refused')), 20_000);
+}), [message, times]);
+
+const enabled = (sight, id) => sight.page.isEnabled(`#${id}`);
+
+test('an operator arms, delegates and disarms a boat from the page, and everybody sees how it is', async (t) => {
+  const boats = await realBoats(t);
+  const mine = await Sight.open(t, browser, boats.url);
+  const theirs = await Sight.open(t, browser, boats.url.split('#')[0]);
+  assert.deepEqual(await mine.get(() => [squall.hello.rights, squall.hello.operates]), [true, true]);
+  assert.deepEqual(await theirs.get(() => [squall.hello.rights, squall.hello.operates]), [false, false]);
+  await badge(theirs, 'blue_one', 'disarmed');
+  await theirs.press('[data-vehicle=blue_one]');
+  for (const id of ['operate', 'mission', 'operate-station_keep', 'operate-go_to_erp']) assert(!(await enabled(theirs, id)), `#${id} is off`);
+  assert.match((await forge(theirs, { do: 'operate', vehicle: 'blue_one', command: 'arm' })).reason, /may only look/);
+
+  await mine.press('[data-vehicle=blue_one]');
+  await mine.until('it is ready', () => document.querySelector('#checks .good'));
+  await mine.press('#operate');
+  await mine.press('#operate-cancel');
+  assert.equal((await badge(mine, 'blue_one', 'disarmed')).label, 'Disarmed', 'a no is a no');
+  await arm(mine, 'blue_one');
+  assert.match(await mine.text('#operated'), /blue one is armed/);
+  await badge(theirs, 'blue_one', 'armed');
+  assert.match(await mine.text('#gateway'), /Link.*up.*Fix.*s ago.*Battery.*V, .*s ago.*In control.*secondary/s);
+  await mine.press('#tab-boats');
+  await mine.until('the list shows it', () => /Armed.*link.*fix [\d.]+\ss.*V/s.test(document.querySelector('[data-vehicle=blue_one] .badge-line').textContent));
+  assert(await mine.get(() => document.querySelector('#boat-list [data-vehicle=blue_two] .badge-line') === null), 'a simulated boat has no badge');
+
+  await mine.press('#tab-boat');
+  await mine.press('#operate-station_keep');
+  await mine.press('#operate-confirm');
+  assert.equal((await badge(mine, 'blue_one', 'delegated')).detail, 'station keeping');
+  await mine.press('#operate-go_to_erp');
+  await mine.press('#operate-confirm');
+  await mine.until('it says why it does not', () => /refuses: missing: a recovery point/.test(document.getElementById('operated').textContent));
+
+  const place = folder(t);
+  const { datum } = await mine.get(() => squall.hello.chart.field);
+  const waypoint = (index, north_m, east_m) => {
+    const [lat, lon] = [datum[0] + north_m / 111_100, datum[1] + east_m / (111_320 * Math.cos((datum[0] * Math.PI) / 180))];
+    const minutes = (deg, width) => `${String(Math.floor(Math.abs(deg))).padStart(width, '0')}${((Math.abs(deg) % 1) * 60).toFixed(6).padStart(9, '0')}`;
+    return sentence(`OIWPL,${minutes(lat, 2)},${lat < 0 ? 'S' : 'N'},${minutes(lon, 3)},${lon < 0 ? 'W' : 'E'},${index}`);
+  };
+  const write = (name, lines) => {
+    writeFileSync(join(place, name), `${lines.join('\r\n')}\r\n`);
+    return join(place, name);
+  };
+  const send = async (file) => {
+    await mine.page.setInputFiles('#mission-file', file);
+    await mine.press('#operate-confirm');
+  };
+  await send(write('bad.sea', ['no sentence at all']));
+  await mine.until('a bad file is refused', () => /Not done: .*no sentence/.test(document.getElementById('operated').textContent));
+  const settings = sentence('PSEAR,0,000,40,0,000');
+  await send(write('good.sea', [settings, waypoint(0, 20, 30), waypoint(1, 40, 60), waypoint(2, 60, 60)]));
+  await mine.until('it sails', () => squall.badges.find(({ name }) => name === 'blue_one').detail.startsWith('mission'));
+
+  await mine.press('#operate-disarm');
+  await badge(theirs, 'blue_one', 'disarmed');
+});
+
+test('without a token of its own a page may stop real boats, and operates them with the token that the terminal shows', async (t) => {
+  const boats = await realBoats(t, { page: [] });
+  const sight = await Sight.open(t, browser, boats.url);
+  assert.deepEqual(await sight.get(() => [squall.hello.rights, squall.hello.operates]), [true, false]);
+  const [, address, token] = await boats.view.hears(/to operate real boats, open (http:\S+#token=([0-9a-f]{32}))/);
+  await badge(sight, 'blue_one', 'disarmed');
+  await sight.press('[data-vehicle=blue_one]');
+  assert(!(await enabled(sight, 'operate')));
+  for (const command of ['arm', 'release', 'station_keep', { mission: { throttle_pct: 40, erp: [0, 0], waypoints: [[0, 0]] } }]) {
+    assert.match((await forge(sight, { do: 'operate', vehicle: 'blue_one', command })).reason, /operator's token/, JSON.stringify(command));
+  }
+  assert.match((await forge(sight, { do: 'mission', vehicle: 'blue_one', lines: '' })).reason, /operator's token/);
+  await sight.page.fill('#operator-token', 'no');
+  await sight.greetedAnew(() => sight.page.press('#operator-token', 'Enter'));
+  assert(!(await sight.get(() => squall.hello.operates)), 'a wrong one is none');
+  await sight.page.fill('#operator-token', token);
+  await sight.greetedAnew(() => sight.page.press('#operator-token', 'Enter'));
+  assert(await sight.get(() => squall.hello.operates));
+  assert(!(await sight.page.isVisible('#operator-token')));
+  assert.equal(new URL(await sight.get(() => location.href)).hash, new URL(address).hash);
+  await arm(sight, 'blue_one');
+  // Who lost the token may still stop the boat, and all of them, and release none.
+  const looking = await Sight.open(t, browser, boats.url);
+  await looking.press('[data-vehicle=blue_one]');
+  await looking.press('#operate-disarm');
+  await badge(sight, 'blue_one', 'disarmed');
+  await looking.press('#estop');
+  await badge(sight, 'blue_one', 'stopped');
+  await looking.until('it cannot release them', () => document.getElementById('estop').disabled);
+  await sight.press('#estop');
+  await sight.press('#estop-confirm');
+  await badge(sight, 'blue_one', 'disarmed');
+});
+
+test('a failsafe is seen and heard until it is acknowledged, and no flood keeps the E-stop waiting', async (t) => {
+  const boats = await realBoats(t);
+  const sight = await Sight.open(t, browser, boats.url);
+  assert.match(await sight.text('#mute'), /Press for sound/, 'before anything is pressed browsers allow none');
+  await badge(sight, 'blue_one', 'disarmed');
+  await arm(sight, 'blue_one');
+  await arm(sight, 'red_one');
+  await sight.until('alarms can be heard', () => document.getElementById('mute').textContent === 'Alarms on');
+  assert.deepEqual(await sight.get(() => [squall.alarms, squall.sounded]), [[], 0], 'nothing is wrong');
+
+  // Without its agents a boat gets no orders.
+  await boats.agents.kill();
+  for (const name of ['blue_one', 'red_one']) {
+    const failed = await badge(sight, name, 'failsafe');
+    assert.match(failed.detail, /order/);
+  }
+  await sight.until('two alarms', () => squall.alarms.length === 2 && squall.alarms.every(({ active, text }) => active && /^Failsafe: .*order/.test(text)));
+  const before = await sight.get(() => squall.sounded);
+  await sight.until('it is heard, again and again', (before) => squall.sounded >= before + 6, before);
+  assert(await sight.page.isVisible('#alarms'));
+  await sight.press('#mute');
+  const muted = await sight.get(() => squall.sounded);
+  assert.equal(await sight.text('#mute'), 'Alarms muted');
+  await sight.page.waitForTimeout(2500);
+  assert.equal(await sight.get(() => squall.sounded), muted, 'muted it is silent');
+  assert(await sight.page.isVisible('#alarms'), 'and seen all the same');
+  await sight.press('#mute');
+  await sight.until('it is heard again', (muted) => squall.sounded > muted, muted);
+
+  // Reset elsewhere, it stays until it is acknowledged here.
+  const theirs = await Sight.open(t, browser, boats.url);
+  await theirs.press('[data-vehicle=red_one]');
+  assert.equal(await theirs.text('#operate-disarm'), 'Reset failsafe');
+  await theirs.press('#operate-disarm');
+  await badge(sight, 'red_one', 'disarmed');
+  await sight.until('it is over and still there', () => squall.alarms.some(({ boat, active }) => boat === 'red_one' && !active));
+  await sight.press('#alarm-list li:has-text("red one") >> text=Acknowledge');
+  await sight.until('the other waits', () => squall.alarms.length === 1 && squall.alarms[0].boat === 'blue_one');
+  await sight.press('#alarm-list li:has-text("blue one") .alarm-words');
+  assert.equal(await sight.get(() => squall.selected), 'blue_one', 'an alarm leads to its boat');
+  await sight.press('#operate-disarm');
+  await sight.until('to reset it is to acknowledge it', () => squall.alarms.length === 0);
+  assert(!(await sight.page.isVisible('#alarms')));
+
+  // A page floods the server with commands; one press on another stops all boats.
+  const flood = forge(theirs, { do: 'operate', vehicle: 'blue_one', command: 'arm' }, 5000);
+  await sight.press('#estop');
+  const pressed_ms = Date.now();
+  await badge(sight, 'blue_one', 'stopped');
+  await badge(sight, 'red_one', 'stopped');
+  t.diagnostic(`stopped and seen ${Date.now() - pressed_ms} ms after the press`);
+  assert.match((await flood).reason, /has not answered the command before/);
+  assert(Date.now() - pressed_ms < 5000);
+
+  // A gateway that is gone says nothing.
+  await boats.gateways.red_one.kill();
+  assert.match((await badge(sight, 'red_one', 'silent')).detail, /silent since/);
+  await sight.until('that is an alarm', () => squall.alarms.some(({ boat, text }) => boat === 'red_one' && /silent/.test(text)));
+});
+
+test('the E-stop is large only where it stops real boats', async (t) => {
+  const boats = await realBoats(t);
+  for (const [size, least] of [[{ width: 1400, height: 900 }, 60], [{ width: 390, height: 844 }, 68]]) {
+    const sight = await Sight.open(t, browser, boats.url, { size });
+    const { height } = await sight.page.locator('#estop').boundingBox();
+    assert(height >= least, `${height} px high at ${size.width}`);
+    assert(await sight.get(() => document.documentElement.scrollWidth <= innerWidth), 'nothing is wider than the screen');
+  }
+});

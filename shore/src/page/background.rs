@@ -1,0 +1,423 @@
+//! The background of the chart: an image of the site, or its shoreline as GeoJSON, drawn below the field.
+//!
+//! Both are placed by latitude and longitude of WGS 84: GeoJSON has no other since RFC 7946, and an image has a world file beside
+//! it. The page lays them on the field by the field's datum.
+
+use game::input_file;
+use serde_json::{Map, Value, json};
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// The largest file, bytes.
+const BYTES_MAX: u64 = 16 << 20;
+/// The largest world file, bytes: six numbers.
+const WORLD_BYTES_MAX: u64 = 4096;
+/// The longest side of an image, pixels: browsers draw no larger ones.
+const SIDE_MAX: usize = 8192;
+/// The most positions of a shoreline.
+const POSITIONS_MAX: usize = 200_000;
+/// The most that a background may extend over, degrees.
+const EXTENT_MAX_DEG: f64 = 5.0;
+/// The longest name of a place, characters.
+const NAME_MAX: usize = 60;
+/// Endings of world files, in place of the image's own.
+const WORLD_FILES: [&str; 6] = ["pgw", "pngw", "jgw", "jpgw", "jpegw", "wld"];
+
+/// What is drawn below the field.
+#[derive(Debug)]
+pub struct Background {
+    /// As `PROTOCOL.md` says.
+    pub(super) json: String,
+    /// The media type of an image, and its bytes.
+    pub(super) image: Option<(&'static str, Vec<u8>)>,
+}
+
+/// Why a file is no background.
+#[derive(Debug, Error)]
+pub enum BackgroundError {
+    /// It cannot be read.
+    #[error("cannot read {}: {source}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// It is not what it should be.
+    #[error("{}: {problem}", path.display())]
+    Bad {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, and what is allowed.
+        problem: String,
+    },
+}
+
+impl Background {
+    /// Reads an image (PNG or JPEG) with its world file, or GeoJSON.
+    ///
+    /// # Errors
+    /// [`BackgroundError`] if it cannot be read, is of another kind, too large, or badly placed.
+    pub fn read(path: &Path) -> Result<Background, BackgroundError> {
+        let bytes = read(path, BYTES_MAX)?;
+        let bad = |problem| BackgroundError::Bad { path: path.to_owned(), problem };
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let kind = match imagesize::image_type(&bytes) {
+            Ok(imagesize::ImageType::Png) => "image/png",
+            Ok(imagesize::ImageType::Jpeg) => "image/jpeg",
+            _ if bytes.iter().find(|byte| !byte.is_ascii_whitespace()) == Some(&b'{') => {
+                let shoreline = Shoreline::parse(&bytes).map_err(bad)?;
+                let (areas, lines, points) = (shoreline.areas, shoreline.lines, shoreline.points);
+                let json = json!({"name": name, "areas": areas, "lines": lines, "points": points}).to_string();
+                return Ok(Background { json, image: None });
+            }
+            _ => return Err(bad("is of no known kind, expected PNG or JPEG with a world file, or GeoJSON".to_owned())),
+        };
+        let size = imagesize::blob_size(&bytes).map_err(|e| bad(format!("is damaged: {e}")))?;
+        let (width, height) = (size.width, size.height);
+        if !(1..=SIDE_MAX).contains(&width) || !(1..=SIDE_MAX).contains(&height) {
+            return Err(bad(format!("has {width} x {height} pixels, expected 1 to {SIDE_MAX} each way")));
+        }
+        let (world_path, world) = world_file(path)?;
+        let world = world_matrix(&world, [width as f64, height as f64])
+            .map_err(|problem| BackgroundError::Bad { path: world_path, problem })?;
+        let json = json!({"name": name, "image": {"width": width, "height": height, "world": world}}).to_string();
+        Ok(Background { json, image: Some((kind, bytes)) })
+    }
+}
+
+fn read(path: &Path, bytes_max: u64) -> Result<Vec<u8>, BackgroundError> {
+    input_file::read(path, bytes_max).map_err(|source| BackgroundError::Read { path: path.to_owned(), source })
+}
+
+/// The world file beside an image.
+fn world_file(image: &Path) -> Result<(PathBuf, String), BackgroundError> {
+    let found = WORLD_FILES.iter().map(|end| image.with_extension(end)).find(|path| path.exists());
+    let Some(path) = found else {
+        let names: Vec<String> =
+            WORLD_FILES.iter().map(|end| image.with_extension(end).display().to_string()).collect();
+        let problem = format!(
+            "has no world file beside it, which says where on the globe it is, expected one of {} (GIS programs write it \
+             when they export an image, in WGS 84)",
+            names.join(", ")
+        );
+        return Err(BackgroundError::Bad { path: image.to_owned(), problem });
+    };
+    let text = String::from_utf8_lossy(&read(&path, WORLD_BYTES_MAX)?).into_owned();
+    Ok((path, text))
+}
+
+/// The six numbers of a world file, in its order: longitude = a column + b row + c, latitude = d column + e row + f, as a, d, b, e, c, f.
+/// c and f are of the middle of the first pixel.
+fn world_matrix(text: &str, [width, height]: [f64; 2]) -> Result<[f64; 6], String> {
+    let mut numbers = [0.0; 6];
+    let mut words = text.split_ascii_whitespace();
+    for (at, number) in numbers.iter_mut().enumerate() {
+        let word = words.next().ok_or_else(|| format!("has {at} numbers, expected 6, a line each"))?;
+        // Some programs write commas.
+        let parsed = word.replace(',', ".").parse().ok().filter(|number: &f64| number.is_finite());
+        *number = parsed.ok_or_else(|| format!("line {}: {word:?} is not a number", at + 1))?;
+    }
+    if words.next().is_some() {
+        return Err("has more than 6 numbers, expected 6, a line each".to_owned());
+    }
+    let [a, d, b, e, c, f] = numbers;
+    if a * e - b * d == 0.0 {
+        return Err("lines 1 to 4 give pixels no size".to_owned());
+    }
+    let mut extent = Extent::default();
+    for [column, row] in [[-0.5, -0.5], [width - 0.5, -0.5], [width - 0.5, height - 0.5], [-0.5, height - 0.5]] {
+        let corner = [a * column + b * row + c, d * column + e * row + f];
+        extent.add(corner).map_err(|problem| format!("a corner of the image {problem}"))?;
+    }
+    extent.check()?;
+    Ok(numbers)
+}
+
+/// From where to where positions reach: least and greatest longitude and latitude.
+#[derive(Default)]
+struct Extent(Option<[[f64; 2]; 2]>);
+
+impl Extent {
+    fn add(&mut self, [lon, lat]: [f64; 2]) -> Result<(), String> {
+        if !(-180.0..=180.0).contains(&lon) || !(-90.0..=90.0).contains(&lat) {
+            return Err(format!(
+                "is at [{lon}, {lat}], expected [longitude -180 to 180, latitude -90 to 90] in degrees of WGS 84 (EPSG:4326)"
+            ));
+        }
+        let [low, high] = self.0.get_or_insert([[lon, lat]; 2]);
+        (*low, *high) = ([low[0].min(lon), low[1].min(lat)], [high[0].max(lon), high[1].max(lat)]);
+        Ok(())
+    }
+
+    fn check(&self) -> Result<(), String> {
+        let Some([low, high]) = self.0 else { return Ok(()) };
+        let (wide, tall) = (high[0] - low[0], high[1] - low[1]);
+        if wide.max(tall) <= EXTENT_MAX_DEG {
+            return Ok(());
+        }
+        Err(format!(
+            "reaches from [{}, {}] to [{}, {}], expected at most {EXTENT_MAX_DEG} degrees each way: cut it to the site",
+            low[0], low[1], high[0], high[1]
+        ))
+    }
+}
+
+/// What GeoJSON shows, as positions: longitude and latitude in degrees.
+#[derive(Default)]
+struct Shoreline {
+    /// Polygons, by ring; all but the first are holes.
+    areas: Vec<Vec<Vec<[f64; 2]>>>,
+    lines: Vec<Vec<[f64; 2]>>,
+    points: Vec<(f64, f64, String)>,
+    extent: Extent,
+    positions: usize,
+}
+
+impl Shoreline {
+    fn parse(bytes: &[u8]) -> Result<Shoreline, String> {
+        let value: Value = serde_json::from_slice(bytes).map_err(|e| format!("is no JSON: {e}"))?;
+        let mut shoreline = Shoreline::default();
+        shoreline.check_reference_system(&value)?;
+        shoreline.object(&value, "")?;
+        if shoreline.positions == 0 {
+            return Err("shows nothing: there are no positions".to_owned());
+        }
+        shoreline.extent.check()?;
+        Ok(shoreline)
+    }
+
+    /// Files of before RFC 7946 may be in another reference system.
+    fn check_reference_system(&self, value: &Value) -> Result<(), String> {
+        let Some(name) = value["crs"]["properties"]["name"].as_str() else { return Ok(()) };
+        if name.ends_with("CRS84") || name.ends_with(":4326") {
+            return Ok(());
+        }
+        Err(format!("crs is {name:?}, expected WGS 84 (EPSG:4326): export it so"))
+    }
+
+    fn object(&mut self, value: &Value, at: &str) -> Result<(), String> {
+        let object = value.as_object().ok_or_else(|| format!("{} is no object", named(at)))?;
+        match object.get("type").and_then(Value::as_str) {
+            Some("FeatureCollection") => self.each(object, "features", at, Shoreline::object),
+            Some("Feature") if object.get("geometry").is_none_or(Value::is_null) => Ok(()),
+            Some("Feature") => self.geometry(&object["geometry"], &within(at, "geometry"), &name_of(value)),
+            _ => self.geometry(value, at, ""),
+        }
+    }
+
+    fn each(
+        &mut self,
+        object: &Map<String, Value>,
+        key: &str,
+        at: &str,
+        take: fn(&mut Shoreline, &Value, &str) -> Result<(), String>,
+    ) -> Result<(), String> {
+        let at = within(at, key);
+        let list = object.get(key).and_then(Value::as_array).ok_or_else(|| format!("{at} is no list"))?;
+        list.iter().enumerate().try_for_each(|(i, value)| take(self, value, &format!("{at}[{i}]")))
+    }
+
+    fn geometry(&mut self, value: &Value, at: &str, name: &str) -> Result<(), String> {
+        let object = value.as_object().ok_or_else(|| format!("{} is no object", named(at)))?;
+        let kind = object.get("type").and_then(Value::as_str).unwrap_or_default();
+        let (coordinates, place) = (object.get("coordinates").unwrap_or(&Value::Null), within(at, "coordinates"));
+        match kind {
+            "Point" => self.point(coordinates, &place, name)?,
+            "MultiPoint" => {
+                for (i, each) in list(coordinates, &place)?.iter().enumerate() {
+                    self.point(each, &format!("{place}[{i}]"), name)?;
+                }
+            }
+            "LineString" => self.line(coordinates, &place)?,
+            "MultiLineString" => {
+                for (i, each) in list(coordinates, &place)?.iter().enumerate() {
+                    self.line(each, &format!("{place}[{i}]"))?;
+                }
+            }
+            "Polygon" => self.area(coordinates, &place)?,
+            "MultiPolygon" => {
+                for (i, each) in list(coordinates, &place)?.iter().enumerate() {
+                    self.area(each, &format!("{place}[{i}]"))?;
+                }
+            }
+            "GeometryCollection" => {
+                self.each(object, "geometries", at, |shoreline, each, at| shoreline.geometry(each, at, ""))?;
+            }
+            _ => {
+                return Err(format!(
+                    "{} is {}, expected a type of GeoJSON such as \"FeatureCollection\" or \"Polygon\"",
+                    within(at, "type"),
+                    object.get("type").unwrap_or(&Value::Null)
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    fn point(&mut self, value: &Value, at: &str, name: &str) -> Result<(), String> {
+        let [lon, lat] = self.position(value, at)?;
+        self.points.push((lon, lat, name.chars().take(NAME_MAX).collect()));
+        Ok(())
+    }
+
+    fn line(&mut self, value: &Value, at: &str) -> Result<(), String> {
+        let line = self.positions(value, at)?;
+        self.lines.push(line);
+        Ok(())
+    }
+
+    fn area(&mut self, value: &Value, at: &str) -> Result<(), String> {
+        let rings = list(value, at)?.iter().enumerate();
+        let rings = rings.map(|(i, ring)| self.positions(ring, &format!("{at}[{i}]"))).collect::<Result<_, _>>()?;
+        self.areas.push(rings);
+        Ok(())
+    }
+
+    fn positions(&mut self, value: &Value, at: &str) -> Result<Vec<[f64; 2]>, String> {
+        let places = list(value, at)?.iter().enumerate();
+        places.map(|(i, each)| self.position(each, &format!("{at}[{i}]"))).collect()
+    }
+
+    fn position(&mut self, value: &Value, at: &str) -> Result<[f64; 2], String> {
+        self.positions += 1;
+        if self.positions > POSITIONS_MAX {
+            return Err(format!("has more than {POSITIONS_MAX} positions: simplify it, or cut it to the site"));
+        }
+        let numbers = list(value, at)?.iter().map(Value::as_f64).collect::<Option<Vec<f64>>>();
+        // A third number is a height.
+        let [lon, lat, ..] = numbers.unwrap_or_default()[..] else {
+            return Err(format!("{at} is no position, expected [longitude, latitude]"));
+        };
+        self.extent.add([lon, lat]).map_err(|problem| format!("{at} {problem}"))?;
+        Ok([lon, lat])
+    }
+}
+
+fn list<'a>(value: &'a Value, at: &str) -> Result<&'a Vec<Value>, String> {
+    value.as_array().ok_or_else(|| format!("{at} is no list"))
+}
+
+fn named(at: &str) -> &str {
+    if at.is_empty() { "the file" } else { at }
+}
+
+fn within(at: &str, key: &str) -> String {
+    if at.is_empty() { key.to_owned() } else { format!("{at}.{key}") }
+}
+
+/// What a feature is called.
+fn name_of(feature: &Value) -> String {
+    feature["properties"]["name"].as_str().unwrap_or_default().to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use std::fs;
+
+    /// A picture of one pixel.
+    const PNG: &[u8] = include_bytes!("background_pixel.png");
+
+    fn read_in(files: &[(&str, &[u8])]) -> Result<Background, String> {
+        let dir = tempfile::tempdir().expect("a directory");
+        for (name, bytes) in files {
+            fs::write(dir.path().join(name), bytes).expect("it is written");
+        }
+        let read = Background::read(&dir.path().join(files[0].0));
+        read.map_err(|e| e.to_string().replace(&dir.path().display().to_string(), ""))
+    }
+
+    #[test]
+    fn an_image_is_placed_by_its_world_file() {
+        let world = b"0.001\n0\n0\n-0.001\n-73.9\n41.3\n";
+        let background = read_in(&[("site.png", PNG), ("site.pgw", world)]).expect("it is good");
+        let json: Value = serde_json::from_str(&background.json).expect("it is JSON");
+        let image = json!({"width": 1, "height": 1, "world": [0.001, 0.0, 0.0, -0.001, -73.9, 41.3]});
+        assert_eq!(json, json!({"name": "site.png", "image": image}));
+        assert_eq!(background.image, Some(("image/png", PNG.to_vec())));
+        for (files, want) in [
+            (vec![("site.png", PNG)], "has no world file beside it"),
+            (vec![("site.png", PNG), ("site.wld", b"1 2 3".as_slice())], "/site.wld: has 3 numbers, expected 6"),
+            (vec![("site.png", PNG), ("site.wld", b"1 0 0 x 5 6")], "line 4: \"x\" is not a number"),
+            (vec![("site.png", PNG), ("site.wld", b"0 0 0 0 5 6")], "give pixels no size"),
+            (
+                vec![("site.png", PNG), ("site.wld", b"1 0 0 -1 712345 4512345")],
+                "a corner of the image is at [712344.5, ",
+            ),
+            (vec![("site.png", PNG), ("site.wld", b"9 0 0 -1 5 6")], "expected at most 5 degrees each way"),
+            (vec![("site.png", PNG), ("site.wld", b"1 0 0 -1 5 6 7")], "more than 6 numbers"),
+            (vec![("site.png", &PNG[..20])], "is damaged"),
+        ] {
+            let error = read_in(&files).expect_err(want);
+            assert!(error.contains(want), "{error}");
+        }
+        let mut huge = PNG.to_vec();
+        huge[16..20].copy_from_slice(&100_000_u32.to_be_bytes());
+        assert!(read_in(&[("site.png", &huge)]).expect_err("huge").contains("100000 x 1 pixels, expected 1 to 8192"));
+        let svg = read_in(&[("site.svg", b"<svg onload='alert(1)'/>")]).expect_err("no SVG");
+        assert!(svg.contains("of no known kind, expected PNG or JPEG with a world file, or GeoJSON"), "{svg}");
+    }
+
+    fn geojson(value: &Value) -> Result<Value, String> {
+        let read = read_in(&[("site.geojson", value.to_string().as_bytes())]);
+        read.map(|background| serde_json::from_str(&background.json).expect("it is JSON"))
+    }
+
+    #[test]
+    fn a_shoreline_has_areas_lines_and_points() {
+        let ring = json!([[-73.9, 41.3], [-73.8, 41.3], [-73.8, 41.4], [-73.9, 41.3]]);
+        let features = json!([
+            {"type": "Feature", "properties": null, "geometry": {"type": "Polygon", "coordinates": [ring, ring]}},
+            {"type": "Feature", "geometry": null},
+            {"type": "Feature", "properties": {"name": "Dock"}, "geometry": {"type": "Point", "coordinates": [-73.9, 41.3, 2]}},
+            {"type": "Feature", "properties": {}, "geometry": {"type": "GeometryCollection", "geometries": [
+                {"type": "MultiLineString", "coordinates": [[[-73.9, 41.3], [-73.8, 41.3]]]},
+            ]}},
+        ]);
+        let shown = geojson(&json!({"type": "FeatureCollection", "features": features})).expect("it is good");
+        let want = json!({"name": "site.geojson", "areas": [[ring, ring]], "points": [[-73.9, 41.3, "Dock"]],
+            "lines": [[[-73.9, 41.3], [-73.8, 41.3]]]});
+        assert_eq!(shown, want);
+    }
+
+    #[test]
+    fn what_is_badly_placed_is_refused_with_the_place() {
+        let line = |places: Value| {
+            let geometry = json!({"type": "LineString", "coordinates": places});
+            json!({"type": "FeatureCollection", "features": [{"type": "Feature", "geometry": geometry}]})
+        };
+        let place = "features[0].geometry.coordinates[1]";
+        for (file, want) in [
+            (
+                line(json!([[0, 1], [712_345.5, 4_512_345]])),
+                format!("{place} is at [712345.5, 4512345], expected [longitude"),
+            ),
+            (line(json!([[0, 1], ["0", 1]])), format!("{place} is no position, expected [longitude, latitude]")),
+            (line(json!([[0, 1], 3])), format!("{place} is no list")),
+            (line(json!([[0, 1], [10, 1]])), "reaches from [0, 1] to [10, 1], expected at most 5 degrees".to_owned()),
+            (line(json!([])), "shows nothing".to_owned()),
+            (json!({"type": "Topology"}), "type is \"Topology\", expected a type of GeoJSON".to_owned()),
+            (json!({"type": "FeatureCollection"}), "features is no list".to_owned()),
+            (
+                json!({"type": "Point", "coordinates": [1, 2], "crs": {"properties": {"name": "urn:ogc:def:crs:EPSG::3857"}}}),
+                "crs is \"urn:ogc:def:crs:EPSG::3857\", expected WGS 84".to_owned(),
+            ),
+            (line(json!(vec![[1.0, 2.0]; POSITIONS_MAX + 1])), "more than 200000 positions".to_owned()),
+        ] {
+            let error = geojson(&file).expect_err(&want);
+            assert!(error.contains(&want), "{error}");
+        }
+        let deep = format!("{{\"type\":\"Polygon\",\"coordinates\":{}", "[".repeat(100_000));
+        assert!(read_in(&[("site.geojson", deep.as_bytes())]).expect_err("deep").contains("is no JSON"));
+    }
+
+    proptest! {
+        #[test]
+        fn no_file_makes_it_panic(bytes in prop::collection::vec(any::<u8>(), 0..200), text in "[0-9. eE\n-]{0,60}") {
+            drop(Shoreline::parse(&bytes));
+            drop(world_matrix(&text, [10.0, 10.0]));
+        }
+    }
+}

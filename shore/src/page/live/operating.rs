@@ -1,0 +1,156 @@
+//! Commands of operators to the gateways of real boats. Each goes over the game's network in a thread of its own. A boat has one
+//! command under way that it needs the token for, and one that stops it: no number of them keeps a stop waiting.
+
+use super::SharedState;
+use super::live_state::{LiveGame, LiveState};
+use bus::{ANSWER, Bus, BusError, start_thread};
+use game::VehicleId;
+use game::external::{OperatorCommand, OperatorReply};
+use game::topic;
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::sync::Arc;
+
+/// The most replies that wait for a page; one that does not read misses some.
+const REPLIES_MAX: usize = 16;
+
+/// What came of a command.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Operated {
+    pub(super) vehicle: VehicleId,
+    pub(super) command: &'static str,
+    /// Why it was not done.
+    pub(super) refused: Option<String>,
+}
+
+/// The commands to the boats of a game.
+#[derive(Default)]
+pub(super) struct Operating {
+    /// Those under way: to which boat, and whether they need the token.
+    under_way: BTreeSet<(VehicleId, bool)>,
+    /// By page, of those that are there and have given any, what came of its own.
+    replies: BTreeMap<u64, VecDeque<Operated>>,
+}
+
+impl Operating {
+    /// The next reply to a page.
+    pub(super) fn reply(&mut self, page: u64) -> Option<Operated> {
+        self.replies.get_mut(&page)?.pop_front()
+    }
+
+    /// A page is gone.
+    pub(super) fn forget(&mut self, page: u64) {
+        self.replies.remove(&page);
+    }
+
+    /// A command is under way, unless one of its kind to the same boat is.
+    fn begin(&mut self, page: u64, vehicle: VehicleId, command: &OperatorCommand) -> Result<(), String> {
+        self.replies.entry(page).or_default();
+        if self.under_way.insert((vehicle, command.needs_token())) {
+            return Ok(());
+        }
+        Err("its gateway has not answered the command before yet".to_owned())
+    }
+
+    fn end(&mut self, page: u64, needs_token: bool, operated: Operated) {
+        self.under_way.remove(&(operated.vehicle, needs_token));
+        if let Some(replies) = self.replies.get_mut(&page).filter(|replies| replies.len() < REPLIES_MAX) {
+            replies.push_back(operated);
+        }
+    }
+}
+
+/// Sends a command to the gateway of a boat. Its reply is for the page that gave the command.
+pub(super) fn operate(
+    shared: &Arc<SharedState>,
+    state: &mut LiveState,
+    page: u64,
+    name: &str,
+    command: OperatorCommand,
+) -> Result<(), String> {
+    let game = state.on()?;
+    let vehicle = game.scenario().vehicle_named(name).map_err(|e| e.to_string())?;
+    if !game.scenario().externals().any(|external| external == vehicle) {
+        return Err(format!("{name} is simulated: it has no gateway"));
+    }
+    let Some(bus) = state.bus.clone() else { return Err("there is no game now".to_owned()) };
+    state.operating.begin(page, vehicle, &command)?;
+    let (generation, needs_token, word) = (state.generation, command.needs_token(), word(&command));
+    let at_work = Arc::clone(shared);
+    let thread = start_thread("page-operate", move || {
+        let reply = ask(&bus, &game, vehicle, &command);
+        let mut state = at_work.state.lock();
+        // Of a game that is gone nobody waits for it.
+        if state.generation == generation {
+            let refused = match reply {
+                Ok(OperatorReply { refused, status }) => {
+                    state.statuses.insert(vehicle, Arc::new(status));
+                    refused
+                }
+                Err(reason) => Some(reason),
+            };
+            state.operating.end(page, needs_token, Operated { vehicle, command: word, refused });
+            drop(state);
+            at_work.news.send_replace(());
+        }
+    });
+    thread.map_err(|e| {
+        state.operating.under_way.remove(&(vehicle, needs_token));
+        format!("there is no thread for it: {e}")
+    })
+}
+
+fn ask(bus: &Bus, game: &LiveGame, vehicle: VehicleId, command: &OperatorCommand) -> Result<OperatorReply, String> {
+    let name = game.name_of(vehicle);
+    let reply: Result<Option<OperatorReply>, BusError> =
+        bus.request(&topic::operate(&game.name, name), command, ANSWER);
+    let reply = reply.map_err(|e| e.to_string())?.ok_or_else(|| format!("no gateway of {name} answers"))?;
+    if reply.status.vehicle == name {
+        Ok(reply)
+    } else {
+        Err(format!("the gateway of {} answers for {name}", reply.status.vehicle))
+    }
+}
+
+/// A command, as pages name it.
+fn word(command: &OperatorCommand) -> &'static str {
+    match command {
+        OperatorCommand::Status => "status",
+        OperatorCommand::Arm => "arm",
+        OperatorCommand::Disarm => "disarm",
+        OperatorCommand::EStop => "e_stop",
+        OperatorCommand::Release => "release",
+        OperatorCommand::StationKeep => "station_keep",
+        OperatorCommand::GoToErp => "go_to_erp",
+        OperatorCommand::Mission(_) => "mission",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BOAT: VehicleId = VehicleId(1);
+
+    #[test]
+    fn a_stop_waits_for_no_other_command_and_a_flood_is_refused() {
+        let mut operating = Operating::default();
+        assert_eq!(operating.begin(7, BOAT, &OperatorCommand::Arm), Ok(()));
+        for command in [OperatorCommand::Arm, OperatorCommand::Release, OperatorCommand::StationKeep] {
+            assert!(operating.begin(7, BOAT, &command).is_err(), "{command:?}");
+        }
+        assert_eq!(operating.begin(7, VehicleId(2), &OperatorCommand::Arm), Ok(()), "another boat");
+        assert_eq!(operating.begin(7, BOAT, &OperatorCommand::Disarm), Ok(()));
+        assert!(operating.begin(7, BOAT, &OperatorCommand::EStop).is_err(), "a stop is under way");
+        let operated =
+            |refused: Option<&str>| Operated { vehicle: BOAT, command: "arm", refused: refused.map(str::to_owned) };
+        operating.end(7, true, operated(Some("missing: a fresh order")));
+        assert_eq!(operating.begin(7, BOAT, &OperatorCommand::Arm), Ok(()));
+        assert_eq!(operating.reply(8), None, "it is for the page that asked");
+        assert_eq!(operating.reply(7), Some(operated(Some("missing: a fresh order"))));
+        (0..2 * REPLIES_MAX).for_each(|_| operating.end(7, true, operated(None)));
+        assert_eq!(std::iter::from_fn(|| operating.reply(7)).count(), REPLIES_MAX);
+        operating.forget(7);
+        operating.end(7, true, operated(None));
+        assert!(operating.replies.is_empty(), "nothing is kept for a page that is gone");
+    }
+}

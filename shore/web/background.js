@@ -1,0 +1,172 @@
+// The background of the chart: an image of the site, or its shoreline, drawn below the field where its latitudes and longitudes are.
+
+import { latLonOf, latLonWords, placeOf } from './datum.js';
+import { haloText } from './field.js';
+import { palette } from './palette.js';
+import { notice } from './status.js';
+import { number, show } from './words.js';
+
+/** What lies farther from the field's datum than this is of another site, m. */
+const FAR_M = 50_000;
+/** How strongly an image is drawn: the field and its boats must be seen on it. In the dark it dazzles otherwise. */
+const IMAGE_LIGHT = 0.85;
+const IMAGE_DARK = 0.45;
+/** Names of places are drawn from this scale on, pixels to a metre. */
+const NAMES_SCALE = 0.2;
+
+export class Background {
+  /** `on` has `changed()`, once there is another picture. */
+  constructor(on) {
+    this.on = on;
+    this.button = document.getElementById('show-chart');
+    /** As the server sends it; null without one. */
+    this.given = null;
+    this.image = null;
+    this.datum = null;
+    this.forget();
+  }
+
+  forget() {
+    /** From pixels of the image to metres: as of a canvas. */
+    this.matrix = null;
+    this.areas = null;
+    this.lines = null;
+    this.points = [];
+  }
+
+  get drawn() {
+    return this.matrix !== null || this.areas !== null;
+  }
+
+  async load() {
+    try {
+      const answer = await fetch('/background.json');
+      const given = answer.ok ? await answer.json() : null;
+      if (given?.image) {
+        const image = new Image();
+        image.src = '/background-image';
+        await image.decode();
+        this.image = image;
+      }
+      // Once all of it is there: the game may have come before.
+      this.given = given;
+    } catch (error) {
+      notice(`The chart below the field cannot be shown: ${error.message}`);
+    }
+    this.lay();
+  }
+
+  /** The field is where its datum is. */
+  greet(chart) {
+    const { datum } = chart.field ?? {};
+    if (JSON.stringify(datum) === JSON.stringify(this.datum)) return;
+    this.datum = datum ?? null;
+    this.lay();
+  }
+
+  /** Lays it on the field. */
+  lay() {
+    this.forget();
+    if (this.given && this.datum && !this.isFar()) {
+      if (this.given.image) this.layImage(this.given.image.world);
+      else this.layShoreline(this.given);
+    }
+    show(this.button, this.drawn);
+    this.on.changed();
+  }
+
+  /** A place, longitude first, in metres from the datum. */
+  at([lon, lat]) {
+    return placeOf(this.datum, lat, lon);
+  }
+
+  /** Corners of the image, or all positions. */
+  positions() {
+    const { image, areas = [], lines = [], points = [] } = this.given;
+    if (!image) return [...areas.flat(2), ...lines.flat(1), ...points];
+    const [a, d, b, e, c, f] = image.world;
+    return [[0, 0], [image.width, 0], [image.width, image.height], [0, image.height]].map(([right, down]) =>
+      [a * (right - 0.5) + b * (down - 0.5) + c, d * (right - 0.5) + e * (down - 0.5) + f]);
+  }
+
+  /** Whether it is of another site; then people are told where it is. */
+  isFar() {
+    const box = { left: Infinity, right: -Infinity, bottom: Infinity, top: -Infinity };
+    for (const position of this.positions()) {
+      const [x, y] = this.at(position);
+      Object.assign(box, { left: Math.min(box.left, x), right: Math.max(box.right, x), bottom: Math.min(box.bottom, y), top: Math.max(box.top, y) });
+    }
+    const off = (low, high) => Math.max(0, low, -high);
+    const far_m = Math.hypot(off(box.left, box.right), off(box.bottom, box.top));
+    if (far_m <= FAR_M) return false;
+    const middle = latLonOf(this.datum, (box.left + box.right) / 2, (box.bottom + box.top) / 2);
+    notice(`${this.given.name} is not drawn: it lies around ${latLonWords(middle, 0, 0)}, some ${number(far_m / 1000, 0, 'km')} from the field at ${latLonWords(this.datum, 0, 0)}. Its longitudes and latitudes may be exchanged.`);
+    return true;
+  }
+
+  layImage([a, d, b, e, c, f]) {
+    // World files place the middle of the first pixel, canvases its corner.
+    const [x, y] = this.at([c - (a + b) / 2, f - (d + e) / 2]);
+    const [acrossX, acrossY] = this.at([c - (a + b) / 2 + a, f - (d + e) / 2 + d]);
+    const [downX, downY] = this.at([c - (a + b) / 2 + b, f - (d + e) / 2 + e]);
+    this.matrix = [acrossX - x, acrossY - y, downX - x, downY - y, x, y];
+  }
+
+  layShoreline({ areas, lines, points }) {
+    this.areas = new Path2D();
+    this.lines = new Path2D();
+    for (const rings of areas) for (const ring of rings) this.trace(this.areas, ring, true);
+    for (const line of lines) this.trace(this.lines, line, false);
+    this.points = points.map(([lon, lat, name]) => [...this.at([lon, lat]), name]);
+  }
+
+  trace(path, places, closed) {
+    places.forEach((place, index) => {
+      const [x, y] = this.at(place);
+      if (index === 0) path.moveTo(x, y);
+      else path.lineTo(x, y);
+    });
+    if (closed) path.closePath();
+  }
+
+  /** Draws it, below everything else of the field. */
+  draw(context, view) {
+    if (!this.drawn) return;
+    context.save();
+    context.translate(view.width / 2 - view.centreX * view.scale, view.height / 2 + view.centreY * view.scale);
+    context.scale(view.scale, -view.scale);
+    if (this.matrix) this.drawImage(context);
+    else this.drawShoreline(context, view);
+    context.restore();
+    if (!this.matrix) this.drawPoints(context, view);
+  }
+
+  drawImage(context) {
+    context.globalAlpha = document.documentElement.style.colorScheme === 'dark' ? IMAGE_DARK : IMAGE_LIGHT;
+    context.transform(...this.matrix);
+    context.drawImage(this.image, 0, 0);
+  }
+
+  drawShoreline(context, view) {
+    context.fillStyle = palette.land;
+    context.fill(this.areas, 'evenodd');
+    context.lineWidth = 1.5 / view.scale;
+    context.lineJoin = 'round';
+    context.strokeStyle = palette.wall;
+    context.stroke(this.areas);
+    context.stroke(this.lines);
+  }
+
+  drawPoints(context, view) {
+    context.textAlign = 'left';
+    context.textBaseline = 'middle';
+    for (const [east, north, name] of this.points) {
+      const [x, y] = [view.xOf(east), view.yOf(north)];
+      context.beginPath();
+      context.arc(x, y, 3, 0, 2 * Math.PI);
+      context.fillStyle = palette.wall;
+      context.fill();
+      if (name && view.scale > NAMES_SCALE) haloText(context, name, x + 6, y, palette.ink);
+    }
+  }
+}

@@ -1,0 +1,94 @@
+// The geofences of real boats, their keep-outs, and how far each boat would go if it were stopped now.
+
+import { haloText } from './field.js';
+import { palette } from './palette.js';
+
+const FONT = '600 11px system-ui, sans-serif';
+/** The mark where a boat would come to rest, px. */
+const REST_PX = 4;
+
+/** Traces corners `[x, y]`, m. */
+export function traceCorners(context, view, corners) {
+  context.beginPath();
+  corners.forEach(([x, y], index) => {
+    if (index === 0) context.moveTo(view.xOf(x), view.yOf(y));
+    else context.lineTo(view.xOf(x), view.yOf(y));
+  });
+  context.closePath();
+}
+
+const places = (corners) => corners.map(({ east, north }) => [east, north]);
+
+/** The fences that gateways tell, those of several boats once: `{ outline, keepOuts }`, corners `[x, y]` in m. */
+export function fencesOf(readings) {
+  const fences = new Map();
+  for (const { fence } of readings) {
+    if (!(fence?.outline?.length > 0)) continue;
+    const outline = places(fence.outline);
+    const keepOuts = (fence.keep_out ?? []).map(places);
+    fences.set(JSON.stringify([outline, keepOuts]), { outline, keepOuts });
+  }
+  return [...fences.values()];
+}
+
+/** A line that can be seen on water, land and images. */
+function rim(context, dash) {
+  context.lineWidth = 4;
+  context.strokeStyle = palette.halo;
+  context.stroke();
+  context.setLineDash(dash);
+  context.lineWidth = 2;
+  context.strokeStyle = palette.danger;
+  context.stroke();
+  context.setLineDash([]);
+}
+
+export function drawFences(context, view, fences) {
+  context.font = FONT;
+  context.textAlign = 'left';
+  context.textBaseline = 'bottom';
+  for (const { outline, keepOuts } of fences) {
+    traceCorners(context, view, outline);
+    rim(context, [12, 5]);
+    const [x, y] = outline.reduce((most, corner) => (corner[1] > most[1] || (corner[1] === most[1] && corner[0] < most[0]) ? corner : most));
+    haloText(context, 'geofence', Math.max(4, view.xOf(x)), Math.max(14, view.yOf(y) - 3));
+    for (const corners of keepOuts) drawKeepOut(context, view, corners);
+  }
+}
+
+function drawKeepOut(context, view, corners) {
+  traceCorners(context, view, corners);
+  context.globalAlpha = 0.16;
+  context.fillStyle = palette.danger;
+  context.fill();
+  context.globalAlpha = 1;
+  rim(context, [4, 4]);
+  const [x, y] = [0, 1].map((axis) => corners.reduce((sum, corner) => sum + corner[axis], 0) / corners.length);
+  context.textAlign = 'center';
+  haloText(context, 'keep out', view.xOf(x), view.yOf(y) + 5);
+  context.textAlign = 'left';
+}
+
+/** The circle within which each real boat can stop, and where it would come to rest. */
+export function drawStops(context, view, readings, game) {
+  for (const { fence, index, kind } of readings) {
+    if (kind === 'silent' || !(fence?.stopping_m > 0) || game.frames === 0) continue;
+    const tight = fence.clearance_m < fence.stopping_m;
+    context.beginPath();
+    context.arc(view.xOf(game.x[index]), view.yOf(game.y[index]), fence.stopping_m * view.scale, 0, 2 * Math.PI);
+    context.lineWidth = tight ? 2.5 : 1.5;
+    context.strokeStyle = tight ? palette.danger : palette.ink;
+    context.setLineDash([2, 3]);
+    context.stroke();
+    context.setLineDash([]);
+    if (!fence.stops_at) continue;
+    const [x, y] = [view.xOf(fence.stops_at.east), view.yOf(fence.stops_at.north)];
+    context.beginPath();
+    for (const way of [-1, 1]) {
+      context.moveTo(x - REST_PX, y - way * REST_PX);
+      context.lineTo(x + REST_PX, y + way * REST_PX);
+    }
+    context.lineWidth = 1.75;
+    context.stroke();
+  }
+}

@@ -1,0 +1,76 @@
+// What the gateway of a real boat tells, in words: what the boat may do, how urgent that is, and how old everything is.
+
+import { number } from './words.js';
+
+/** A gateway tells its status twice a second. After so long without a word it is silent, s. */
+const SILENT_S = 3;
+/** From these ages on a value is marked as old, s. */
+const FIX_OLD_S = 2;
+const CONTROL_OLD_S = 2;
+const BATTERY_OLD_S = 10;
+
+/** How a state begins, what it is called, and how it looks; the rest of it is the cause or the task. */
+const STATES = [
+  ['e-stopped', 'stopped', 'E-stopped', 'bad'], ['failsafe', 'failsafe', 'Failsafe', 'bad'], ['armed', 'armed', 'Armed', 'good'],
+  ['delegated', 'delegated', 'Delegated', 'task'], ['safed', 'disarmed', 'Disarmed', 'plain'],
+];
+
+const age = (seconds) => `${number(seconds, 1, 's')} ago`;
+
+/** What is known of a real boat: `kind`, `label`, `detail` (cause or task), `tone`, `silent_s`, `facts` and `missing`; null of a simulated one. */
+export function readStatus(game, index, now_ms) {
+  const { name, external } = game.vehicles[index];
+  if (!external) return null;
+  const status = game.statuses.get(name);
+  if (!status) return { name, kind: 'unknown', label: 'No gateway', detail: '', tone: 'warn', facts: [], missing: [], failsafes: 0, silent_s: 0, link: false };
+  // A recording tells what was told then.
+  const waited_s = game.mode === 'live' ? Math.max(0, (now_ms - game.heard_ms.get(name)) / 1000) : 0;
+  const silent = waited_s > SILENT_S;
+  const state = status.state ?? '';
+  const [begins, kind, label, tone] = STATES.find(([word]) => state.startsWith(word)) ?? [state, 'other', state || '–', 'warn'];
+  const detail = silent ? `its gateway is silent since ${number(waited_s, 0, 's')}; before: ${state}` : state.slice(begins.length).replace(/^[:,\s]+/, '');
+  return {
+    name, kind: silent ? 'silent' : kind, label: silent ? 'Silent' : label, detail, tone: silent ? 'bad' : tone, silent_s: silent ? waited_s : 0,
+    said: kind, facts: factsOf(status, waited_s), fence: status.geofence ?? null, missing: status.missing ?? [], failsafes: status.failsafes?.length ?? 0, link: status.link === 'up' && !silent,
+  };
+}
+
+/** Names, words and whether the value is old or bad. Short ones come first: they stand in the list. */
+function factsOf(status, waited_s) {
+  const later = (seconds) => (Number.isFinite(seconds) ? seconds + waited_s : NaN);
+  const [fix_s, battery_s, mode_s] = [later(status.nav_age_s), later(status.battery_age_s), later(status.mode_age_s)];
+  const facts = [{ name: 'Link', short: status.link === 'up' ? 'link up' : 'no link', words: status.link ?? '–', bad: status.link !== 'up' }];
+  // A rehearsal on the water: the boat is sent standby, whatever its state says.
+  if (typeof status.would_send === 'string') {
+    facts.unshift({ name: 'Dry run', short: 'DRY RUN', words: `only standby is sent${status.would_send ? `, in place of ${status.would_send}` : ''}`, bad: true });
+  }
+  facts.push(Number.isFinite(fix_s)
+    ? { name: 'Fix', short: `fix ${number(fix_s, 1, 's')}`, words: age(fix_s), bad: fix_s > FIX_OLD_S }
+    : { name: 'Fix', short: 'no fix', words: 'none', bad: true });
+  if (Number.isFinite(status.battery_v)) {
+    const old = battery_s > BATTERY_OLD_S;
+    const told = Number.isFinite(battery_s) ? `, ${age(battery_s)}` : '';
+    facts.push({ name: 'Battery', short: `${number(status.battery_v, 1, 'V')}${old ? ` ${age(battery_s)}` : ''}`, words: `${number(status.battery_v, 1, 'V')}${told}`, bad: old });
+  }
+  const told = Number.isFinite(mode_s) ? `, ${age(mode_s)}` : '';
+  const { clearance_m, stopping_m } = status.geofence ?? {};
+  if (Number.isFinite(clearance_m)) {
+    const stops = Number.isFinite(stopping_m) ? `, stops in ${number(stopping_m, 1, 'm')}` : '';
+    facts.push({ name: 'Geofence', words: `${number(clearance_m, 1, 'm')} to its edge${stops}`, bad: clearance_m < (stopping_m ?? 0) });
+  }
+  if (status.operator) facts.push({ name: 'In control', words: `${status.operator}${told}`, bad: mode_s > CONTROL_OLD_S });
+  if (status.mode) facts.push({ name: 'Mode', words: `${status.mode}${told}`, bad: mode_s > CONTROL_OLD_S });
+  const last = status.failsafes?.at(-1);
+  if (last) facts.push({ name: 'Failsafes', words: `${status.failsafes.length}, the last: ${last.cause ?? last}`, bad: false });
+  return facts;
+}
+
+/** What is known of all real boats. */
+export function readStatuses(game, now_ms) {
+  const readings = [];
+  for (let index = 0; index < game.count; index++) {
+    const reading = readStatus(game, index, now_ms);
+    if (reading) readings.push({ ...reading, index });
+  }
+  return readings;
+}

@@ -1,0 +1,200 @@
+// The operator's part of a real boat: its state, what is missing for arming, and the commands of its gateway.
+
+import { Ask } from './ask.js';
+import { makeBadge, tellBadge } from './badge.js';
+import { notice } from './status.js';
+import { fill, make, plain, show, write } from './words.js';
+
+/** The longest message that the server takes, bytes. */
+const MESSAGE_MAX = 16 * 1024;
+
+/** Commands: its word, the button, the question (null: at once), and in which states there is none. */
+const COMMANDS = [
+  ['arm', 'Arm', 'Arm NAME? It then does what its agent orders.', ['armed', 'stopped']],
+  ['disarm', 'Disarm', null, ['disarmed', 'stopped']],
+  ['station_keep', 'Keep station', 'Let NAME keep its station by its own controller?', ['stopped']],
+  ['go_to_erp', 'To recovery point', 'Send NAME to its recovery point by its own controller?', ['stopped']],
+  ['release', 'Release', 'Release the E-stop of NAME? It must then be armed again.', ['disarmed', 'armed', 'failsafe', 'delegated']],
+];
+/** The commands that stop a boat: whoever may stop all of them may stop one. */
+const STOPS = ['disarm'];
+const DONE = {
+  arm: 'is armed', disarm: 'is disarmed', station_keep: 'keeps its station', go_to_erp: 'goes to its recovery point',
+  release: 'is released', mission: 'takes its mission',
+};
+
+export class Operate {
+  /** `on` has `send(message)`, and `acknowledge(name)` for the alarms of a boat whose failsafe is reset. */
+  constructor(on) {
+    this.on = on;
+    this.name = null;
+    this.build();
+  }
+
+  /** To be called once the element is on the page. */
+  bind() {
+    this.asked = new Ask('operate');
+  }
+
+  build() {
+    this.badge = makeBadge();
+    this.badge.id = 'boat-badge';
+    this.cause = make('span', 'cause');
+    this.buttons = Object.fromEntries(COMMANDS.map((command) => [command[0], this.button(command)]));
+    this.file = make('input', 'hidden-text');
+    Object.assign(this.file, { type: 'file', accept: '.sea,text/plain', id: 'mission-file', tabIndex: -1 });
+    this.file.setAttribute('aria-label', 'Mission file');
+    this.file.addEventListener('change', () => this.mission());
+    this.missionButton = make('button', '', 'Mission …');
+    Object.assign(this.missionButton, { type: 'button', id: 'mission', title: 'Upload a .sea file and let the boat sail it by its own controller' });
+    this.missionButton.addEventListener('click', () => this.file.click());
+    const row = make('div', 'operate-row asking', '', ...Object.values(this.buttons), this.missionButton, this.file, this.box());
+    this.answer = make('p', 'note');
+    this.answer.id = 'operated';
+    this.answer.setAttribute('role', 'status');
+    this.checks = make('ul', 'checks');
+    this.checks.id = 'checks';
+    this.checkHead = make('h3', '', 'Before arming');
+    this.facts = make('dl', 'facts');
+    this.facts.id = 'gateway';
+    this.row = row;
+    this.element = make('section', 'operate', '', make('h3', '', 'Gateway'), make('p', 'badge-row', '', this.badge, this.cause),
+      row, this.answer, this.tokenForm(), this.checkHead, this.checks, this.facts);
+    this.element.setAttribute('aria-label', 'Real boat');
+  }
+
+  button([word, text]) {
+    const button = make('button', '', text);
+    Object.assign(button, { type: 'button', id: word === 'arm' ? 'operate' : `operate-${word}` });
+    button.addEventListener('click', () => this.press(word));
+    return button;
+  }
+
+  /** The question: its parts are called as `Ask` wants them. */
+  box() {
+    const [question, confirm, cancel] = [make('p'), make('button', 'danger'), make('button', '', 'Cancel')];
+    question.id = 'operate-question';
+    Object.assign(confirm, { type: 'button', id: 'operate-confirm' });
+    Object.assign(cancel, { type: 'button', id: 'operate-cancel' });
+    const box = make('div', 'ask', '', question, confirm, cancel);
+    Object.assign(box, { id: 'operate-ask', hidden: true });
+    box.setAttribute('role', 'alertdialog');
+    box.setAttribute('aria-labelledby', 'operate-question');
+    return box;
+  }
+
+  /** For whoever came without the operator's token: it goes into the page's address, where it is kept over a reload. */
+  tokenForm() {
+    const field = make('input');
+    Object.assign(field, { type: 'password', id: 'operator-token', autocomplete: 'off' });
+    const label = make('label', '', 'Operator’s token');
+    label.htmlFor = field.id;
+    const use = make('button', '', 'Use');
+    use.type = 'submit';
+    this.token = make('form', 'token-form', '', label, field, use);
+    this.token.addEventListener('submit', (event) => {
+      event.preventDefault();
+      const words = new URLSearchParams(location.hash.slice(1));
+      words.set('token', field.value.trim());
+      field.value = '';
+      location.hash = words;
+    });
+    return this.token;
+  }
+
+  press(word) {
+    const [, text, question] = COMMANDS.find(([each]) => each === word);
+    const { name } = this;
+    const send = () => this.command(name, word);
+    if (question === null) send();
+    else this.asked.ask(question.replace('NAME', plain(name)), `Yes, ${text.toLowerCase()}`, send, word === 'release');
+  }
+
+  command(vehicle, command) {
+    this.tellAnswer('…');
+    this.on.send({ do: 'operate', vehicle, command });
+    if (command === 'disarm') this.on.acknowledge(vehicle);
+  }
+
+  async mission() {
+    const [file] = this.file.files;
+    const { name } = this;
+    if (!file) return;
+    const message = { do: 'mission', vehicle: name, lines: file.size > MESSAGE_MAX ? '' : await file.text() };
+    this.file.value = '';
+    if (file.size > MESSAGE_MAX || new Blob([JSON.stringify(message)]).size > MESSAGE_MAX) {
+      notice(`${file.name} is too long: a mission has at most ${MESSAGE_MAX / 1024} kB here.`);
+      return;
+    }
+    this.asked.ask(`Upload ${file.name} to ${plain(name)} and let it sail that by its own controller?`, 'Yes, sail it', () => {
+      this.tellAnswer('…');
+      this.on.send(message);
+    });
+  }
+
+  /** What came of a command. */
+  hear({ vehicle, command, refused }) {
+    const words = refused === null ? `${plain(vehicle)} ${DONE[command] ?? `did ${plain(command)}`}.` : `${plain(vehicle)} refuses: ${refused}`;
+    if (vehicle === this.name) this.tellAnswer(words);
+    else notice(words);
+  }
+
+  /** A message about a boat that never reached its gateway. */
+  refuse(reason) {
+    this.tellAnswer(`Not done: ${reason}`);
+  }
+
+  tellAnswer(words) {
+    write(this.answer, words);
+    show(this.answer, words !== '');
+  }
+
+  /** Shows a real boat; null is none. */
+  tell(game, reading) {
+    show(this.element, reading !== null);
+    if (reading?.name !== this.name) {
+      this.name = reading?.name ?? null;
+      this.asked.close(false);
+      this.tellAnswer('');
+    }
+    if (!reading) return;
+    tellBadge(this.badge, reading);
+    write(this.cause, reading.detail);
+    const live = game.mode === 'live';
+    const { operates, rights } = game.hello;
+    show(this.row, live);
+    show(this.token, live && !operates);
+    for (const [word, text, , never] of COMMANDS) {
+      const button = this.buttons[word];
+      const wanted = word === 'release' ? reading.kind === 'stopped' && /this boat/.test(reading.detail) : !never.includes(reading.said);
+      show(button, wanted);
+      button.disabled = !(operates || (rights && STOPS.includes(word)));
+      // To disarm after a failsafe is to reset it.
+      write(button, word === 'disarm' && reading.said === 'failsafe' ? 'Reset failsafe' : text);
+    }
+    show(this.missionButton, reading.said !== 'stopped');
+    this.missionButton.disabled = !operates;
+    this.tellChecks(live, reading);
+    fill(this.facts, reading.facts, () => make('div', '', '', make('dt'), make('dd')), (line, fact) => {
+      write(line.firstElementChild, fact.name);
+      write(line.lastElementChild, fact.words);
+      line.classList.toggle('old', fact.bad);
+    });
+  }
+
+  /** What is missing for arming, as the gateway says it now. */
+  tellChecks(live, { missing, said, kind }) {
+    const wanted = live && said !== undefined && said !== 'armed';
+    show(this.checkHead, wanted);
+    show(this.checks, wanted);
+    if (!wanted) return;
+    const known = kind !== 'silent';
+    const lines = !known ? ['not known: its gateway is silent'] : missing.length > 0 ? missing : ['Ready to arm.'];
+    const good = known && missing.length === 0;
+    fill(this.checks, lines, () => make('li', '', '', make('span', 'mark'), make('span')), (line, words) => {
+      line.className = good ? 'good' : 'missing';
+      write(line.firstElementChild, good ? '✓' : '✗');
+      write(line.lastElementChild, good ? words : `${known ? 'Missing: ' : ''}${words}`);
+    });
+  }
+}
