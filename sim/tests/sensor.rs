@@ -442,7 +442,7 @@ fn a_gyro_feels_the_turning_of_its_attitude() {
 
 #[test]
 fn the_same_seed_reads_the_same_and_another_boat_or_seed_otherwise() {
-    let read = |seed, vehicle: &str| -> Vec<Reading> {
+    let read = |seed: u64, vehicle: &str| -> Vec<Reading> {
         let (model, mut state) = (SensorModel::new(&faulty(), TICK, &seed.into(), vehicle), SensorState::default());
         (0..600).map(|i| model.read(&mut state, &sailing(TICK * i), TICK * i)).collect()
     };

@@ -137,7 +137,7 @@ fn a_gust_comes_to_a_boat_downwind_as_it_was() {
 #[test]
 fn the_wind_is_a_function_of_seed_place_and_time_alone() {
     let places = [Ned::from_xy(5.0, 5.0), Ned::from_xy(150.0, 70.0), Ned::from_xy(-400.0, 900.0)];
-    let fresh = |seed| WindField::new(&wind(30.0, ornstein_uhlenbeck()), HEIGHT_M, &field(), &seed.into());
+    let fresh = |seed: u64| WindField::new(&wind(30.0, ornstein_uhlenbeck()), HEIGHT_M, &field(), &seed.into());
     let mut sailed = fresh(9);
     let tick = SimTime::from_s(0.05);
     // Sail on for ten minutes, go back to tick 700, then on again; each time as a world that starts there.

@@ -29,11 +29,8 @@ impl Guide {
         let begin = || {
             let (sender, lines) = sync_channel(16);
             std::thread::spawn(move || {
-                for line in std::io::stdin().lock().lines().map_while(Result::ok) {
-                    if sender.send(line).is_err() {
-                        break;
-                    }
-                }
+                let mut typed = std::io::stdin().lock().lines().map_while(Result::ok);
+                while typed.next().is_some_and(|line| sender.send(line).is_ok()) {}
             });
             lines
         };

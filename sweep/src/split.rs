@@ -123,6 +123,13 @@ mod tests {
             Walk { heights }
         }
 
+        /// The same until it came nearer than the last one given up, and anew from then on.
+        fn branched(&self, branch: &Branch) -> Walk {
+            let Least::Steps(steps) = branch.than else { panic!("failures are not given up") };
+            let nearer = self.heights.iter().position(|height| HEIGHT - height < steps);
+            Walk::go_on(self.heights[..=nearer.expect("it came nearer")].to_vec(), branch.seed)
+        }
+
         fn highest(&self) -> i64 {
             self.heights.iter().copied().max().unwrap_or(0)
         }
@@ -164,16 +171,9 @@ mod tests {
                     break;
                 }
                 walks += branches.len();
-                let branched = |branch: &Branch| {
-                    let parent = &splitting.population()[branch.of];
-                    let Least::Steps(steps) = branch.than else { panic!("failures are not given up") };
-                    let nearer = parent.heights.iter().position(|height| HEIGHT - height < steps);
-                    let until = nearer.expect("it came nearer");
-                    (branch.place, Walk::go_on(parent.heights[..=until].to_vec(), branch.seed))
-                };
-                let new: Vec<(usize, Walk)> = branches.iter().map(branched).collect();
-                for (place, walk) in new {
-                    splitting.put(place, walk);
+                let new = branches.iter().map(|branch| splitting.population()[branch.of].branched(branch));
+                for (branch, walk) in branches.iter().zip(new.collect::<Vec<Walk>>()) {
+                    splitting.put(branch.place, walk);
                 }
             }
             rates.push(splitting.mean(|walk| if walk.least() == Least::Failed { 1.0 } else { 0.0 }));

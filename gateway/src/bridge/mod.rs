@@ -342,25 +342,26 @@ impl Bridge {
 
     /// Sends the command of an action.
     fn send_action(&mut self, now: SimTime, action: Action, out: &mut Output) {
-        let command = match action {
-            Action::Standby => self.standby(),
-            Action::Zero => Command::SetPoint(SetPoint::ZERO),
-            Action::Task(task) => {
-                let command = Command::Task(task);
-                let is_reported = self.control.mode() == Some(self.protocol.shown(command).mode);
-                // Sent again, it would begin anew.
-                if self.last_sent.as_ref().is_some_and(|(at, last)| {
-                    *last == command && (is_reported || (now - *at).as_s() < TASK_AGAIN_S)
-                }) {
-                    return;
+        let command =
+            match action {
+                Action::Standby => self.standby(),
+                Action::Zero => Command::SetPoint(SetPoint::ZERO),
+                Action::Task(task) => {
+                    let command = Command::Task(task);
+                    let is_reported = self.control.mode() == Some(self.protocol.shown(command).mode);
+                    // Sent again, it would begin anew.
+                    if self.last_sent.as_ref().is_some_and(|(at, last)| {
+                        *last == command && (is_reported || (now - *at).as_s() < TASK_AGAIN_S)
+                    }) {
+                        return;
+                    }
+                    command
                 }
-                command
-            }
-            Action::Follow => match self.follow(now) {
-                Some(set_point) => Command::SetPoint(set_point),
-                None => return,
-            },
-        };
+                Action::Follow => match self.follow(now) {
+                    Some(set_point) => Command::SetPoint(set_point),
+                    None => return,
+                },
+            };
         let command = if self.plan.dry_run {
             self.would_send = Some(command);
             Command::Standby

@@ -111,8 +111,9 @@ fn solved(mut matrix: [[f64; 5]; 5], mut right: [f64; 5]) -> Option<[f64; 5]> {
         }
         for below in i + 1..5 {
             let factor = matrix[below][i] / matrix[i][i];
-            for column in i..5 {
-                matrix[below][column] -= factor * matrix[i][column];
+            let above = matrix[i];
+            for (number, above) in matrix[below].iter_mut().zip(above) {
+                *number -= factor * above;
             }
             right[below] -= factor * right[i];
         }

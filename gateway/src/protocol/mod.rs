@@ -53,7 +53,7 @@ pub enum UploadStep {
 #[derive(Clone, Debug)]
 pub enum Protocol {
     /// The Surveyor's NMEA.
-    Surveyor(Surveyor),
+    Surveyor(Box<Surveyor>),
     /// MAVLink, with an ArduPilot boat.
     Mavlink(Box<Mavlink>),
 }
@@ -63,7 +63,7 @@ impl Protocol {
     #[must_use]
     pub fn new(gateway: &Gateway) -> Protocol {
         match gateway.protocol {
-            BoatProtocol::Surveyor => Protocol::Surveyor(Surveyor::new(gateway.upload_gap_s)),
+            BoatProtocol::Surveyor => Protocol::Surveyor(Box::new(Surveyor::new(gateway.upload_gap_s))),
             BoatProtocol::Mavlink => Protocol::Mavlink(Box::new(Mavlink::new(gateway))),
         }
     }

@@ -31,6 +31,7 @@ pub use view::{Access, Budget, Changes, Outgoing, View, Viewer};
 
 use access::{AccessControl, Tokens};
 use bus::Token;
+use report::LateReport;
 use std::net::{SocketAddr, TcpListener};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
@@ -89,7 +90,7 @@ pub struct Page {
     address: SocketAddr,
     operator_token: String,
     shown: Option<watch::Sender<Option<Arc<dyn View>>>>,
-    report: Arc<OnceLock<Arc<dyn Report>>>,
+    report: LateReport,
     ended: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }

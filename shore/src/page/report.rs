@@ -1,7 +1,7 @@
 //! A report on the page: its files, and the games behind it, each of which pages can ask for.
 
 use super::view::View;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use tokio::sync::watch;
 
 /// Something that was counted up from many games: of a tournament, a sweep, a training.
@@ -15,6 +15,9 @@ pub trait Report: Send + Sync {
     /// What is shown of the game of this name, which may be any text: the game, or why there is none.
     fn game(&self, name: &str) -> Shown;
 }
+
+/// A report that a page may get after it has begun.
+pub(super) type LateReport = Arc<OnceLock<Arc<dyn Report>>>;
 
 /// What one page is shown now, if anything is yet. Its end is that of the server.
 #[derive(Clone)]

@@ -3,7 +3,7 @@
 use super::access::{AccessControl, value};
 use super::asset;
 use super::background::Background;
-use super::report::{Report, Shown};
+use super::report::{LateReport, Report, Shown};
 use super::socket::{self, RECEIVED_MAX};
 use super::view::Access;
 use axum::Router;
@@ -21,7 +21,7 @@ use hyper_util::server::conn::auto::Builder;
 use hyper_util::service::TowerToHyperService;
 use std::future::Future;
 use std::net::IpAddr;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 use std::time::Duration;
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::oneshot;
@@ -48,7 +48,7 @@ const REQUEST: Duration = Duration::from_secs(10);
 struct AppState {
     access_control: Arc<AccessControl>,
     shown: Shown,
-    report: Arc<OnceLock<Arc<dyn Report>>>,
+    report: LateReport,
     background: Option<Arc<Background>>,
     viewers: Connections,
     operators: Connections,
@@ -82,7 +82,7 @@ fn admit(connections: &Connections, from: IpAddr) -> Room {
 pub(super) async fn serve(
     listener: std::net::TcpListener,
     access_control: AccessControl,
-    (shown, report, background): (Shown, Arc<OnceLock<Arc<dyn Report>>>, Option<Background>),
+    (shown, report, background): (Shown, LateReport, Option<Background>),
     end: impl Future<Output = ()>,
 ) -> std::io::Result<()> {
     let listener = TcpListener::from_std(listener)?;

@@ -76,12 +76,7 @@ pub(in crate::scenario) fn game(diagnostics: &mut Diagnostics, document: &Docume
     let start_positions = start_position::all(&entries, &field);
     start_position::check_clear(diagnostics, &entries, &start_positions, &boats.items, &field);
     check_models(diagnostics, &entries, &strategies.items);
-    let is_set = |key: &str| diagnostics.overrides.settings.iter().any(|setting| setting.key == key);
-    if raw.duration_s.is_some() && is_set("rules.time_limit_s") {
-        let message =
-            "duration_s of the game takes the place of rules.time_limit_s, expected game.duration_s to be set";
-        diagnostics.note(document.at("duration_s"), message);
-    }
+    check_duration(diagnostics, document);
     rules.time_limit = raw.duration_s.map_or(rules.time_limit, SimTime::from_s);
     let vehicles = entries.into_iter().zip(start_positions).map(|(entry, start_position)| Vehicle {
         name: entry.name,
@@ -119,6 +114,16 @@ pub(in crate::scenario) fn game(diagnostics: &mut Diagnostics, document: &Docume
         recipe: None,
     };
     document.is_faultless(diagnostics).then_some(scenario)
+}
+
+/// A setting of what the game replaces would do nothing.
+fn check_duration(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) {
+    let is_set = |key: &str| diagnostics.overrides.settings.iter().any(|setting| setting.key == key);
+    if document.raw.duration_s.is_some() && is_set("rules.time_limit_s") {
+        let message =
+            "duration_s of the game takes the place of rules.time_limit_s, expected game.duration_s to be set";
+        diagnostics.note(document.at("duration_s"), message);
+    }
 }
 
 /// Seeds take over one after the other.
