@@ -2,7 +2,9 @@
 
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { Sight, openBrowser } from './harness.mjs';
+import { writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { Sight, folder, openBrowser } from './harness.mjs';
 import { badge, realBoats } from './real_boats.mjs';
 
 let browser;
@@ -55,6 +57,26 @@ test('a geofence is drawn by hand and by keys, and copied as the gateway file ha
   assert.equal(await sight.get(() => squall.selected), null, 'no boat is chosen meanwhile');
   await sight.keys('Escape');
   assert(!(await sight.page.isVisible('#fence-editor')));
+});
+
+test('what is drawn is what gateways then keep to, and show', async (t) => {
+  const drawn = [[-10, -10], [170, -10], [170, 90], [60, 95], [-10, 90]];
+  const by = await Sight.open(t, browser, (await realBoats(t)).url);
+  await by.until('the field and its margin', () => squall.fences.length === 1);
+  const [x, y] = await by.get(() => [0, 1].map((axis) => squall.fences[0].outline.map((corner) => corner[axis])));
+  assert(Math.abs(Math.max(...x) - Math.min(...x) - 220) < 1 && Math.abs(Math.max(...y) - Math.min(...y) - 140) < 1, `${x}; ${y}`);
+  const datum = await by.get(() => squall.hello.chart.field.datum);
+  const file = join(folder(t), 'fenced.toml');
+  const inside = [[70, 55], [90, 55], [80, 70]];
+  writeFileSync(file, await by.get(async ([datum, polygons]) => (await import('/fence_editor.js')).toml(datum, polygons), [datum, [drawn, inside]]));
+  const boats = await realBoats(t, { gateway: ['--config', file] });
+  const sight = await Sight.open(t, browser, boats.url);
+  const fence = await sight.until('it is shown', () => squall.fences.length === 1 && squall.fences[0].keepOuts.length === 1 && squall.fences[0]);
+  for (const [found, want] of [[fence.outline, drawn], [fence.keepOuts[0], inside]]) {
+    assert.equal(found.length, want.length);
+    want.forEach(([east, north]) => assert(found.some(([x, y]) => Math.hypot(x - east, y - north) < 0.1), `${east}, ${north} among ${JSON.stringify(found)}`));
+  }
+  await sight.until('and how far a boat is from it', () => squall.stops.length === 2 && squall.stops.every(({ clearance_m }) => clearance_m > 1));
 });
 
 /** Geofences and stopping distances in the status of each boat, in place of those that its gateway tells. */

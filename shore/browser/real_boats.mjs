@@ -6,8 +6,8 @@ const BOATS = ['blue_one', 'red_one'];
 
 const hub = async () => ['--listen', `tcp/127.0.0.1:${await freePort()}`];
 
-/** Begins the game; gives its programs, and the page's address. `page` are more words for `squall view`. */
-export async function realBoats(t, { page = ['--token', 'operators'] } = {}) {
+/** Begins the game; gives its programs, and the page's address. `page` are more words for `squall view`, `gateway` for each gateway. */
+export async function realBoats(t, { page = ['--token', 'operators'], gateway = [] } = {}) {
   const mark = `${process.pid}_${Math.floor(performance.now())}`;
   const [water, game] = [`water_${mark}`, `match_${mark}`];
   const play = (...words) => new Program(t, ...words, '--game', game);
@@ -18,7 +18,7 @@ export async function realBoats(t, { page = ['--token', 'operators'] } = {}) {
   for (const name of BOATS) {
     const link = `tcp://127.0.0.1:${await freePort()}`;
     boats.emulators[name] = new Program(t, 'gateway', 'emulate', '--game', water, '--vehicle', name, '--listen', link);
-    boats.gateways[name] = play('gateway', 'surveyor', '--vehicle', name, '--link', link, '--no-record');
+    boats.gateways[name] = play('gateway', 'surveyor', '--vehicle', name, '--link', link, '--no-record', ...gateway);
   }
   boats.view = play('view', '--listen', '127.0.0.1:0', ...page);
   return { ...boats, url: await boats.view.url() };
