@@ -19,8 +19,8 @@ pub(crate) struct LoopArgs {
     /// are driven through gateways, which tell how they were in the end
     #[arg(long, conflicts_with_all = ["in_process", "rehearse"])]
     emulate: bool,
-    /// How the gateways drive them: a gateway file [default: a Surveyor, carefully]
-    #[arg(long, value_name = "FILE", requires = "emulate")]
+    /// How the gateways drive them: a gateway file or its name [default: a Surveyor, carefully]
+    #[arg(long, value_name = "FILE", requires = "emulate", value_parser = crate::scenario_files::gateway)]
     gateway: Option<PathBuf>,
     /// Records what goes through each gateway into this folder, as NAME.mcap
     #[arg(long, value_name = "DIR", requires = "emulate")]

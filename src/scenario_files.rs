@@ -77,7 +77,8 @@ fn where_it_goes(kind: Kind) -> &'static str {
         Kind::Tournament => ": squall tournament plays it",
         Kind::Sweep => ": squall sweep plays it",
         Kind::Training => ": squall train takes it",
-        Kind::Boat | Kind::Rules | Kind::Gateway | Kind::Rewards => "",
+        Kind::Gateway => ": squall gateway surveyor --config takes it",
+        Kind::Boat | Kind::Rules | Kind::Rewards => "",
     }
 }
 
@@ -109,4 +110,4 @@ macro_rules! finders {
     };
 }
 
-finders! { field Field, game Game, sea Sea, strategy Strategy, tournament Tournament, sweep Sweep, training Training, }
+finders! { field Field, game Game, sea Sea, strategy Strategy, tournament Tournament, sweep Sweep, training Training, gateway Gateway, }

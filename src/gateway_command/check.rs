@@ -41,8 +41,8 @@ pub(crate) struct Args {
     /// Makes the pre-flight check of this vehicle, for the field of its game
     #[arg(long, value_name = "NAME")]
     vehicle: Option<String>,
-    /// By which gateway file it will be driven [default: a Surveyor with careful limits]
-    #[arg(long, value_name = "FILE", requires = "vehicle")]
+    /// By which gateway file it will be driven, a file or a name [default: a Surveyor with careful limits]
+    #[arg(long, value_name = "FILE", requires = "vehicle", value_parser = crate::scenario_files::gateway)]
     config: Option<PathBuf>,
     /// Guides through compass swing and propeller test, under remote control; asks before each
     #[arg(long, requires = "vehicle")]

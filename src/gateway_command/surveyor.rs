@@ -35,8 +35,8 @@ pub(crate) struct Args {
     /// Where it takes operator commands with or without a game: an address of this machine and a port, 0 for any
     #[arg(long, value_name = "HOST:PORT", default_value = "127.0.0.1:0", value_parser = control_address)]
     control_listen: SocketAddr,
-    /// How it is driven and stopped: a gateway file [default: a Surveyor with careful limits]
-    #[arg(long, value_name = "FILE")]
+    /// How it is driven and stopped: a gateway file or its name [default: a Surveyor with careful limits]
+    #[arg(long, value_name = "FILE", value_parser = crate::scenario_files::gateway)]
     config: Option<PathBuf>,
     /// Arms by itself, once, as soon as it is ready; after a failsafe it has to be armed by command
     #[arg(long)]
