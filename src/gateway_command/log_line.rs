@@ -1,7 +1,7 @@
 //! The log of a gateway on the terminal: events line by line, the status as one line that is overwritten.
 
 use crate::printer::Printer;
-use crate::screen;
+use crate::{screen, style};
 use game::external::{GatewayStatus, GeofenceReport};
 use gateway::bridge::Event;
 use std::io::IsTerminal;
@@ -71,13 +71,22 @@ impl Log {
     }
 }
 
+/// A state, in red where the boat was stopped.
+fn state(text: &str) -> String {
+    if ["failsafe", "e-stopped"].iter().any(|stopped| text.starts_with(stopped)) {
+        style::bad(text)
+    } else {
+        text.to_owned()
+    }
+}
+
 /// An event in words.
 pub(super) fn text_of(event: &Event) -> String {
     match event {
-        Event::State { from, to } => format!("{to} (was {from})"),
-        Event::Blocked(true) => "another boat is in the way: thrust zero".to_owned(),
+        Event::State { from, to } => format!("{} (was {from})", state(to)),
+        Event::Blocked(true) => style::warning("another boat is in the way: thrust zero"),
         Event::Blocked(false) => "the way is clear again".to_owned(),
-        Event::Warning(text) => format!("WARNING: {text}"),
+        Event::Warning(text) => style::warning(&format!("WARNING: {text}")),
         Event::Remark(text) => text.clone(),
     }
 }
@@ -113,7 +122,7 @@ fn volts(status: &GatewayStatus) -> Option<String> {
 
 fn geofence(report: &GeofenceReport) -> Option<String> {
     let (clearance_m, stopping_m) = (report.clearance_m?, report.stopping_m?);
-    let is_inside = if clearance_m > 0.0 { "inside" } else { "OUTSIDE" };
+    let is_inside = if clearance_m > 0.0 { "inside".to_owned() } else { style::bad("OUTSIDE") };
     Some(format!("{is_inside}, {:.1} m to the nearest edge, {stopping_m:.1} m to stop", clearance_m.abs()))
 }
 
@@ -131,7 +140,7 @@ pub(super) fn full(status: &GatewayStatus) -> String {
         )
     });
     let mut lines = vec![
-        format!("{}: {}", status.vehicle, status.state),
+        format!("{}: {}", status.vehicle, state(&status.state)),
         format!("  link        {}", status.link),
         format!("  mode        {}", or_none(status.mode.map(|mode| with_age(mode.to_string(), status.mode_age_s)))),
         format!(
@@ -144,10 +153,13 @@ pub(super) fn full(status: &GatewayStatus) -> String {
         format!("  last sent   {}", status.last_sent),
     ];
     if !status.missing.is_empty() {
-        lines.push(format!("  missing     {}", status.missing.join("; ")));
+        lines.push(style::warning(&format!("  missing     {}", status.missing.join("; "))));
     }
     lines.extend(
-        status.failsafes.iter().map(|failsafe| format!("  failsafe    {:>8.1} s  {}", failsafe.at_s, failsafe.cause)),
+        status
+            .failsafes
+            .iter()
+            .map(|failsafe| style::bad(&format!("  failsafe    {:>8.1} s  {}", failsafe.at_s, failsafe.cause))),
     );
     let named = ["sentence in, topic out", "order in, sentence out"];
     for (name, latency) in named.iter().zip(status.latency_us) {
@@ -159,4 +171,18 @@ pub(super) fn full(status: &GatewayStatus) -> String {
         status.counts.iter().filter(|(_, count)| *count > 0).map(|(name, count)| format!("{count} {name}")).collect();
     lines.push(format!("  counts      {}", counts.join(", ")));
     lines.join("\n") + "\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_boat_that_was_stopped_is_red_and_any_other_state_is_not() {
+        let told = |to: &str| text_of(&Event::State { from: "armed".to_owned(), to: to.to_owned() });
+        assert_eq!(told("safed"), "safed (was armed)");
+        for to in ["failsafe: the link is down", "e-stopped (by an E-stop of us)"] {
+            assert_eq!(told(to), format!("{} (was armed)", style::bad(to)));
+        }
+    }
 }
