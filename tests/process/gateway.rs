@@ -46,18 +46,23 @@ impl Loop {
 
     /// The same, with these options of emulator and gateway.
     pub(crate) fn of(emulator: &[&str], gateway: &[&str]) -> Loop {
+        let all = Loop::begin(emulator, &[&["--arm"], gateway].concat());
+        all.wait(LIMIT, "the boat sails", |boat| boat.0 > 0.6);
+        all
+    }
+
+    /// A boat that need not be under way.
+    pub(crate) fn begin(emulator: &[&str], gateway: &[&str]) -> Loop {
         let sim = Sim::start("real_attacker", &["--pace", "realtime"]);
         let water = Sim::start("real_attacker", &["--pace", "realtime", "--afloat", "blue_one"]);
         let (emulator, back_seat, primary) = start_emulator(&water, emulator);
         let proxy = Proxy::start(back_seat);
-        let gateway = start_gateway(&sim, proxy.port, &[&["--arm"], gateway].concat());
+        let gateway = start_gateway(&sim, proxy.port, gateway);
         let agents = sim.agent(&["blue_one", "red_one"]);
         let bus = water.bus();
         let key = topic::frame(&water.name());
         let (frame, frames) = newest(&bus, key, |bytes| codec::decode(bytes).expect("a frame"));
-        let all = Loop { sim, agents, gateway, emulator, proxy, primary, water, frame, _observer: (bus, frames) };
-        all.wait(LIMIT, "the boat sails", |boat| boat.0 > 0.6);
-        all
+        Loop { sim, agents, gateway, emulator, proxy, primary, water, frame, _observer: (bus, frames) }
     }
 
     /// The boat's speed, and whether its thrusters stand still.

@@ -17,6 +17,7 @@ mod mavlink;
 mod network;
 mod place;
 mod policy;
+mod preflight;
 mod proxy;
 mod recording;
 mod refusals;
