@@ -1,4 +1,4 @@
-//! What the search for rare failures gains over brute force, in the same run: as many games of `sweeps/storm.toml`, drawn evenly; and what of that is the splitting.
+//! What the search for rare failures gains over brute force, in the same run: as many games of `sweeps/compass.toml`, drawn evenly; and what of that is the splitting.
 //!
 //! `cargo bench -p squall-sweep --bench find -- [GAMES] [CONDITION]`, by default 1000 games and `strategy_5.out_of_bounds > 0`.
 
@@ -14,7 +14,7 @@ fn main() {
     let words: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
     let games = words.first().and_then(|word| word.parse().ok()).unwrap_or(1000_usize).max(20);
     let condition = words.get(1).map_or("strategy_5.out_of_bounds > 0", String::as_str);
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/sweeps/storm.toml");
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/sweeps/compass.toml");
     let sweep = load_sweep(&file).unwrap_or_else(|problems| panic!("{problems}"));
     let plan = Plan::new(&sweep).unwrap_or_else(|problems| panic!("{problems}"));
     let condition = Condition::parse(condition, &sweep).unwrap_or_else(|error| panic!("{error}"));
