@@ -107,6 +107,17 @@ impl Loop {
         wait_until(words, || self.status().state.contains(words));
     }
 
+    /// An E-stop of all boats stops it, and it cannot be armed before the E-stop is released.
+    pub(crate) fn e_stop_and_release(&self) {
+        let output = self.sim.run(&["gateway", "tell", "all", "estop"]);
+        assert!(output.status.success(), "{}", stderr(&output));
+        self.stops_within(Duration::from_millis(300));
+        self.wait_for_state("e-stopped");
+        assert!(self.ask(&OperatorCommand::Arm).refused.is_some_and(|reason| reason.contains("release it first")));
+        assert!(self.sim.run(&["gateway", "tell", "all", "release"]).status.success());
+        self.wait_for_state("safed");
+    }
+
     /// Arms it, as soon as it can be.
     pub(crate) fn arm(&self) {
         wait_until("it can be armed", || self.ask(&OperatorCommand::Arm).refused.is_none());
@@ -230,13 +241,7 @@ fn the_primary_operator_and_an_e_stop_stop_the_boat_through_the_whole_loop() {
     assert!(all.ask(&OperatorCommand::Arm).refused.is_some_and(|reason| reason.contains("secondary control")));
     operator.write_all(b"$PSEAC,L,0,0,0,OP2_ON*67\r\n").expect("a command");
     all.arm();
-    let output = all.sim.run(&["gateway", "tell", "all", "estop"]);
-    assert!(output.status.success(), "{}", stderr(&output));
-    all.stops_within(Duration::from_millis(300));
-    all.wait_for_state("e-stopped");
-    assert!(all.ask(&OperatorCommand::Arm).refused.is_some_and(|reason| reason.contains("release it first")));
-    assert!(all.sim.run(&["gateway", "tell", "all", "release"]).status.success());
-    all.wait_for_state("safed");
+    all.e_stop_and_release();
     all.arm();
     drop((all.emulator, all.water));
 }

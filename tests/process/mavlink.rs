@@ -1,7 +1,7 @@
 //! A boat that speaks MAVLink, with real processes and real sockets: it is driven and stopped as a Surveyor is.
 
 use crate::gateway::{Loop, start_gateway};
-use crate::support::{result_of, run, stderr, stdout, temporary, wait_until};
+use crate::support::{result_of, run, stdout, temporary, wait_until};
 use game::external::OperatorCommand;
 use std::time::Duration;
 
@@ -27,12 +27,7 @@ fn stale_orders_a_killed_gateway_and_an_e_stop_stop_a_mavlink_boat() {
     wait_until("it is in the game", || all.try_ask(&OperatorCommand::Status).is_some());
     all.wait_for_state("safed");
     all.arm();
-    let output = all.sim.run(&["gateway", "tell", "all", "estop"]);
-    assert!(output.status.success(), "{}", stderr(&output));
-    all.stops_within(Duration::from_millis(300));
-    all.wait_for_state("e-stopped");
-    assert!(all.ask(&OperatorCommand::Arm).refused.is_some_and(|reason| reason.contains("release it first")));
-    assert!(all.sim.run(&["gateway", "tell", "all", "release"]).status.success());
+    all.e_stop_and_release();
     all.arm();
     all.proxy.cut();
     all.stops_within(Duration::from_millis(300));
