@@ -7,6 +7,7 @@
 mod ardupilot;
 mod autopilot;
 mod front_seat;
+mod sensed;
 mod telemetry;
 
 pub use ardupilot::{ArduPilot, SYSTEM};
@@ -19,6 +20,7 @@ use autopilot::Autopilot;
 use game::frame::LatLon;
 use game::picture::OwnBoat;
 use game::{Order, SimTime};
+use sensed::Sensed;
 
 /// What an emulated boat is made of; constant but for its clock.
 #[derive(Clone, Debug)]
@@ -64,9 +66,7 @@ pub struct Emulator {
     thrust_pct: f64,
     difference_pct: f64,
     autopilot: Autopilot,
-    own: Option<OwnBoat>,
-    /// When the fix that `own` has was first seen, and which it is.
-    fix: Option<(SimTime, SimTime)>,
+    sensed: Sensed,
     volts: f64,
     remark: Option<String>,
     /// Commands that were followed, and those that were ignored since another operator was in control.
@@ -89,8 +89,7 @@ impl Emulator {
             thrust_pct: 0.0,
             difference_pct: 0.0,
             autopilot: Autopilot::default(),
-            own: None,
-            fix: None,
+            sensed: Sensed::default(),
             volts: FULL_V,
             remark: None,
             followed: 0,
@@ -142,10 +141,7 @@ impl Emulator {
 
     /// Takes what its sensors measure.
     pub fn observe(&mut self, now: SimTime, own: &OwnBoat) {
-        if self.fix.is_none_or(|(_, fix)| fix != own.fix_ns) {
-            self.fix = Some((now, own.fix_ns));
-        }
-        self.own = Some(*own);
+        self.sensed.observe(now, own);
     }
 
     /// The boat's order to its thrusters now.
@@ -155,7 +151,7 @@ impl Emulator {
         if silent && self.command.mode != Mode::Standby {
             self.command = Command::default();
         }
-        let Some(own) = &self.own else { return Order::Hold };
+        let Some(own) = &self.sensed.own else { return Order::Hold };
         let heading = |command: &Command| command.heading_deg.map(|deg| deg.to_radians() + self.plan.declination_rad);
         match self.command.mode {
             Mode::Thruster => autopilot::thrust(self.thrust_pct, self.difference_pct),
@@ -245,7 +241,7 @@ impl Emulator {
             mode => {
                 (self.thrust_pct, self.difference_pct) = (0.0, 0.0);
                 // A command of the same mode goes on with what is under way.
-                if let (true, Some(own)) = (mode != self.command.mode, &self.own) {
+                if let (true, Some(own)) = (mode != self.command.mode, &self.sensed.own) {
                     self.autopilot.begin(own.nav.at());
                 }
             }

@@ -10,8 +10,6 @@ use game::math;
 use game::picture::{Imu, Nav};
 use game::{LatLon, SimTime};
 
-/// A receiver reports no fix when its last is older than this, s.
-const FIX_AGE_MAX_S: f64 = 1.0;
 /// Below this speed a receiver reports no course, m/s.
 const COURSE_FROM_M_S: f64 = 0.1;
 const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
@@ -31,7 +29,7 @@ pub enum Extra {
 
 /// All of it, now.
 pub(super) fn burst(boat: &Emulator, now: SimTime, out: &mut Vec<u8>) {
-    if let (Some(own), Some((seen, _))) = (&boat.own, boat.fix) {
+    if let (Some(own), Some(seen)) = (&boat.sensed.own, boat.sensed.fix_seen) {
         let report = FixReport::new(boat, now, seen, &own.nav);
         Sentence::Gga(report.gga()).write(out);
         Sentence::Vtg(report.vtg(boat)).write(out);
@@ -61,14 +59,13 @@ struct FixReport {
 impl FixReport {
     fn new(boat: &Emulator, now: SimTime, seen: SimTime, nav: &Nav) -> FixReport {
         let (date, began) = boat.plan.began;
-        let is_lost = (now - seen).as_s() > FIX_AGE_MAX_S;
         let velocity = nav.velocity_m_s();
         let speed_m_s = velocity.length();
         FixReport {
             date,
             now: began.later(now),
             time: began.later(seen),
-            at: (!is_lost).then(|| boat.frame.lat_lon(nav.at())),
+            at: boat.sensed.has_fix(now).then(|| boat.frame.lat_lon(nav.at())),
             psi_rad: nav.psi_rad,
             course_rad: (speed_m_s >= COURSE_FROM_M_S).then(|| math::atan2(velocity.east, velocity.north)),
             speed_m_s,
@@ -161,7 +158,7 @@ fn battery(volts: f64, now: SimTime) -> Battery {
 fn control_state(boat: &Emulator) -> ControlState {
     // Where it steers no heading, it reports the one it has.
     let steers = matches!(boat.command.mode, Mode::Heading | Mode::Speed);
-    let has = || boat.own.as_ref().map(|own| compass_deg_from_rad(own.nav.psi_rad - boat.plan.declination_rad));
+    let has = || boat.sensed.own.as_ref().map(|own| compass_deg_from_rad(own.nav.psi_rad - boat.plan.declination_rad));
     // As the boat follows it: no more than all, but for a speed.
     let is_speed = boat.command.mode == Mode::Speed;
     let clamped =

@@ -49,7 +49,7 @@ impl ArduPilot {
     }
 
     fn command_arming(&mut self, arm: bool) -> MavResult {
-        let Some(own) = self.own.filter(|_| arm) else {
+        let Some(own) = self.sensed.own.filter(|_| arm) else {
             self.is_armed = false;
             return if arm { self.refuse("PreArm: GPS 1: Bad fix") } else { DONE };
         };
@@ -67,7 +67,7 @@ impl ArduPilot {
 
     fn command_home(&mut self, is_here: bool, at_e7: (i32, i32)) -> MavResult {
         let here = || {
-            let at = self.frame.lat_lon(self.own?.nav.at());
+            let at = self.frame.lat_lon(self.sensed.own?.nav.at());
             Some(((1e7 * at.lat_deg).round() as i32, (1e7 * at.lon_deg).round() as i32))
         };
         let Some(home) = (if is_here { here() } else { Some(at_e7) }) else { return FAILED };

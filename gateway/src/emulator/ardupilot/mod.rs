@@ -10,6 +10,7 @@ mod set_point;
 mod telemetry;
 
 use super::autopilot::Autopilot;
+use super::sensed::Sensed;
 use crate::geodesy::LocalFrame;
 use crate::mavlink::dialect::MavMessage;
 use crate::mavlink::{AUTOPILOT, Framer, Received, RoverMode, Writer};
@@ -46,9 +47,7 @@ pub struct ArduPilot {
     streams: Streams,
     /// When the ground station whose failure matters was last heard.
     station_at: Option<SimTime>,
-    own: Option<OwnBoat>,
-    /// When the fix that `own` has was first seen, and which it is.
-    fix: Option<(SimTime, SimTime)>,
+    sensed: Sensed,
     /// UTC at time zero, µs since 1970.
     began_us: u64,
     volts: f64,
@@ -74,8 +73,7 @@ impl ArduPilot {
             parameters: Parameters::new(),
             streams: Streams::new(),
             station_at: None,
-            own: None,
-            fix: None,
+            sensed: Sensed::default(),
             began_us: 0,
             volts: FULL_V,
             remarks: VecDeque::new(),
@@ -101,7 +99,7 @@ impl ArduPilot {
         if self.mode != mode {
             self.mode = mode;
             self.set_points.forget();
-            if let Some(own) = &self.own {
+            if let Some(own) = &self.sensed.own {
                 self.autopilot.begin(own.nav.at());
             }
             self.note(format!("mode {mode:?}"));
@@ -133,16 +131,13 @@ impl ArduPilot {
 
     /// Takes what its sensors measure.
     pub fn observe(&mut self, now: SimTime, own: &OwnBoat) {
-        if self.fix.is_none_or(|(_, fix)| fix != own.fix_ns) {
-            self.fix = Some((now, own.fix_ns));
-        }
-        self.own = Some(*own);
+        self.sensed.observe(now, own);
     }
 
     /// The boat's order to its thrusters now.
     pub fn order(&mut self, now: SimTime) -> Order {
         self.check_failsafe(now);
-        let Some(own) = self.own.filter(|_| self.is_armed) else { return Order::Hold };
+        let Some(own) = self.sensed.own.filter(|_| self.is_armed) else { return Order::Hold };
         let pose = own.nav.pose();
         match self.mode {
             RoverMode::Manual => self.set_points.manual(now),

@@ -15,8 +15,6 @@ use game::angle::compass_deg_from_rad;
 use game::{SimTime, math};
 use std::collections::BTreeMap;
 
-/// A receiver reports no fix when its last is older than this, s.
-const FIX_AGE_MAX_S: f64 = 1.0;
 /// Nothing is sent more often than this, s.
 const INTERVAL_MIN_S: f64 = 0.02;
 /// The version 4.5.7, as ArduPilot counts it.
@@ -191,15 +189,10 @@ impl ArduPilot {
         }
     }
 
-    /// Whether the receiver has a fix.
-    fn has_fix(&self, now: SimTime) -> bool {
-        self.fix.is_some_and(|(seen, _)| (now - seen).as_s() <= FIX_AGE_MAX_S)
-    }
-
     fn gps_raw(&self, now: SimTime) -> Option<GPS_RAW_INT_DATA> {
         let (lat, lon) = self.lat_lon_e7()?;
-        let nav = self.own?.nav;
-        let has_fix = self.has_fix(now);
+        let nav = self.sensed.own?.nav;
+        let has_fix = self.sensed.has_fix(now);
         let velocity = nav.velocity_m_s();
         let course_deg = compass_deg_from_rad(math::atan2(velocity.east, velocity.north));
         Some(GPS_RAW_INT_DATA {
@@ -217,13 +210,13 @@ impl ArduPilot {
     }
 
     fn lat_lon_e7(&self) -> Option<(i32, i32)> {
-        let at = self.frame.lat_lon(self.own?.nav.at());
+        let at = self.frame.lat_lon(self.sensed.own?.nav.at());
         Some(((1e7 * at.lat_deg).round() as i32, (1e7 * at.lon_deg).round() as i32))
     }
 
     fn position(&self, now: SimTime) -> Option<GLOBAL_POSITION_INT_DATA> {
         let (lat, lon) = self.lat_lon_e7()?;
-        let nav = self.own?.nav;
+        let nav = self.sensed.own?.nav;
         let velocity = nav.velocity_m_s();
         Some(GLOBAL_POSITION_INT_DATA {
             time_boot_ms: boot_ms(now),
@@ -239,7 +232,7 @@ impl ArduPilot {
     }
 
     fn attitude(&self, now: SimTime) -> Option<ATTITUDE_DATA> {
-        let nav = self.own?.nav;
+        let nav = self.sensed.own?.nav;
         Some(ATTITUDE_DATA {
             time_boot_ms: boot_ms(now),
             yaw: game::angle::wrap_pi(nav.psi_rad) as f32,
@@ -249,7 +242,7 @@ impl ArduPilot {
     }
 
     fn vfr_hud(&self) -> Option<VFR_HUD_DATA> {
-        let nav = self.own?.nav;
+        let nav = self.sensed.own?.nav;
         Some(VFR_HUD_DATA {
             groundspeed: nav.velocity_m_s().length() as f32,
             heading: compass_deg_from_rad(nav.psi_rad) as i16,

@@ -1,0 +1,30 @@
+//! What an emulated boat knows of itself, whichever protocol it speaks.
+
+use game::SimTime;
+use game::picture::OwnBoat;
+
+/// A receiver that has no newer fix than this reports none, s.
+const FIX_AGE_MAX_S: f64 = 1.0;
+
+/// What its sensors measured last.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Sensed {
+    pub(super) own: Option<OwnBoat>,
+    /// When the fix that `own` has was first seen.
+    pub(super) fix_seen: Option<SimTime>,
+}
+
+impl Sensed {
+    /// Takes what the sensors measure.
+    pub(super) fn observe(&mut self, now: SimTime, own: &OwnBoat) {
+        if self.own.is_none_or(|before| before.fix_ns != own.fix_ns) {
+            self.fix_seen = Some(now);
+        }
+        self.own = Some(*own);
+    }
+
+    /// Whether the receiver has a fix.
+    pub(super) fn has_fix(&self, now: SimTime) -> bool {
+        self.fix_seen.is_some_and(|seen| (now - seen).as_s() <= FIX_AGE_MAX_S)
+    }
+}
