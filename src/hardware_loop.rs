@@ -112,7 +112,8 @@ impl HardwareLoop {
 fn start_emulator(name: &str, gateway: &Gateway, (water, endpoint): (&str, &str)) -> Result<(ChildProcess, String)> {
     let listen = "tcp://127.0.0.1:0";
     let mut command = child_process::squall(&["gateway", "emulate", "--game", water, "--connect", endpoint])?;
-    command.args(["--vehicle", name, "--listen", listen]);
+    // However long the game: what stops a boat here is to be the game's or the gateway's doing.
+    command.args(["--vehicle", name, "--listen", listen, "--charge-pct", "none"]);
     match gateway.protocol {
         BoatProtocol::Surveyor => {
             option(&mut command, "--declination-deg", gateway.declination_rad.map(f64::to_degrees));

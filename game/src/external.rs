@@ -88,6 +88,32 @@ pub enum OperatorCommand {
     GoToErp,
     /// Upload a mission and sail it by the boat's own controller.
     Mission(Mission),
+    /// Another mode of the boat's own controller.
+    Mode(BoatMode),
+}
+
+/// A mode of a Surveyor's own controller beyond station keeping, recovery and missions. What it does in all but the first is not
+/// published.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BoatMode {
+    /// `C`: holds a heading at a thrust.
+    Heading {
+        /// True heading, degrees.
+        heading_deg: f64,
+        /// Thrust ahead, per cent.
+        thrust_pct: f64,
+    },
+    /// `N`: river navigation.
+    RiverNav,
+    /// `I`: autopilot.
+    Autopilot,
+    /// `3`: calibration of the compass.
+    CompassCalibration,
+    /// `D`: depth.
+    Depth,
+    /// `S`: direction of gravity.
+    GravityVector,
 }
 
 impl OperatorCommand {
@@ -170,6 +196,9 @@ pub struct GatewayStatus {
     pub state: String,
     /// What is missing for arming, in words.
     pub missing: Vec<String>,
+    /// What is wrong in the boat itself now, in words: error code, leak, currents; earlier versions have none.
+    #[serde(default)]
+    pub alarms: Vec<String>,
     /// The failsafes so far, newest last. Recordings of earlier versions call them trips.
     #[serde(alias = "trips")]
     pub failsafes: Vec<FailsafeReport>,

@@ -44,6 +44,8 @@ pub struct Gateway {
     pub halt: Halt,
     /// When the battery is low.
     pub battery: BatteryWatch,
+    /// Currents that are no good: an alarm each, which stops nothing.
+    pub currents: CurrentWatch,
     /// What a boat does after a failsafe, by its cause; after one that is not named here, it stops.
     pub failsafe: FailsafeActions,
     /// How we know that the boat listens to us.
@@ -231,6 +233,23 @@ pub struct BatteryWatch {
     pub volts_min: f64,
     /// It must be lower for this long, s.
     #[schemars(range(min = 0, max = 600), extend("default" = 5))]
+    pub debounce_s: f64,
+}
+
+/// The currents that a boat reports. None of these stops it: how exact they are is not published.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct CurrentWatch {
+    /// Highest current of a thruster, A (no such watch at 0): a line in the propeller draws more.
+    #[schemars(range(min = 0, max = 1000), extend("default" = 45))]
+    pub thruster_max_a: f64,
+    /// Lowest current of a thruster while it is ordered 20 % or more, and the other one draws more than this, A (no such watch at 0).
+    #[schemars(range(min = 0, max = 1000), extend("default" = 0.5))]
+    pub thruster_min_a: f64,
+    /// From this current on a bilge pump runs, A (no such watch at 0): the boat takes in water.
+    #[schemars(range(min = 0, max = 1000), extend("default" = 0.1))]
+    pub bilge_a: f64,
+    /// It must be so for this long, s.
+    #[schemars(range(min = 0, max = 600), extend("default" = 3))]
     pub debounce_s: f64,
 }
 

@@ -96,7 +96,7 @@ impl SetPointMapper {
     fn steered(&mut self, now: SimTime, (heading_rad, turn_rad, speed_m_s): (f64, f64, f64), nav: &Nav) -> SetPoint {
         let speed_m_s = speed_m_s.min(self.limits.speed_max_m_s);
         if self.drive == Drive::Speed {
-            let heading_deg = compass_deg_from_rad(heading_rad - self.compass_to_true_rad);
+            let heading_deg = self.compass_deg(heading_rad);
             return SetPoint::Speed { heading_deg, speed_m_s };
         }
         let (thrust, difference) = self.steer(self.step_s(now), turn_rad, speed_m_s, nav);
@@ -113,6 +113,12 @@ impl SetPointMapper {
             }
             SetPoint::Speed { speed_m_s, .. } => Ordered { ahead_m_s: speed_m_s, turn_pct: 0.0 },
         }
+    }
+
+    /// A true heading as the boat's compass counts it, degrees.
+    #[must_use]
+    pub fn compass_deg(&self, true_rad: f64) -> f64 {
+        compass_deg_from_rad(true_rad - self.compass_to_true_rad)
     }
 
     fn step_s(&self, now: SimTime) -> f64 {

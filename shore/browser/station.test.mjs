@@ -178,6 +178,41 @@ test('a failsafe is seen and heard until it is acknowledged, and no flood keeps 
   await sight.until('that is an alarm', () => squall.alarms.some(({ boat, text }) => boat === 'red_one' && /silent/.test(text)));
 });
 
+test('a boat holds a heading and goes into other modes at an operator’s wish, and what is wrong in it is an alarm', async (t) => {
+  const file = join(folder(t), 'careful.toml');
+  writeFileSync(file, '[currents]\nthruster_max_a = 1\n');
+  const boats = await realBoats(t, { gateway: ['--config', file] });
+  const sight = await Sight.open(t, browser, boats.url);
+  await badge(sight, 'blue_one', 'disarmed');
+  await sight.press('[data-vehicle=blue_one]');
+  await sight.until('it knows where it is', () => !/navigation|link/.test(document.getElementById('checks').textContent));
+  await sight.press('#modes summary');
+  await sight.page.fill('#mode-heading', '0');
+  await sight.page.fill('#mode-thrust', '71');
+  await sight.press('#mode-set');
+  await sight.press('#operate-confirm');
+  await sight.until('too much is refused', () => /refuses: the thrust is 71, expected 0 to 70 %/.test(document.getElementById('operated').textContent));
+  await sight.page.fill('#mode-thrust', '20');
+  await sight.press('#mode-set');
+  assert.match(await sight.text('#operate-question'), /Let blue one hold heading 0° at 20 % by its own controller/);
+  await sight.press('#operate-confirm');
+  assert.equal((await badge(sight, 'blue_one', 'delegated')).detail, 'heading 000 at 20 %');
+  // Its thrusters draw more than the file allows.
+  await sight.until('an alarm of each thruster', () => squall.alarms.length === 2 && squall.alarms.every(({ active, text }) => active && /thruster draws too much, 1\.\d A/.test(text)));
+  assert.match(await sight.text('#gateway'), /Alarm.*thruster draws too much/s);
+  await sight.page.selectOption('#mode', 'autopilot');
+  assert(!(await sight.page.isVisible('#mode-heading')));
+  await sight.press('#mode-set');
+  await sight.press('#operate-confirm');
+  await sight.until('it is in that mode', () => squall.badges.find(({ name }) => name === 'blue_one').detail === 'autopilot');
+  // An emulated boat does nothing there.
+  await sight.until('the alarms are over and stay', () => squall.alarms.length === 2 && squall.alarms.every(({ active }) => !active));
+  assert(!/Alarm/.test(await sight.text('#gateway')));
+  await sight.press('#operate-disarm');
+  await badge(sight, 'blue_one', 'disarmed');
+  await sight.until('acknowledged', () => squall.alarms.length === 0);
+});
+
 test('the E-stop is large only where it stops real boats', async (t) => {
   const boats = await realBoats(t);
   for (const [size, least] of [[{ width: 1400, height: 900 }, 60], [{ width: 390, height: 844 }, 68]]) {

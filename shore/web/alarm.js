@@ -148,6 +148,13 @@ export class Alarms {
     // Where the server is not heard, no gateway is.
     this.set(name, 'silent', kind === 'silent' && connected, 'Its gateway is silent.');
     this.set(name, 'link', kind !== 'silent' && !link && (before?.link ?? false), 'The link to the boat is lost.', !link && kind !== 'silent');
+    // The current that an alarm tells changes; what is wrong is told before it.
+    const wrong = new Map(reading.alarms.map((words) => [`boat: ${words.split(',')[0]}`, words]));
+    for (const [kind, words] of wrong) this.set(name, kind, true, words);
+    for (const key of this.alarms.keys()) {
+      const kind = key.slice(name.length + 1);
+      if (key.startsWith(`${name} boat: `) && !wrong.has(kind)) this.set(name, kind, false, '');
+    }
     this.known.set(name, { failsafes, link: link || (before?.link ?? false) });
   }
 

@@ -22,7 +22,7 @@ export function readStatus(game, index, now_ms) {
   const { name, external } = game.vehicles[index];
   if (!external) return null;
   const status = game.statuses.get(name);
-  if (!status) return { name, kind: 'unknown', label: 'No gateway', detail: '', tone: 'warn', facts: [], missing: [], failsafes: 0, silent_s: 0, link: false };
+  if (!status) return { name, kind: 'unknown', label: 'No gateway', detail: '', tone: 'warn', facts: [], missing: [], alarms: [], failsafes: 0, silent_s: 0, link: false };
   // A recording tells what was told then.
   const waited_s = game.mode === 'live' ? Math.max(0, (now_ms - game.heard_ms.get(name)) / 1000) : 0;
   const silent = waited_s > SILENT_S;
@@ -31,7 +31,7 @@ export function readStatus(game, index, now_ms) {
   const detail = silent ? `its gateway is silent since ${number(waited_s, 0, 's')}; before: ${state}` : state.slice(begins.length).replace(/^[:,\s]+/, '');
   return {
     name, kind: silent ? 'silent' : kind, label: silent ? 'Silent' : label, detail, tone: silent ? 'bad' : tone, silent_s: silent ? waited_s : 0,
-    said: kind, facts: factsOf(status, waited_s), fence: status.geofence ?? null, missing: status.missing ?? [], failsafes: status.failsafes?.length ?? 0, link: status.link === 'up' && !silent,
+    said: kind, facts: factsOf(status, waited_s), fence: status.geofence ?? null, missing: status.missing ?? [], alarms: status.alarms ?? [], failsafes: status.failsafes?.length ?? 0, link: status.link === 'up' && !silent,
   };
 }
 
@@ -40,6 +40,8 @@ function factsOf(status, waited_s) {
   const later = (seconds) => (Number.isFinite(seconds) ? seconds + waited_s : NaN);
   const [fix_s, battery_s, mode_s] = [later(status.nav_age_s), later(status.battery_age_s), later(status.mode_age_s)];
   const facts = [{ name: 'Link', short: status.link === 'up' ? 'link up' : 'no link', words: status.link ?? '–', bad: status.link !== 'up' }];
+  // What is wrong in the boat itself stops nothing, and comes first.
+  for (const words of status.alarms ?? []) facts.unshift({ name: 'Alarm', short: words.split(',')[0], words, bad: true });
   // A rehearsal on the water: the boat is sent standby, whatever its state says.
   if (typeof status.would_send === 'string') {
     facts.unshift({ name: 'Dry run', short: 'DRY RUN', words: `only standby is sent${status.would_send ? `, in place of ${status.would_send}` : ''}`, bad: true });

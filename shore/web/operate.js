@@ -2,6 +2,7 @@
 
 import { Ask } from './ask.js';
 import { makeBadge, tellBadge } from './badge.js';
+import { ModeForm } from './mode_form.js';
 import { notice } from './status.js';
 import { fill, make, plain, show, write } from './words.js';
 
@@ -20,7 +21,7 @@ const COMMANDS = [
 const STOPS = ['disarm'];
 const DONE = {
   arm: 'is armed', disarm: 'is disarmed', station_keep: 'keeps its station', go_to_erp: 'goes to its recovery point',
-  release: 'is released', mission: 'takes its mission',
+  release: 'is released', mission: 'takes its mission', mode: 'is in that mode',
 };
 
 export class Operate {
@@ -48,7 +49,8 @@ export class Operate {
     this.missionButton = make('button', '', 'Mission …');
     Object.assign(this.missionButton, { type: 'button', id: 'mission', title: 'Upload a .sea file and let the boat sail it by its own controller' });
     this.missionButton.addEventListener('click', () => this.file.click());
-    const row = make('div', 'operate-row asking', '', ...Object.values(this.buttons), this.missionButton, this.file, this.box());
+    this.modes = new ModeForm((what, command) => this.mode(what, command));
+    const row = make('div', 'operate-row asking', '', ...Object.values(this.buttons), this.missionButton, this.file, this.modes.element, this.box());
     this.answer = make('p', 'note');
     this.answer.id = 'operated';
     this.answer.setAttribute('role', 'status');
@@ -108,6 +110,11 @@ export class Operate {
     const send = () => this.command(name, word);
     if (question === null) send();
     else this.asked.ask(question.replace('NAME', plain(name)), `Yes, ${text.toLowerCase()}`, send, word === 'release');
+  }
+
+  mode(what, command) {
+    const { name } = this;
+    this.asked.ask(`Let ${plain(name)} ${what} by its own controller?`, 'Yes', () => this.command(name, command));
   }
 
   command(vehicle, command) {
@@ -174,6 +181,8 @@ export class Operate {
     }
     show(this.missionButton, reading.said !== 'stopped');
     this.missionButton.disabled = !operates;
+    show(this.modes.element, reading.said !== 'stopped');
+    this.modes.enable(operates);
     this.tellChecks(live, reading);
     fill(this.facts, reading.facts, () => make('div', '', '', make('dt'), make('dd')), (line, fact) => {
       write(line.firstElementChild, fact.name);

@@ -4,6 +4,7 @@ use super::log_line::Log;
 use crate::net_args::LeafArgs;
 use crate::sim_command::seconds;
 use crate::stop;
+use crate::water_args::within;
 use anyhow::{Context, Result, anyhow, bail};
 use clap::ValueEnum;
 use game::gateway::BoatProtocol;
@@ -36,13 +37,16 @@ pub(crate) struct Args {
     declination_deg: Option<f64>,
     /// After this long without a command the boat goes to standby, s, or none: the real one's is not known
     #[arg(long, value_name = "S", default_value = "none", value_parser = watchdog)]
-    watchdog_s: Watchdog,
+    watchdog_s: OrNone,
     /// A set-point that is not a whole number leaves the one before in force, as in one known stand-in
     #[arg(long)]
     integers: bool,
     /// Sentences beyond a Surveyor's: gpsd has time, speed and course only from rmc
     #[arg(long, value_name = "KIND", value_delimiter = ',')]
     extra: Vec<ExtraArg>,
+    /// What is left in its battery at the beginning, %, or none: it is full and does not drain
+    #[arg(long, value_name = "PCT", default_value = "100", value_parser = charge)]
+    charge_pct: OrNone,
     /// How long to look for the game, s
     #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
     wait_s: f64,
@@ -85,15 +89,23 @@ enum ExtraArg {
     Zda,
 }
 
-/// A watchdog's time, or none.
+/// A number, or none.
 #[derive(Clone, Copy, Debug)]
-struct Watchdog(Option<f64>);
+struct OrNone(Option<f64>);
 
-fn watchdog(text: &str) -> Result<Watchdog, String> {
+fn or_none(text: &str, number: impl Fn(&str) -> Result<f64, String>) -> Result<OrNone, String> {
     match text {
-        "none" => Ok(Watchdog(None)),
-        text => seconds(text).map(Some).map(Watchdog).map_err(|e| format!("{e}, nor none")),
+        "none" => Ok(OrNone(None)),
+        text => number(text).map(Some).map(OrNone).map_err(|e| format!("{e}, nor none")),
     }
+}
+
+fn watchdog(text: &str) -> Result<OrNone, String> {
+    or_none(text, seconds)
+}
+
+fn charge(text: &str) -> Result<OrNone, String> {
+    or_none(text, within(0.0, 100.0, "per cent"))
 }
 
 fn address(option: &str, text: &str) -> Result<LinkAddress> {
@@ -129,6 +141,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         watchdog_s: args.watchdog_s.0,
         integers: args.integers,
         extra: args.extra.iter().map(extra).collect(),
+        charge: args.charge_pct.0.map(|pct| 0.01 * pct),
         wait: Duration::from_secs_f64(args.wait_s),
         silence: Duration::from_secs_f64(args.silence_s),
         stop,

@@ -104,7 +104,11 @@ fn brief(status: &GatewayStatus) -> String {
     };
     let mode = status.mode.map_or("-".to_owned(), |mode| with_age(mode.to_string(), status.mode_age_s));
     let battery = volts(status).map_or(String::new(), |volts| format!("{volts} | "));
-    let text = format!("{} | link {} | mode {mode} | {nav} | {battery}{}", status.state, status.link, status.last_sent);
+    let alarms: String = status.alarms.iter().map(|alarm| format!("ALARM: {alarm} | ")).collect();
+    let text = format!(
+        "{} | {alarms}link {} | mode {mode} | {nav} | {battery}{}",
+        status.state, status.link, status.last_sent
+    );
     text.chars().take(150).collect()
 }
 
@@ -152,6 +156,7 @@ pub(super) fn full(status: &GatewayStatus) -> String {
         format!("  battery     {}", or_none(volts(status))),
         format!("  last sent   {}", status.last_sent),
     ];
+    lines.extend(status.alarms.iter().map(|alarm| style::bad(&format!("  alarm       {alarm}"))));
     if !status.missing.is_empty() {
         lines.push(style::warning(&format!("  missing     {}", status.missing.join("; "))));
     }

@@ -8,10 +8,11 @@ use super::mission_file;
 use crate::net_args::LeafArgs;
 use crate::observer::Observer;
 use crate::screen;
+use crate::water_args::within;
 use anyhow::{Context, Error, Result, anyhow, bail};
 use bus::{Bus, BusError, Token, ask_gateway};
 use clap::ValueEnum;
-use game::external::{FleetCommand, GatewayCommand, OperatorCommand, OperatorReply};
+use game::external::{BoatMode, FleetCommand, GatewayCommand, OperatorCommand, OperatorReply};
 use game::message::Control;
 use game::topic::{self, GameName};
 use std::net::SocketAddr;
@@ -36,6 +37,12 @@ pub(crate) struct Args {
     command: CommandArg,
     /// For mission: a .sea file, its lines as the boat receives them (PSEAR, then OIWPL; index 0 is the recovery point)
     file: Option<PathBuf>,
+    /// For hold-heading: the true heading, degrees
+    #[arg(long, value_name = "DEG", value_parser = within(0.0, 360.0, "degrees"))]
+    heading_deg: Option<f64>,
+    /// For hold-heading: thrust ahead, % of all
+    #[arg(long, value_name = "PCT", value_parser = within(0.0, 100.0, "per cent"))]
+    thrust_pct: Option<f64>,
     /// The gateway's control port, as it shows it [default: those of this machine's gateways, or by way of the game]
     #[arg(long, value_name = "HOST:PORT")]
     gateway: Option<SocketAddr>,
@@ -61,6 +68,18 @@ enum CommandArg {
     GoToErp,
     /// Upload a mission and sail it by the boat's own controller
     Mission,
+    /// Hold a heading at a thrust by the boat's own controller (mode C)
+    HoldHeading,
+    /// The boat's own river navigation (mode N)
+    RiverNav,
+    /// The boat's own autopilot (mode I)
+    Autopilot,
+    /// Calibration of the boat's compass (mode 3)
+    CalibrateCompass,
+    /// The boat's mode for depth (D)
+    Depth,
+    /// The boat's mode for the direction of gravity (S)
+    GravityVector,
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
@@ -81,6 +100,20 @@ fn command_of(args: &Args) -> Result<OperatorCommand> {
         (CommandArg::Mission, None) => bail!("mission needs a .sea file"),
         (CommandArg::Mission, Some(path)) => OperatorCommand::Mission(mission_file::read(path)?),
         (_, Some(path)) => bail!("{} is given, and only mission takes a file", path.display()),
+        (CommandArg::HoldHeading, None) => match (args.heading_deg, args.thrust_pct) {
+            (Some(heading_deg), Some(thrust_pct)) => {
+                OperatorCommand::Mode(BoatMode::Heading { heading_deg, thrust_pct })
+            }
+            _ => bail!("hold-heading needs --heading-deg and --thrust-pct"),
+        },
+        _ if args.heading_deg.is_some() || args.thrust_pct.is_some() => {
+            bail!("--heading-deg and --thrust-pct are for hold-heading")
+        }
+        (CommandArg::RiverNav, None) => OperatorCommand::Mode(BoatMode::RiverNav),
+        (CommandArg::Autopilot, None) => OperatorCommand::Mode(BoatMode::Autopilot),
+        (CommandArg::CalibrateCompass, None) => OperatorCommand::Mode(BoatMode::CompassCalibration),
+        (CommandArg::Depth, None) => OperatorCommand::Mode(BoatMode::Depth),
+        (CommandArg::GravityVector, None) => OperatorCommand::Mode(BoatMode::GravityVector),
         (CommandArg::Status, None) => OperatorCommand::Status,
         (CommandArg::Arm, None) => OperatorCommand::Arm,
         (CommandArg::Disarm, None) => OperatorCommand::Disarm,

@@ -45,7 +45,15 @@ impl Boat {
 
 fn serve(mut stream: TcpStream, datum: LatLon, commands: &Sender<(Instant, Mode)>) {
     let began = date_and_time(recording::utc::now_ns());
-    let plan = Plan { datum, declination_rad: 0.0, watchdog_s: None, integers: false, extra: vec![], began };
+    let plan = Plan {
+        datum,
+        declination_rad: 0.0,
+        watchdog_s: None,
+        integers: false,
+        extra: vec![],
+        began,
+        charge: Some(1.0),
+    };
     let (mut emulator, mut framer) = (Emulator::new(plan), Framer::new());
     let nav = Nav { north_m: 40.0, east_m: 80.0, ..Nav::default() };
     let (start, mut due) = (Instant::now(), Instant::now());

@@ -75,6 +75,7 @@ impl Boat {
             watchdog_s: None,
             integers: false,
             extra: vec![],
+            charge: None,
             began: (Date { year: 2026, month: 11, day: 20 }, TimeOfDay(0)),
         };
         let mut boat = Boat {

@@ -3,6 +3,7 @@
 //! No socket and no clock in here: [`Bridge::take`] gets an [`Input`] with its time, and fills an [`Output`].
 //! The same inputs at the same times give the same outputs, byte for byte: that is how a recording is replayed.
 
+mod alarms;
 mod battery;
 mod clock_watch;
 mod command_echo;
@@ -22,6 +23,7 @@ use crate::supervisor::{
 };
 pub use interface::{Event, Input, NavOut, Output, Plan, Preflight, Site};
 
+use alarms::Alarms;
 use battery::BatteryLog;
 use clock_watch::ClockWatch;
 use control::ControlLog;
@@ -72,7 +74,7 @@ pub struct Bridge {
     order_sent: SimTime,
     others: (SimTime, Vec<Ned>),
     battery: BatteryLog,
-    boat_fault: Option<String>,
+    alarms: Alarms,
     clock: ClockWatch,
     recovery_point: RecoveryPoint,
     /// The command that was sent last, and when.
@@ -97,13 +99,14 @@ impl Bridge {
     /// A bridge without a link, safed.
     #[must_use]
     pub fn new(plan: Plan) -> Bridge {
-        let Gateway { control, battery, failsafe, .. } = &plan.gateway;
+        let Gateway { control, battery, currents, failsafe, .. } = &plan.gateway;
         Bridge {
             protocol: Protocol::new(&plan.gateway),
             control: ControlLog::new(*control),
             on_site: plan.site.as_ref().map(|site| OnSite::new(&plan.gateway, site)),
             supervisor: Supervisor::new(plan.arms_itself && plan.preflight.missing().is_none(), *failsafe),
             battery: BatteryLog::new(*battery, SimTime::ZERO),
+            alarms: Alarms::new(*currents),
             plan,
             link_up: false,
             hung_s: None,
@@ -111,7 +114,6 @@ impl Bridge {
             order_is_new: false,
             order_sent: SimTime::LONG_AGO,
             others: (SimTime::LONG_AGO, vec![]),
-            boat_fault: None,
             clock: ClockWatch::default(),
             recovery_point: RecoveryPoint::default(),
             last_sent: None,
@@ -153,6 +155,10 @@ impl Bridge {
             Input::Operator(OperatorCommand::Arm) if self.plan.preflight.missing().is_some() => {
                 out.refused = self.plan.preflight.missing().map(|missing| format!("missing: {missing}"));
             }
+            Input::Operator(OperatorCommand::Mode(mode)) => match self.request_mode(*mode) {
+                Ok(asked) => request = Some(asked),
+                Err(reason) => out.refused = Some(reason),
+            },
             Input::Operator(command) => request = request_from(command),
             Input::Fleet(FleetCommand::EStop) => request = Some(OperatorRequest::EStop(Scope::Fleet)),
             Input::Fleet(FleetCommand::Release) => request = Some(OperatorRequest::Release(Scope::Fleet)),
@@ -200,6 +206,7 @@ impl Bridge {
         self.clock = ClockWatch::default();
         self.words = self.plan.gateway.startup_words.clone().into();
         self.battery.forget(now);
+        self.alarms.forget();
         self.recovery_point = RecoveryPoint::default();
         self.last_sent = None;
         self.under_way = true;
@@ -218,20 +225,20 @@ impl Bridge {
                 self.control.take(now, &control);
                 self.recovery_point.take(&control, self.protocol.is_uploading());
             }
-            Report::Battery(volts) => self.battery.take(now, volts),
-            Report::Fault(fault) if fault != self.boat_fault => {
-                if let Some(fault) = &fault {
-                    out.events.push(Event::Warning(format!("the boat reports error {fault:?}")));
-                }
-                self.boat_fault = fault;
+            Report::Power(power) => {
+                self.battery.take(now, power.volts);
+                let command = self.last_sent.map(|(_, command)| command);
+                self.alarms.take_power(now, &power, command, &mut out.events);
             }
+            Report::Error(error) => self.alarms.take_error(error, &mut out.events),
+            Report::Notice(text) => self.alarms.take_notice(text, &mut out.events),
             Report::Clock(time) => {
                 let step_s = self.clock.take(now, time).into_iter();
                 let text = |step_s| format!("the receiver's clock stepped by {step_s:.1} s");
                 out.events.extend(step_s.map(text).map(Event::Warning));
             }
             Report::Home(home) => self.recovery_point.take_home(home),
-            Report::Fix(_) | Report::Velocity(_) | Report::Heading(_) | Report::Fault(_) => {}
+            Report::Fix(_) | Report::Velocity(_) | Report::Heading(_) => {}
         }
     }
 
@@ -347,7 +354,7 @@ impl Bridge {
                 Action::Standby => self.standby(),
                 Action::Zero => Command::SetPoint(SetPoint::ZERO),
                 Action::Task(task) => {
-                    let command = Command::Task(task);
+                    let command = Command::Task(self.on_site.as_ref().map_or(task, |site| site.by_compass(task)));
                     let is_reported = self.control.mode() == Some(self.protocol.shown(command).mode);
                     // Sent again, it would begin anew.
                     if self.last_sent.as_ref().is_some_and(|(at, last)| {

@@ -6,8 +6,9 @@ use crate::geodesy::LocalFrame;
 use crate::geofence::GeofenceWatch;
 use crate::nav_estimate::NavEstimator;
 use crate::set_point::SetPointMapper;
+use crate::supervisor::Task;
 use game::SimTime;
-use game::external::{GeofenceReport, Mission};
+use game::external::{BoatMode, GeofenceReport, Mission};
 use game::frame::Ned;
 use game::gateway::{BoatProtocol, Gateway};
 
@@ -59,6 +60,17 @@ impl OnSite {
         let erp = self.estimator.place(lat_deg, lon_deg);
         let from = self.estimator.nav(now).map_or(erp, |(nav, _)| nav.at());
         self.geofence.area().leads_in(from, erp)
+    }
+
+    /// A task with its heading as the boat's compass counts it.
+    pub(super) fn by_compass(&self, task: Task) -> Task {
+        match task {
+            Task::Mode(BoatMode::Heading { heading_deg, thrust_pct }) => {
+                let heading_deg = self.set_points.compass_deg(heading_deg.to_radians());
+                Task::Mode(BoatMode::Heading { heading_deg, thrust_pct })
+            }
+            task => task,
+        }
     }
 
     /// The geofence, for people to look at.

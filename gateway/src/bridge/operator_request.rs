@@ -1,9 +1,10 @@
 //! What an operator's command asks of the supervisor.
 
+use super::Bridge;
 use crate::supervisor::{OperatorRequest, Scope, Task};
-use game::external::OperatorCommand;
+use game::external::{BoatMode, OperatorCommand};
 
-/// The request in a command; `None` where it asks nothing of the supervisor, or needs an upload first.
+/// The request in a command; `None` where it asks nothing of the supervisor, or that depends on the boat.
 pub(super) fn request_from(command: &OperatorCommand) -> Option<OperatorRequest> {
     match command {
         OperatorCommand::Arm => Some(OperatorRequest::Arm),
@@ -12,6 +13,23 @@ pub(super) fn request_from(command: &OperatorCommand) -> Option<OperatorRequest>
         OperatorCommand::Release => Some(OperatorRequest::Release(Scope::Boat)),
         OperatorCommand::StationKeep => Some(OperatorRequest::Delegate(Task::StationKeep)),
         OperatorCommand::GoToErp => Some(OperatorRequest::Delegate(Task::GoToErp)),
-        OperatorCommand::Status | OperatorCommand::Mission(_) => None,
+        OperatorCommand::Status | OperatorCommand::Mission(_) | OperatorCommand::Mode(_) => None,
+    }
+}
+
+impl Bridge {
+    /// The request for another mode of the boat's own controller, or why there is none.
+    pub(super) fn request_mode(&self, mode: BoatMode) -> Result<OperatorRequest, String> {
+        let limit_pct = self.plan.gateway.limits.thrust_max_pct;
+        match mode {
+            _ if !self.protocol.has_boat_modes() => Err("a boat that speaks MAVLink has no such mode".to_owned()),
+            BoatMode::Heading { heading_deg, .. } if !(0.0..=360.0).contains(&heading_deg) => {
+                Err(format!("the heading is {heading_deg}, expected 0 to 360 degrees"))
+            }
+            BoatMode::Heading { thrust_pct, .. } if !(0.0..=limit_pct).contains(&thrust_pct) => {
+                Err(format!("the thrust is {thrust_pct}, expected 0 to {limit_pct} % (limits.thrust_max_pct)"))
+            }
+            mode => Ok(OperatorRequest::Delegate(Task::Mode(mode))),
+        }
     }
 }

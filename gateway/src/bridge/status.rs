@@ -33,6 +33,7 @@ impl Bridge {
             link: if self.link_up { "up" } else { "down" }.to_owned(),
             state: self.state_in_words(),
             missing: self.plan.preflight.missing().into_iter().cloned().chain(missing).collect(),
+            alarms: self.alarms.texts(),
             failsafes: self.failsafes.clone(),
             mode: self.control.mode().map(|mode| mode.letter()),
             operator: self.control.operator().map(name_of),

@@ -6,6 +6,7 @@
 
 mod ardupilot;
 mod autopilot;
+mod battery;
 mod front_seat;
 mod sensed;
 mod telemetry;
@@ -17,6 +18,7 @@ pub use telemetry::Extra;
 use crate::geodesy::LocalFrame;
 use crate::nmea::{Command, Date, Framer, M_S_PER_KN, Mode, Operator, Sentence, TimeOfDay};
 use autopilot::Autopilot;
+use battery::{Battery, Pack};
 use game::frame::LatLon;
 use game::picture::OwnBoat;
 use game::{Order, SimTime};
@@ -37,10 +39,9 @@ pub struct Plan {
     pub extra: Vec<Extra>,
     /// Date and time of day at time zero.
     pub began: (Date, TimeOfDay),
+    /// What is left in its battery at the beginning, a share of all; with `None` it is full and stays so.
+    pub charge: Option<f64>,
 }
-
-/// The battery voltage at the beginning, V.
-const FULL_V: f64 = 24.8;
 
 /// From whom bytes come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,7 +68,7 @@ pub struct Emulator {
     difference_pct: f64,
     autopilot: Autopilot,
     sensed: Sensed,
-    volts: f64,
+    battery: Battery,
     remark: Option<String>,
     /// Commands that were followed, and those that were ignored since another operator was in control.
     followed: u64,
@@ -80,6 +81,7 @@ impl Emulator {
     pub fn new(plan: Plan) -> Emulator {
         Emulator {
             frame: LocalFrame::new(plan.datum),
+            battery: Battery::new(Pack::SURVEYOR, plan.charge),
             plan,
             primary: Framer::new(),
             secondary: Framer::new(),
@@ -90,7 +92,6 @@ impl Emulator {
             difference_pct: 0.0,
             autopilot: Autopilot::default(),
             sensed: Sensed::default(),
-            volts: FULL_V,
             remark: None,
             followed: 0,
             ignored: 0,
@@ -134,9 +135,9 @@ impl Emulator {
         self.remark.take()
     }
 
-    /// Sets the battery voltage, V.
+    /// Makes the battery show this voltage from now on, V.
     pub fn set_volts(&mut self, volts: f64) {
-        self.volts = volts;
+        self.battery.show_volts(volts);
     }
 
     /// Takes what its sensors measure.
@@ -151,6 +152,12 @@ impl Emulator {
         if silent && self.command.mode != Mode::Standby {
             self.command = Command::default();
         }
+        let order = self.commanded();
+        self.battery.carry_out(now, order)
+    }
+
+    /// What its command asks of the thrusters.
+    fn commanded(&mut self) -> Order {
         let Some(own) = &self.sensed.own else { return Order::Hold };
         let heading = |command: &Command| command.heading_deg.map(|deg| deg.to_radians() + self.plan.declination_rad);
         match self.command.mode {

@@ -38,7 +38,7 @@ pub(super) fn burst(boat: &Emulator, now: SimTime, out: &mut Vec<u8>) {
         }
         Sentence::Attitude(attitude(boat, &own.nav, &own.imu)).write(out);
     }
-    Sentence::Battery(battery(boat.volts, now)).write(out);
+    Sentence::Battery(battery(&boat.battery, now)).write(out);
     Sentence::ControlState(control_state(boat)).write(out);
     Sentence::BoatError(BoatError { code: "N".to_owned() }).write(out);
 }
@@ -139,17 +139,18 @@ fn attitude(boat: &Emulator, nav: &Nav, imu: &Imu) -> Attitude {
     }
 }
 
-fn battery(volts: f64, now: SimTime) -> Battery {
+fn battery(battery: &super::battery::Battery, now: SimTime) -> Battery {
+    let [port_a, starboard_a] = battery.thruster_a();
     Battery {
-        volts: Some(volts),
-        charge: Some(15_433.0),
-        amps: Some(1.3),
+        volts: Some(battery.volts()),
+        charge: Some(battery.left_mah()),
+        amps: Some(battery.amps()),
         celsius: Some(22.3),
-        charge_used: Some(0.0),
-        port_volts: Some(volts),
-        system_amps: Some(1.3),
-        port_amps: Some(0.0),
-        starboard_amps: Some(0.0),
+        charge_used: Some(battery.used_mah()),
+        port_volts: Some(battery.volts()),
+        system_amps: Some(battery.system_a()),
+        port_amps: Some(port_a),
+        starboard_amps: Some(starboard_a),
         hours: Some((now.as_s() / 3600.0).floor()),
         ..Battery::default()
     }

@@ -40,6 +40,8 @@ pub struct EmulatorSettings {
     pub integers: bool,
     /// Sentences beyond a Surveyor's.
     pub extra: Vec<Extra>,
+    /// What is left in its battery at the beginning, a share of all; with `None` it is full and stays so.
+    pub charge: Option<f64>,
     /// How long to look for the game.
     pub wait: Duration,
     /// After this long without a picture the sim counts as dead.
@@ -82,13 +84,14 @@ pub fn emulate(settings: &EmulatorSettings, notify: &mut dyn FnMut(NodeEvent<'_>
         integers: settings.integers,
         extra: settings.extra.clone(),
         began: date_and_time(utc::now_ns()),
+        charge: settings.charge,
     };
     let front_seat = match settings.protocol {
         BoatProtocol::Surveyor => {
             let plan = surveyor(declination_rad(settings.declination_rad, datum)?);
             FrontSeat::Surveyor(Box::new(Emulator::new(plan)))
         }
-        BoatProtocol::Mavlink => FrontSeat::ArduPilot(Box::new(ArduPilot::new(datum))),
+        BoatProtocol::Mavlink => FrontSeat::ArduPilot(Box::new(ArduPilot::new(datum, settings.charge))),
     };
     let incoming = Arc::new(Watched::new(Incoming::default()));
     let pictures = Arc::clone(&incoming);

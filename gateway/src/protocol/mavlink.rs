@@ -368,6 +368,8 @@ fn mode_of(task: Task) -> RoverMode {
         Task::StationKeep => RoverMode::Loiter,
         Task::GoToErp => RoverMode::Rtl,
         Task::Mission => RoverMode::Auto,
+        // It is refused before.
+        Task::Mode(_) => RoverMode::Hold,
     }
 }
 
@@ -391,6 +393,7 @@ pub(super) fn global_e7(deg: f64) -> i32 {
 pub(super) fn shown(command: Command) -> Shown {
     let mode = match command {
         Command::Standby | Command::Switch(_) | Command::Zero | Command::EndOfUpload => Mode::Standby,
+        Command::Task(Task::Mode(_)) => Mode::Standby,
         Command::SetPoint(_) => Mode::Speed,
         Command::Task(Task::StationKeep) => Mode::StationKeep,
         Command::Task(Task::GoToErp) => Mode::GoToErp,
@@ -412,6 +415,7 @@ pub(super) fn text(command: Command) -> String {
         Command::Task(Task::StationKeep) => "LOITER".to_owned(),
         Command::Task(Task::GoToErp) => "RTL".to_owned(),
         Command::Task(Task::Mission) => "AUTO".to_owned(),
+        Command::Task(Task::Mode(_)) => "HOLD".to_owned(),
         Command::EndOfUpload => "MISSION_ITEM_INT".to_owned(),
     }
 }

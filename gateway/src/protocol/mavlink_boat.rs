@@ -1,7 +1,7 @@
 //! What is known of an ArduPilot boat, by its own messages.
 
 use super::mavlink::Asked;
-use super::report::{ControlReport, Fix, Heading, North, Report, Shown};
+use super::report::{ControlReport, Fix, Heading, North, Power, Report, Shown};
 use crate::mavlink::dialect::{
     ATTITUDE_DATA, COMMAND_ACK_DATA, GLOBAL_POSITION_INT_DATA, GPS_RAW_INT_DATA, GpsFixType, HEARTBEAT_DATA,
     MavAutopilot, MavCmd, MavMessage, MavModeFlag, MavResult, MavSeverity, MavType,
@@ -123,12 +123,14 @@ impl Boat {
             MavMessage::SYS_STATUS(status) => {
                 let volts = millivolts(status.voltage_battery);
                 self.has_volts = volts.is_some();
-                volts.into_iter().for_each(|volts| take(Report::Battery(Some(volts))));
+                volts
+                    .into_iter()
+                    .for_each(|volts| take(Report::Power(Power { volts: Some(volts), ..Power::default() })));
             }
             MavMessage::BATTERY_STATUS(battery) if battery.id == 0 && !self.has_volts => {
                 let cells: Vec<f64> = battery.voltages.iter().filter_map(|cell| millivolts(*cell)).collect();
                 let volts = (!cells.is_empty()).then(|| cells.iter().sum());
-                take(Report::Battery(volts));
+                take(Report::Power(Power { volts, ..Power::default() }));
             }
             MavMessage::SYSTEM_TIME(time) if time.time_unix_usec > 0 => {
                 let (_, time) = date_and_time(time.time_unix_usec.saturating_mul(1000));
@@ -136,7 +138,7 @@ impl Boat {
             }
             MavMessage::STATUSTEXT(status) if status.severity as u8 <= MavSeverity::MAV_SEVERITY_WARNING as u8 => {
                 let text = status.text.to_str().unwrap_or("a text that is not UTF-8").trim().to_owned();
-                take(Report::Fault(Some(text)));
+                take(Report::Notice(text));
             }
             MavMessage::COMMAND_ACK(COMMAND_ACK_DATA { command, result }) => {
                 let is_orderly = matches!(
@@ -148,7 +150,7 @@ impl Boat {
                 );
                 let is_taken = matches!(result, MavResult::MAV_RESULT_ACCEPTED | MavResult::MAV_RESULT_IN_PROGRESS);
                 if is_orderly && !is_taken {
-                    take(Report::Fault(Some(format!("{command:?}: {result:?}"))));
+                    take(Report::Notice(format!("{command:?}: {result:?}")));
                 }
             }
             _ => {}

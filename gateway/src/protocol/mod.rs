@@ -16,7 +16,7 @@ use game::SimTime;
 use game::external::Mission;
 use game::gateway::{BoatProtocol, Gateway, SwitchWord};
 use mavlink::Mavlink;
-pub use report::{ControlReport, Fix, Heading, North, Report, Shown};
+pub use report::{ControlReport, Fix, Heading, North, Power, Report, Shown};
 use surveyor::Surveyor;
 
 /// What a boat is told.
@@ -98,6 +98,12 @@ impl Protocol {
             Protocol::Surveyor(_) => {}
             Protocol::Mavlink(mavlink) => mavlink.keep_up(now, out),
         }
+    }
+
+    /// Whether its boats have the modes of [`game::external::BoatMode`].
+    #[must_use]
+    pub fn has_boat_modes(&self) -> bool {
+        matches!(self, Protocol::Surveyor(_))
     }
 
     /// What a boat should show that has been told this.

@@ -17,12 +17,25 @@ pub enum Report {
     Clock(TimeOfDay),
     /// What it does, and who commands it.
     Control(ControlReport),
-    /// Its battery: the voltage, V, if it is measured.
-    Battery(Option<f64>),
-    /// What it says is wrong with it; `None` is nothing.
-    Fault(Option<String>),
+    /// Its battery, and who draws from it.
+    Power(Power),
+    /// The error that it is in; `None` is none.
+    Error(Option<String>),
+    /// Something that it says once and people should know.
+    Notice(String),
     /// Where its home is, to which it goes for recovery: latitude and longitude, degrees.
     Home([f64; 2]),
+}
+
+/// What the battery gives, and who draws how much; what is not measured is missing.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Power {
+    /// Voltage, V.
+    pub volts: Option<f64>,
+    /// Current of the thrusters, port first, A.
+    pub thruster_a: [Option<f64>; 2],
+    /// Current of the bilge pumps, port first, A.
+    pub bilge_a: [Option<f64>; 2],
 }
 
 /// A fix of the receiver.

@@ -1,13 +1,13 @@
 //! The Surveyor's protocol: reports from its sentences, sentences from commands.
 
-use super::report::{ControlReport, Fix, Heading, North, Report, Shown};
+use super::report::{ControlReport, Fix, Heading, North, Power, Report, Shown};
 use super::surveyor_upload::{Next, Upload};
 use super::{Command, UploadStep, mission_check};
 use crate::nmea::{self, ControlState, Framer, M_S_PER_KN, Mode, ParseError, Sentence};
 use crate::set_point::SetPoint;
 use crate::supervisor::Task;
 use game::SimTime;
-use game::external::Mission;
+use game::external::{BoatMode, Mission};
 use game::frame::Ned;
 use std::collections::BTreeMap;
 
@@ -126,8 +126,12 @@ fn report(sentence: &Sentence, take: &mut dyn FnMut(Report)) {
             let ControlState { mode, heading_deg, thrust, difference, operator, .. } = *state;
             take(Report::Control(ControlReport { shown: Shown { mode, heading_deg, thrust, difference }, operator }));
         }
-        Sentence::Battery(battery) => take(Report::Battery(battery.volts)),
-        Sentence::BoatError(error) => take(Report::Fault((error.code != "N").then(|| error.code.clone()))),
+        Sentence::Battery(battery) => take(Report::Power(Power {
+            volts: battery.volts,
+            thruster_a: [battery.port_amps, battery.starboard_amps],
+            bilge_a: [battery.port_bilge_amps, battery.starboard_bilge_amps],
+        })),
+        Sentence::BoatError(error) => take(Report::Error((error.code != "N").then(|| error.code.clone()))),
         _ => {}
     }
 }
@@ -161,7 +165,22 @@ fn sentence(command: Command) -> nmea::Command {
         Command::Task(Task::StationKeep) => pseac(Mode::StationKeep, [None; 3]),
         Command::Task(Task::GoToErp) => pseac(Mode::GoToErp, [Some(0.0); 3]),
         Command::Task(Task::Mission) => pseac(Mode::Waypoint, [Some(0.0); 3]),
+        Command::Task(Task::Mode(BoatMode::Heading { heading_deg, thrust_pct })) => {
+            pseac(Mode::Heading, [Some(heading_deg), Some(thrust_pct), None])
+        }
+        Command::Task(Task::Mode(mode)) => pseac(mode_of(mode), [Some(0.0); 3]),
         Command::EndOfUpload => pseac(Mode::FileDownload, [Some(0.0); 3]),
+    }
+}
+
+fn mode_of(mode: BoatMode) -> Mode {
+    match mode {
+        BoatMode::Heading { .. } => Mode::Heading,
+        BoatMode::RiverNav => Mode::RiverNav,
+        BoatMode::Autopilot => Mode::Autopilot,
+        BoatMode::CompassCalibration => Mode::CompassCalibration,
+        BoatMode::Depth => Mode::Depth,
+        BoatMode::GravityVector => Mode::GravityVector,
     }
 }
 

@@ -29,6 +29,7 @@ mod cause;
 pub use cause::{Cause, NavFault};
 
 use crate::thrust_check::ThrustFault;
+use game::external::BoatMode;
 use game::gateway::{FailsafeAction, FailsafeActions};
 use thiserror::Error;
 
@@ -91,7 +92,7 @@ pub enum Control {
 }
 
 /// What an operator requests.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum OperatorRequest {
     /// Follow orders.
     Arm,
@@ -115,7 +116,7 @@ pub enum Scope {
 }
 
 /// What the boat's own controller does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Task {
     /// Keeps its station.
     StationKeep,
@@ -123,6 +124,8 @@ pub enum Task {
     GoToErp,
     /// Sails the mission that was uploaded.
     Mission,
+    /// Is in another mode.
+    Mode(BoatMode),
 }
 
 /// The state of the supervisor.
@@ -146,7 +149,7 @@ pub enum State {
 }
 
 /// What the boat is sent now.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Action {
     /// Standby; after thrust, thrust zero before it.
     Standby,

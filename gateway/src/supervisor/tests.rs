@@ -66,7 +66,9 @@ fn all_conditions() -> Vec<Conditions> {
 }
 
 fn all_requests() -> Vec<Option<OperatorRequest>> {
-    let tasks = [Task::StationKeep, Task::GoToErp, Task::Mission].map(OperatorRequest::Delegate);
+    let heading = BoatMode::Heading { heading_deg: 90.0, thrust_pct: 20.0 };
+    let tasks = [Task::StationKeep, Task::GoToErp, Task::Mission, Task::Mode(heading), Task::Mode(BoatMode::RiverNav)];
+    let tasks = tasks.map(OperatorRequest::Delegate);
     let scopes = [Scope::Boat, Scope::Fleet];
     let stops = scopes.into_iter().flat_map(|scope| [OperatorRequest::EStop(scope), OperatorRequest::Release(scope)]);
     [OperatorRequest::Arm, OperatorRequest::Disarm]

@@ -60,5 +60,6 @@ pub(crate) fn emulated(datum: LatLon, declination_rad: f64) -> emulator::Plan {
         integers: false,
         extra: vec![],
         began: (Date { year: 2026, month: 11, day: 20 }, TimeOfDay(54_302_000)),
+        charge: Some(1.0),
     }
 }

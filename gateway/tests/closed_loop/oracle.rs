@@ -103,10 +103,12 @@ impl Oracle {
         let number = |i: usize| fields[i].parse::<f64>().unwrap_or(0.0);
         let drives = match fields[2] {
             "T" => number(4) != 0.0 || number(5) != 0.0,
-            "G" | "C" => number(4) != 0.0,
+            "G" => number(4) != 0.0,
             "L" | "F" => false,
-            "R" | "H" | "W" => {
+            // The boat's own controller, at an operator's request.
+            "R" | "H" | "W" | "C" | "N" | "I" | "3" | "D" | "S" => {
                 self.is_fit(now, line);
+                assert!((0.0..=70.0).contains(&number(4)), "at {now}: {line:?}");
                 return;
             }
             other => panic!("at {now}: mode {other} is never sent"),

@@ -66,9 +66,11 @@ pub(crate) fn plan(file: &str, arms_itself: bool) -> Plan {
 }
 
 impl Rig {
-    pub(crate) fn of(plan: Plan, watchdog_s: Option<f64>, integers: bool) -> Rig {
+    /// A boat of this plan, whose emulated front seat is as `change` makes it.
+    pub(crate) fn of(plan: Plan, change: impl FnOnce(&mut emulator::Plan)) -> Rig {
         let Site { field, declination_rad, .. } = plan.site.as_ref().expect("the rig has one");
-        let emulator = emulator::Plan { watchdog_s, integers, ..emulated(field.plan.datum, *declination_rad) };
+        let mut emulator = emulated(field.plan.datum, *declination_rad);
+        change(&mut emulator);
         let mut rig = Rig {
             now: SimTime::ZERO,
             steps: 0,

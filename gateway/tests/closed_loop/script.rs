@@ -61,7 +61,7 @@ fn failure(script: &str) -> Option<&str> {
 
 /// What a script leads to.
 pub(crate) fn played(script: &str) -> Rig {
-    let mut rig = Rig::of(plan("surveyor.toml", false), None, false);
+    let mut rig = Rig::of(plan("surveyor.toml", false), |_| {});
     play_all(&mut rig, script);
     rig
 }
@@ -108,6 +108,10 @@ pub(crate) fn play(rig: &mut Rig, line: &str) {
         ["operator", "mission", mission @ ..] => {
             rig.put(&Input::Operator(OperatorCommand::Mission(mission_of(mission))))
         }
+        ["operator", "mode", mode] => {
+            let mode = serde_json::from_str(mode).unwrap_or_else(|e| panic!("{mode}: {e}"));
+            rig.put(&Input::Operator(OperatorCommand::Mode(mode)));
+        }
         ["operator", command] => rig.put(&Input::Operator(named(command))),
         ["fleet", command] => rig.put(&Input::Fleet(named(command))),
         ["link", state] => rig.link(*state == "up"),
@@ -141,7 +145,7 @@ fn boat(options: &[&str]) -> Rig {
         [file, rest @ ..] if file.ends_with(".toml") => (*file, rest),
         rest => ("surveyor.toml", rest),
     };
-    let (mut plan, mut watchdog_s, mut integers) = (plan(file, false), None, false);
+    let (mut plan, mut watchdog_s, mut integers, mut charge) = (plan(file, false), None, false, Some(1.0));
     for option in options.chunks(2) {
         match option {
             ["watchdog", seconds] => watchdog_s = Some(number(seconds)),
@@ -151,6 +155,7 @@ fn boat(options: &[&str]) -> Rig {
             ["geofence", action] => plan.gateway.failsafe.geofence = named(action),
             ["order", action] => plan.gateway.failsafe.order_stale = named(action),
             ["integers", "only"] => integers = true,
+            ["charge", percent] => charge = Some(0.01 * number(percent)),
             ["startup", words] => plan.gateway.startup_words = words.split(',').map(named).collect(),
             ["dry-run", "yes"] => plan.dry_run = true,
             ["preflight", "missing"] => plan.preflight = Preflight::Missing("a passed pre-flight check".to_owned()),
@@ -158,7 +163,7 @@ fn boat(options: &[&str]) -> Rig {
             other => panic!("no boat has {other:?}"),
         }
     }
-    Rig::of(plan, watchdog_s, integers)
+    Rig::of(plan, |boat| (boat.watchdog_s, boat.integers, boat.charge) = (watchdog_s, integers, charge))
 }
 
 /// Places of a polygon, `x,y;x,y;…`.
@@ -235,6 +240,8 @@ fn value(rig: &Rig, name: &str) -> String {
         ["status"] => rig.bridge.status(rig.now).state,
         ["would-send"] => rig.bridge.status(rig.now).would_send.unwrap_or_default(),
         ["missing"] => rig.bridge.status(rig.now).missing.join("; "),
+        ["alarms"] => rig.bridge.status(rig.now).alarms.join("; "),
+        ["volts"] => rig.bridge.status(rig.now).battery_v.unwrap_or(f64::NAN).to_string(),
         ["refused"] => rig.refused.clone().unwrap_or_default(),
         ["remark"] => rig.remark.clone(),
         ["events"] => format!("{:?}", rig.events),

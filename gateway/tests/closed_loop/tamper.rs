@@ -30,6 +30,7 @@ pub(crate) fn tamper(words: &[&str]) -> Option<Tamper> {
             let place = [lat, north, lon, east].map(|field| (*field).to_owned());
             refixed(move |fields| fields[2..6].clone_from_slice(&place))
         }
+        ["battery", fields @ ..] => battery_fields(fields),
         ["frozen-compass"] => frozen_compass(),
         ["turned-compass", degrees] => turned_compass(degrees.parse().expect("degrees")),
         ["stuck-speed"] => rewritten(|body| {
@@ -62,6 +63,19 @@ fn refixed(change: impl Fn(&mut Vec<String>) + 'static) -> Tamper {
         let mut fields: Vec<String> = body.split(',').map(str::to_owned).collect();
         if fields[0] == "GPGGA" {
             change(&mut fields);
+        }
+        fields.join(",")
+    })
+}
+
+/// Fields of `PSEAB` by number, each with what it says.
+fn battery_fields(pairs: &[&str]) -> Tamper {
+    let said = |two: &[&str]| (two[0].parse::<usize>().expect("a field's number"), two[1].to_owned());
+    let pairs: Vec<_> = pairs.chunks(2).map(said).collect();
+    rewritten(move |body| {
+        let mut fields: Vec<&str> = body.split(',').collect();
+        if fields[0] == "PSEAB" {
+            pairs.iter().for_each(|(field, text)| fields[*field] = text);
         }
         fields.join(",")
     })

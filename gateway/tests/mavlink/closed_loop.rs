@@ -212,7 +212,7 @@ fn messages_of_other_systems_are_counted_and_ignored() {
     let mut framer = Framer::new();
     let mut telemetry = Vec::new();
     // Another boat on the same network, in HOLD and with an empty battery.
-    let mut another = ArduPilot::new(plan().site.expect("the rig has one").field.plan.datum);
+    let mut another = ArduPilot::new(plan().site.expect("the rig has one").field.plan.datum, None);
     another.set_volts(5.0);
     another.observe(rig.now, &rig.boat.measured(rig.now, rig.boat.at));
     another.telemetry(rig.now, &mut telemetry);

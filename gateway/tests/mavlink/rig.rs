@@ -52,7 +52,7 @@ impl Rig {
             now: SimTime::ZERO,
             steps: 0,
             boat: Boat { at: Ned::from_xy(60.0, 40.0), ..Boat::default() },
-            ardupilot: ArduPilot::new(datum),
+            ardupilot: ArduPilot::new(datum, Some(1.0)),
             bridge: Bridge::new(plan),
             order: None,
             open: (true, true),

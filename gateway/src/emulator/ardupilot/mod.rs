@@ -10,6 +10,7 @@ mod set_point;
 mod telemetry;
 
 use super::autopilot::Autopilot;
+use super::battery::{Battery, Pack};
 use super::sensed::Sensed;
 use crate::geodesy::LocalFrame;
 use crate::mavlink::dialect::MavMessage;
@@ -28,8 +29,6 @@ use telemetry::Streams;
 pub const SYSTEM: u8 = 1;
 /// How many log messages wait to be read.
 const REMARKS_MAX: usize = 64;
-/// The battery voltage at the beginning, V: four lithium cells.
-const FULL_V: f64 = 16.0;
 
 /// The front seat of an emulated boat that speaks MAVLink.
 pub struct ArduPilot {
@@ -50,16 +49,16 @@ pub struct ArduPilot {
     sensed: Sensed,
     /// UTC at time zero, µs since 1970.
     began_us: u64,
-    volts: f64,
+    battery: Battery,
     remarks: VecDeque<String>,
     /// What is to be sent, as soon as that can be.
     outbox: Vec<MavMessage>,
 }
 
 impl ArduPilot {
-    /// A boat in HOLD, disarmed, on a field with this origin.
+    /// A boat in HOLD, disarmed, on a field with this origin; this share of its battery's charge is left, and with `None` it stays full.
     #[must_use]
-    pub fn new(datum: LatLon) -> ArduPilot {
+    pub fn new(datum: LatLon, charge: Option<f64>) -> ArduPilot {
         ArduPilot {
             frame: LocalFrame::new(datum),
             framer: Framer::new(),
@@ -75,7 +74,7 @@ impl ArduPilot {
             station_at: None,
             sensed: Sensed::default(),
             began_us: 0,
-            volts: FULL_V,
+            battery: Battery::new(Pack::BLUEBOAT, charge),
             remarks: VecDeque::new(),
             outbox: vec![],
         }
@@ -124,9 +123,9 @@ impl ArduPilot {
         self.remarks.pop_front()
     }
 
-    /// Sets the battery voltage, V.
+    /// Makes the battery show this voltage from now on, V.
     pub fn set_volts(&mut self, volts: f64) {
-        self.volts = volts;
+        self.battery.show_volts(volts);
     }
 
     /// Takes what its sensors measure.
@@ -137,6 +136,12 @@ impl ArduPilot {
     /// The boat's order to its thrusters now.
     pub fn order(&mut self, now: SimTime) -> Order {
         self.check_failsafe(now);
+        let order = self.commanded(now);
+        self.battery.carry_out(now, order)
+    }
+
+    /// What its mode and set-point ask of the thrusters.
+    fn commanded(&mut self, now: SimTime) -> Order {
         let Some(own) = self.sensed.own.filter(|_| self.is_armed) else { return Order::Hold };
         let pose = own.nav.pose();
         match self.mode {

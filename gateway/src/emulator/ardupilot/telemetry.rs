@@ -165,26 +165,35 @@ impl ArduPilot {
             onboard_control_sensors_health: sensors,
             load: 120,
             voltage_battery: self.millivolts(),
-            current_battery: 130,
-            battery_remaining: 87,
+            current_battery: self.centiamps(),
+            battery_remaining: self.percent_left(),
             ..SYS_STATUS_DATA::default()
         }
     }
 
     fn millivolts(&self) -> u16 {
-        (1000.0 * self.volts).round().clamp(0.0, 65_534.0) as u16
+        (1000.0 * self.battery.volts()).round().clamp(0.0, 65_534.0) as u16
+    }
+
+    /// What is drawn, 10 mA.
+    fn centiamps(&self) -> i16 {
+        (100.0 * self.battery.amps()).round().clamp(0.0, f64::from(i16::MAX)) as i16
+    }
+
+    fn percent_left(&self) -> i8 {
+        (100.0 * self.battery.left()).round() as i8
     }
 
     fn battery(&self) -> BATTERY_STATUS_DATA {
         let mut voltages = [u16::MAX; 10];
         voltages[0] = self.millivolts();
         BATTERY_STATUS_DATA {
-            current_consumed: -1,
+            current_consumed: self.battery.used_mah().round() as i32,
             energy_consumed: -1,
             temperature: i16::MAX,
             voltages,
-            current_battery: 130,
-            battery_remaining: 87,
+            current_battery: self.centiamps(),
+            battery_remaining: self.percent_left(),
             ..BATTERY_STATUS_DATA::default()
         }
     }

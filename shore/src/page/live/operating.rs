@@ -122,6 +122,7 @@ fn word(command: &OperatorCommand) -> &'static str {
         OperatorCommand::StationKeep => "station_keep",
         OperatorCommand::GoToErp => "go_to_erp",
         OperatorCommand::Mission(_) => "mission",
+        OperatorCommand::Mode(_) => "mode",
     }
 }
 

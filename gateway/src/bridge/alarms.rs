@@ -1,0 +1,232 @@
+//! What is wrong in the boat itself, by its own report: its error code, a leak, the currents of its thrusters.
+//!
+//! Nothing of this stops the boat: people should see it, and decide.
+
+use super::Event;
+use crate::protocol::{Command, Power};
+use crate::set_point::SetPoint;
+use game::SimTime;
+use game::gateway::CurrentWatch;
+
+/// A thruster that is ordered this much draws a current, per cent.
+const ORDERED_MIN_PCT: f64 = 20.0;
+/// Port comes first everywhere.
+const SIDES: [&str; 2] = ["port", "starboard"];
+
+/// A current that is no good.
+#[derive(Clone, Copy, Debug, Default)]
+struct CurrentAlarm {
+    /// Since when it has been so without a break, and how much it is now, A.
+    since: Option<(SimTime, f64)>,
+    /// Whether it has lasted for long enough to be told.
+    is_told: bool,
+}
+
+/// What a current is no good for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Wrong {
+    Bilge,
+    TooMuch,
+    TooLittle,
+}
+
+const WRONGS: [Wrong; 3] = [Wrong::Bilge, Wrong::TooMuch, Wrong::TooLittle];
+
+/// The alarms of a boat.
+#[derive(Clone, Debug)]
+pub(super) struct Alarms {
+    watch: CurrentWatch,
+    /// The error that it reports now.
+    error: Option<String>,
+    /// The last notice.
+    notice: Option<String>,
+    /// By what is wrong, and side.
+    currents: [[CurrentAlarm; 2]; 3],
+}
+
+impl Alarms {
+    /// Nothing is known yet.
+    pub(super) fn new(watch: CurrentWatch) -> Alarms {
+        Alarms { watch, error: None, notice: None, currents: Default::default() }
+    }
+
+    /// Forgets everything: the boat may be another one now.
+    pub(super) fn forget(&mut self) {
+        *self = Alarms::new(self.watch);
+    }
+
+    /// The boat's error code; `None` is none.
+    pub(super) fn take_error(&mut self, error: Option<String>, events: &mut Vec<Event>) {
+        if error != self.error {
+            events.extend(error.as_ref().map(|code| Event::Warning(format!("the boat reports error {code:?}"))));
+            self.error = error;
+        }
+    }
+
+    /// Something that the boat says once. The same again is not repeated.
+    pub(super) fn take_notice(&mut self, text: String, events: &mut Vec<Event>) {
+        if self.notice.as_ref() != Some(&text) {
+            events.push(Event::Warning(format!("the boat says {text:?}")));
+            self.notice = Some(text);
+        }
+    }
+
+    /// What the boat's currents are while it follows this command.
+    pub(super) fn take_power(
+        &mut self,
+        now: SimTime,
+        power: &Power,
+        command: Option<Command>,
+        events: &mut Vec<Event>,
+    ) {
+        let ordered = command.and_then(ordered_pct);
+        for wrong in WRONGS {
+            for side in [0, 1] {
+                let amps = self.found(wrong, side, power, ordered);
+                let alarm = &mut self.currents[wrong as usize][side];
+                alarm.since = amps.map(|amps| (alarm.since.map_or(now, |(since, _)| since), amps));
+                let lasts = alarm.since.is_some_and(|(since, _)| (now - since).as_s() >= self.watch.debounce_s);
+                // It is told until it is over.
+                let is_told = lasts || (alarm.is_told && alarm.since.is_some());
+                match (std::mem::replace(&mut alarm.is_told, is_told), alarm.since) {
+                    (false, Some((_, amps))) if is_told => events.push(Event::Warning(text(wrong, side, amps))),
+                    (true, None) => events.push(Event::Remark(format!("over: {}", name(wrong, side)))),
+                    _ => {}
+                }
+            }
+        }
+    }
+
+    /// The current that is no good, A, if it is so.
+    fn found(&self, wrong: Wrong, side: usize, power: &Power, ordered: Option<[f64; 2]>) -> Option<f64> {
+        let (watch, [here, there]) = (&self.watch, [power.thruster_a[side], power.thruster_a[1 - side]]);
+        match wrong {
+            Wrong::Bilge => power.bilge_a[side].filter(|amps| watch.bilge_a > 0.0 && *amps >= watch.bilge_a),
+            Wrong::TooMuch => here.filter(|amps| watch.thruster_max_a > 0.0 && amps.abs() > watch.thruster_max_a),
+            Wrong::TooLittle => {
+                // Boats that measure nothing report zeros: the other side shows that this one does.
+                let is_measured = there.is_some_and(|amps| amps.abs() > watch.thruster_min_a);
+                let is_ordered = ordered.is_some_and(|sides| sides.iter().all(|pct| pct.abs() >= ORDERED_MIN_PCT));
+                here.filter(|amps| amps.abs() < watch.thruster_min_a && is_measured && is_ordered)
+            }
+        }
+    }
+
+    /// What is wrong now, in words.
+    pub(super) fn texts(&self) -> Vec<String> {
+        let error = self.error.iter().map(|code| format!("the boat reports error {code:?}"));
+        let currents = WRONGS.into_iter().flat_map(|wrong| [0, 1].map(|side| (wrong, side)));
+        let currents = currents.filter_map(|(wrong, side)| {
+            let CurrentAlarm { since, is_told } = self.currents[wrong as usize][side];
+            since.filter(|_| is_told).map(|(_, amps)| text(wrong, side, amps))
+        });
+        error.chain(currents).collect()
+    }
+}
+
+/// What both thrusters are ordered, port first, per cent; nothing where the boat steers by itself.
+fn ordered_pct(command: Command) -> Option<[f64; 2]> {
+    match command {
+        Command::SetPoint(SetPoint::Thrust { thrust_pct, difference_pct }) => {
+            Some([thrust_pct + difference_pct, thrust_pct - difference_pct])
+        }
+        _ => None,
+    }
+}
+
+fn name(wrong: Wrong, side: usize) -> String {
+    let side = SIDES[side];
+    match wrong {
+        Wrong::Bilge => format!("the {side} bilge pump runs"),
+        Wrong::TooMuch => format!("the {side} thruster draws too much"),
+        Wrong::TooLittle => format!("the {side} thruster draws no current"),
+    }
+}
+
+fn text(wrong: Wrong, side: usize, amps: f64) -> String {
+    let why = match wrong {
+        Wrong::Bilge => "the boat takes in water",
+        Wrong::TooMuch => "something may be in its propeller",
+        Wrong::TooLittle => "it may be off or broken",
+    };
+    format!("{}, {amps:.1} A: {why}", name(wrong, side))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const WATCH: CurrentWatch =
+        CurrentWatch { thruster_max_a: 45.0, thruster_min_a: 0.5, bilge_a: 0.1, debounce_s: 3.0 };
+
+    fn power(thruster_a: [f64; 2], bilge_a: [f64; 2]) -> Power {
+        Power { thruster_a: thruster_a.map(Some), bilge_a: bilge_a.map(Some), ..Power::default() }
+    }
+
+    fn ahead(thrust_pct: f64, difference_pct: f64) -> Option<Command> {
+        Some(Command::SetPoint(SetPoint::Thrust { thrust_pct, difference_pct }))
+    }
+
+    /// What is told after so many seconds of the same, and the events until then.
+    fn after(watch: CurrentWatch, seconds: u32, power: &Power, command: Option<Command>) -> (Vec<String>, usize) {
+        let (mut alarms, mut events) = (Alarms::new(watch), vec![]);
+        (0..=seconds).for_each(|s| alarms.take_power(SimTime::from_s(f64::from(s)), power, command, &mut events));
+        (alarms.texts(), events.len())
+    }
+
+    #[test]
+    fn each_current_that_lasts_is_told_once_with_its_side() {
+        let none = [0.0; 2];
+        for (power, command, told) in [
+            (power([10.0, 10.0], none), ahead(40.0, 0.0), ""),
+            (power([10.0, 10.0], [0.0, 0.8]), None, "the starboard bilge pump runs, 0.8 A: the boat takes in water"),
+            (power([10.0, 10.0], [0.05, 0.0]), None, ""),
+            (power([52.0, 10.0], none), None, "the port thruster draws too much, 52.0 A"),
+            (power([10.0, -52.0], none), None, "the starboard thruster draws too much, -52.0 A"),
+            (power([0.0, 10.0], none), ahead(40.0, 0.0), "the port thruster draws no current, 0.0 A"),
+            // The boat turns about a thruster that stands still, or steers by itself, or measures nothing.
+            (power([0.0, 10.0], none), ahead(15.0, -15.0), ""),
+            (power([0.0, 10.0], none), None, ""),
+            (power([0.0, 0.0], none), ahead(40.0, 0.0), ""),
+        ] {
+            let (texts, events) = after(WATCH, 60, &power, command);
+            assert_eq!((texts.len(), events), (usize::from(!told.is_empty()), texts.len()), "{texts:?}");
+            assert!(texts.iter().all(|text| text.starts_with(told)), "{texts:?}, expected {told:?}");
+            assert_eq!(after(WATCH, 2, &power, command).0, Vec::<String>::new(), "after two seconds");
+        }
+        let off = CurrentWatch { thruster_max_a: 0.0, thruster_min_a: 0.0, bilge_a: 0.0, ..WATCH };
+        let all = power([0.0, 100.0], [9.0, 9.0]);
+        assert_eq!(after(off, 60, &all, ahead(40.0, 0.0)), (vec![], 0));
+    }
+
+    #[test]
+    fn an_alarm_ends_with_the_report_that_all_is_well_and_one_bad_report_is_none() {
+        let (mut alarms, mut events) = (Alarms::new(WATCH), vec![]);
+        let mut take = |s: f64, bilge_a: f64| {
+            alarms.take_power(SimTime::from_s(s), &power([0.0; 2], [bilge_a, 0.0]), None, &mut events);
+            (alarms.texts().len(), events.len())
+        };
+        assert_eq!(take(0.0, 0.8), (0, 0));
+        assert_eq!(take(2.9, 0.8), (0, 0));
+        assert_eq!(take(3.0, 0.0), (0, 0), "nothing was told, so nothing is over");
+        assert_eq!(take(4.0, 0.8), (0, 0), "it begins anew");
+        assert_eq!(take(7.0, 0.8), (1, 1));
+        assert_eq!(take(8.0, 0.9), (1, 1));
+        assert_eq!(take(9.0, 0.0), (0, 2));
+    }
+
+    #[test]
+    fn an_error_is_told_when_it_changes_and_stays_until_the_boat_takes_it_back() {
+        let (mut alarms, mut events) = (Alarms::new(WATCH), vec![]);
+        for (error, told) in [(Some("L"), 1), (Some("L"), 1), (None, 1), (Some("L"), 2), (Some("B"), 3)] {
+            alarms.take_error(error.map(str::to_owned), &mut events);
+            assert_eq!(events.len(), told);
+            let shown: Vec<String> = error.iter().map(|code| format!("the boat reports error {code:?}")).collect();
+            assert_eq!(alarms.texts(), shown);
+        }
+        alarms.forget();
+        alarms.take_notice("PreArm: no fix".to_owned(), &mut events);
+        alarms.take_notice("PreArm: no fix".to_owned(), &mut events);
+        assert_eq!((events.len(), alarms.texts()), (4, vec![]), "a notice is no state");
+    }
+}

@@ -1,0 +1,205 @@
+//! The battery of an emulated boat: what its thrusters draw empties it, and its voltage falls.
+
+use super::autopilot::speed_of_thrust;
+use game::{Order, SimTime, math};
+
+/// Voltage of a lithium cell at rest by what is left in it, a share of all: typical of NMC cells.
+const CELL_V: [(f64, f64); 9] = [
+    (0.0, 3.00),
+    (0.05, 3.30),
+    (0.1, 3.42),
+    (0.2, 3.50),
+    (0.3, 3.57),
+    (0.5, 3.70),
+    (0.7, 3.85),
+    (0.9, 4.05),
+    (1.0, 4.18),
+];
+/// A step is no longer than this, s: the sim was away meanwhile.
+const STEP_MAX_S: f64 = 10.0;
+
+/// What a battery, and what draws from it, are like.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pack {
+    /// Cells in series.
+    cells: f64,
+    /// Capacity, Ah.
+    capacity_ah: f64,
+    /// Internal resistance, ohm.
+    resistance_ohm: f64,
+    /// What the electronics draw, A.
+    system_a: f64,
+    /// What a thruster draws at full thrust ahead, W.
+    thruster_w: f64,
+}
+
+impl Pack {
+    /// The Surveyor's: 24 V and 1500 Wh, thrusters of 1000 W, by its specification. Boats showed 24.8 V with 15433 of 57741 left, which is
+    /// what seven lithium cells have at that charge if the count is in mAh.
+    pub(super) const SURVEYOR: Pack =
+        Pack { cells: 7.0, capacity_ah: 57.741, resistance_ohm: 0.03, system_a: 1.3, thruster_w: 1000.0 };
+    /// Of a BlueBoat's kind: two lithium batteries of 14.8 V and 18 Ah, and thrusters of about 250 W.
+    pub(super) const BLUEBOAT: Pack =
+        Pack { cells: 4.0, capacity_ah: 36.0, resistance_ohm: 0.02, system_a: 1.3, thruster_w: 250.0 };
+}
+
+/// A battery with its charge.
+#[derive(Clone, Debug)]
+pub(super) struct Battery {
+    pack: Pack,
+    /// What is left, a share of all.
+    left: f64,
+    /// Whether it drains.
+    drains: bool,
+    /// What was drawn since the beginning, Ah.
+    used_ah: f64,
+    /// What the thrusters draw now, port first, A.
+    thruster_a: [f64; 2],
+    at: Option<SimTime>,
+    /// A voltage that it shows whatever is left.
+    shown_v: Option<f64>,
+}
+
+impl Battery {
+    /// A battery in which this much is left, a share of all; `None` is a full one that stays so.
+    pub(super) fn new(pack: Pack, left: Option<f64>) -> Battery {
+        Battery {
+            pack,
+            left: left.unwrap_or(1.0).clamp(0.0, 1.0),
+            drains: left.is_some(),
+            used_ah: 0.0,
+            thruster_a: [0.0; 2],
+            at: None,
+            shown_v: None,
+        }
+    }
+
+    /// Time passes under this order. An empty battery turns no thruster: returns the order as it is carried out.
+    pub(super) fn carry_out(&mut self, now: SimTime, order: Order) -> Order {
+        let step_s = self.at.replace(now).map_or(0.0, |at| (now - at).as_s().clamp(0.0, STEP_MAX_S));
+        let drawn_ah = self.amps() * step_s / 3600.0;
+        self.used_ah += drawn_ah;
+        if self.drains {
+            self.left = (self.left - drawn_ah / self.pack.capacity_ah).max(0.0);
+        }
+        let order = if self.left > 0.0 { order } else { Order::Hold };
+        let rest_v = self.rest_v();
+        self.thruster_a = powers(order).map(|share| share * self.pack.thruster_w / rest_v);
+        order
+    }
+
+    /// What all draw, A.
+    pub(super) fn amps(&self) -> f64 {
+        self.pack.system_a + self.thruster_a[0] + self.thruster_a[1]
+    }
+
+    /// What the electronics draw, A.
+    pub(super) fn system_a(&self) -> f64 {
+        self.pack.system_a
+    }
+
+    /// What the thrusters draw, port first, A.
+    pub(super) fn thruster_a(&self) -> [f64; 2] {
+        self.thruster_a
+    }
+
+    /// Its voltage under what is drawn, V.
+    pub(super) fn volts(&self) -> f64 {
+        self.shown_v.unwrap_or_else(|| self.rest_v() - self.amps() * self.pack.resistance_ohm)
+    }
+
+    /// Makes it show this voltage from now on, V.
+    pub(super) fn show_volts(&mut self, volts: f64) {
+        self.shown_v = Some(volts);
+    }
+
+    /// What is left, a share of all.
+    pub(super) fn left(&self) -> f64 {
+        self.left
+    }
+
+    /// What is left, mAh.
+    pub(super) fn left_mah(&self) -> f64 {
+        1000.0 * self.left * self.pack.capacity_ah
+    }
+
+    /// What was drawn since the beginning, mAh.
+    pub(super) fn used_mah(&self) -> f64 {
+        1000.0 * self.used_ah
+    }
+
+    fn rest_v(&self) -> f64 {
+        self.pack.cells * math::interpolate(CELL_V, self.left)
+    }
+}
+
+/// The power of each thruster under an order, port first, as a share of all. It goes with the cube of the speed that the thrust gives.
+fn powers(order: Order) -> [f64; 2] {
+    let full_m_s = speed_of_thrust(100.0);
+    let of_speed = |speed_m_s: f64| {
+        let share = (speed_m_s / full_m_s).clamp(0.0, 1.0);
+        share * share * share
+    };
+    match order {
+        Order::Hold => [0.0; 2],
+        Order::Steer { speed_m_s, .. } | Order::Turn { speed_m_s, .. } => [of_speed(speed_m_s); 2],
+        Order::Thrust { port, starboard } => {
+            [port, starboard].map(|share| of_speed(speed_of_thrust(100.0 * share.abs())))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HALF: Order = Order::Thrust { port: 0.4, starboard: 0.4 };
+
+    /// The battery after so many hours of an order, in steps of a second.
+    fn after(mut battery: Battery, hours: f64, order: Order) -> (Battery, Order) {
+        let mut carried_out = order;
+        for s in 0..=(3600.0 * hours) as u32 {
+            carried_out = battery.carry_out(SimTime::from_s(f64::from(s)), order);
+        }
+        (battery, carried_out)
+    }
+
+    #[test]
+    fn a_surveyor_shows_what_was_seen_on_one() {
+        // $PSEAB,24.8,15433,1.3,22.3,42308,,,24.8,,1.3,0.0,0.0,,,26: of a boat at rest.
+        let (battery, _) = after(Battery::new(Pack::SURVEYOR, Some(15_433.0 / 57_741.0)), 0.0, Order::Hold);
+        assert!((battery.volts() - 24.8).abs() < 0.2, "{}", battery.volts());
+        assert!((battery.left_mah() - 15_433.0).abs() < 1.0 && (battery.amps() - 1.3).abs() < 1e-9);
+    }
+
+    #[test]
+    fn it_holds_as_much_energy_as_the_specification_says_and_then_turns_no_thruster() {
+        let (mut battery, mut joules, mut s) = (Battery::new(Pack::SURVEYOR, Some(1.0)), 0.0, 0.0);
+        let first_v = battery.volts();
+        while battery.left() > 0.0 {
+            s += 1.0;
+            assert!(s < 86_400.0, "it lasts for ever");
+            assert!(battery.carry_out(SimTime::from_s(s), HALF) == HALF || battery.left() == 0.0);
+            joules += battery.volts() * battery.amps();
+        }
+        let (wh, hours) = (joules / 3600.0, s / 3600.0);
+        assert!((1400.0..1600.0).contains(&wh), "{wh} Wh, specified are 1500");
+        // 1.5 m/s are half of the highest speed: an eighth of 2000 W, and 33 W of electronics.
+        assert!((hours - 1500.0 / 283.0).abs() < 0.5, "{hours} h");
+        assert!(first_v > 29.0 && battery.volts() < 21.5, "{first_v} V, {} V", battery.volts());
+        let (battery, carried_out) = after(battery, 0.1, HALF);
+        assert_eq!((carried_out, battery.thruster_a()), (Order::Hold, [0.0; 2]));
+        assert!((battery.used_mah() - 57_741.0).abs() < 300.0, "{} mAh", battery.used_mah());
+    }
+
+    #[test]
+    fn each_thruster_draws_for_itself_and_full_thrust_draws_all() {
+        let thrust = |port, starboard| Order::Thrust { port, starboard };
+        let drawn = |order| after(Battery::new(Pack::SURVEYOR, Some(0.5)), 0.0, order).0.thruster_a();
+        let [port_a, starboard_a] = drawn(thrust(1.0, 0.0));
+        assert!((port_a - 1000.0 / (7.0 * 3.7)).abs() < 1e-9 && starboard_a == 0.0, "{port_a} A, {starboard_a} A");
+        let [ahead, astern] = drawn(thrust(0.4, -0.4));
+        assert_eq!(ahead, astern);
+        assert_eq!(drawn(Order::Steer { heading_rad: 1.0, speed_m_s: 1.5 }), drawn(HALF));
+    }
+}
