@@ -11,6 +11,7 @@ use crate::message::{Message, Stamp, VehicleOrder};
 use crate::picture::Nav;
 use crate::time::SimTime;
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
 /// Where a real boat is, from its gateway.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -114,6 +115,39 @@ pub enum BoatMode {
     Depth,
     /// `S`: direction of gravity.
     GravityVector,
+}
+
+impl fmt::Display for BoatMode {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            BoatMode::Heading { heading_deg, thrust_pct } => {
+                return write!(f, "heading {heading_deg:03.0} at {thrust_pct:.0} %");
+            }
+            BoatMode::RiverNav => "river navigation",
+            BoatMode::Autopilot => "autopilot",
+            BoatMode::CompassCalibration => "compass calibration",
+            BoatMode::Depth => "depth",
+            BoatMode::GravityVector => "direction of gravity",
+        })
+    }
+}
+
+impl fmt::Display for OperatorCommand {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            OperatorCommand::Status => "status",
+            OperatorCommand::Arm => "arm",
+            OperatorCommand::Disarm => "disarm",
+            OperatorCommand::EStop => "E-stop",
+            OperatorCommand::Release => "release",
+            OperatorCommand::StationKeep => "station keeping",
+            OperatorCommand::GoToErp => "to the emergency recovery point",
+            OperatorCommand::Mission(mission) => {
+                return write!(f, "a mission of {} waypoints", mission.waypoints.len());
+            }
+            OperatorCommand::Mode(mode) => return mode.fmt(f),
+        })
+    }
 }
 
 impl OperatorCommand {

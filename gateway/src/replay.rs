@@ -4,7 +4,9 @@ use crate::bridge::{Bridge, Event, Input, Output, Plan};
 use crate::record::{EVENT, INPUT, RecordedEvent, RecordedInput, link_topic};
 use game::SimTime;
 use game::external::{GatewayStatus, LinkBytes};
+use game::scenario::default_gateway;
 use recording::{Bag, Kind, RecordedMessage, RecordingError};
+use serde_json::Value;
 
 /// What came of a replay.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,6 +50,26 @@ struct RecordedStep {
     events: Vec<Event>,
 }
 
+/// The plan of a recording. A setting that gateways did not have when it was made is that of the default file.
+fn plan_of(text: &str) -> Result<Plan, serde_json::Error> {
+    let mut plan: Value = serde_json::from_str(text)?;
+    if let Some(gateway) = plan.get_mut("gateway") {
+        complete(gateway, &serde_json::to_value(default_gateway())?);
+    }
+    serde_json::from_value(plan)
+}
+
+/// Adds what is missing in tables.
+fn complete(table: &mut Value, defaults: &Value) {
+    let (Value::Object(table), Value::Object(defaults)) = (table, defaults) else { return };
+    for (key, default) in defaults {
+        match table.get_mut(key) {
+            Some(value) => complete(value, default),
+            None => drop(table.insert(key.clone(), default.clone())),
+        }
+    }
+}
+
 /// Plays a recording again.
 ///
 /// # Errors
@@ -56,8 +78,8 @@ pub fn replay(bag: &Bag) -> Result<Replay, RecordingError> {
     if bag.kind() != Kind::Gateway {
         return Err(RecordingError::Kind { wanted: Kind::Gateway, found: bag.kind() });
     }
-    let plan: Plan = serde_json::from_str(bag.fact("plan"))
-        .map_err(|e| RecordingError::Foreign(format!("its plan is not understood: {e}")))?;
+    let plan =
+        plan_of(bag.fact("plan")).map_err(|e| RecordingError::Foreign(format!("its plan is not understood: {e}")))?;
     let (steps, is_cut) = (steps(bag, &link_topic(&plan.vehicle))?, bag.is_cut());
     let mut bridge = Bridge::new(plan.clone());
     let (mut bytes_in, mut bytes_out) = (0, 0);
@@ -127,4 +149,33 @@ fn take(steps: &mut Vec<RecordedStep>, link_topic: &str, message: &RecordedMessa
         _ => {}
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bridge::Preflight;
+
+    #[test]
+    fn a_plan_from_before_some_settings_is_read_with_their_defaults_and_keeps_its_own() {
+        let mut gateway = default_gateway();
+        gateway.order_ttl_s = 2.5;
+        gateway.control.echo_s = 4.0;
+        let plan = Plan {
+            vehicle: "blue_one".to_owned(),
+            gateway,
+            site: None,
+            arms_itself: true,
+            dry_run: false,
+            preflight: Preflight::NotRequired,
+        };
+        let mut told = serde_json::to_value(&plan).unwrap();
+        assert_eq!(plan_of(&told.to_string()).unwrap(), plan);
+        let gateway = told["gateway"].as_object_mut().unwrap();
+        assert!(gateway.remove("currents").is_some() && gateway.remove("startup_words").is_some());
+        assert!(gateway["control"].as_object_mut().unwrap().remove("echo_thrust_pct").is_some());
+        assert_eq!(plan_of(&told.to_string()).unwrap(), plan);
+        told.as_object_mut().unwrap().remove("vehicle");
+        assert!(plan_of(&told.to_string()).is_err_and(|e| e.to_string().contains("vehicle")));
+    }
 }

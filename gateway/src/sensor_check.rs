@@ -1,23 +1,50 @@
-//! The sensor check before arming: which sentences a boat sends, how often, who commands it, and what is missing.
+//! The sensor check before arming: what a boat sends, how often, who commands it, and what is missing.
 
-use crate::nmea::{ControlState, Counts, Date, Framer, Gga, M_S_PER_KN, Operator, ParseError, Sentence, TimeOfDay};
+use crate::mavlink;
+use crate::mavlink::dialect::MavMessage;
+use crate::nmea::{self, Date, Mode, Operator, Sentence, TimeOfDay, date_and_time, quality_in_words};
+use crate::protocol::{ControlReport, Fix, Heading, North, Power, Protocol, Report};
+use ::mavlink::Message;
 use game::SimTime;
-use game::angle::wrap_pi;
+use game::angle::{compass_deg_from_rad, wrap_pi};
 use game::frame::LatLon;
+use game::gateway::{BoatProtocol, Gateway};
+use game::math;
 use std::collections::BTreeMap;
 
-/// Below this rate a sentence comes too seldom to drive a boat, 1/s.
-const RATE_MIN_HZ: f64 = 1.0;
+/// Below this rate something comes too seldom to drive a boat, 1/s: what comes once a second may come a little late.
+const RATE_MIN_HZ: f64 = 0.9;
 /// Compass and true heading that are nearer than this are the same, rad.
 const SAME_HEADING_RAD: f64 = 0.02;
 /// The course of a slower boat is not where it points, m/s.
 const COURSE_MIN_M_S: f64 = 1.0;
 /// The most positions that are kept.
 const FIXES_MAX: usize = 20_000;
-/// The most sentences that are counted by name.
+/// The most names that are counted.
 const NAMES_MAX: usize = 64;
 
-/// The sentences of one name.
+/// What driving a boat needs: one of these sentences or messages, and why.
+type Need = (&'static [&'static str], &'static str);
+
+const FOR_A_FIX: &str = "without a fix it cannot be driven";
+const FOR_A_HEADING: &str = "without a heading it cannot be driven";
+const FOR_ITS_BATTERY: &str = "its battery would not be monitored";
+const SURVEYOR_NEEDS: [Need; 5] = [
+    (&["GGA", "RMC"], FOR_A_FIX),
+    (&["PSEAA", "HDT"], FOR_A_HEADING),
+    (&["PSEAD"], "it is not known who commands it: it can only be armed with control.assumed = true"),
+    (&["VTG", "RMC"], "its velocity would be computed from its positions"),
+    (&["PSEAB"], FOR_ITS_BATTERY),
+];
+const MAVLINK_NEEDS: [Need; 5] = [
+    (&["GLOBAL_POSITION_INT"], FOR_A_FIX),
+    (&["GPS_RAW_INT"], "without the quality of its fix it cannot be driven"),
+    (&["ATTITUDE", "GLOBAL_POSITION_INT"], FOR_A_HEADING),
+    (&["HEARTBEAT"], "it is not known who commands it"),
+    (&["SYS_STATUS", "BATTERY_STATUS"], FOR_ITS_BATTERY),
+];
+
+/// The sentences or messages of one name.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Received {
     /// How often.
@@ -26,7 +53,7 @@ pub struct Received {
     pub unreadable: u64,
     /// When first and last.
     pub between: Option<(SimTime, SimTime)>,
-    /// The last of them, as received.
+    /// The last of them: a sentence as received, of a message its fields.
     pub last: String,
 }
 
@@ -40,12 +67,20 @@ impl Received {
     }
 }
 
+/// Cuts what a boat sends into what has a name.
+#[derive(Clone, Debug)]
+enum Framer {
+    Nmea(nmea::Framer),
+    Mavlink(mavlink::Framer),
+}
+
 /// What a boat has sent so far.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct SensorCheck {
     framer: Framer,
     received: BTreeMap<String, Received>,
-    fix: Option<Gga>,
+    protocol: Protocol,
+    fix: Option<Fix>,
     /// Its positions, and when they came.
     fixes: Vec<(SimTime, LatLon)>,
     /// Course and speed over the ground, degrees and m/s.
@@ -55,23 +90,47 @@ pub struct SensorCheck {
     date: Option<Date>,
     compass_deg: Option<f64>,
     true_deg: Option<f64>,
-    control: Option<ControlState>,
-    volts: Option<f64>,
+    control: Option<ControlReport>,
+    power: Power,
     error: Option<String>,
 }
 
 impl SensorCheck {
-    /// Nothing received yet.
+    /// Nothing received yet of a boat that is driven like this.
     #[must_use]
-    pub fn new() -> SensorCheck {
-        SensorCheck::default()
+    pub fn new(gateway: &Gateway) -> SensorCheck {
+        let framer = match gateway.protocol {
+            BoatProtocol::Surveyor => Framer::Nmea(nmea::Framer::new()),
+            BoatProtocol::Mavlink => Framer::Mavlink(mavlink::Framer::default()),
+        };
+        SensorCheck {
+            framer,
+            received: BTreeMap::new(),
+            protocol: Protocol::new(gateway),
+            fix: None,
+            fixes: vec![],
+            track: None,
+            clock: None,
+            date: None,
+            compass_deg: None,
+            true_deg: None,
+            control: None,
+            power: Power::default(),
+            error: None,
+        }
     }
 
     /// Takes bytes as they come.
     pub fn take(&mut self, now: SimTime, bytes: &[u8]) {
-        let mut framer = std::mem::take(&mut self.framer);
-        framer.push(bytes, &mut |body| self.note(now, body));
-        self.framer = framer;
+        self.count(now, bytes);
+        let mut reports = vec![];
+        self.protocol.read(now, bytes, &mut |report| reports.push(report));
+        reports.into_iter().for_each(|report| self.apply(now, report));
+    }
+
+    /// Appends what a boat must be asked for before it sends anything: nothing for a Surveyor, its telemetry by MAVLink.
+    pub fn ask(&mut self, now: SimTime, out: &mut Vec<u8>) {
+        self.protocol.keep_up(now, out);
     }
 
     /// What was received, by name.
@@ -80,15 +139,16 @@ impl SensorCheck {
         &self.received
     }
 
-    /// What the framer counted.
+    /// What was counted on the link, by name.
     #[must_use]
-    pub fn counts(&self) -> Counts {
-        self.framer.counts()
+    pub fn counts(&self) -> Vec<(String, u64)> {
+        let [known, _] = self.protocol.counts();
+        known
     }
 
-    /// The last fix.
+    /// The last fix of which the quality was told.
     #[must_use]
-    pub fn fix(&self) -> Option<&Gga> {
+    pub fn fix(&self) -> Option<&Fix> {
         self.fix.as_ref()
     }
 
@@ -112,19 +172,25 @@ impl SensorCheck {
         self.true_deg.or_else(course)
     }
 
+    /// The heading that the gateway would go by, degrees.
+    #[must_use]
+    pub fn heading_deg(&self) -> Option<f64> {
+        self.compass_deg.or(self.true_deg)
+    }
+
     /// Mode, who commands the boat, and its thrust.
     #[must_use]
-    pub fn control(&self) -> Option<&ControlState> {
+    pub fn control(&self) -> Option<&ControlReport> {
         self.control.as_ref()
     }
 
-    /// The battery, V.
+    /// The battery, and who draws from it.
     #[must_use]
-    pub fn volts(&self) -> Option<f64> {
-        self.volts
+    pub fn power(&self) -> Power {
+        self.power
     }
 
-    /// The last error code.
+    /// What the boat says is wrong with it, if anything.
     #[must_use]
     pub fn error(&self) -> Option<&str> {
         self.error.as_deref()
@@ -140,19 +206,19 @@ impl SensorCheck {
     #[must_use]
     pub fn findings(&self, now: SimTime, host: TimeOfDay) -> Vec<String> {
         let mut found = Vec::new();
-        if let Some(fix @ Gga { at, quality, hdop, .. }) = &self.fix {
+        if let Some(Fix { at, quality: Some(quality), hdop, .. }) = self.fix {
             let place = at.map_or("no position".to_owned(), |at| format!("{:.6}, {:.6}", at.lat_deg, at.lon_deg));
             let hdop = hdop.map_or(String::new(), |hdop| format!(", dilution {hdop}"));
-            found.push(format!("position: {place} (fix quality {quality}: {}{hdop})", fix.quality_in_words()));
+            found.push(format!("position: {place} (fix quality {quality}: {}{hdop})", quality_in_words(quality)));
         }
         found.extend(self.heading());
-        if let Some(ControlState { mode, operator, .. }) = &self.control {
+        if let Some(ControlReport { shown, operator }) = &self.control {
             let who = operator
                 .map_or("it does not report by whom".to_owned(), |operator| format!("commanded by {operator:?}"));
-            found.push(format!("control: mode {} ({mode:?}), {who}", mode.letter()));
+            found.push(format!("control: mode {}, {who}", self.mode_in_words(shown.mode)));
         }
-        found.extend(self.volts.map(|volts| format!("battery: {volts} V")));
-        found.extend(self.error.as_ref().map(|code| format!("error code: {code}")));
+        found.extend(self.power.volts.map(|volts| format!("battery: {volts} V")));
+        found.extend(self.error.as_ref().map(|error| format!("error: {error}")));
         if let Some(behind_s) = self.clock_behind_s(now, host) {
             let date = self
                 .date
@@ -165,9 +231,19 @@ impl SensorCheck {
         found
     }
 
+    /// A mode by its name, and where it is one by its letter.
+    pub(crate) fn mode_in_words(&self, mode: Mode) -> String {
+        match self.framer {
+            Framer::Nmea(_) => format!("{} ({mode:?})", mode.letter()),
+            Framer::Mavlink(_) => format!("{mode:?}"),
+        }
+    }
+
     /// Its headings, in words.
     pub(crate) fn heading(&self) -> Option<String> {
-        let compass_deg = self.compass_deg?;
+        let Some(compass_deg) = self.compass_deg else {
+            return self.true_deg.map(|true_deg| format!("heading: {true_deg:.1} true"));
+        };
         Some(match self.true_deg {
             None => format!("heading: {compass_deg:.1} by its compass; nothing true to compare it with"),
             Some(true_deg) => {
@@ -185,74 +261,99 @@ impl SensorCheck {
     /// What is missing for driving the boat.
     #[must_use]
     pub fn missing(&self) -> Vec<String> {
-        let mut missing = Vec::new();
-        let mut need = |kinds: &[&str], why: &str| {
-            let best = self.received.iter().filter(|(name, _)| kinds.iter().any(|kind| name.ends_with(kind)));
-            let rate = best.filter_map(|(_, received)| received.rate_hz()).fold(0.0, f64::max);
-            let name = kinds.join(" or ");
-            if rate == 0.0 {
-                missing.push(format!("{name}: {why}"));
-            } else if rate < RATE_MIN_HZ {
-                missing.push(format!("{name} comes only {rate:.2} times a second: {why}"));
-            }
+        let needs = match self.framer {
+            Framer::Nmea(_) => &SURVEYOR_NEEDS,
+            Framer::Mavlink(_) => &MAVLINK_NEEDS,
         };
-        need(&["GGA", "RMC"], "without a fix it cannot be driven");
-        need(&["PSEAA", "HDT"], "without a heading it cannot be driven");
-        need(&["PSEAD"], "it is not known who commands it: it can only be armed with control.assumed = true");
-        need(&["VTG", "RMC"], "its velocity would be computed from its positions");
-        need(&["PSEAB"], "its battery would not be monitored");
-        if let Some(operator) = self.control.as_ref().and_then(|state| state.operator)
+        let mut missing: Vec<String> = needs.iter().filter_map(|need| self.lacks(*need)).collect();
+        if let Some(operator) = self.control.as_ref().and_then(|control| control.operator)
             && operator != Operator::Secondary
         {
-            missing.push("secondary control: the operator ashore has to enable it".to_owned());
+            missing.push(match self.framer {
+                Framer::Nmea(_) => "secondary control: the operator ashore has to enable it".to_owned(),
+                Framer::Mavlink(_) => {
+                    format!("control: {operator:?} has the boat, in a mode that is not GUIDED or HOLD")
+                }
+            });
         }
-        if let Some(Gga { at: None, quality, .. }) = &self.fix {
+        if let Some(Fix { at: None, quality: Some(quality), .. }) = self.fix {
             missing.push(format!("a position: its fix is of quality {quality}"));
         }
         missing
     }
 
-    fn note(&mut self, now: SimTime, body: &str) {
-        let name = body.split(',').next().unwrap_or_default();
-        let room = self.received.len() < NAMES_MAX || self.received.contains_key(name);
-        let received = self.received.entry(if room { name } else { "others" }.to_owned()).or_default();
-        received.count += 1;
-        let first = received.between.map_or(now, |(first, _)| first);
-        received.between = Some((first, now));
-        body.clone_into(&mut received.last);
-        match Sentence::parse(body) {
-            Ok(sentence) => self.apply(now, sentence),
-            Err(ParseError::Unknown { .. } | ParseError::Field { .. } | ParseError::TooFew { .. }) => {
-                received.unreadable += 1;
-            }
+    fn lacks(&self, (kinds, why): Need) -> Option<String> {
+        let best = self.received.iter().filter(|(name, _)| kinds.iter().any(|kind| name.ends_with(kind)));
+        let rate_hz = best.filter_map(|(_, received)| received.rate_hz()).fold(0.0, f64::max);
+        let name = kinds.join(" or ");
+        match rate_hz {
+            0.0 => Some(format!("{name}: {why}")),
+            _ if rate_hz < RATE_MIN_HZ => Some(format!("{name} comes only {rate_hz:.2} times a second: {why}")),
+            _ => None,
         }
     }
 
-    fn apply(&mut self, now: SimTime, sentence: Sentence) {
-        match sentence {
-            Sentence::Gga(gga) => {
-                self.clock = gga.time.map(|time| (now, time)).or(self.clock);
-                if let Some(at) = gga.at
+    /// Counts sentences or messages by name.
+    fn count(&mut self, now: SimTime, bytes: &[u8]) {
+        let SensorCheck { framer, received, date, .. } = self;
+        match framer {
+            Framer::Nmea(framer) => framer.push(bytes, &mut |body| {
+                let sentence = Sentence::parse(body);
+                let name = body.split(',').next().unwrap_or_default();
+                note(received, now, name, (body.to_owned(), sentence.is_ok()));
+                *date = match sentence {
+                    Ok(Sentence::Rmc(rmc)) => rmc.date.or(*date),
+                    Ok(Sentence::Zda(zda)) => zda.date.or(*date),
+                    _ => *date,
+                };
+            }),
+            Framer::Mavlink(framer) => framer.push(bytes, &mut |mavlink::Received { message, .. }| {
+                note(received, now, message.message_name(), (format!("{message:?}"), true));
+                if let MavMessage::SYSTEM_TIME(time) = &message
+                    && time.time_unix_usec > 0
+                {
+                    *date = Some(date_and_time(time.time_unix_usec.saturating_mul(1000)).0);
+                }
+            }),
+        }
+    }
+
+    fn apply(&mut self, now: SimTime, report: Report) {
+        match report {
+            // RMC says no more than whether there is one.
+            Report::Fix(fix) if fix.quality.is_some() => {
+                if let Some(at) = fix.at
                     && self.fixes.len() < FIXES_MAX
                 {
                     self.fixes.push((now, at));
                 }
-                self.fix = Some(gga);
+                self.fix = Some(fix);
             }
-            Sentence::Rmc(rmc) => self.date = rmc.date.or(self.date),
-            Sentence::Vtg(vtg) => {
-                let speed_m_s = vtg.speed_kn.map(|speed_kn| speed_kn * M_S_PER_KN);
-                self.track = vtg.course_true_deg.zip(speed_m_s);
+            Report::Clock(time) => self.clock = Some((now, time)),
+            Report::Velocity(velocity) => {
+                let course_deg = compass_deg_from_rad(math::atan2(velocity.east, velocity.north));
+                self.track = Some((course_deg, velocity.length()));
             }
-            Sentence::Zda(zda) => self.date = zda.date.or(self.date),
-            Sentence::Attitude(attitude) => self.compass_deg = attitude.heading_deg.or(self.compass_deg),
-            Sentence::Hdt(hdt) => self.true_deg = hdt.heading_deg.or(self.true_deg),
-            Sentence::ControlState(state) => self.control = Some(state),
-            Sentence::Battery(battery) => self.volts = battery.volts.or(self.volts),
-            Sentence::BoatError(error) => self.error = Some(error.code),
-            _ => {}
+            Report::Heading(Heading { deg, north: North::Compass, .. }) => self.compass_deg = Some(deg),
+            Report::Heading(Heading { deg, north: North::True, .. }) => self.true_deg = Some(deg),
+            Report::Control(control) => self.control = Some(control),
+            Report::Power(power) => self.power = Power { volts: power.volts.or(self.power.volts), ..power },
+            Report::Error(error) => self.error = error,
+            Report::Notice(text) => self.error = Some(text),
+            Report::Fix(_) | Report::Home(_) => {}
         }
     }
+}
+
+/// Notes something that came: its text, and whether it could be read.
+fn note(received: &mut BTreeMap<String, Received>, now: SimTime, name: &str, (text, is_readable): (String, bool)) {
+    let room = received.len() < NAMES_MAX || received.contains_key(name);
+    let received = received.entry(if room { name } else { "others" }.to_owned()).or_default();
+    received.count += 1;
+    received.unreadable += u64::from(!is_readable);
+    let first = received.between.map_or(now, |(first, _)| first);
+    received.between = Some((first, now));
+    received.last = text;
 }
 
 #[cfg(test)]
@@ -265,7 +366,7 @@ mod tests {
         $PTQM0,1*35\r\n";
 
     fn checked(text: &str, hz: f64) -> SensorCheck {
-        let mut check = SensorCheck::new();
+        let mut check = SensorCheck::new(&game::scenario::default_gateway());
         for i in 0..10 {
             check.take(SimTime::from_s(f64::from(i) / hz), text.as_bytes());
         }

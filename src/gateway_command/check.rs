@@ -9,7 +9,7 @@ use crate::stop;
 use anyhow::{Context, Result, anyhow, bail};
 use bus::game_search::GameSearch;
 use game::SimTime;
-use game::gateway::Gateway;
+use game::gateway::{BoatProtocol, Gateway};
 use gateway::geofence::GeofenceArea;
 use gateway::link::{Link, LinkAddress, LinkEvent, LinkSettings};
 use gateway::nmea::date_and_time;
@@ -26,6 +26,8 @@ use std::time::{Duration, Instant};
 
 /// Without and with a pre-flight check it listens for so long, s.
 const LISTEN_S: [f64; 2] = [10.0, 30.0];
+/// The most letters of a sentence or message that are shown.
+const LAST_MAX: usize = 90;
 /// How long the game is looked for.
 const GAME_WAIT: Duration = Duration::from_secs(5);
 
@@ -42,7 +44,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "NAME")]
     vehicle: Option<String>,
     /// By which gateway file it will be driven, a file or a name [default: a Surveyor with careful limits]
-    #[arg(long, value_name = "FILE", requires = "vehicle", value_parser = crate::scenario_files::gateway)]
+    #[arg(long, value_name = "FILE", value_parser = crate::scenario_files::gateway)]
     config: Option<PathBuf>,
     /// Guides through compass swing and propeller test, under remote control; asks before each
     #[arg(long, requires = "vehicle")]
@@ -61,15 +63,17 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let (sender, events) = sync_channel(4096);
     // A full queue drops events: this only listens.
     let take = move |event| drop(sender.try_send(event));
-    let _link = Link::open(&address, LinkSettings { silence: None, ..LinkSettings::default() }, take)?;
+    let link = Link::open(&address, LinkSettings { silence: None, ..LinkSettings::default() }, take)?;
     let for_s = args.for_s.unwrap_or(LISTEN_S[usize::from(args.vehicle.is_some())]);
-    let mut listener = Listener::new(events, stop);
-    listener.hello = format!("listening for {for_s} s, sending nothing");
+    let mut listener = Listener::new((link, events), stop, &gateway);
+    let sends =
+        if gateway.protocol == BoatProtocol::Mavlink { "nothing but requests for telemetry" } else { "nothing" };
+    listener.hello = format!("listening for {for_s} s, sending {sends}");
     listener.listen(&mut |listener| listener.now().as_s() >= for_s);
     let check = &listener.check;
     if check.received().is_empty() {
-        let garbage = check.counts().garbage;
-        bail!("no sentence from {address} in {for_s} s: {} ({garbage} bytes of garbage)", listener.reason);
+        let (reason, counts) = (&listener.reason, counted(check));
+        bail!("nothing to be read from {address} in {for_s} s: {reason} ({counts})");
     }
     let host = date_and_time(utc::now_ns()).1;
     screen::print(&report(check, listener.now(), host));
@@ -114,6 +118,7 @@ fn water(args: &Args, vehicle: &str, gateway: &Gateway, stop: &AtomicBool) -> Re
 /// Listens to a boat.
 pub(super) struct Listener {
     pub(super) check: SensorCheck,
+    link: Link,
     events: Receiver<LinkEvent>,
     start: Instant,
     stop: Arc<AtomicBool>,
@@ -124,9 +129,18 @@ pub(super) struct Listener {
 }
 
 impl Listener {
-    fn new(events: Receiver<LinkEvent>, stop: Arc<AtomicBool>) -> Listener {
+    fn new((link, events): (Link, Receiver<LinkEvent>), stop: Arc<AtomicBool>, gateway: &Gateway) -> Listener {
         let (start, reason) = (bus::clock::now(), "nothing came".to_owned());
-        Listener { check: SensorCheck::new(), events, start, stop, reason, hello: String::new() }
+        Listener { check: SensorCheck::new(gateway), link, events, start, stop, reason, hello: String::new() }
+    }
+
+    /// Asks the boat for what it has to be asked for.
+    fn ask(&mut self) {
+        let (now, mut bytes) = (self.now(), vec![]);
+        self.check.ask(now, &mut bytes);
+        if !bytes.is_empty() {
+            self.link.send(bytes, 0);
+        }
     }
 
     fn at(&self, moment: Instant) -> SimTime {
@@ -141,6 +155,7 @@ impl Listener {
     /// Listens until `is_enough`, which is asked after everything that comes, and ten times a second.
     pub(super) fn listen(&mut self, is_enough: &mut dyn FnMut(&Listener) -> bool) {
         while !self.stop.load(Ordering::Relaxed) {
+            self.ask();
             match self.events.recv_timeout(Duration::from_millis(100)) {
                 Ok(LinkEvent::Bytes { at, bytes, .. }) => self.check.take(self.at(at), &bytes),
                 Ok(LinkEvent::Up { name, .. }) => screen::remark(&format!("connected to {name}; {}", self.hello)),
@@ -160,18 +175,21 @@ impl Listener {
     }
 }
 
+/// What was counted on the link.
+fn counted(check: &SensorCheck) -> String {
+    check.counts().iter().map(|(name, count)| format!("{count} {name}")).collect::<Vec<_>>().join(", ")
+}
+
 fn report(check: &SensorCheck, now: SimTime, host: gateway::nmea::TimeOfDay) -> String {
-    let mut lines = vec![format!("{:<10} {:>7} {:>8}  last", "sentence", "count", "1/s")];
+    let width = check.received().keys().map(String::len).max().unwrap_or(0).max(10);
+    let mut lines = vec![format!("{:<width$} {:>7} {:>8}  last", "name", "count", "1/s")];
     for (name, received) in check.received() {
         let rate = received.rate_hz().map_or("-".to_owned(), |rate| format!("{rate:.2}"));
         let note = if received.unreadable > 0 { "  (not read)" } else { "" };
-        lines.push(format!("{name:<10} {:>7} {rate:>8}  {}{note}", received.count, received.last));
+        let last: String = received.last.chars().take(LAST_MAX).collect();
+        lines.push(format!("{name:<width$} {:>7} {rate:>8}  {last}{note}", received.count));
     }
-    let counts = check.counts();
-    lines.push(format!(
-        "\nbad checksums {}, overlong {}, broken {}, bytes of garbage {}",
-        counts.bad_checksum, counts.overlong, counts.broken, counts.garbage
-    ));
+    lines.push(format!("\n{}", counted(check)));
     lines.extend(check.findings(now, host));
     let missing = check.missing();
     if missing.is_empty() {

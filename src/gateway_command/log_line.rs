@@ -29,7 +29,7 @@ impl Log {
         let mut status = String::new();
         let printer = Printer::start(move |line| match line {
             Line::Lasting(line) if is_live => screen::overwrite(&format!("{line}{status}")),
-            Line::Lasting(line) => screen::print(line),
+            Line::Lasting(line) => screen::show(line),
             Line::Status(line) => {
                 status.clone_from(line);
                 screen::overwrite(line);

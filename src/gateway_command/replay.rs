@@ -18,9 +18,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let bag = recording_file::open_any(&args.file, "replay")?;
     let replay = gateway::replay::replay(&bag).with_context(name)?;
     for (at, event) in &replay.events {
-        screen::print(&format!("{:>8.1} s  {}\n", at.as_s(), text_of(event)));
+        screen::show(&format!("{:>8.1} s  {}\n", at.as_s(), text_of(event)));
     }
-    screen::print(&full(&replay.status));
+    screen::show(&full(&replay.status));
     let cut = if replay.is_cut { " (the file ends abruptly)" } else { "" };
     screen::print(&format!(
         "{} inputs over {:.1} s, {} bytes from the boat, {} to it{cut}\n",

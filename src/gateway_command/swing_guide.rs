@@ -2,7 +2,7 @@
 
 use super::check::Listener;
 use crate::screen;
-use game::gateway::{CompassFrame, Gateway};
+use game::gateway::{BoatProtocol, CompassFrame, Gateway};
 use gateway::declination::declination_deg;
 use gateway::nmea::{Operator, date_and_time};
 use gateway::preflight::{Check, CompassSwing};
@@ -78,6 +78,9 @@ pub(super) fn guided_checks(guide: &mut Guide, listener: &mut Listener, gateway:
 
 fn swing(guide: &Guide, listener: &mut Listener, gateway: &Gateway) -> Check {
     let name = "compass swing";
+    if gateway.protocol == BoatProtocol::Mavlink {
+        return Check::not_done(name, "a boat that speaks MAVLink reports true headings: its own calibration does it");
+    }
     if !guide.is_agreed("Compass swing: will somebody turn the boat by remote control, in open water?", listener) {
         return Check::not_done(name, "not wanted");
     }
@@ -128,16 +131,16 @@ fn propellers(guide: &Guide, listener: &mut Listener) -> Check {
     let (mut tells, mut by_remote, mut seen) = (false, false, [false; 2]);
     let what = "Run both propellers ahead and astern by remote control, 20 per cent for two seconds each.";
     guide.until_enter(what, listener, &mut |listener| {
-        let Some(state) = listener.check.control() else { return };
-        tells |= state.operator.is_some();
-        by_remote |= state.operator == Some(Operator::Rc);
-        let thrust_pct = state.thrust.unwrap_or(0.0);
+        let Some(control) = listener.check.control() else { return };
+        tells |= control.operator.is_some();
+        by_remote |= control.operator == Some(Operator::Rc);
+        let thrust_pct = control.shown.thrust.unwrap_or(0.0);
         seen = [seen[0] || thrust_pct >= THRUST_MIN_PCT, seen[1] || thrust_pct <= -THRUST_MIN_PCT];
     });
     let turned = guide.is_agreed("Did both propellers turn both ways, without noise?", listener);
     let word = |is: bool| if is { "seen" } else { "not seen" };
     let found = format!(
-        "somebody says they turn: {}; in PSEAD the remote control was {}, thrust ahead {}, astern {}",
+        "somebody says they turn: {}; in what the boat reports the remote control was {}, thrust ahead {}, astern {}",
         if turned { "yes" } else { "no" },
         word(by_remote),
         word(seen[0]),

@@ -88,7 +88,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         return tell_all(args);
     }
     let reply = tell(args, &command)?;
-    screen::print(&full(&reply.status));
+    screen::show(&full(&reply.status));
     match reply.refused {
         None => Ok(ExitCode::SUCCESS),
         Some(reason) => Err(anyhow!("{} refuses: {reason}", args.vehicle)),
@@ -238,7 +238,7 @@ fn tell_all(args: &Args) -> Result<ExitCode> {
             Ok(Outcome::Failed(error)) => failed.push(format!("{error:#}")),
             Ok(Outcome::Reply(reply)) => {
                 is_done = true;
-                screen::print(&full(&reply.status));
+                screen::show(&full(&reply.status));
                 failed.extend(reply.refused.map(|reason| format!("{} refuses: {reason}", reply.status.vehicle)));
             }
             Err(RecvTimeoutError::Disconnected) => break,

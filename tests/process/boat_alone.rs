@@ -80,7 +80,9 @@ impl Afloat {
     fn tell(&self, command: &str) -> String {
         let mut tell = squall(&["gateway", "tell", "blue_one", command, "--game", self.game]);
         let output = tell.env_remove(TOKEN_VARIABLE).output().expect("the program starts");
-        format!("{}{}", stdout(&output), stderr(&output))
+        let told = format!("{}{}", stdout(&output), stderr(&output));
+        assert!(!told.contains('\x1b') && !told.contains("u001b"), "colours where there is no terminal: {told}");
+        told
     }
 
     fn gateway(&self) -> Process {

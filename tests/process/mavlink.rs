@@ -5,7 +5,7 @@ use crate::support::{result_of, run, stdout, temporary, wait_until};
 use game::external::OperatorCommand;
 use std::time::Duration;
 
-const CONFIG: [&str; 2] = ["--config", "scenarios/gateways/blueboat.toml"];
+const CONFIG: [&str; 4] = ["--config", "scenarios/gateways/blueboat.toml", "--without-preflight", "Ada"];
 
 fn under_way() -> Loop {
     Loop::of(&["--protocol", "mavlink"], &CONFIG)

@@ -49,6 +49,28 @@ fn a_boat_is_armed_with_a_passed_report_and_without_one_in_somebodys_name_alone(
 }
 
 #[test]
+fn a_mavlink_boat_is_armed_with_a_passed_report_too() {
+    let dir = temporary();
+    let report = dir.path().join("report.json").display().to_string();
+    let mut all = Loop::begin(&["--protocol", "mavlink"], &["--config", "blueboat"]);
+    let refused = || all.try_ask(&OperatorCommand::Arm).and_then(|reply| reply.refused).unwrap_or_default();
+    wait_until("the report is missing", || refused().contains("a passed pre-flight check"));
+    all.gateway.signal("INT");
+    all.gateway.wait();
+    let link = format!("tcp://127.0.0.1:{}", all.proxy.port);
+    let check =
+        ["gateway", "check", "--link", &link, "--vehicle", "blue_one", "--config", "blueboat", "--report", &report];
+    let checked = all.sim.squall(&check).output().expect("the program starts");
+    let (printed, said) = (stdout(&checked), stderr(&checked));
+    assert!(checked.status.success(), "{printed}{said}");
+    assert!(printed.contains("GLOBAL_POSITION_INT") && printed.contains("nothing is missing"), "{printed}");
+    assert!(said.contains("nothing but requests for telemetry"), "{said}");
+    all.gateway = start_gateway(&all.sim, all.proxy.port, &["--config", "blueboat", "--preflight", &report]);
+    wait_until("it is in the game", || all.try_ask(&OperatorCommand::Status).is_some());
+    all.arm();
+}
+
+#[test]
 fn in_a_dry_run_the_gateway_is_armed_and_the_boat_stays_where_it_is() {
     let all = Loop::begin(&[], &["--arm", "--dry-run"]);
     wait_until("it is in the game", || all.try_ask(&OperatorCommand::Status).is_some());

@@ -25,7 +25,7 @@ pub use date_time::{Date, TimeOfDay, date_and_time};
 pub use framer::{ACCEPTED_MAX, Counts, Framer};
 pub use mode::Mode;
 pub use operator::Operator;
-pub use standard::{Gga, Gll, Hdg, Hdt, Mwv, Rmc, Vhw, Vtg, Zda};
+pub use standard::{Gga, Gll, Hdg, Hdt, Mwv, Rmc, Vhw, Vtg, Zda, quality_in_words};
 pub use surveyor::{Attitude, Battery, BoatError, Command, ControlState, MissionSettings, Waypoint};
 pub use talker::Talker;
 pub use wind::{M_S_PER_KN, SpeedUnit, WindReference};

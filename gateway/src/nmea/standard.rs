@@ -27,24 +27,24 @@ pub struct Gga {
     pub geoid_m: Option<f64>,
 }
 
-impl Gga {
-    /// What its quality means.
-    #[must_use]
-    pub fn quality_in_words(&self) -> &'static str {
-        match self.quality {
-            0 => "no fix",
-            1 => "GPS",
-            2 => "DGPS",
-            3 => "PPS",
-            4 => "RTK fixed",
-            5 => "RTK float",
-            6 => "dead reckoning",
-            7 => "manual input",
-            8 => "simulator",
-            _ => "an unknown quality",
-        }
+/// What the quality of a fix means, as GGA counts it.
+#[must_use]
+pub fn quality_in_words(quality: u8) -> &'static str {
+    match quality {
+        0 => "no fix",
+        1 => "GPS",
+        2 => "DGPS",
+        3 => "PPS",
+        4 => "RTK fixed",
+        5 => "RTK float",
+        6 => "dead reckoning",
+        7 => "manual input",
+        8 => "simulator",
+        _ => "an unknown quality",
     }
+}
 
+impl Gga {
     /// 14 fields. The last, the reference station, must be empty: the driver of the fleet counts fields after it has
     /// dropped one empty one from the end, and with a station has no position at all.
     pub(super) fn layout(&mut self) -> Layout<'_> {

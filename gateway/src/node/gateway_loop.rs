@@ -366,7 +366,7 @@ impl GatewayLoop<'_> {
         if command == OperatorCommand::Status {
             return Ok(None);
         }
-        self.remark(&format!("operator command: {command:?}"));
+        self.remark(&format!("operator command: {command}"));
         let refused = self.step_core(Input::Operator(command), None)?;
         if let Some(reason) = &refused {
             self.remark(&format!("refused: {reason}"));

@@ -4,7 +4,7 @@ use super::Check;
 use super::fix_scatter::FixScatter;
 use crate::geodesy::LocalFrame;
 use crate::geofence::GeofenceArea;
-use crate::nmea::{Mode, Operator, TimeOfDay};
+use crate::nmea::{Mode, Operator, TimeOfDay, quality_in_words};
 use crate::sensor_check::SensorCheck;
 use game::frame::LatLon;
 use game::gateway::Gateway;
@@ -43,23 +43,26 @@ pub fn boat_checks(
         compass(seen),
         control(seen, gateway),
         battery(seen, gateway),
+        bilge(seen, gateway),
         clock(seen, now, host),
         error(seen),
     ]
 }
 
 fn fix(seen: &SensorCheck, gateway: &Gateway) -> Check {
-    let Some(gga) = seen.fix() else { return Check::not_done("fix", "no GGA came") };
+    let Some(fix) = seen.fix() else { return Check::not_done("fix", "none came that tells its quality") };
     let nav = &gateway.nav;
-    let satellites = gga.satellites.map_or("unknown".to_owned(), |count| count.to_string());
-    let hdop = gga.hdop.map_or("unknown".to_owned(), |hdop| hdop.to_string());
-    let quality = gga.quality_in_words();
+    let satellites = fix.satellites.map_or("unknown".to_owned(), |count| count.to_string());
+    let hdop = fix.hdop.map_or("unknown".to_owned(), |hdop| hdop.to_string());
+    let quality = fix.quality.unwrap_or(0);
     let found = format!(
-        "{quality}, {satellites} satellites, dilution {hdop}; expected quality {} or better, dilution up to {}",
-        nav.quality_min, nav.hdop_max
+        "{}, {satellites} satellites, dilution {hdop}; expected quality {} or better, dilution up to {}",
+        quality_in_words(quality),
+        nav.quality_min,
+        nav.hdop_max
     );
-    let is_sharp = gga.hdop.is_none_or(|hdop| hdop <= nav.hdop_max);
-    Check::of("fix", gga.at.is_some() && gga.quality >= nav.quality_min && is_sharp, found)
+    let is_sharp = fix.hdop.is_none_or(|hdop| hdop <= nav.hdop_max);
+    Check::of("fix", fix.at.is_some() && quality >= nav.quality_min && is_sharp, found)
 }
 
 fn scatter(seen: &SensorCheck) -> Check {
@@ -96,7 +99,7 @@ fn geofence(seen: &SensorCheck, water: Option<&Water>) -> Check {
 }
 
 fn compass(seen: &SensorCheck) -> Check {
-    match seen.compass_deg() {
+    match seen.heading_deg() {
         Some(heading_deg) if (0.0..=360.0).contains(&heading_deg) => {
             Check::of("compass", true, seen.heading().unwrap_or_default())
         }
@@ -106,25 +109,37 @@ fn compass(seen: &SensorCheck) -> Check {
 }
 
 fn control(seen: &SensorCheck, gateway: &Gateway) -> Check {
-    let Some(state) = seen.control() else {
+    let Some(control) = seen.control() else {
         let found = "the boat does not say who commands it";
         return Check::of("control", gateway.control.assumed, format!("{found}; expected PSEAD, or control.assumed"));
     };
-    let is_ours = state.operator.is_none_or(|operator| operator == Operator::Secondary);
-    let operator = state.operator.map_or("nobody named".to_owned(), |operator| format!("{operator:?}"));
+    let (mode, is_ours) = (control.shown.mode, control.operator.is_none_or(|operator| operator == Operator::Secondary));
+    let operator = control.operator.map_or("nobody named".to_owned(), |operator| format!("{operator:?}"));
     let found = format!(
-        "mode {} ({:?}), commanded by {operator}; expected standby (L), and Secondary",
-        state.mode.letter(),
-        state.mode
+        "mode {}, commanded by {operator}; expected {}, and Secondary",
+        seen.mode_in_words(mode),
+        seen.mode_in_words(Mode::Standby)
     );
-    Check::of("control", is_ours && state.mode == Mode::Standby, found)
+    Check::of("control", is_ours && mode == Mode::Standby, found)
 }
 
 fn battery(seen: &SensorCheck, gateway: &Gateway) -> Check {
     let least = gateway.battery.volts_min;
-    match seen.volts() {
+    match seen.power().volts {
         Some(volts) => Check::of("battery", volts >= least, format!("{volts:.1} V, expected {least} or more")),
         None => Check::not_done("battery", "the boat does not report it"),
+    }
+}
+
+fn bilge(seen: &SensorCheck, gateway: &Gateway) -> Check {
+    let (most_a, currents) = (gateway.currents.bilge_a, seen.power().bilge_a);
+    let amps = currents.iter().flatten().copied().reduce(f64::max);
+    match amps {
+        Some(amps) if most_a > 0.0 => {
+            let found = format!("pumps draw {amps:.1} A, expected less than {most_a}: more is a leak");
+            Check::of("bilge", amps < most_a, found)
+        }
+        _ => Check::not_done("bilge", "the boat does not report its pumps, or they are not watched"),
     }
 }
 
@@ -140,8 +155,8 @@ fn clock(seen: &SensorCheck, now: SimTime, host: TimeOfDay) -> Check {
 
 fn error(seen: &SensorCheck) -> Check {
     match seen.error() {
-        None | Some("N") => Check::of("error", true, "the boat reports none".to_owned()),
-        Some(code) => Check::of("error", false, format!("the boat reports error {code:?}")),
+        None => Check::of("error", true, "the boat reports none".to_owned()),
+        Some(error) => Check::of("error", false, format!("the boat reports error {error:?}")),
     }
 }
 
@@ -162,7 +177,7 @@ mod tests {
     /// A minute of a boat about this place of the field, with its GGA from the fifth field on and what else it says.
     fn seen(water: &Water, [x, y]: [f64; 2], fix: &str, more: &[&str]) -> SensorCheck {
         let frame = LocalFrame::new(water.field.plan.datum);
-        let mut check = SensorCheck::new();
+        let mut check = SensorCheck::new(&game::scenario::default_gateway());
         for i in 0..120_u32 {
             let at = frame.lat_lon(Ned::from_xy(x + 0.1 * f64::from(i % 3), y));
             let minutes = |deg: f64| (deg.abs().trunc(), deg.abs().fract() * 60.0);
@@ -182,7 +197,7 @@ mod tests {
     const SOUND: [&str; 4] = [
         "PSEAA,-2.2,0.7,222.6,,47.8,-0.04,-0.01,-1.00,-0.01",
         "PSEAD,L,0.0,0,0,,T,2,2",
-        "PSEAB,24.8,15433,1.3,22.3,42308,,,24.8,,1.3,0.0,0.0,,,26",
+        "PSEAB,24.8,15433,1.3,22.3,42308,,,24.8,,1.3,0.0,0.0,0.0,0.0,26",
         "GPVTG,000.0,T,012.7,M,000.08,N,0000.14,K",
     ];
 
@@ -216,6 +231,13 @@ mod tests {
                 "battery",
                 "21.0 V",
             ),
+            (
+                [80.0, 40.0],
+                fix,
+                sound(2, "PSEAB,24.8,15433,1.3,22.3,42308,,,24.8,,1.3,0.0,0.0,,0.9,26"),
+                "bilge",
+                "0.9 A",
+            ),
             ([80.0, 40.0], fix, sound(3, "PSEAG,E"), "error", "error \"E\""),
         ] {
             let seen = seen(&water, place, fix, &more);
@@ -235,12 +257,12 @@ mod tests {
 
     #[test]
     fn what_a_short_look_cannot_tell_is_not_checked() {
-        let mut check = SensorCheck::new();
+        let mut check = SensorCheck::new(&game::scenario::default_gateway());
         check.take(SimTime::ZERO, b"$GPGGA,150502.00,4221.50616,N,07105.24688,W,2,11,0.98,5.5,M,-33.2,M,,*62\r\n");
         let now = (SimTime::ZERO, TimeOfDay(54_302_400));
         let checks = boat_checks(&check, now, &game::scenario::default_gateway(), None);
         let not_checked = checks.iter().filter(|check| check.verdict == Verdict::NotChecked);
         let names: Vec<&str> = not_checked.map(|check| check.name.as_str()).collect();
-        assert_eq!(names, ["scatter", "geofence", "compass", "battery"], "{checks:?}");
+        assert_eq!(names, ["scatter", "geofence", "compass", "battery", "bilge"], "{checks:?}");
     }
 }

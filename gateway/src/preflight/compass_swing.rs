@@ -5,6 +5,7 @@
 
 use game::angle::wrap_pi;
 use game::math;
+use nalgebra::{Matrix5, Vector5};
 use std::f64::consts::TAU;
 
 /// The most pairs that are kept.
@@ -62,15 +63,14 @@ impl CompassSwing {
             [s + sin, c + cos]
         });
         let mean_rad = math::atan2(sin, cos);
-        let (mut normal, mut right) = ([[0.0; 5]; 5], [0.0; 5]);
+        let (mut normal, mut right) = (Matrix5::zeros(), Vector5::zeros());
         for (psi_rad, off_rad) in &self.pairs {
-            let row = basis(*psi_rad);
-            for (i, base) in row.iter().enumerate() {
-                right[i] += base * wrap_pi(off_rad - mean_rad);
-                normal[i].iter_mut().zip(row).for_each(|(sum, other)| *sum += base * other);
-            }
+            let row = Vector5::from(basis(*psi_rad));
+            right += row * wrap_pi(off_rad - mean_rad);
+            normal += row * row.transpose();
         }
-        let mut found = solved(normal, right).ok_or_else(|| "the headings do not tell a curve".to_owned())?;
+        let solved = normal.cholesky().map(|normal| normal.solve(&right));
+        let mut found: [f64; 5] = solved.ok_or_else(|| "the headings do not tell a curve".to_owned())?.into();
         found[0] = wrap_pi(found[0] + mean_rad);
         let value = |psi_rad: f64| basis(psi_rad).iter().zip(found).map(|(base, factor)| base * factor).sum::<f64>();
         let squares = self.pairs.iter().map(|(psi_rad, off)| wrap_pi(off - value(*psi_rad))).map(|rest| rest * rest);
@@ -98,31 +98,6 @@ impl Deviation {
 fn basis(psi_rad: f64) -> [f64; 5] {
     let ((sin, cos), (sin_2, cos_2)) = (math::sin_cos(psi_rad), math::sin_cos(2.0 * psi_rad));
     [1.0, sin, cos, sin_2, cos_2]
-}
-
-/// The solution of five linear equations by elimination with the largest pivots.
-fn solved(mut matrix: [[f64; 5]; 5], mut right: [f64; 5]) -> Option<[f64; 5]> {
-    for i in 0..5 {
-        let pivot = (i..5).max_by(|a, b| matrix[*a][i].abs().total_cmp(&matrix[*b][i].abs()))?;
-        matrix.swap(i, pivot);
-        right.swap(i, pivot);
-        if matrix[i][i].abs() < 1e-9 {
-            return None;
-        }
-        for below in i + 1..5 {
-            let factor = matrix[below][i] / matrix[i][i];
-            let above = matrix[i];
-            for (number, above) in matrix[below].iter_mut().zip(above) {
-                *number -= factor * above;
-            }
-            right[below] -= factor * right[i];
-        }
-    }
-    for i in (0..5).rev() {
-        let known: f64 = (i + 1..5).map(|j| matrix[i][j] * right[j]).sum();
-        right[i] = (right[i] - known) / matrix[i][i];
-    }
-    Some(right)
 }
 
 #[cfg(test)]

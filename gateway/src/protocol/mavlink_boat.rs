@@ -31,8 +31,8 @@ pub(super) struct Boat {
     pub(super) mode: Option<ShownMode>,
     /// Messages of other systems and components.
     pub(super) others: u64,
-    /// Quality and dilution of precision of the receiver's fix, and when they came.
-    fix: Option<(SimTime, u8, Option<f64>)>,
+    /// What the receiver tells of its fix, and when that came.
+    fix: Option<(SimTime, Fix)>,
     position_ms: Option<u32>,
     attitude_at: SimTime,
     has_volts: bool,
@@ -113,7 +113,7 @@ impl Boat {
     /// What a message reports.
     pub(super) fn report(&mut self, now: SimTime, message: &MavMessage, take: &mut dyn FnMut(Report)) {
         match message {
-            MavMessage::GPS_RAW_INT(gps) => self.fix = Some((now, quality(gps), dilution(gps))),
+            MavMessage::GPS_RAW_INT(gps) => self.fix = Some((now, fix(gps))),
             MavMessage::GLOBAL_POSITION_INT(position) => self.take_position(now, position, take),
             MavMessage::ATTITUDE(ATTITUDE_DATA { yaw, yawspeed, .. }) => {
                 self.attitude_at = now;
@@ -169,11 +169,11 @@ impl Boat {
         }
         take(Report::Velocity(Ned { north: 0.01 * f64::from(vx), east: 0.01 * f64::from(vy) }));
         // The position is an estimate that goes on without a receiver: its fix says what it is worth.
-        let fix = self.fix.filter(|(at, ..)| (now - *at).as_s() <= FIX_TYPE_AGE_MAX_S);
-        let (quality, hdop) = fix.map_or((0, None), |(_, quality, hdop)| (quality, hdop));
+        let fix = self.fix.filter(|(at, _)| (now - *at).as_s() <= FIX_TYPE_AGE_MAX_S);
+        let fix = fix.map_or(Fix { quality: Some(0), ..Fix::default() }, |(_, fix)| fix);
         let at = LatLon { lat_deg: 1e-7 * f64::from(lat), lon_deg: 1e-7 * f64::from(lon) };
         let is_on_globe = at.lat_deg.abs() <= 90.0 && at.lon_deg.abs() <= 180.0;
-        take(Report::Fix(Fix { time: None, at: is_on_globe.then_some(at), quality: Some(quality), hdop }));
+        take(Report::Fix(Fix { at: is_on_globe.then_some(at), ..fix }));
     }
 }
 
@@ -181,6 +181,17 @@ impl Boat {
 fn is_boat(heartbeat: &HEARTBEAT_DATA) -> bool {
     let is_vehicle = matches!(heartbeat.mavtype, MavType::MAV_TYPE_SURFACE_BOAT | MavType::MAV_TYPE_GROUND_ROVER);
     is_vehicle && heartbeat.autopilot == MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA
+}
+
+/// A fix but for its place.
+fn fix(gps: &GPS_RAW_INT_DATA) -> Fix {
+    Fix {
+        quality: Some(quality(gps)),
+        // The largest values say that it is not known.
+        hdop: (gps.eph != u16::MAX).then(|| 0.01 * f64::from(gps.eph)),
+        satellites: (gps.satellites_visible != u8::MAX).then_some(gps.satellites_visible),
+        ..Fix::default()
+    }
 }
 
 /// The quality of a fix as GGA counts it.
@@ -192,11 +203,6 @@ fn quality(gps: &GPS_RAW_INT_DATA) -> u8 {
         GpsFixType::GPS_FIX_TYPE_RTK_FLOAT => 5,
         GpsFixType::GPS_FIX_TYPE_RTK_FIXED => 4,
     }
-}
-
-/// The horizontal dilution of precision, if it is told.
-fn dilution(gps: &GPS_RAW_INT_DATA) -> Option<f64> {
-    (gps.eph != u16::MAX).then(|| 0.01 * f64::from(gps.eph))
 }
 
 /// A voltage, V, if it is measured.

@@ -49,6 +49,8 @@ pub struct Fix {
     pub quality: Option<u8>,
     /// The horizontal dilution of precision, if it is told.
     pub hdop: Option<f64>,
+    /// How many satellites it is made of, if that is told.
+    pub satellites: Option<u8>,
 }
 
 /// A heading.

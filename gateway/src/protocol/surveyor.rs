@@ -3,7 +3,7 @@
 use super::report::{ControlReport, Fix, Heading, North, Power, Report, Shown};
 use super::surveyor_upload::{Next, Upload};
 use super::{Command, UploadStep, mission_check};
-use crate::nmea::{self, ControlState, Framer, M_S_PER_KN, Mode, ParseError, Sentence};
+use crate::nmea::{self, ControlState, Framer, Gga, M_S_PER_KN, Mode, ParseError, Sentence};
 use crate::set_point::SetPoint;
 use crate::supervisor::Task;
 use game::SimTime;
@@ -99,14 +99,15 @@ impl Surveyor {
 fn report(sentence: &Sentence, take: &mut dyn FnMut(Report)) {
     match sentence {
         Sentence::Gga(gga) => {
-            take(Report::Fix(Fix { time: gga.time, at: gga.at, quality: Some(gga.quality), hdop: gga.hdop }));
+            let Gga { time, at, quality, hdop, satellites, .. } = *gga;
+            take(Report::Fix(Fix { time, at, quality: Some(quality), hdop, satellites }));
             gga.time.into_iter().for_each(|time| take(Report::Clock(time)));
         }
         Sentence::Rmc(rmc) => {
             velocity(rmc.course_deg, rmc.speed_kn).into_iter().for_each(|velocity| take(Report::Velocity(velocity)));
             // It tells no quality but none at all.
             let quality = (!rmc.valid).then_some(0);
-            take(Report::Fix(Fix { time: rmc.time, at: rmc.at, quality, hdop: None }));
+            take(Report::Fix(Fix { time: rmc.time, at: rmc.at, quality, ..Fix::default() }));
         }
         Sentence::Vtg(vtg) => {
             let speed_kn = vtg.speed_kn.or(vtg.speed_km_h.map(|km_h| km_h / 1.852));

@@ -2,7 +2,6 @@
 
 use super::{State, Task};
 use crate::thrust_check::ThrustFault;
-use game::external::BoatMode;
 use std::fmt;
 use thiserror::Error;
 
@@ -151,14 +150,7 @@ impl fmt::Display for Task {
             Task::StationKeep => "station keeping",
             Task::GoToErp => "to the emergency recovery point",
             Task::Mission => "mission",
-            Task::Mode(BoatMode::Heading { heading_deg, thrust_pct }) => {
-                return write!(f, "heading {heading_deg:03.0} at {thrust_pct:.0} %");
-            }
-            Task::Mode(BoatMode::RiverNav) => "river navigation",
-            Task::Mode(BoatMode::Autopilot) => "autopilot",
-            Task::Mode(BoatMode::CompassCalibration) => "compass calibration",
-            Task::Mode(BoatMode::Depth) => "depth",
-            Task::Mode(BoatMode::GravityVector) => "direction of gravity",
+            Task::Mode(mode) => return mode.fmt(f),
         })
     }
 }

@@ -5,4 +5,5 @@
 mod boat;
 mod closed_loop;
 mod framing;
+mod preflight;
 mod rig;

@@ -5,7 +5,7 @@ use super::polygon::check_corners;
 use crate::angle::wrap_pi;
 use crate::field::{distance_to_line, sides};
 use crate::frame::Ned;
-use crate::gateway::Gateway;
+use crate::gateway::{BoatProtocol, Gateway};
 use crate::math;
 use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::read::Document;
@@ -20,6 +20,10 @@ const EARTH_RADIUS_M: f64 = 6_371_000.0;
 pub(in crate::scenario) fn gateway(diagnostics: &mut Diagnostics, document: &Document<Gateway>) -> Option<Gateway> {
     check_thrust_map(diagnostics, document, "loops.thrust_map", &document.raw.loops.thrust_map);
     check_geofence(diagnostics, document);
+    if document.raw.protocol == BoatProtocol::Mavlink && !document.raw.startup_words.is_empty() {
+        let message = "startup_words are a Surveyor's, expected none with protocol = \"mavlink\"";
+        diagnostics.note(document.at("startup_words"), message);
+    }
     document.is_faultless(diagnostics).then(|| document.raw.clone())
 }
 

@@ -1,0 +1,101 @@
+//! The pre-flight check of a boat that speaks MAVLink.
+
+use crate::boat::Boat;
+use crate::rig::plan;
+use game::SimTime;
+use game::frame::Ned;
+use gateway::emulator::{ArduPilot, SYSTEM};
+use gateway::geofence::GeofenceArea;
+use gateway::mavlink::dialect::{HEARTBEAT_DATA, MavAutopilot, MavCmd, MavMessage, MavType};
+use gateway::mavlink::{AUTOPILOT, Framer, RoverMode, Writer};
+use gateway::nmea::date_and_time;
+use gateway::preflight::{Check, Verdict, Water, boat_checks};
+use gateway::sensor_check::SensorCheck;
+
+const BEGAN_UTC_NS: u64 = 1_795_000_000_000_000_000;
+
+/// Listens to a boat at this place for 30 s; what was seen, and its checks.
+fn checked(place: Ned, change: impl Fn(&mut ArduPilot)) -> (SensorCheck, Vec<Check>) {
+    let plan = plan();
+    let site = plan.site.as_ref().expect("the rig has one");
+    let mut ardupilot = ArduPilot::new(site.field.plan.datum, Some(1.0));
+    ardupilot.set_clock(SimTime::ZERO, BEGAN_UTC_NS);
+    change(&mut ardupilot);
+    let (mut seen, mut now) = (SensorCheck::new(&plan.gateway), SimTime::ZERO);
+    for tenth in 0..300_u64 {
+        now = SimTime::from_s(0.1 * tenth as f64);
+        let (mut to_boat, mut from_boat) = (vec![], vec![]);
+        seen.ask(now, &mut to_boat);
+        ardupilot.take(now, &to_boat);
+        let boat = Boat { at: place, psi_rad: 1.0, ..Boat::default() };
+        ardupilot.observe(now, &boat.measured(now, boat.at));
+        ardupilot.telemetry(now, &mut from_boat);
+        seen.take(now, &from_boat);
+    }
+    let (_, host) = date_and_time(BEGAN_UTC_NS + 29_900_000_000);
+    let area = GeofenceArea::new(&site.field, &plan.gateway.geofence);
+    let checks = boat_checks(&seen, (now, host), &plan.gateway, Some(&Water { field: site.field.clone(), area }));
+    (seen, checks)
+}
+
+fn wrong(checks: &[Check]) -> Vec<(&str, Verdict)> {
+    checks
+        .iter()
+        .filter(|check| check.verdict != Verdict::Passed)
+        .map(|check| (check.name.as_str(), check.verdict))
+        .collect()
+}
+
+#[test]
+fn a_sound_boat_passes_and_each_thing_that_is_wrong_fails_its_own_check() {
+    let inside = Ned::from_xy(80.0, 40.0);
+    let pumps = ("bilge", Verdict::NotChecked);
+    let (seen, checks) = checked(inside, |_| {});
+    assert_eq!(wrong(&checks), [pumps], "{checks:?}");
+    assert!(
+        seen.findings(SimTime::from_s(29.9), date_and_time(BEGAN_UTC_NS).1)
+            .iter()
+            .any(|line| line == "heading: 57.3 true")
+    );
+    let failed = |name| vec![(name, Verdict::Failed), pumps];
+    let (_, checks) = checked(Ned::from_xy(80.0, 400.0), |_| {});
+    assert_eq!(wrong(&checks), failed("geofence"), "{checks:?}");
+    let (_, checks) = checked(inside, |boat| boat.set_volts(12.0));
+    assert_eq!(wrong(&checks), failed("battery"), "{checks:?}");
+    let (seen, checks) = checked(inside, |boat| boat.set_mode(RoverMode::Manual));
+    let control = checks.iter().find(|check| check.name == "control").expect("it is checked");
+    assert!(control.verdict == Verdict::Failed && control.found.contains("commanded by Rc"), "{control:?}");
+    assert_eq!(seen.missing(), ["control: Rc has the boat, in a mode that is not GUIDED or HOLD"]);
+}
+
+#[test]
+fn it_asks_for_what_it_needs_and_says_what_does_not_come() {
+    let (mut seen, mut asked, mut wanted) = (SensorCheck::new(&plan().gateway), Framer::new(), vec![]);
+    let (mut heartbeats, mut writer) = (vec![], Writer::new(SYSTEM, AUTOPILOT));
+    let heartbeat = HEARTBEAT_DATA {
+        custom_mode: 4,
+        mavtype: MavType::MAV_TYPE_SURFACE_BOAT,
+        autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
+        ..HEARTBEAT_DATA::default()
+    };
+    writer.write(&MavMessage::HEARTBEAT(heartbeat), &mut heartbeats);
+    for s in 0..30 {
+        let (now, mut to_boat) = (SimTime::from_s(f64::from(s)), vec![]);
+        seen.take(now, &heartbeats);
+        seen.ask(now, &mut to_boat);
+        asked.push(&to_boat, &mut |received| wanted.push(received.message));
+    }
+    let is_request = |message: &MavMessage| match message {
+        MavMessage::HEARTBEAT(_) => true,
+        MavMessage::COMMAND_LONG(command) => {
+            matches!(command.command, MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL | MavCmd::MAV_CMD_REQUEST_MESSAGE)
+        }
+        _ => false,
+    };
+    assert!(wanted.len() > 30 && wanted.iter().all(is_request), "{wanted:?}");
+    let missing = seen.missing().join("\n");
+    for name in ["GLOBAL_POSITION_INT", "GPS_RAW_INT", "ATTITUDE", "SYS_STATUS"] {
+        assert!(missing.contains(name), "{missing}");
+    }
+    assert!(!missing.contains("HEARTBEAT"), "{missing}");
+}
