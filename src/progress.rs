@@ -1,7 +1,6 @@
 //! How far something is that takes a while: a bar on a terminal, a line now and then elsewhere. On standard error.
 
-use crate::screen;
-use bus::clock;
+use crate::{clock, screen};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::time::{Duration, Instant};
 
@@ -55,7 +54,7 @@ impl Progress {
         self.bar.inc(1);
         if !self.bar.is_hidden() {
             self.bar.set_message(words());
-        } else if clock::since(self.told) >= LINE_EVERY {
+        } else if self.told.elapsed() >= LINE_EVERY {
             self.told = clock::now();
             let (done, noun) = (self.bar.position(), self.noun);
             let of = self.bar.length().map_or(String::new(), |count| format!(" of {count}"));

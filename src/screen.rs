@@ -4,7 +4,7 @@ use crate::result_table;
 use crate::style::{self, Names};
 use anstream::AutoStream;
 use game::printable;
-use sim::node::{Progress, ProgressMessage};
+use sim::{Progress, ProgressMessage};
 use std::io::{IsTerminal, Write};
 
 /// Shows the progress of a game to a person.
