@@ -30,7 +30,7 @@ impl Progress {
 
     /// Of so many of these none is done yet.
     pub(crate) fn of(count: u64, noun: &'static str) -> Progress {
-        let style = format!("{{wide_bar}} {{pos}}/{{len}} {noun}  {{per_sec}}  {{eta}} left");
+        let style = format!("{{wide_bar}} {{human_pos}}/{{human_len}} {noun}  {{per_sec}}  {{eta}} left");
         let style = ProgressStyle::with_template(&style).expect("the template is sound").progress_chars("=> ");
         Progress { bar: ProgressBar::new(count).with_style(style), noun, told: clock::now() }
     }
@@ -42,6 +42,22 @@ impl Progress {
         let bar = ProgressBar::new_spinner().with_style(style);
         bar.enable_steady_tick(TURN_EVERY);
         Progress { bar, noun, told: clock::now() }
+    }
+
+    /// So many were done before.
+    pub(crate) fn begin_at(&self, done: u64) {
+        self.bar.set_position(done);
+        self.bar.reset_eta();
+    }
+
+    /// So many are done.
+    pub(crate) fn set(&self, done: u64) {
+        self.bar.set_position(done);
+    }
+
+    /// Prints a line of the results, above the bar.
+    pub(crate) fn print(&self, line: &str) {
+        self.bar.suspend(|| screen::print(&format!("{line}\n")));
     }
 
     /// One more is done.
