@@ -67,9 +67,11 @@ pub(crate) fn command<T: CommandFactory>() -> Command {
 
 /// What was typed. It ends the program if that is no command, and says so if another build has it.
 pub(crate) fn matches<T: CommandFactory>() -> ArgMatches {
-    command::<T>().try_get_matches().unwrap_or_else(|error| {
+    let mut command = command::<T>();
+    command.try_get_matches_from_mut(std::env::args_os()).unwrap_or_else(|error| {
         if let Some(ContextValue::String(name)) = error.get(ContextKind::InvalidSubcommand)
             && GROUPS.iter().any(|(_, names)| names.contains(&name.as_str()))
+            && command.find_subcommand(name).is_none()
         {
             screen::complain(&not_built(&format!("the command {name}")));
             std::process::exit(error.exit_code());

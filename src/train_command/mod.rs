@@ -148,7 +148,7 @@ fn finish(trainer: &Trainer, folder: &Path) -> Result<ExitCode> {
     let mut text = format!("best after {samples} samples: won {won:.0} %, digest {digest:032x}\n");
     let strategy = folder.join("best.toml");
     if strategy.exists() {
-        text += &format!("to watch it: squall run GAME --blue {} --view\n", strategy.display());
+        text += &format!("to play it: squall run GAME --blue {}\n", strategy.display());
     }
     screen::print(&text);
     output_file::write(&folder.join("digest.txt"), "the digest", format!("{digest:032x}\n"))?;
