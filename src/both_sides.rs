@@ -3,7 +3,7 @@
 use anyhow::{Result, bail};
 use game::Scenario;
 use game::id::TeamId;
-use sim::node::Report;
+use sim::Report;
 
 /// The teams of a game that is played from both sides.
 pub(crate) struct BothSides {

@@ -2,11 +2,12 @@
 
 use crate::screen;
 use anyhow::{Context, Result};
-use clap::{Command, CommandFactory};
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{ArgMatches, Command, CommandFactory};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// The subcommands by what they are for, in the order of the help.
+/// The subcommands by what they are for, in the order of the help; those among them that need a network are not in every build.
 const GROUPS: [(&str, &[&str]); 6] = [
     ("Play", &["demo", "run", "tournament", "sweep"]),
     ("Learn", &["train", "policy"]),
@@ -49,23 +50,57 @@ pub(crate) fn command<T: CommandFactory>() -> Command {
     let width = command.get_subcommands().map(|one| one.get_name().len()).max().unwrap_or(0);
     let mut text = String::new();
     for (group, names) in GROUPS {
-        text.push_str(&format!("{group}:\n"));
-        for name in names {
-            let about = command.find_subcommand(name).and_then(Command::get_about).map(ToString::to_string);
+        let mut lines = String::new();
+        for one in names.iter().filter_map(|name| command.find_subcommand(name)) {
             // The first sentence: the rest is in the command's own help.
-            let about = about.unwrap_or_default();
+            let about = one.get_about().map(ToString::to_string).unwrap_or_default();
             let about = about.split([':', ';', ',']).next().unwrap_or_default();
-            text.push_str(&format!("  {name:width$}  {about}\n"));
+            lines.push_str(&format!("  {:width$}  {about}\n", one.get_name()));
         }
-        text.push('\n');
+        if !lines.is_empty() {
+            text.push_str(&format!("{group}:\n{lines}\n"));
+        }
     }
     text.push_str("squall COMMAND --help tells more, with examples.");
     command.help_template("{about}\n\n{usage-heading} {usage}{after-help}\n\nOptions:\n{options}").after_help(text)
 }
 
-pub(crate) fn first() -> ExitCode {
-    screen::print(FIRST);
+/// What was typed. It ends the program if that is no command, and says so if another build has it.
+pub(crate) fn matches<T: CommandFactory>() -> ArgMatches {
+    let mut command = command::<T>();
+    command.try_get_matches_from_mut(std::env::args_os()).unwrap_or_else(|error| {
+        if let Some(ContextValue::String(name)) = error.get(ContextKind::InvalidSubcommand)
+            && GROUPS.iter().any(|(_, names)| names.contains(&name.as_str()))
+            && command.find_subcommand(name).is_none()
+        {
+            screen::complain(&not_built(&format!("the command {name}")));
+            std::process::exit(error.exit_code());
+        }
+        error.exit()
+    })
+}
+
+/// What somebody is told who wants what this build has not.
+pub(crate) fn not_built(what: &str) -> String {
+    format!(
+        "{what} is not in this program, which was built without the network: build it again without --no-default-features"
+    )
+}
+
+pub(crate) fn first<T: CommandFactory>() -> ExitCode {
+    // Without what only another build understands.
+    let command = |line: &str| Some(line.trim().strip_prefix("squall ")?.split("  ").next()?.to_owned());
+    let is_known = |line: &&str| command(line).and_then(|words| refused::<T>(&words)).is_none();
+    let lines: Vec<&str> = FIRST.lines().filter(is_known).collect();
+    screen::print(&(lines.join("\n") + "\n"));
     ExitCode::SUCCESS
+}
+
+/// What this build does not understand of a command.
+fn refused<T: CommandFactory>(words: &str) -> Option<clap::Error> {
+    let words = std::iter::once("squall").chain(words.split_whitespace());
+    let refused = T::command().try_get_matches_from(words).err()?;
+    (refused.kind() != ErrorKind::DisplayHelp).then_some(refused)
 }
 
 pub(crate) fn completions<T: CommandFactory>(args: &CompletionArgs) -> ExitCode {
@@ -94,11 +129,11 @@ mod tests {
     #[test]
     fn every_subcommand_is_in_one_group_and_its_help_has_an_example() {
         let command = crate::Cli::command();
-        let mut grouped: Vec<&str> = GROUPS.iter().flat_map(|(_, names)| names.iter().copied()).collect();
-        let mut known: Vec<&str> = command.get_subcommands().map(Command::get_name).collect();
-        grouped.sort_unstable();
-        known.sort_unstable();
-        assert_eq!(grouped, known);
+        let grouped: Vec<&str> = GROUPS.iter().flat_map(|(_, names)| names.iter().copied()).collect();
+        let known: Vec<&str> = command.get_subcommands().map(Command::get_name).collect();
+        assert!(known.iter().all(|name| grouped.contains(name)), "{grouped:?} lacks one of {known:?}");
+        // The others are in the build with the network.
+        assert_eq!(grouped.len() == known.len(), cfg!(feature = "network"), "{grouped:?} and {known:?}");
         for one in command.get_subcommands() {
             let examples = one.get_after_help().map(ToString::to_string).unwrap_or_default();
             let example = format!("squall {}", one.get_name());
@@ -121,10 +156,7 @@ mod tests {
             for line in examples.lines().filter_map(|line| line.trim().strip_prefix("squall ")) {
                 // What follows is for the shell.
                 let line = line.split(" >").next().unwrap_or(line);
-                let words = std::iter::once("squall").chain(line.split_whitespace());
-                let refused = crate::Cli::command().try_get_matches_from(words).err();
-                let refused = refused.filter(|error| error.kind() != clap::error::ErrorKind::DisplayHelp);
-                wrong.extend(refused.map(|error| format!("{line}: {error}")));
+                wrong.extend(refused::<crate::Cli>(line).map(|error| format!("{line}: {error}")));
             }
         }
         assert!(wrong.is_empty(), "{}", wrong.join("\n"));

@@ -27,11 +27,8 @@ pub(crate) fn problems(Problems(problems): &Problems) -> String {
 }
 
 fn problem(problem: &Problem) -> String {
-    let Problem { line, column, source, .. } = problem;
-    let told = problem.to_string();
-    // The place ends at the first `: ` behind line and column.
-    let place = told.find(&format!(":{line}:{column}: ")).map_or(0, |at| at + format!(":{line}:{column}:").len());
-    let told = format!("{}{}", style::bad(&told[..place]), &told[place..]);
+    let Problem { line, column, source, message, .. } = problem;
+    let told = format!("{} {}", style::bad(&format!("{}:", problem.place())), printable::line(message));
     let Some(span) = span(source, *column) else { return told };
     let shown = Snippet::source(source.as_str()).line_start(*line).annotation(AnnotationKind::Primary.span(span));
     let shown = Renderer::styled().term_width(COLUMNS).render(&[Group::with_level(Level::ERROR).element(shown)]);

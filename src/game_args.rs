@@ -1,15 +1,12 @@
 //! Which game, and what takes the place of what its file says: what `run` and `sim` ask alike.
 
-use crate::child_process::{self, option};
 use crate::output_file;
 use crate::scenario_files;
-use crate::sim_command::seconds;
 use anyhow::{Context, Result, bail};
 use game::Scenario;
 use game::scenario::{Files, Kind, Overrides, Setting};
-use sim::node::{Pace, Report};
+use sim::Report;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::sync::Arc;
 
 /// A game, from the command line.
@@ -20,7 +17,7 @@ pub(crate) struct GameArgs {
     scenario: PathBuf,
     /// Chooses the game [default: as the file says]
     #[arg(long)]
-    seed: Option<u64>,
+    pub(crate) seed: Option<u64>,
     /// A sea in place of the game's own: a file or a name, as in --sea gale
     #[arg(long, value_name = "SEA", value_parser = scenario_files::sea)]
     sea: Option<PathBuf>,
@@ -47,15 +44,6 @@ pub(crate) struct GameArgs {
     /// Plays external boats as simulated ones: a rehearsal
     #[arg(long)]
     rehearse: bool,
-    /// lockstep, realtime, or a factor such as 4x
-    #[arg(long, default_value = "lockstep")]
-    pub(crate) pace: Pace,
-    /// In lockstep: plays no faster than this many times real time, until somebody asks for another speed
-    #[arg(long, value_name = "FACTOR", value_parser = speed)]
-    pub(crate) speed: Option<f64>,
-    /// How long to wait for agents, and for gateways of real boats, before starting without the missing ones, s
-    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
-    pub(crate) join_s: f64,
     /// Writes the result to this file
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -83,26 +71,6 @@ impl GameArgs {
         self.seed.unwrap_or(scenario.seed)
     }
 
-    /// A process that serves this game, or something of it, under a name.
-    pub(crate) fn sim(&self, name: &str, endpoint: &str) -> Result<Command> {
-        let runtime = if self.pace == Pace::Lockstep { bus::RUNTIME } else { bus::HUB_RUNTIME };
-        let mut command = child_process::squall_with(runtime, &["sim", "--game", name, "--listen", endpoint])?;
-        command.arg(&self.scenario);
-        let overrides = self.overrides()?;
-        option(&mut command, "--sea", overrides.sea.as_ref().map(|sea| sea.display()));
-        for (team, path) in &overrides.strategies {
-            option(&mut command, "--strategy", Some(format!("{team}={}", path.display())));
-        }
-        command.args(overrides.exchange_strategies.then_some("--exchange-strategies"));
-        command.args(overrides.simulate_all.then_some("--rehearse"));
-        for Setting { key, value, .. } in &overrides.settings {
-            option(&mut command, "--set", Some(format!("{key}={value}")));
-        }
-        option(&mut command, "--pace", Some(self.pace));
-        option(&mut command, "--seed", self.seed);
-        Ok(command)
-    }
-
     /// Whether the result can be written where it is asked for.
     pub(crate) fn check_result_file(&self) -> Result<()> {
         self.json.as_ref().map_or(Ok(()), |path| output_file::check(path, "the result"))
@@ -121,7 +89,7 @@ impl GameArgs {
     }
 
     /// What takes the place of what the game file says.
-    fn overrides(&self) -> Result<Overrides> {
+    pub(crate) fn overrides(&self) -> Result<Overrides> {
         let mut settings = self.settings.clone();
         if let Some(field) = &self.field {
             settings

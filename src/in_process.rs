@@ -1,11 +1,10 @@
 //! A whole game in this process, recorded if that is wanted.
 
+use crate::clock;
 use anyhow::{Context, Result};
-use bus::clock;
 use game::Scenario;
 use game::event::EventCursor;
-use sim::Contest;
-use sim::node::{GameRecorder, Report, Run};
+use sim::{Contest, GameRecorder, Report, Run};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -41,7 +40,7 @@ pub(crate) fn play(
     let outcome = arena::play_watched(&scenario, agent::minds_of(&scenario), seed, watch)?;
     let run = Run {
         pace: "in process".to_owned(),
-        wall_s: clock::since(start).as_secs_f64(),
+        wall_s: start.elapsed().as_secs_f64(),
         cut_short: stop.load(Ordering::Relaxed),
         ..Run::default()
     };

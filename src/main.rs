@@ -1,30 +1,27 @@
 //! `squall`: one program, a table of subcommands.
 
-mod agent_command;
+#![cfg_attr(not(feature = "network"), allow(dead_code, reason = "helpers that only commands of `network` need"))]
+
 mod both_sides;
 mod check_command;
-mod child_process;
 mod cli;
+mod clock;
 mod explain;
 mod game_args;
+#[cfg(feature = "network")]
 mod gateway_command;
-mod hardware_loop;
-mod helm_command;
 mod helm_text;
 mod identify_command;
 mod in_process;
-mod keys_command;
 mod league_file;
-mod list_command;
 mod log_command;
-mod net_args;
+mod minds;
+#[cfg_attr(not(feature = "network"), path = "without_network.rs")]
+mod network;
 mod new_command;
-mod observer;
 mod output_file;
-mod page_args;
 mod plot;
 mod policy_command;
-mod printer;
 mod progress;
 mod record_args;
 mod recording_file;
@@ -34,7 +31,6 @@ mod run_command;
 mod scenario_files;
 mod screen;
 mod sea_command;
-mod sim_command;
 mod stop;
 mod strategy_command;
 mod style;
@@ -42,10 +38,11 @@ mod sweep_command;
 mod tournament_command;
 mod train_command;
 mod trial_command;
-mod view_command;
-mod watch_command;
 mod watch_files;
 mod water_args;
+
+#[cfg(feature = "network")]
+use network::{child_process, net_args, observer, printer, sim_command};
 
 use clap::{ColorChoice, FromArgMatches, Parser, Subcommand};
 use std::process::ExitCode;
@@ -66,14 +63,8 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Shows a game in strong wind in the browser.
-    #[command(after_help = "Examples:\n  squall demo\n  squall demo --listen 0.0.0.0:8088 --token secret")]
-    Demo(run_command::DemoArgs),
-    /// Plays a whole game: starts the sim and the agents, shows what happens, prints the result.
-    #[command(
-        after_help = "Examples:\n  squall run strategy_4_vs_3\n  squall run surveyor_2v2 --sea gale --blue learned --red strategy_3 --view\n  squall run surveyor_2v2 --set link.delay_s=1 --seed 7 --both-sides"
-    )]
-    Run(run_command::Args),
+    #[command(flatten)]
+    Network(network::Command),
     /// Plays every strategy against every other over many seeds, and says who is better, and how surely.
     #[command(
         after_help = "Examples:\n  squall tournament paper_2023 --games 20\n  squall tournament simple --json report.json --quality\n  squall tournament simple --league league"
@@ -87,40 +78,11 @@ enum Command {
     /// Trains a policy by playing against itself, strategies and what it was.
     #[command(after_help = "Examples:\n  squall train first\n  squall train first --resume")]
     Train(train_command::Args),
-    /// Serves one game to agents and gateways that join it.
-    #[command(after_help = "Examples:\n  squall sim surveyor_2v2 --game mine --listen tcp/0.0.0.0:7447 --insecure")]
-    Sim(sim_command::Args),
-    /// Decides for one or many boats in a game that a sim serves.
-    #[command(after_help = "Examples:\n  squall agent --vehicle blue_1 --game mine --connect tcp/10.0.0.5:7447")]
-    Agent(agent_command::Args),
-    /// Shows a running game in the terminal, or one boat's helm.
-    #[command(after_help = "Examples:\n  squall watch\n  squall watch --game mine --connect tcp/10.0.0.5:7447")]
-    Watch(watch_command::Args),
-    /// Shows a running game on a page, or a report with its games.
-    #[command(
-        after_help = "Examples:\n  squall view\n  squall view report.json\n  squall view runs/sweep/wind\n  squall view runs/train/first\n  squall view --listen 0.0.0.0:8088 --token secret"
-    )]
-    View(view_command::Args),
-    /// Shows a recorded game again, or checks that the same comes of it.
-    #[command(after_help = "Examples:\n  squall replay runs/game.mcap\n  squall replay runs/game.mcap --check")]
-    Replay(replay_command::Args),
     /// Says what a recorded game tells: a summary, tables, plots, MOOS logs, and how it differs from another.
     #[command(
         after_help = "Examples:\n  squall log runs/game.mcap\n  squall log --compare one.mcap other.mcap\n  squall log runs/game.mcap --gif game.gif --from 120 --to 190"
     )]
     Log(log_command::Args),
-    /// Dumps one decision of a boat's helm: a table, numbers, pictures.
-    #[command(after_help = "Examples:\n  squall helm --vehicle blue_1 --png helm.png")]
-    Helm(helm_command::Args),
-    /// Brings real boats into games, and lets real back seats drive simulated ones.
-    #[command(after_help = "Examples:\n  squall gateway emulate --help\n  squall gateway surveyor --help")]
-    Gateway(gateway_command::Args),
-    /// Makes keys for a network with strangers in it: encrypted links, and certificates that say who may do what.
-    #[command(after_help = "Examples:\n  squall keys new keys --help")]
-    Keys(keys_command::Args),
-    /// Lists the games on the network and how they stand.
-    #[command(after_help = "Examples:\n  squall list\n  squall list --connect tcp/10.0.0.5:7447")]
-    List(list_command::Args),
     /// Says what a sea means for a boat, and draws it.
     #[command(after_help = "Examples:\n  squall sea gale\n  squall sea gale --boat heron --plot gale.svg")]
     Sea(sea_command::Args),
@@ -161,31 +123,15 @@ enum Command {
 
 fn main() -> ExitCode {
     scenario_files::install();
-    let cli = Cli::from_arg_matches(&cli::command::<Cli>().get_matches()).unwrap_or_else(|error| error.exit());
+    let cli = Cli::from_arg_matches(&cli::matches::<Cli>()).unwrap_or_else(|error| error.exit());
     screen::set_colour(cli.color);
-    let Some(command) = cli.command else { return cli::first() };
-    // `run` only hands keys on: what it starts without keys must not have the threads of those with keys.
-    let is_run = matches!(command, Command::Run(_) | Command::Demo(_));
-    if !is_run && let Err(error) = child_process::with_threads_for_keys() {
-        screen::complain(&explain::error(&error));
-        return ExitCode::FAILURE;
-    }
+    let Some(command) = cli.command else { return cli::first::<Cli>() };
     let done = match command {
-        Command::Demo(args) => run_command::demo(&args),
-        Command::Run(args) => run_command::run(&args),
+        Command::Network(command) => network::run(&command),
         Command::Tournament(args) => tournament_command::run(&args),
         Command::Sweep(args) => sweep_command::run(&args),
         Command::Train(args) => train_command::run(&args),
-        Command::Sim(args) => sim_command::run(&args),
-        Command::Agent(args) => agent_command::run(&args),
-        Command::Watch(args) => watch_command::run(&args),
-        Command::View(args) => view_command::run(&args),
-        Command::Replay(args) => replay_command::run(&args),
         Command::Log(args) => log_command::run(&args),
-        Command::Helm(args) => helm_command::run(&args),
-        Command::Gateway(args) => gateway_command::run(&args),
-        Command::Keys(args) => keys_command::run(&args),
-        Command::List(args) => list_command::run(&args),
         Command::Sea(args) => sea_command::run(&args),
         Command::Trial(args) => trial_command::run(&args),
         Command::Identify(args) => identify_command::run(&args),

@@ -1,6 +1,6 @@
 //! `squall policy`: what a trained model is, and why it chose what it chose in a recorded game.
 
-use crate::replay_command::minds::Minds;
+use crate::minds::Minds;
 use crate::{helm_text, recording_file, screen};
 use anyhow::{Context, Result, bail};
 use game::action::{self, ActionSpace};

@@ -1,7 +1,6 @@
 //! How far something is that takes a while: a bar on a terminal, a line now and then elsewhere. On standard error.
 
-use crate::screen;
-use bus::clock;
+use crate::{clock, screen};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::time::{Duration, Instant};
 
@@ -31,7 +30,7 @@ impl Progress {
 
     /// Of so many of these none is done yet.
     pub(crate) fn of(count: u64, noun: &'static str) -> Progress {
-        let style = format!("{{wide_bar}} {{pos}}/{{len}} {noun}  {{per_sec}}  {{eta}} left");
+        let style = format!("{{wide_bar}} {{human_pos}}/{{human_len}} {noun}  {{per_sec}}  {{eta}} left");
         let style = ProgressStyle::with_template(&style).expect("the template is sound").progress_chars("=> ");
         Progress { bar: ProgressBar::new(count).with_style(style), noun, told: clock::now() }
     }
@@ -45,6 +44,22 @@ impl Progress {
         Progress { bar, noun, told: clock::now() }
     }
 
+    /// So many were done before.
+    pub(crate) fn begin_at(&self, done: u64) {
+        self.bar.set_position(done);
+        self.bar.reset_eta();
+    }
+
+    /// So many are done.
+    pub(crate) fn set(&self, done: u64) {
+        self.bar.set_position(done);
+    }
+
+    /// Prints a line of the results, above the bar.
+    pub(crate) fn print(&self, line: &str) {
+        self.bar.suspend(|| screen::print(&format!("{line}\n")));
+    }
+
     /// One more is done.
     pub(crate) fn add(&mut self) {
         self.add_with(String::new);
@@ -55,7 +70,7 @@ impl Progress {
         self.bar.inc(1);
         if !self.bar.is_hidden() {
             self.bar.set_message(words());
-        } else if clock::since(self.told) >= LINE_EVERY {
+        } else if self.told.elapsed() >= LINE_EVERY {
             self.told = clock::now();
             let (done, noun) = (self.bar.position(), self.noun);
             let of = self.bar.length().map_or(String::new(), |count| format!(" of {count}"));

@@ -1,7 +1,7 @@
 //! The result of a game as a table.
 
 use game::count::Counts;
-use sim::node::Report;
+use sim::Report;
 
 /// The table with what stands below it.
 pub(crate) fn text(report: &Report) -> String {

@@ -4,7 +4,7 @@ use crate::result_table;
 use crate::style::{self, Names};
 use anstream::AutoStream;
 use game::printable;
-use sim::node::{Progress, ProgressMessage};
+use sim::{Progress, ProgressMessage};
 use std::io::{IsTerminal, Write};
 
 /// Shows the progress of a game to a person.
@@ -152,7 +152,8 @@ fn is_written(control: &str, text: &str) -> bool {
 
 /// The columns of the terminal; a width that most have where there is none.
 pub(crate) fn columns() -> usize {
-    terminal_size::terminal_size().map_or(120, |(terminal_size::Width(columns), _)| usize::from(columns))
+    terminal_size::terminal_size()
+        .map_or(arena::tournament::WIDTH, |(terminal_size::Width(columns), _)| usize::from(columns))
 }
 
 /// Prints what went wrong, a text that may have colours.

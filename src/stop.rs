@@ -1,7 +1,7 @@
 //! The request to stop: Ctrl-C, SIGTERM, or the end of the process that started us.
 
+use crate::clock;
 use anyhow::Context;
-use bus::clock;
 use std::io::BufRead;
 use std::process::ExitCode;
 use std::sync::Arc;

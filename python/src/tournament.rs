@@ -2,7 +2,7 @@
 
 use crate::arguments::{PackedParts, games_and_seed, packed_of, parts_of, refused, stretch};
 use crate::signals;
-use arena::tournament::{Plan, Record, Report, csv, play_some, text};
+use arena::tournament::{Plan, Record, Report, WIDTH, csv, play_some, text};
 use game::scenario::{Tournament, load_tournament};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
@@ -10,9 +10,6 @@ use std::num::NonZeroUsize;
 use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
-
-/// How wide tables are: as the program prints them where there is no terminal.
-const COLUMNS: usize = 120;
 
 /// Which games a tournament consists of; the stub explains it.
 #[pyclass(frozen, module = "squall._native")]
@@ -71,7 +68,7 @@ impl TournamentPlan {
             }
             let report = Report::new(&self.0, &records);
             let json = serde_json::to_string_pretty(&report).expect("it has names for keys");
-            Ok((text(&report, COLUMNS), json + "\n", csv(&report), report.failures.len()))
+            Ok((text(&report, WIDTH), json + "\n", csv(&report), report.failures.len()))
         })
     }
 }

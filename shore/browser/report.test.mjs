@@ -1,7 +1,7 @@
 // Reports on the page: a tournament, a league, a sweep and a training, and from their tables to the games behind them.
 
 import assert from 'node:assert/strict';
-import { copyFileSync, mkdirSync, readFileSync, readdirSync, writeFileSync } from 'node:fs';
+import { copyFileSync, mkdirSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { Program, Sight, folder, gameFile, openBrowser, readJson, scenario, squall } from './harness.mjs';
@@ -144,14 +144,20 @@ test('who joins a league plays its own games alone, and the folder is shown', as
   await sight.until('all three are rated', () => document.querySelectorAll('.ratings tbody tr').length === 3);
 });
 
-test('the worst games of a sweep are watched from its page', async (t) => {
+/** Plays a sweep of short games at two winds, two seeds each, and gives its folder. */
+async function sweep(t) {
   const place = folder(t);
   const game = gameFile(t, 'short', 'surveyor_2v2.toml', 'duration_s = 60');
   const file = join(place, 'wind.toml');
-  writeFileSync(file, `about = ${JSON.stringify(HOSTILE)}\ngame = "${game}"\nopponent = "${scenario('strategies/strategy_3.toml')}"\ngames = 2\n${entry('strategy_4')}`
-    + '[[axis]]\nkey = "sea.wind.speed_m_s"\nvalues = [1, 12]\n');
+  writeFileSync(file, `about = ${JSON.stringify(HOSTILE)}\ngame = "${game}"\nopponent = "${scenario('strategies/strategy_3.toml')}"\ngames = 4\n`
+    + `${['strategy_4', 'idle'].map(entry).join('')}[[axis]]\nkey = "sea.wind.speed_m_s"\nvalues = [1, 12]\n`);
   const out = join(place, 'out');
   await squall(t, 'sweep', file, '--out', out);
+  return out;
+}
+
+test('the worst games of a sweep are watched from its page', async (t) => {
+  const out = await sweep(t);
   const [worst] = readJson(join(out, 'report.json')).worst;
   const sight = await Sight.load(t, browser, await view(t, out));
   await sight.page.waitForSelector('#worst-list .watch');
@@ -164,6 +170,58 @@ test('the worst games of a sweep are watched from its page', async (t) => {
   await sight.page.press('#timeline', 'End');
   await sight.until('it is at its end', () => squall.t_s > 59.9);
   assert.deepEqual((await sight.get(() => squall.score)).sort(), [...worst.score].sort());
+});
+
+test('from a point of a sweep to all its games, to a replay of one, and back', async (t) => {
+  const out = await sweep(t);
+  // Lines of `games.csv`: what came of each game, by its columns.
+  const [heads, ...lines] = readFileSync(join(out, 'games.csv'), 'utf8').trim().split('\n').map((line) => line.split(','));
+  const games = lines.map((line) => Object.fromEntries(heads.map((head, i) => [head, line[i]])));
+  const url = await view(t, out);
+  const sight = await Sight.load(t, browser, url);
+  await sight.page.waitForSelector('#points-table tbody button');
+  assert(!(await sight.page.isVisible('#games')));
+  const listed = () => sight.get(() => [...document.querySelectorAll('#games-table tbody tr')].map((row) => [...row.children].map((each) => each.textContent.trim())));
+  const result = ({ score, opponent_score }) => (score === opponent_score ? 'drawn' : Number(score) > Number(opponent_score) ? 'won' : 'lost');
+  const rows = (of) => of.map((game) => ['Watch', game.entry, game.side, game.seed, `${game.score} : ${game.opponent_score}`, result(game)]);
+  const own = games.filter(({ point }) => point === '1');
+  assert.equal(own.length, 8);
+  await sight.press('button[aria-label="List the games of point 1"]');
+  await sight.page.waitForSelector('#games-table tbody tr');
+  assert.deepEqual(await listed(), rows(own));
+  assert.match(await sight.text('#games-head'), /sea.wind.speed_m_s 12/);
+  assert.deepEqual(await sight.get(faint), []);
+  await sight.page.selectOption('#games-filter', 'won');
+  assert.deepEqual(await listed(), rows(own.filter((game) => result(game) === 'won')));
+  await sight.page.selectOption('#games-filter', 'all');
+  await sight.press('#legend button >> nth=1');
+  assert.deepEqual(await listed(), rows(own.filter((game) => game.entry === 'strategy_4')), 'an entry that is hidden');
+
+  // The last one's seed and side are others than those of the command of the point.
+  await sight.press('#games-table tbody tr:last-child .watch');
+  await sight.until('the game is shown', () => window.squall?.mode === 'replay' && squall.frame !== null);
+  const last = own.findLast((game) => game.entry === 'strategy_4');
+  assert.equal(await sight.text('#about'), `strategy_4 (${last.side}) at sea.wind.speed_m_s 12, seed ${last.seed}; played again, as in the report`);
+  await sight.page.press('#timeline', 'End');
+  await sight.until('it is at its end', () => squall.t_s > 59.9);
+  assert.deepEqual((await sight.get(() => squall.score)).sort(), [last.score, last.opponent_score].map(Number).sort());
+  await sight.press('#back');
+  await sight.page.waitForSelector('#games-table tbody tr');
+  assert.deepEqual(await listed(), rows(own), 'the list is as it was');
+
+  for (const none of ['2', '-1', 'x', '']) {
+    const answer = await fetch(new URL(`/sweep_games/${none}.json`, url));
+    assert.equal(answer.status, 404, none);
+  }
+  // Without its table the games are there, and nothing is known of them; without its plan there are none.
+  rmSync(join(out, 'games.csv'));
+  const bare = await Sight.load(t, browser, `${await view(t, out)}#point=0`);
+  await bare.page.waitForSelector('#games-table .watch');
+  assert.match(await bare.text('#games-note'), /8 games of point 0\..*not known: cannot read .*games\.csv/);
+  rmSync(join(out, 'plan.json'));
+  const without = await Sight.load(t, browser, `${await view(t, out)}#point=0`);
+  await without.page.waitForSelector('#points-table tbody button');
+  assert.equal(await without.get(() => document.querySelectorAll('.watch, button[aria-label^="List"]').length), 0);
 });
 
 test('a training shows curves that follow its tables, and its recorded episodes', async (t) => {

@@ -17,6 +17,8 @@ pub mod motion;
 #[cfg(feature = "net")]
 pub mod node;
 mod piecewise_linear;
+#[cfg(feature = "record")]
+mod progress;
 mod radio;
 #[cfg(feature = "record")]
 mod recorder;
@@ -35,6 +37,8 @@ pub mod world;
 pub use afloat::{NotAfloat, afloat};
 pub use contest::{Contest, RestoreError};
 pub use external::BadReport;
+#[cfg(feature = "record")]
+pub use progress::{Progress, ProgressMessage, Reporter};
 #[cfg(feature = "record")]
 pub use recorder::GameRecorder;
 #[cfg(feature = "record")]

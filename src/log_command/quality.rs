@@ -1,7 +1,7 @@
 //! How sensibly boats played in recorded games.
 
+use crate::minds::Minds;
 use crate::progress::Progress;
-use crate::replay_command::minds::Minds;
 use crate::{output_file, recording_file, screen};
 use analysis::Step;
 use analysis::quality::{GameQuality, MindState, Quality};

@@ -5,7 +5,6 @@ pub(crate) mod colour;
 pub(crate) mod field;
 pub(crate) mod film;
 pub(crate) mod game;
-pub(crate) mod polar;
 pub(crate) mod sea;
 pub(crate) mod training;
 pub(crate) mod trial;

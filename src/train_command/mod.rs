@@ -3,12 +3,12 @@
 mod events;
 mod files;
 
+use crate::progress::Progress;
 use crate::{output_file, screen, stop};
 use anyhow::{Context, Result, bail};
 use files::Files;
 use game::scenario::{self, Kind};
 use game::training::Training;
-use indicatif::{ProgressBar, ProgressStyle};
 use learn::environment::{RecordingLog, RecordingNames, Recordings, check_recording_folder};
 use learn::train::{Evaluated, Played, Trainer};
 use std::num::{NonZeroU64, NonZeroUsize};
@@ -55,36 +55,43 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let mut trainer = begin(args, training, &folder, jobs)?;
     let mut files = Files::open(&folder, &base(&args.training, trainer.training()), &trainer)?;
     let recordings = args.record_every.map(|every| record(&mut trainer, &folder, every)).transpose()?;
-    let bar = bar(&trainer);
+    let (done, all) = trainer.samples();
+    let progress = Progress::of(all, "samples");
+    progress.begin_at(done);
     let size = trainer.model().context("the policy has become none")?.len();
-    say(&bar, &format!("trains {} in {}: a model of {} kB", trainer.training().name, folder.display(), size / 1000));
+    progress.print(&format!(
+        "trains {} in {}: a model of {} kB",
+        trainer.training().name,
+        folder.display(),
+        size / 1000
+    ));
     let mut told_stage = None;
     while !trainer.is_over() {
         let is_enough = args.until.is_some_and(|until| trainer.samples().0 >= until);
         if is_enough || stop.load(Ordering::Relaxed) {
-            bar.finish_and_clear();
+            progress.end();
             let at = files::Files::state(&folder);
             let from = if at.exists() { "--resume goes on with it" } else { "nothing of it can be resumed yet" };
             screen::remark(&format!("stopped after {} samples; {from}", trainer.samples().0));
             return Ok(if is_enough { ExitCode::SUCCESS } else { stop::interrupted() });
         }
-        let progress = trainer.update()?;
-        let stage = &trainer.training().stage[progress.stage].name;
-        if told_stage.replace(progress.stage) != Some(progress.stage) {
-            say(&bar, &format!("stage {stage}"));
+        let update = trainer.update()?;
+        let stage = &trainer.training().stage[update.stage].name;
+        if told_stage.replace(update.stage) != Some(update.stage) {
+            progress.print(&format!("stage {stage}"));
         }
-        bar.set_position(progress.samples);
-        files.update(&trainer, &progress)?;
-        recordings.iter().flat_map(|log| log.take_problems()).for_each(|problem| say(&bar, &problem));
-        if let Some(evaluated) = &progress.evaluated {
-            files.models(&trainer, progress.is_best)?;
-            say(&bar, &line(evaluated, progress.is_best));
+        progress.set(update.samples);
+        files.update(&trainer, &update)?;
+        recordings.iter().flat_map(|log| log.take_problems()).for_each(|problem| progress.print(&problem));
+        if let Some(evaluated) = &update.evaluated {
+            files.models(&trainer, update.is_best)?;
+            progress.print(&line(evaluated, update.is_best));
         }
-        if progress.can_be_resumed {
+        if update.can_be_resumed {
             files.keep_state(&trainer.state())?;
         }
     }
-    bar.finish_and_clear();
+    progress.end();
     finish(&trainer, &folder)
 }
 
@@ -118,20 +125,6 @@ fn record(trainer: &mut Trainer, folder: &Path, every: NonZeroU64) -> Result<Arc
     Ok(log)
 }
 
-fn bar(trainer: &Trainer) -> ProgressBar {
-    let (done, all) = trainer.samples();
-    let style = ProgressStyle::with_template("{wide_bar} {human_pos}/{human_len} samples  {per_sec}  {eta} left");
-    let bar = ProgressBar::new(all).with_style(style.expect("the template is sound").progress_chars("=> "));
-    bar.set_position(done);
-    bar.reset_eta();
-    bar
-}
-
-/// A line above the bar, or by itself where there is none.
-fn say(bar: &ProgressBar, text: &str) {
-    bar.suspend(|| screen::print(&format!("{text}\n")));
-}
-
 /// What an evaluation says, in a line.
 fn line(evaluated: &Evaluated, is_best: bool) -> String {
     let against = |(name, played): &(String, Played)| {
@@ -155,7 +148,7 @@ fn finish(trainer: &Trainer, folder: &Path) -> Result<ExitCode> {
     let mut text = format!("best after {samples} samples: won {won:.0} %, digest {digest:032x}\n");
     let strategy = folder.join("best.toml");
     if strategy.exists() {
-        text += &format!("to watch it: squall run GAME --blue {} --view\n", strategy.display());
+        text += &format!("to play it: squall run GAME --blue {}\n", strategy.display());
     }
     screen::print(&text);
     output_file::write(&folder.join("digest.txt"), "the digest", format!("{digest:032x}\n"))?;

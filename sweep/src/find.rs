@@ -151,7 +151,7 @@ pub struct Search {
     pub splits: bool,
 }
 
-/// What a search works with.
+/// A search: what it works with, and what it has found so far.
 struct Searched<'a> {
     plan: &'a Plan,
     condition: &'a Condition,
@@ -160,6 +160,20 @@ struct Searched<'a> {
     journal: &'a mut Journal,
     jobs: NonZeroUsize,
     stop: &'a AtomicBool,
+    tell: &'a mut dyn FnMut(usize, usize),
+    nominal: Density,
+    /// What was learnt.
+    density: Density,
+    samples: Vec<Sample>,
+}
+
+/// How often failures happen.
+struct Rate {
+    estimate: Estimate,
+    /// Its variance, times the games that it took.
+    variance: f64,
+    /// Games that are others up to a time.
+    branches: usize,
 }
 
 /// Looks for games in which a condition holds, in so many games; those that the journal has are not played again. `tell` is told of each round:
@@ -175,73 +189,18 @@ pub fn find(
     (jobs, stop): (NonZeroUsize, &AtomicBool),
     mut tell: impl FnMut(usize, usize),
 ) -> Result<Found, FindError> {
-    let plan = plan.of_entry(condition.entry);
+    let plan = &plan.of_entry(condition.entry);
     let scenario = plan.scenario(0, 0, 0).map_err(|problems| FindError::Game(problems.to_string()))?;
     let splits = splits && condition.nearness().is_some() && scenario.is_random();
     let nominal: Density = plan.sweep().axes.iter().map(|axis| even(pieces(axis))).collect();
+    let (density, reseed, samples) = (nominal.clone(), scenario.reseed, vec![]);
+    let mut searched =
+        Searched { plan, condition, reseed, journal, jobs, stop, tell: &mut tell, nominal, density, samples };
     let per_round = (games / (2 * ROUNDS)).max(1);
-    let mut density = nominal.clone();
-    let mut samples: Vec<Sample> = vec![];
-    let mut searched = Searched { plan: &plan, condition, reseed: scenario.reseed, journal, jobs, stop };
-    let mut tell = |new: &[Sample]| tell(new.len(), new.iter().filter(|one| one.is_failure()).count());
-    for round in 0..ROUNDS {
-        let drawn = draw(&plan, (&density, &nominal), (samples.len(), per_round));
-        let new = searched.play(drawn)?;
-        tell(&new);
-        samples.extend(new);
-        if round + 1 < ROUNDS && learns {
-            density = learnt(&nominal, &samples);
-        }
-    }
-    if learns {
-        density = learnt(&nominal, &samples);
-    }
-    let left = games.saturating_sub(samples.len()).max(1);
-    let (searched_plan, is_even) = ((&plan, condition), (&density, &nominal));
-    if !splits {
-        let new = searched.play(draw(&plan, is_even, (samples.len(), left)))?;
-        tell(&new);
-        samples.extend(new);
-        let weights: Vec<f64> = samples.iter().map(Sample::counts).collect();
-        // By the games after all learning: what a longer search would gain.
-        let variance = variance(&weights[weights.len() / 2..]);
-        return Ok(found(searched_plan, is_even, &samples, (Estimate::of(&weights), variance, 0)));
-    }
-    // A population costs as many games as it has and, for each factor e by which failures are rarer, as many again.
-    let failed = samples[samples.len() - per_round..].iter().filter(|one| one.is_failure()).count();
-    let rarer = std::iter::successors(Some(failed.max(1) as f64), |count| Some(E * count));
-    let factors = rarer.take_while(|count| *count < per_round as f64).count();
-    let each = (left / POPULATIONS / (1 + factors)).max(4);
-    let first = searched.play(draw(&plan, is_even, (samples.len(), POPULATIONS * each)))?;
-    tell(&first);
-    let mut first = first.into_iter();
-    let few = ((each as f64 * GIVEN_UP).ceil() as usize).max(1);
-    let stream = |i: usize| Stream::new(plan.sweep().seed, &format!("sweep/find/split/{i}"));
-    let mut populations: Vec<Splitting<Sample>> =
-        (0..POPULATIONS).map(|i| Splitting::new(first.by_ref().take(each).collect(), few, stream(i))).collect();
-    let mut branches = 0;
-    loop {
-        let next: Vec<(usize, Branch)> = populations
-            .iter_mut()
-            .enumerate()
-            .flat_map(|(i, population)| population.next().into_iter().map(move |branch| (i, branch)))
-            .collect();
-        if next.is_empty() {
-            break;
-        }
-        let drawn = next.iter().map(|(i, branch)| searched.branched(populations[*i].population(), branch));
-        let drawn: Vec<Sample> = drawn.collect();
-        let new = searched.play(drawn)?;
-        tell(&new);
-        branches += new.len();
-        for ((i, branch), sample) in next.into_iter().zip(new) {
-            samples.extend(populations[i].put(branch.place, sample));
-        }
-    }
-    let rates: Vec<f64> = populations.iter().map(|population| population.mean(Sample::counts)).collect();
-    let variance = variance(&rates) / POPULATIONS as f64 * (POPULATIONS * each + branches) as f64;
-    samples.extend(populations.into_iter().flat_map(Splitting::into_population));
-    Ok(found(searched_plan, is_even, &samples, (Estimate::of(&rates), variance, branches)))
+    searched.learn(per_round, learns)?;
+    let left = games.saturating_sub(searched.samples.len()).max(1);
+    let rate = if splits { searched.rate_by_splitting(left, per_round) } else { searched.rate_by_weights(left) };
+    Ok(found(&searched, &rate?))
 }
 
 /// The unbiased variance of numbers.
@@ -276,9 +235,71 @@ fn draw(plan: &Plan, (density, nominal): (&Density, &Density), (before, count): 
 }
 
 impl Searched<'_> {
-    /// Plays games that were drawn.
+    /// Plays rounds of so many games, and learns from each where failures are, unless it shall not.
+    fn learn(&mut self, per_round: usize, learns: bool) -> Result<(), FindError> {
+        for _ in 0..ROUNDS {
+            let new = self.play(self.draw(per_round))?;
+            self.samples.extend(new);
+            if learns {
+                self.density = learnt(&self.nominal, &self.samples);
+            }
+        }
+        Ok(())
+    }
+
+    /// The rate by so many more games, and those before, each with its weight.
+    fn rate_by_weights(&mut self, games: usize) -> Result<Rate, FindError> {
+        let new = self.play(self.draw(games))?;
+        self.samples.extend(new);
+        let weights: Vec<f64> = self.samples.iter().map(Sample::counts).collect();
+        // By the games after all learning: what a longer search would gain.
+        let variance = variance(&weights[weights.len() / 2..]);
+        Ok(Rate { estimate: Estimate::of(&weights), variance, branches: 0 })
+    }
+
+    /// The rate by populations that split, in about so many games; `per_round` were played in each round before.
+    fn rate_by_splitting(&mut self, games: usize, per_round: usize) -> Result<Rate, FindError> {
+        // A population costs as many games as it has and, for each factor e by which failures are rarer, as many again.
+        let last = &self.samples[self.samples.len() - per_round..];
+        let failed = last.iter().filter(|one| one.is_failure()).count();
+        let rarer = std::iter::successors(Some(failed.max(1) as f64), |count| Some(E * count));
+        let factors = rarer.take_while(|count| *count < per_round as f64).count();
+        let each = (games / POPULATIONS / (1 + factors)).max(4);
+        let mut first = self.play(self.draw(POPULATIONS * each))?.into_iter();
+        let few = ((each as f64 * GIVEN_UP).ceil() as usize).max(1);
+        let stream = |i: usize| Stream::new(self.plan.sweep().seed, &format!("sweep/find/split/{i}"));
+        let mut populations: Vec<Splitting<Sample>> =
+            (0..POPULATIONS).map(|i| Splitting::new(first.by_ref().take(each).collect(), few, stream(i))).collect();
+        let mut branches = 0;
+        loop {
+            let next = |(i, population): (usize, &mut Splitting<Sample>)| {
+                population.next().into_iter().map(move |branch| (i, branch)).collect::<Vec<(usize, Branch)>>()
+            };
+            let next: Vec<(usize, Branch)> = populations.iter_mut().enumerate().flat_map(next).collect();
+            if next.is_empty() {
+                break;
+            }
+            let drawn = next.iter().map(|(i, branch)| self.branched(populations[*i].population(), branch)).collect();
+            let new = self.play(drawn)?;
+            branches += new.len();
+            for ((i, branch), sample) in next.into_iter().zip(new) {
+                self.samples.extend(populations[i].put(branch.place, sample));
+            }
+        }
+        let rates: Vec<f64> = populations.iter().map(|population| population.mean(Sample::counts)).collect();
+        let variance = variance(&rates) / POPULATIONS as f64 * (POPULATIONS * each + branches) as f64;
+        self.samples.extend(populations.into_iter().flat_map(Splitting::into_population));
+        Ok(Rate { estimate: Estimate::of(&rates), variance, branches })
+    }
+
+    /// Draws so many games by what was learnt.
+    fn draw(&self, count: usize) -> Vec<Sample> {
+        draw(self.plan, (&self.density, &self.nominal), (self.samples.len(), count))
+    }
+
+    /// Plays games that were drawn, and tells of them.
     fn play(&mut self, mut drawn: Vec<Sample>) -> Result<Vec<Sample>, FindError> {
-        let Searched { plan, condition, journal, jobs, stop, .. } = self;
+        let Searched { plan, condition, journal, jobs, stop, tell, .. } = self;
         let points = drawn.iter().map(|sample| sample.point.clone()).collect();
         // Two games a point: one from each side, with the seed of the point's place.
         let round = plan.at(points, (plan.sweep().seed, 1));
@@ -302,6 +323,7 @@ impl Searched<'_> {
             };
             sample.approach = condition.nearness().map(|nearness| approaches[nearness as usize].clone());
         }
+        tell(drawn.len(), drawn.iter().filter(|one| one.is_failure()).count());
         Ok(drawn)
     }
 
@@ -372,12 +394,8 @@ fn learnt(nominal: &Density, samples: &[Sample]) -> Density {
     (0..nominal.len()).map(axis).collect()
 }
 
-fn found(
-    (plan, condition): (&Plan, &Condition),
-    (density, nominal): (&Density, &Density),
-    samples: &[Sample],
-    (rate, variance, branches): (Estimate, f64, usize),
-) -> Found {
+fn found(searched: &Searched, Rate { estimate: rate, variance, branches }: &Rate) -> Found {
+    let Searched { plan, condition, nominal, density, samples, .. } = searched;
     let mut failures: Vec<&Sample> = samples.iter().filter(|one| one.is_failure()).collect();
     failures.sort_by(|a, b| a.margin.total_cmp(&b.margin).then(a.job.seed.cmp(&b.job.seed)));
     let value = |one: &Sample| {
@@ -400,9 +418,9 @@ fn found(
         condition: condition.to_string(),
         games: samples.len(),
         failures: failures.len(),
-        branches,
-        rate,
-        factor: (variance > 0.0 && rate.mean > 0.0).then(|| rate.mean * (1.0 - rate.mean) / variance),
+        branches: *branches,
+        rate: *rate,
+        factor: (*variance > 0.0 && rate.mean > 0.0).then(|| rate.mean * (1.0 - rate.mean) / variance),
         densities: densities.collect(),
         named: named.collect(),
     }

@@ -194,9 +194,18 @@ fn point_report(plan: &Plan, observed: &Observations, names: &[String], point: u
     }
 }
 
+/// The points of the entry of a game, and of its opponent, among the numbers of its [`Row`].
+#[must_use]
+pub fn score(numbers: &[f64]) -> [f64; 2] {
+    ["score", "opponent_score"].map(|name| number_of(numbers, name))
+}
+
+fn number_of(numbers: &[f64], metric: &str) -> f64 {
+    index_of(metric).map_or(f64::NAN, |i| numbers[i])
+}
+
 /// The games that each entry lost by most, or won by least.
 fn worst(plan: &Plan, rows: &[Row]) -> Vec<Worst> {
-    let number = |numbers: &[f64], name: &str| index_of(name).map_or(f64::NAN, |i| numbers[i]);
     let mut worst = vec![];
     for (entry, entrant) in plan.sweep().entries.iter().enumerate() {
         let mut games: Vec<(Job, &Vec<f64>, &String)> = rows
@@ -205,16 +214,16 @@ fn worst(plan: &Plan, rows: &[Row]) -> Vec<Worst> {
             .filter(|(job, ..)| job.entry == entry)
             .collect();
         games.sort_by(|(a, one, _), (b, other, _)| {
-            let by = number(one, "score_difference").total_cmp(&number(other, "score_difference"));
+            let by = number_of(one, "score_difference").total_cmp(&number_of(other, "score_difference"));
             by.then(a.index.cmp(&b.index))
         });
         worst.extend(games.into_iter().take(WORST).map(|(job, numbers, digest)| Worst {
             entry: entrant.name.clone(),
             game: job.index,
             values: plan.points()[job.point].values.iter().map(ToString::to_string).collect(),
-            score: ["score", "opponent_score"].map(|name| number(numbers, name)),
-            contacts: number(numbers, "contacts"),
-            out_of_bounds: number(numbers, "out_of_bounds"),
+            score: score(numbers),
+            contacts: number_of(numbers, "contacts"),
+            out_of_bounds: number_of(numbers, "out_of_bounds"),
             digest: digest.clone(),
             command: plan.command(&job),
         }));

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 /// The table of games.
-const GAMES: &str = "games.csv";
+pub const GAMES: &str = "games.csv";
 /// The table of boats.
 const BOATS: &str = "boats.csv";
 /// What identifies the plan.
@@ -308,8 +308,9 @@ fn parsed<'a>(plan: &'a Plan, text: &'a str) -> impl Iterator<Item = (Row, usize
     })
 }
 
-/// The games of a table, from the first on as far as its lines are whole.
-fn rows_in(plan: &Plan, text: &str) -> Vec<Row> {
+/// The games of a table, whose text is that of `games.csv`, from the first on as far as its lines are whole and of this plan.
+#[must_use]
+pub fn rows_in(plan: &Plan, text: &str) -> Vec<Row> {
     parsed(plan, text).map(|(row, ..)| row).take(plan.games()).collect()
 }
 

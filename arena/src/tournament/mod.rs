@@ -17,4 +17,4 @@ pub use plan::{Match, Plan};
 pub use play::{Game, Observer, Record, play, play_observed, play_some, play_these};
 pub use rating::{Meeting, Rating, ratings};
 pub use report::{Cell, Failure, MatchRow, Report, Row, Seeds};
-pub use table::{csv, text};
+pub use table::{WIDTH, csv, text};

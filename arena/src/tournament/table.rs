@@ -18,6 +18,9 @@ const COLUMNS: [Column; 7] = [
     ("collisions", "collisions", |row| row.collisions),
 ];
 
+/// How wide tables are where no terminal says how wide they may be, in characters.
+pub const WIDTH: usize = 120;
+
 /// The report for people, in tables of at most so many `columns`, as far as names leave room; commands stand in one line.
 #[must_use]
 pub fn text(report: &Report, columns: usize) -> String {
@@ -47,8 +50,8 @@ fn names(report: &Report) -> Vec<&str> {
     report.entries.iter().map(|row| row.name.as_str()).collect()
 }
 
-fn width<'a>(names: impl Iterator<Item = &'a str>) -> usize {
-    names.map(str::len).max().unwrap_or(0).max(6) + 1
+fn width(names: &[&str]) -> usize {
+    names.iter().map(|name| name.len()).max().unwrap_or(0).max(6) + 1
 }
 
 /// A heading with a cell for each entry.
@@ -68,7 +71,7 @@ fn cells(report: &Report, heading: &str, of: impl Fn(&Row) -> String) -> Cells {
 
 /// A table with a line for each entry; where it is wider than so many columns, what does not fit stands in another one below.
 fn table(text: &mut String, names: &[&str], cells: &[Cells], columns: usize) {
-    let name = width(names.iter().copied());
+    let name = width(names);
     let wide = |(heading, cells): &Cells| {
         cells.iter().chain([heading]).map(|cell| cell.chars().count()).max().unwrap_or(0) + 2
     };
@@ -115,7 +118,7 @@ fn matrix(text: &mut String, report: &Report, columns: usize) {
 
 /// How the challenger did against each other entry.
 fn pairings(text: &mut String, report: &Report, challenger: &str) {
-    let width = width(names(report).into_iter());
+    let width = width(&names(report));
     add_line(text, format_args!("\n{challenger} against each, with the share of decided games that it won ± 95 %"));
     add_line(
         text,
@@ -144,7 +147,7 @@ fn beaten(cell: &Cell) -> String {
 
 /// How strong they are.
 fn ratings(text: &mut String, report: &Report) {
-    let width = width(names(report).into_iter());
+    let width = width(&names(report));
     add_line(text, format_args!("\nElo ratings with 95 %: 100 points ahead are 64 % of the points of a game"));
     let mut rows: Vec<&Row> = report.entries.iter().collect();
     rows.sort_by(|a, b| b.rating.elo.total_cmp(&a.rating.elo));

@@ -25,13 +25,17 @@ impl Problem {
     pub fn of_file(path: PathBuf, message: String) -> Problem {
         Problem { path, line: 1, column: 1, message, source: String::new() }
     }
+
+    /// Where it is, as in `boats/heron.toml:3:17`.
+    #[must_use]
+    pub fn place(&self) -> String {
+        format!("{}:{}:{}", printable::line(&self.path.display().to_string()), self.line, self.column)
+    }
 }
 
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [path, message] =
-            [self.path.display().to_string(), self.message.clone()].map(|text| printable::line(&text));
-        write!(f, "{path}:{}:{}: {message}", self.line, self.column)
+        write!(f, "{}: {}", self.place(), printable::line(&self.message))
     }
 }
 

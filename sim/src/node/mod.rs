@@ -11,15 +11,14 @@ pub mod membership;
 mod message_inbox;
 mod observers;
 mod pacing;
-mod progress;
 mod realtime;
 mod server;
 mod subscriptions;
 mod working_time;
 
+pub use crate::progress::{Progress, ProgressMessage, Reporter};
 pub use crate::recorder::GameRecorder;
 pub use crate::report::{Report, Run};
-pub use progress::{Progress, ProgressMessage, Reporter};
 
 use crate::contest::Contest;
 use crate::spawn::NoStart;

@@ -1,7 +1,7 @@
 //! `squall watch`: a running game in the terminal, or one boat's helm.
 
-use crate::net_args::LeafArgs;
-use crate::observer::Observer;
+use super::net_args::LeafArgs;
+use super::observer::Observer;
 use crate::screen;
 use crate::stop;
 use crate::style::Names;

@@ -1,6 +1,6 @@
 //! An observer: a session that watches a game and asks about it.
 
-use crate::net_args::LeafArgs;
+use super::net_args::LeafArgs;
 use anyhow::{Context, Result, bail};
 use bus::game_search;
 use bus::{Bus, clock};

@@ -1,6 +1,6 @@
 //! One boat's helm, live.
 
-use crate::observer::{Observer, SILENCE};
+use super::super::observer::{Observer, SILENCE};
 use crate::{helm_text, screen};
 use anyhow::{Result, bail};
 use bus::clock;

@@ -1,8 +1,9 @@
 //! The hardware loop, closed on one machine: water of its own, an emulated boat and a gateway for every real one.
 
-use crate::child_process::{self, ChildProcess, option};
+use super::child_process::{self, ChildProcess, option};
+use super::net_args::unique_game_name;
+use super::pace_args::PaceArgs;
 use crate::game_args::GameArgs;
-use crate::net_args::unique_game_name;
 use crate::output_file;
 use anyhow::{Context, Result, anyhow, bail};
 use bus::keys::Identity;
@@ -40,7 +41,7 @@ impl LoopArgs {
     /// Starts the loop for the boats of a game with this name and endpoint, if it is asked for and there are real boats.
     pub(crate) fn start(
         &self,
-        args: &GameArgs,
+        (args, pace): (&GameArgs, &PaceArgs),
         scenario: &Scenario,
         game: (&str, &str),
         keys: Option<&Path>,
@@ -66,7 +67,7 @@ impl LoopArgs {
         let name = unique_game_name("water")?.as_str().to_owned();
         let endpoint = format!("tcp/127.0.0.1:{port}");
         let place = (name.as_str(), endpoint.as_str());
-        let mut water = args.sim(place.0, place.1)?;
+        let mut water = pace.sim(args, place.0, place.1)?;
         water.arg("--afloat").args(&names);
         let water = ChildProcess::start("the water", water, Stdio::null())?;
         let (mut emulators, mut gateways) = (Vec::new(), Vec::new());

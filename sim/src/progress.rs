@@ -1,7 +1,7 @@
-//! What a sim reports while it serves a game: shown on the terminal, and one JSON line each for `squall run`.
+//! What is reported while a game is played: shown on the terminal, and by a sim as one JSON line each for `squall run`.
 
-use super::Report;
 use crate::contest::Contest;
+use crate::report::Report;
 use game::Outcome;
 use game::event::EventCursor;
 use game::outcome::EventOutcome;

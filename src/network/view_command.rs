@@ -1,9 +1,9 @@
 //! `squall view`: on a page, a running game from any machine, or a report with its games.
 
+use super::net_args::LeafArgs;
+use super::page_args::{self, PageArgs};
+use super::replay_command;
 use crate::gateway_command;
-use crate::net_args::LeafArgs;
-use crate::page_args::{self, PageArgs};
-use crate::replay_command;
 use crate::screen::{self, Screen};
 use crate::stop;
 use crate::style::Names;

@@ -1,6 +1,7 @@
 //! The games behind a report: each is played when a page asks for it, into a recording that is not kept, or was recorded before.
 
-use crate::{in_process, replay_command};
+use crate::in_process;
+use crate::network::replay_command;
 use anyhow::{Context, Result, bail};
 use game::Scenario;
 use shore::page::{PreparingView, Showing, Shown};

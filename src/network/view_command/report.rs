@@ -125,10 +125,16 @@ impl Report for TournamentReport {
     }
 }
 
+/// Where the page of a sweep asks for the games of a point, before its number.
+const GAMES_OF_POINT: &str = "/sweep_games/";
+
 /// The report of a sweep: its own page, and its games.
 struct SweepReport {
     files: [(&'static str, String); 4],
     plan: Result<sweep::Plan, String>,
+    /// What came of the games, from the first on, by the table beside the report.
+    rows: Result<Vec<sweep::Row>, String>,
+    /// What the report says of the worst ones, which stands where there is no table.
     digests: BTreeMap<usize, String>,
     games: Games,
 }
@@ -140,12 +146,43 @@ impl SweepReport {
                 bail!("{key} is not a list");
             }
         }
-        let plan = unpacked(&path.with_file_name(sweep::PACKED_PLAN)).map_err(|why| format!("{why:#}"));
+        let plan = unpacked(&path.with_file_name(sweep::PACKED_PLAN));
+        let table = || read(&path.with_file_name(sweep::GAMES));
+        let rows = match &plan {
+            Ok(plan) => table().map(|bytes| sweep::rows_in(plan, &String::from_utf8_lossy(&bytes))),
+            Err(_) => Ok(vec![]),
+        };
+        let (plan, rows) = (plan.map_err(|why| format!("{why:#}")), rows.map_err(|why| format!("{why:#}")));
         let worst = value["worst"].as_array().into_iter().flatten();
         let digest =
             |game: &Value| Some((usize::try_from(game["game"].as_u64()?).ok()?, game["digest"].as_str()?.to_owned()));
         let digests = worst.filter_map(digest).collect();
-        Ok(SweepReport { files: sweep::served(value, plan.is_ok()), plan, digests, games })
+        Ok(SweepReport { files: sweep::served(value, plan.is_ok()), plan, rows, digests, games })
+    }
+
+    /// What came of a game, if the table has it.
+    fn row(&self, index: usize) -> Option<&sweep::Row> {
+        self.rows.as_ref().ok()?.get(index)
+    }
+
+    /// All games of a point, for the page.
+    fn games_at(&self, point: usize) -> Option<Value> {
+        let plan = self.plan.as_ref().ok().filter(|plan| point < plan.points().len())?;
+        let first = point * plan.games_per_point();
+        let game = |index: usize| {
+            let (job, result) = (plan.job(index), self.row(index).map(|row| &row.result));
+            json!({
+                "game": index,
+                "entry": job.entry,
+                "team": plan.teams()[job.side],
+                // Numbers of JavaScript have too few digits for all seeds.
+                "seed": job.seed.to_string(),
+                "score": result.and_then(|result| result.as_ref().ok()).map(|numbers| sweep::score(numbers)),
+                "why": result.and_then(|result| result.as_ref().err()),
+            })
+        };
+        let games: Vec<Value> = (first..first + plan.games_per_point()).map(game).collect();
+        Some(json!({"games": games, "problem": self.rows.as_ref().err()}))
     }
 
     fn find(&self, name: &str) -> Result<Game> {
@@ -161,9 +198,14 @@ impl SweepReport {
             source: Source::Played {
                 scenario: Box::new(scenario),
                 seed: job.seed,
-                digest: self.digests.get(&job.index).cloned(),
+                digest: self.digest(job.index).cloned(),
             },
         })
+    }
+
+    fn digest(&self, index: usize) -> Option<&String> {
+        let in_table = self.row(index).map(|row| &row.digest).filter(|digest| !digest.is_empty());
+        in_table.or_else(|| self.digests.get(&index))
     }
 }
 
@@ -179,6 +221,9 @@ impl Report for SweepReport {
     }
 
     fn file(&self, path: &str) -> Option<Vec<u8>> {
+        if let Some(point) = path.strip_prefix(GAMES_OF_POINT).and_then(|rest| rest.strip_suffix(".json")) {
+            return self.games_at(point.parse().ok()?).map(|games| games.to_string().into_bytes());
+        }
         self.files.iter().find(|(name, _)| *name == path).map(|(_, text)| text.clone().into_bytes())
     }
 

@@ -1,8 +1,8 @@
 //! `squall agent`: decides for boats in a game.
 
-use crate::net_args::LeafArgs;
+use super::net_args::LeafArgs;
+use super::sim_command::seconds;
 use crate::screen;
-use crate::sim_command::seconds;
 use crate::stop;
 use agent::node::{News, Settings};
 use anyhow::{Context, Result};

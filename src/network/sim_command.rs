@@ -1,8 +1,9 @@
 //! `squall sim`: serves one game.
 
+use super::net_args::{HubArgs, token_text, unique_game_name};
+use super::pace_args::PaceArgs;
+use super::printer::Printer;
 use crate::game_args::GameArgs;
-use crate::net_args::{HubArgs, token_text, unique_game_name};
-use crate::printer::Printer;
 use crate::screen::{self, Screen};
 use crate::stop;
 use crate::style::Names;
@@ -20,6 +21,8 @@ use std::time::Duration;
 pub(crate) struct Args {
     #[command(flatten)]
     play: GameArgs,
+    #[command(flatten)]
+    pace: PaceArgs,
     /// Records the game into this new file
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
@@ -71,16 +74,16 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         token: token.as_ref().map(Token::hex),
     };
     let record = |path: &PathBuf| {
-        GameRecorder::on_network(path.clone(), game.as_str(), &args.play.pace.to_string(), env!("SQUALL_COMMIT"))
+        GameRecorder::on_network(path.clone(), game.as_str(), &args.pace.pace.to_string(), env!("SQUALL_COMMIT"))
             .with_context(|| format!("cannot record into {}", path.display()))
     };
     let mut recorder = args.record.as_ref().map(record).transpose()?;
     let settings = Settings {
         game,
         net,
-        pace: args.play.pace,
-        join_limit: Duration::from_secs_f64(args.play.join_s),
-        speed: args.play.speed,
+        pace: args.pace.pace,
+        join_limit: Duration::from_secs_f64(args.pace.join_s),
+        speed: args.pace.speed,
         stop: stop.clone(),
     };
     // Before the sim answers anybody: whoever finds the game finds its token. Where it cannot be registered, others must be told

@@ -1,6 +1,6 @@
 //! `squall list`: which games there are.
 
-use crate::net_args::LeafArgs;
+use super::net_args::LeafArgs;
 use crate::screen;
 use anyhow::Result;
 use bus::{Bus, BusError, Net, Watched};

@@ -1,9 +1,8 @@
 //! `squall helm`: one decision of a boat's helm, in a table, as numbers and as pictures.
 
-use crate::net_args::LeafArgs;
-use crate::observer::Observer;
+use super::net_args::LeafArgs;
+use super::observer::Observer;
 use crate::plot::Page;
-use crate::plot::polar::{self, PolarPlot};
 use crate::{helm_text, plot, screen};
 use anyhow::{Context, Result, bail};
 use game::Scenario;
@@ -11,6 +10,10 @@ use game::helm::{HelmQuestion, HelmReport};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+
+mod polar;
+
+use polar::PolarPlot;
 
 /// Whose, and into which files.
 #[derive(clap::Args)]

@@ -7,8 +7,6 @@ use game::message::PolicyProposal;
 use game::picture::Picture;
 use game::{Order, Scenario, SimTime, TeamId, VehicleId};
 use recording::{INPUTS, Recording, picture};
-use shore::page::HelmAnswer;
-use shore::page::replay::Helms;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -49,12 +47,22 @@ impl Minds {
     /// What the vehicle's mind tells of itself when it decides again, and what it orders, if it can.
     pub(crate) fn report_of(&mut self, vehicle: VehicleId, decision: u64) -> Option<(HelmReport, Order)> {
         let order = self.decide(vehicle, decision)?;
+        Some((self.report(vehicle)?, order))
+    }
+
+    /// What the vehicle's mind tells of the decision that it made last.
+    pub(crate) fn report(&self, vehicle: VehicleId) -> Option<HelmReport> {
         let team = &self.teams[self.recording.scenario().team_of(vehicle).index()];
-        Some((team.runner.mind(vehicle).and_then(Mind::report)?, order))
+        team.runner.mind(vehicle).and_then(Mind::report)
+    }
+
+    /// The vehicles of the game.
+    pub(crate) fn vehicles(&self) -> impl Iterator<Item = VehicleId> + use<> {
+        (0..self.recording.scenario().vehicles.len()).map(VehicleId::at)
     }
 
     /// The order for the vehicle at this decision, as recorded.
-    fn recorded(&self, vehicle: VehicleId, decision: u64) -> Option<Order> {
+    pub(crate) fn recorded(&self, vehicle: VehicleId, decision: u64) -> Option<Order> {
         let inputs: Inputs = self.recording.bag().message(*self.inputs.get(&decision)?).read().ok()?;
         inputs.inputs.iter().rev().find_map(|record| match record.input() {
             Some(Input::Ordered { vehicle: of, order, .. }) if of == vehicle => Some(order),
@@ -63,7 +71,7 @@ impl Minds {
     }
 
     /// What the vehicle's mind orders when it decides again, if it can.
-    fn decide(&mut self, vehicle: VehicleId, decision: u64) -> Option<Order> {
+    pub(crate) fn decide(&mut self, vehicle: VehicleId, decision: u64) -> Option<Order> {
         let index = self.recording.scenario().team_of(vehicle).index();
         if self.teams[index].runner.decided() > Some(decision) {
             // Minds do not decide backwards.
@@ -101,34 +109,5 @@ impl Team {
             runner: MindRunner::new(mates.map(|vehicle| (vehicle, mind_of(scenario, vehicle)))),
             pictures: recording.bag().places(&topic).filter_map(decision).collect(),
         }
-    }
-}
-
-impl Helms for Minds {
-    fn report(&mut self, vehicle: VehicleId, decision: u64, _functions: bool) -> HelmAnswer {
-        let Some(order) = self.decide(vehicle, decision) else {
-            let reason = "no picture of this moment was recorded".to_owned();
-            return HelmAnswer { reason: Some(reason), computed: true, ..HelmAnswer::default() };
-        };
-        let index = self.recording.scenario().team_of(vehicle).index();
-        let mind = self.teams[index].runner.mind(vehicle);
-        HelmAnswer {
-            report: mind.and_then(Mind::report),
-            reason: None,
-            computed: true,
-            agrees: self.recorded(vehicle, decision).map(|recorded| recorded == order),
-        }
-    }
-
-    fn modes(&mut self, decision: u64) -> Vec<Option<String>> {
-        let vehicles = self.recording.scenario().vehicles.len();
-        let mode = |vehicle: VehicleId| {
-            // Its mates have decided with the first of a team.
-            self.decide(vehicle, decision)?;
-            let team = &self.teams[self.recording.scenario().team_of(vehicle).index()];
-            let report = team.runner.mind(vehicle).and_then(Mind::report)?;
-            Some(report.mode).filter(|mode| !mode.is_empty())
-        };
-        (0..vehicles).map(VehicleId::at).map(mode).collect()
     }
 }

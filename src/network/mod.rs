@@ -1,0 +1,88 @@
+//! The commands that need a network or show a page: feature `network`.
+
+mod agent_command;
+pub(crate) mod child_process;
+mod hardware_loop;
+mod helm_command;
+mod keys_command;
+mod list_command;
+pub(crate) mod net_args;
+pub(crate) mod observer;
+mod pace_args;
+mod page_args;
+pub(crate) mod printer;
+mod replay_command;
+mod run_command;
+pub(crate) mod sim_command;
+mod view_command;
+mod watch_command;
+
+use crate::gateway_command;
+use anyhow::Result;
+use clap::Subcommand;
+use std::process::ExitCode;
+
+/// What shows a recorded game.
+pub(crate) const LOOK: &str = "squall replay";
+
+/// The commands.
+#[derive(Subcommand)]
+pub(crate) enum Command {
+    /// Shows a game in strong wind in the browser.
+    #[command(after_help = "Examples:\n  squall demo\n  squall demo --listen 0.0.0.0:8088 --token secret")]
+    Demo(run_command::DemoArgs),
+    /// Plays a whole game: starts the sim and the agents, shows what happens, prints the result.
+    #[command(
+        after_help = "Examples:\n  squall run strategy_4_vs_3\n  squall run surveyor_2v2 --sea gale --blue learned --red strategy_3 --view\n  squall run surveyor_2v2 --set link.delay_s=1 --seed 7 --both-sides"
+    )]
+    Run(run_command::Args),
+    /// Serves one game to agents and gateways that join it.
+    #[command(after_help = "Examples:\n  squall sim surveyor_2v2 --game mine --listen tcp/0.0.0.0:7447 --insecure")]
+    Sim(sim_command::Args),
+    /// Decides for one or many boats in a game that a sim serves.
+    #[command(after_help = "Examples:\n  squall agent --vehicle blue_1 --game mine --connect tcp/10.0.0.5:7447")]
+    Agent(agent_command::Args),
+    /// Shows a running game in the terminal, or one boat's helm.
+    #[command(after_help = "Examples:\n  squall watch\n  squall watch --game mine --connect tcp/10.0.0.5:7447")]
+    Watch(watch_command::Args),
+    /// Shows a running game on a page, or a report with its games.
+    #[command(
+        after_help = "Examples:\n  squall view\n  squall view report.json\n  squall view runs/sweep/wind\n  squall view runs/train/first\n  squall view --listen 0.0.0.0:8088 --token secret"
+    )]
+    View(view_command::Args),
+    /// Shows a recorded game again, or checks that the same comes of it.
+    #[command(after_help = "Examples:\n  squall replay runs/game.mcap\n  squall replay runs/game.mcap --check")]
+    Replay(replay_command::Args),
+    /// Dumps one decision of a boat's helm: a table, numbers, pictures.
+    #[command(after_help = "Examples:\n  squall helm --vehicle blue_1 --png helm.png")]
+    Helm(helm_command::Args),
+    /// Brings real boats into games, and lets real back seats drive simulated ones.
+    #[command(after_help = "Examples:\n  squall gateway emulate --help\n  squall gateway surveyor --help")]
+    Gateway(gateway_command::Args),
+    /// Makes keys for a network with strangers in it: encrypted links, and certificates that say who may do what.
+    #[command(after_help = "Examples:\n  squall keys new keys --help")]
+    Keys(keys_command::Args),
+    /// Lists the games on the network and how they stand.
+    #[command(after_help = "Examples:\n  squall list\n  squall list --connect tcp/10.0.0.5:7447")]
+    List(list_command::Args),
+}
+
+pub(crate) fn run(command: &Command) -> Result<ExitCode> {
+    // `run` only hands keys on: what it starts without keys must not have the threads of those with keys.
+    if !matches!(command, Command::Run(_) | Command::Demo(_)) {
+        child_process::with_threads_for_keys()?;
+    }
+    match command {
+        Command::Demo(args) => run_command::demo(args),
+        Command::Run(args) => run_command::run(args),
+        Command::Sim(args) => sim_command::run(args),
+        Command::Agent(args) => agent_command::run(args),
+        Command::Watch(args) => watch_command::run(args),
+        Command::View(args) => view_command::run(args),
+        Command::Replay(args) => replay_command::run(args),
+        Command::Helm(args) => helm_command::run(args),
+        Command::Gateway(args) => gateway_command::run(args),
+        Command::Keys(args) => keys_command::run(args),
+        Command::List(args) => list_command::run(args),
+    }
+}

@@ -1,0 +1,45 @@
+//! How fast a game is served, and for whom it waits: what `run` and `sim` ask alike.
+
+use super::child_process::{self, option};
+use super::sim_command::seconds;
+use crate::game_args::{GameArgs, speed};
+use anyhow::Result;
+use game::scenario::Setting;
+use sim::node::Pace;
+use std::process::Command;
+
+/// The pace of a game, from the command line.
+#[derive(Clone, clap::Args)]
+pub(crate) struct PaceArgs {
+    /// lockstep, realtime, or a factor such as 4x
+    #[arg(long, default_value = "lockstep")]
+    pub(crate) pace: Pace,
+    /// In lockstep: plays no faster than this many times real time, until somebody asks for another speed
+    #[arg(long, value_name = "FACTOR", value_parser = speed)]
+    pub(crate) speed: Option<f64>,
+    /// How long to wait for agents, and for gateways of real boats, before starting without the missing ones, s
+    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
+    pub(crate) join_s: f64,
+}
+
+impl PaceArgs {
+    /// A process that serves this game, or something of it, under a name.
+    pub(crate) fn sim(&self, game: &GameArgs, name: &str, endpoint: &str) -> Result<Command> {
+        let runtime = if self.pace == Pace::Lockstep { bus::RUNTIME } else { bus::HUB_RUNTIME };
+        let mut command = child_process::squall_with(runtime, &["sim", "--game", name, "--listen", endpoint])?;
+        command.arg(game.file());
+        let overrides = game.overrides()?;
+        option(&mut command, "--sea", overrides.sea.as_ref().map(|sea| sea.display()));
+        for (team, path) in &overrides.strategies {
+            option(&mut command, "--strategy", Some(format!("{team}={}", path.display())));
+        }
+        command.args(overrides.exchange_strategies.then_some("--exchange-strategies"));
+        command.args(overrides.simulate_all.then_some("--rehearse"));
+        for Setting { key, value, .. } in &overrides.settings {
+            option(&mut command, "--set", Some(format!("{key}={value}")));
+        }
+        option(&mut command, "--pace", Some(self.pace));
+        option(&mut command, "--seed", game.seed);
+        Ok(command)
+    }
+}

@@ -1,0 +1,229 @@
+//! `squall run` across processes: a sim, agents, the page, and gateways for emulated boats.
+
+use super::child_process::{self, ChildProcess, option};
+use super::hardware_loop::{HardwareLoop, LoopArgs};
+use super::net_args::{token_text, unique_game_name};
+use super::pace_args::PaceArgs;
+use super::page_args::PageArgs;
+use crate::game_args::GameArgs;
+use crate::run_command::{self, InProcess, Player, Shell};
+use crate::screen::{self, Screen};
+use crate::stop;
+use anyhow::{Result, anyhow, bail};
+use bus::Token;
+use bus::keys::{Bundle, Identity};
+use clap::{ArgGroup, Args as _, FromArgMatches};
+use game::Scenario;
+use game::scenario::Vehicle;
+use sim::node::{Pace, ProgressMessage, Report};
+use std::path::{Path, PathBuf};
+use std::process::{ExitCode, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
+use std::time::Duration;
+
+/// What to play, and by which processes.
+#[derive(clap::Args)]
+#[command(group(ArgGroup::new("served").args(["pace", "speed", "agents_per_process", "keys"]).multiple(true).conflicts_with("in_process")))]
+pub(crate) struct Args {
+    #[command(flatten)]
+    run: run_command::Args,
+    #[command(flatten)]
+    pace: PaceArgs,
+    /// Shows the game on a page, and its recording when it is over; in lockstep at 10x unless --speed says otherwise
+    #[arg(long, conflicts_with_all = ["in_process", "both_sides", "watch_files"])]
+    view: bool,
+    #[command(flatten)]
+    page: PageArgs,
+    /// For how many boats one agent process decides
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
+    agents_per_process: u16,
+    /// Plays with the keys in this folder, as `squall keys new` makes them: links are encrypted, and all show certificates
+    #[arg(long, value_name = "FOLDER")]
+    keys: Option<PathBuf>,
+    #[command(flatten)]
+    hardware_loop: LoopArgs,
+}
+
+/// Where the page is served.
+#[derive(clap::Args)]
+pub(crate) struct DemoArgs {
+    #[command(flatten)]
+    page: PageArgs,
+}
+
+/// Plays a game for people who want to see one.
+pub(crate) fn demo(args: &DemoArgs) -> Result<ExitCode> {
+    let words = ["run", "surveyor_2v2", "--sea", "fresh_breeze", "--blue", "learned", "--red", "strategy_3", "--view"];
+    let words = words.into_iter().map(str::to_owned).chain(args.page.opened().words());
+    let matches = Args::augment_args(clap::Command::new("demo")).try_get_matches_from(words)?;
+    run(&Args::from_arg_matches(&matches)?)
+}
+
+/// As fast as a person can follow a game, simulated seconds a second.
+const SPEED_TO_WATCH: f64 = 10.0;
+
+pub(crate) fn run(args: &Args) -> Result<ExitCode> {
+    if args.page.is_given() && !args.view {
+        bail!("--listen, --token, --host and --open say how the page is served: they need --view");
+    }
+    if args.run.in_process {
+        return run_command::run(&args.run, &mut InProcess);
+    }
+    run_command::run(&args.run, &mut Processes { args, page: None })
+}
+
+/// Plays games in a sim process and agent processes.
+struct Processes<'a> {
+    args: &'a Args,
+    /// What shows the game, if that is asked for.
+    page: Option<ChildProcess>,
+}
+
+impl Player for Processes<'_> {
+    fn check(&self, scenario: &Scenario) -> Result<()> {
+        if self.args.pace.pace == Pace::Lockstep {
+            scenario.has_no_real_boats()?;
+        }
+        check_keys(self.args, scenario)?;
+        if self.args.view { self.args.page.check() } else { Ok(()) }
+    }
+
+    fn play(
+        &mut self,
+        play: &GameArgs,
+        scenario: &Scenario,
+        file: Option<&Path>,
+        (stop, screen): Shell,
+    ) -> Result<Option<Report>> {
+        let args = self.args;
+        let port = bus::free_port(false).map_err(|e| anyhow!("no free port on this machine: {e}"))?;
+        let game = unique_game_name(&scenario.name)?.as_str().to_owned();
+        let endpoint = format!("tcp/127.0.0.1:{port}");
+        let place = (game.as_str(), endpoint.as_str());
+        let mut sim = start_sim((args, play), place, file)?;
+        let messages = sim.lines(|line| serde_json::from_str(line).ok())?;
+        self.page = if args.view { Some(start_page(args, &game, &endpoint)?) } else { None };
+        let agents = start_agents(args, scenario, &game, &endpoint)?;
+        let hardware_loop = args.hardware_loop.start((play, &args.pace), scenario, place, args.keys.as_deref())?;
+        let token = args.keys.is_none().then(child_process::token);
+        let report = follow(&messages, (&mut sim, self.page.as_mut(), token), stop, screen)?;
+        let mut problems = hardware_loop.map(HardwareLoop::end).unwrap_or_default();
+        let mut everybody = agents;
+        everybody.push(sim);
+        problems.extend(child_process::wait_for_all(&mut everybody));
+        for problem in problems {
+            if !stop.load(Ordering::Relaxed) {
+                screen::remark(&problem);
+            }
+        }
+        if report.is_none() && !stop.load(Ordering::Relaxed) {
+            bail!("the sim ended without a result");
+        }
+        Ok(report)
+    }
+
+    fn end(&mut self, file: Option<&Path>, problems: &[String], (stop, screen): Shell) {
+        let Some(mut page) = self.page.take() else { return };
+        problems.iter().for_each(|problem| screen::remark(problem));
+        screen.line("the game is over; the page stays until Ctrl-C");
+        // The sim has ended, so that the recording is whole.
+        if let (Some(file), false) = (file, stop::is_set_soon(stop))
+            && let Err(error) = page.send(&file.display().to_string())
+        {
+            screen::remark(&format!("{error:#}"));
+        }
+        while page.ended().is_none() && !stop::is_set_soon(stop) {}
+        page.stop();
+    }
+}
+
+/// Whether the keys of all parts of the game are there.
+fn check_keys(args: &Args, scenario: &Scenario) -> Result<()> {
+    let Some(folder) = &args.keys else { return Ok(()) };
+    let mut parts = vec![Identity::Sim];
+    parts.extend(scenario.teams.iter().map(|team| Identity::Team(team.name.clone())));
+    parts.extend(args.view.then_some(Identity::Operator));
+    parts.extend(scenario.externals().next().map(|_| Identity::Gateway(None)));
+    parts.iter().try_for_each(|part| Bundle::load(&folder.join(part.to_string())).map(drop))?;
+    Ok(())
+}
+
+fn start_page(args: &Args, game: &str, endpoint: &str) -> Result<ChildProcess> {
+    let mut command = child_process::squall(&["view", "--game", game, "--connect", endpoint])?;
+    // Whoever looks at it may do what the page's own token allows.
+    child_process::give_keys(&mut command, args.keys.as_deref(), &Identity::Operator);
+    command.args(args.page.words());
+    ChildProcess::start("the page", command, Stdio::inherit())
+}
+
+fn start_sim(
+    (args, play): (&Args, &GameArgs),
+    (game, endpoint): (&str, &str),
+    file: Option<&Path>,
+) -> Result<ChildProcess> {
+    let mut command = args.pace.sim(play, game, endpoint)?;
+    let speed = args.pace.speed.or((args.view && args.pace.pace == Pace::Lockstep).then_some(SPEED_TO_WATCH));
+    option(&mut command, "--join-s", Some(args.pace.join_s));
+    option(&mut command, "--speed", speed);
+    child_process::give_keys(&mut command, args.keys.as_deref(), &Identity::Sim);
+    option(&mut command, "--record", file.map(Path::display));
+    ChildProcess::start("the sim", command, Stdio::piped())
+}
+
+/// Starts the agent processes. With keys, each is of one team.
+fn start_agents(args: &Args, scenario: &Scenario, game: &str, endpoint: &str) -> Result<Vec<ChildProcess>> {
+    let mut vehicles: Vec<&Vehicle> = scenario.vehicles.iter().collect();
+    let is_together = |one: &&Vehicle, other: &&Vehicle| args.keys.is_none() || one.team == other.team;
+    if args.keys.is_some() {
+        vehicles.sort_by_key(|vehicle| vehicle.team);
+    }
+    let crews = vehicles.chunk_by(is_together).flat_map(|crew| crew.chunks(usize::from(args.agents_per_process)));
+    let start = |crew: &[&Vehicle]| {
+        let names: Vec<&str> = crew.iter().map(|vehicle| vehicle.name.as_str()).collect();
+        let mut command = child_process::squall(&["agent", "--game", game, "--connect", endpoint])?;
+        let team = scenario.teams[crew[0].team.index()].name.clone();
+        child_process::give_keys(&mut command, args.keys.as_deref(), &Identity::Team(team));
+        command.arg("--vehicle").args(&names);
+        ChildProcess::start(&format!("the agent of {}", names.join(", ")), command, Stdio::null())
+    };
+    crews.map(start).collect()
+}
+
+/// Shows what the sim reports until it has reported the result, or has ended. Without the page that was asked for no game
+/// begins.
+fn follow(
+    messages: &Receiver<ProgressMessage>,
+    (sim, mut page, token): (&mut ChildProcess, Option<&mut ChildProcess>, Option<&Token>),
+    stop: &AtomicBool,
+    screen: &mut Screen,
+) -> Result<Option<Report>> {
+    let mut asked = 0;
+    loop {
+        match messages.recv_timeout(Duration::from_millis(100)) {
+            Ok(message) => {
+                screen.show(&message);
+                match message {
+                    ProgressMessage::Open { .. } => token.into_iter().for_each(|token| screen.line(&token_text(token))),
+                    ProgressMessage::Started => page = None,
+                    ProgressMessage::Done(report) => return Ok(Some(*report)),
+                    _ => {}
+                }
+            }
+            Err(RecvTimeoutError::Disconnected) => return Ok(None),
+            Err(RecvTimeoutError::Timeout) => {}
+        }
+        // Its last words stand above.
+        if let Some(problem) = page.as_mut().and_then(|page| page.ended()).flatten() {
+            bail!(problem);
+        }
+        if stop.load(Ordering::Relaxed) {
+            sim.ask_to_stop();
+            asked += 1;
+            // Three seconds and more at ten looks a second: then it is killed.
+            if asked > 30 {
+                return Ok(None);
+            }
+        }
+    }
+}
