@@ -118,7 +118,10 @@ fn bytes_pass_both_ways_and_are_recorded_with_what_the_sonde_measures() {
     let mut seen = vec![0; 300_000];
     stream.read_exact(&mut seen).expect("pictures");
     drop(stream);
-    assert!(asked(gateway.connect("dac"), "POST /data HTTP/1.0\r\nContent-Length: 4\r\n\r\npara").ends_with("\r\n\r\n1 18 212"));
+    assert!(
+        asked(gateway.connect("dac"), "POST /data HTTP/1.0\r\nContent-Length: 4\r\n\r\npara")
+            .ends_with("\r\n\r\n1 18 212")
+    );
     assert!(asked(gateway.connect("dac"), "GET /data HTTP/1.0\r\n\r\n").ends_with("\r\n\r\n20.5 7.25 -8.125"));
     // A client has the sonde for itself, also when it only says half a command.
     let mut client = gateway.connect("sonde");

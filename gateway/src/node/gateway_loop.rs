@@ -234,7 +234,8 @@ impl GatewayLoop<'_> {
         }
         status.latency_us =
             [self.counters.sentence_to_topic.summary_us(), self.counters.order_to_sentence.summary_us()];
-        let lost = self.recorder.as_ref().map_or([0; 2], |recorder| [recorder.state().dropped, recorder.bulk_dropped()]);
+        let lost =
+            self.recorder.as_ref().map_or([0; 2], |recorder| [recorder.state().dropped, recorder.bulk_dropped()]);
         let more = [("nav reports", self.counters.reports), ("displaced writes", self.link.displaced())];
         let rest = [
             ("calls dropped", self.input.calls.dropped()),

@@ -127,10 +127,10 @@ mod tests {
         let sonde = read("sonde_2=tcp://[::1]:5000,exo2=http,listen=0.0.0.0:5000");
         assert_eq!((sonde.exo2, sonde.listen.to_string().as_str()), (Some(Exo2Port::Http), "0.0.0.0:5000"));
         let serial = read("s=serial:///dev/ttyUSB0?baud=9600,exo2");
-        assert_eq!((serial.exo2, serial.address.to_string().as_str()), (
-            Some(Exo2Port::Lines),
-            "serial:///dev/ttyUSB0?baud=9600"
-        ));
+        assert_eq!(
+            (serial.exo2, serial.address.to_string().as_str()),
+            (Some(Exo2Port::Lines), "serial:///dev/ttyUSB0?baud=9600")
+        );
     }
 
     #[test]

@@ -24,7 +24,7 @@ const TO_ALL: u32 = 0;
 /// The line.
 pub(super) struct SharedLine {
     link: Link,
-    /// One piece at a time: the link keeps no two in order.
+    /// One piece at a time: of two that wait, the link keeps the newer alone.
     writing: Mutex<()>,
     ends: Arc<Ends>,
 }

@@ -75,7 +75,9 @@ impl Tap {
 
     /// The side that bytes come from has closed the connection.
     pub(super) fn end(&self, connection: u32, outward: bool) {
-        self.record(connection, outward, &[], |conversation, sonde| conversation.end(outward, sonde).into_iter().collect());
+        self.record(connection, outward, &[], |conversation, sonde| {
+            conversation.end(outward, sonde).into_iter().collect()
+        });
     }
 
     fn record(

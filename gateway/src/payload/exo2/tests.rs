@@ -85,11 +85,10 @@ fn a_server_of_http_is_read_with_and_without_lengths() {
     // One connection for all, by lengths.
     let answer = |text: &str| format!("HTTP/1.1 200 OK\nContent-Length:{}\n\n{text}", text.len());
     let (codes, data) = (answer("1 12"), answer("20.5 35.25"));
-    assert_eq!(values(&[('>', post), ('<', &codes), ('>', get), ('<', &data), ('>', get), ('<', &data)]), [
-        want.clone(),
-        want.clone()
-    ]
-    .concat());
+    assert_eq!(
+        values(&[('>', post), ('<', &codes), ('>', get), ('<', &data), ('>', get), ('<', &data)]),
+        [want.clone(), want.clone()].concat()
+    );
     let other = "GET /video_feed HTTP/1.1\r\n\r\n";
     assert_eq!(measured(&mut sonde, &[('>', other), ('<', &data)], 9), Vec::<Vec<_>>::new());
     let chunked = "HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked\r\n\r\n2\r\n7 8\r\n0\r\n\r\n";
@@ -99,7 +98,9 @@ fn a_server_of_http_is_read_with_and_without_lengths() {
 #[test]
 fn nothing_is_guessed_of_what_is_no_answer() {
     let long = format!("{}\r\n", "1 ".repeat(100_000));
-    for answer in ["1 2\r\n", "1 2 3 4\r\n", "1 2 x\r\n", "nan 2 3\r\n", "inf 2 3\r\n", "1e999 2 3\r\n", "\u{e9} 2 3\r\n", &long] {
+    for answer in
+        ["1 2\r\n", "1 2 3 4\r\n", "1 2 x\r\n", "nan 2 3\r\n", "inf 2 3\r\n", "1e999 2 3\r\n", "\u{e9} 2 3\r\n", &long]
+    {
         let talk = [&PARA[..], &[('>', "data\r"), ('<', answer)]].concat();
         assert_eq!(values(&talk), Vec::<Vec<_>>::new(), "{answer:.20}");
         // What comes after it is read all the same.
