@@ -100,10 +100,7 @@ impl Forward<'_> {
                     self.slot.touch();
                     self.tap.take(self.number, outward, &piece[..count]);
                     if let Err(e) = (&mut &*to).write_all(&piece[..count]) {
-                        if is_pause(&e) {
-                            let whoever = if outward { "the payload" } else { "a client" };
-                            self.payload.remark(&format!("{whoever} took nothing for {WRITE_MAX:?}: disconnected"));
-                        }
+                        self.tell_stall(outward, &e);
                         return self.close();
                     }
                 }
@@ -116,6 +113,14 @@ impl Forward<'_> {
                 }
                 Err(_) => return self.close(),
             }
+        }
+    }
+
+    /// Logs whoever was waited for too long.
+    fn tell_stall(&self, outward: bool, error: &io::Error) {
+        if is_pause(error) {
+            let whoever = if outward { "the payload" } else { "a client" };
+            self.payload.remark(&format!("{whoever} took nothing for {WRITE_MAX:?}: disconnected"));
         }
     }
 
