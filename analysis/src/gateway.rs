@@ -71,7 +71,7 @@ fn traffic(bag: &Bag, gateway: &mut Gateway) {
     for message in bag.on(&format!("link/{}", gateway.boat)) {
         let Some(bytes) = gateway.damaged.sound(message.read::<LinkBytes>()) else { continue };
         gateway.way(bytes.outward).bytes += bytes.data.len() as u64;
-        lines.take(&bytes).iter().for_each(|line| gateway.count(line));
+        lines.take(bytes.outward, &bytes.data).iter().for_each(|line| gateway.count(line));
     }
     lines.rest().iter().for_each(|line| gateway.count(line));
 }

@@ -1,6 +1,4 @@
-//! The lines in the bytes of a link, each way.
-
-use game::external::LinkBytes;
+//! The lines in the bytes of a link or of a payload, each way.
 
 /// A line this long is given as it is, ended or not, bytes: no sentence is.
 const LONGEST: usize = 1024;
@@ -8,7 +6,7 @@ const LONGEST: usize = 1024;
 /// A line on a link.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Line {
-    /// Whether it goes to the boat.
+    /// Whether it goes to the boat or payload.
     pub outward: bool,
     /// The line without its end; what is not ASCII that can be printed is escaped.
     pub text: String,
@@ -28,31 +26,41 @@ impl Line {
 /// Puts lines together from pieces.
 #[derive(Clone, Debug, Default)]
 pub struct Lines {
-    /// What has not ended yet: from the boat, to the boat.
+    /// What has not ended yet: inward, outward.
     begun: [Vec<u8>; 2],
 }
 
 impl Lines {
     /// Takes some bytes; the lines that end in them.
-    pub fn take(&mut self, bytes: &LinkBytes) -> Vec<Line> {
+    pub fn take(&mut self, outward: bool, bytes: &[u8]) -> Vec<Line> {
         let mut lines = vec![];
-        let begun = &mut self.begun[usize::from(bytes.outward)];
-        for byte in &bytes.data {
+        let begun = &mut self.begun[usize::from(outward)];
+        for byte in bytes {
             if *byte != b'\n' {
                 begun.push(*byte);
             }
             if *byte == b'\n' || begun.len() >= LONGEST {
-                lines.extend(line(std::mem::take(begun), bytes.outward));
+                lines.extend(line(std::mem::take(begun), outward));
             }
         }
         lines
     }
 
+    /// What has begun one way and not ended, where nothing more comes.
+    pub fn end(&mut self, outward: bool) -> Option<Line> {
+        line(std::mem::take(&mut self.begun[usize::from(outward)]), outward)
+    }
+
+    /// Whether nothing has begun.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.begun.iter().all(Vec::is_empty)
+    }
+
     /// What has begun and not ended.
     #[must_use]
-    pub fn rest(self) -> Vec<Line> {
-        let [inward, outward] = self.begun;
-        [line(inward, false), line(outward, true)].into_iter().flatten().collect()
+    pub fn rest(mut self) -> Vec<Line> {
+        [false, true].into_iter().filter_map(|outward| self.end(outward)).collect()
     }
 }
 
@@ -65,22 +73,16 @@ fn line(bytes: Vec<u8>, outward: bool) -> Option<Line> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use game::VehicleId;
-    use game::message::Stamp;
-
-    fn bytes(outward: bool, data: &[u8]) -> LinkBytes {
-        LinkBytes { stamp: Stamp::default(), vehicle: VehicleId(0), outward, data: data.to_vec() }
-    }
 
     #[test]
     fn lines_come_whole_whatever_the_pieces() {
         let bytes_in = b"$GPRMC,1*00\r\n\r\n$PSEAC,T,0*0D\r\nrest";
         for cut in 0..bytes_in.len() {
             let mut lines = Lines::default();
-            let mut all = lines.take(&bytes(false, &bytes_in[..cut]));
+            let mut all = lines.take(false, &bytes_in[..cut]);
             // The other way does not mix with it.
-            assert_eq!(lines.take(&bytes(true, b"$PSEAC,L")), []);
-            all.extend(lines.take(&bytes(false, &bytes_in[cut..])));
+            assert_eq!(lines.take(true, b"$PSEAC,L"), []);
+            all.extend(lines.take(false, &bytes_in[cut..]));
             all.extend(lines.rest());
             let texts: Vec<(&str, bool)> = all.iter().map(|line| (line.text.as_str(), line.outward)).collect();
             let want = [("$GPRMC,1*00", false), ("$PSEAC,T,0*0D", false), ("rest", false), ("$PSEAC,L", true)];
@@ -105,7 +107,7 @@ mod tests {
     #[test]
     fn noise_is_cut_and_escaped() {
         let mut lines = Lines::default();
-        let all = lines.take(&bytes(false, &[0xff; 3000]));
+        let all = lines.take(false, &[0xff; 3000]);
         assert_eq!((all.len(), lines.begun[0].len()), (2, 3000 - 2 * LONGEST));
         assert!(all[0].text.starts_with("\\xff\\xff"));
     }

@@ -27,6 +27,7 @@ mod normal;
 pub mod observation;
 pub mod order;
 pub mod outcome;
+pub mod payload;
 pub mod picture;
 pub mod policy;
 pub mod printable;

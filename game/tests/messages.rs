@@ -7,6 +7,7 @@ use game::input::Inputs;
 use game::message::{
     EventRecord, Frame, Message, Orders, PolicyProposal, Say, Stamp, VehicleOrder, VehicleTruth, Word,
 };
+use game::payload::PayloadBytes;
 use game::picture::{Contact, FlagView, Imu, Nav, OwnBoat};
 use game::{FlagId, Order, Picture, SimTime, TeamId, VehicleId};
 use proptest::prelude::*;
@@ -20,7 +21,7 @@ fn traced<M: Message + serde::de::DeserializeOwned>(tracer: &mut Tracer) -> &'st
 }
 
 /// All messages: what they are made of, and their schemas.
-fn registry() -> (Registry, [&'static str; 9]) {
+fn registry() -> (Registry, [&'static str; 10]) {
     let mut tracer = Tracer::new(TracerConfig::default());
     let schemas = [
         traced::<Picture>(&mut tracer),
@@ -32,6 +33,7 @@ fn registry() -> (Registry, [&'static str; 9]) {
         traced::<ExternalOrder>(&mut tracer),
         traced::<Inputs>(&mut tracer),
         traced::<LinkBytes>(&mut tracer),
+        traced::<PayloadBytes>(&mut tracer),
     ];
     (tracer.registry().expect("all is known"), schemas)
 }

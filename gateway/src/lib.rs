@@ -1,7 +1,8 @@
 //! The gateway to real boats: Surveyor NMEA both ways, links, a safety supervisor, and an emulated boat.
 //!
 //! Open [`supervisor`] first (when a boat may be driven), then [`bridge`] (how reports, orders and navigation meet), then
-//! [`protocol`] and [`nmea`]. [`emulator`] is the boat's end of the link. Sockets and clocks are only in [`link`] and `node`.
+//! [`protocol`] and [`nmea`]. [`emulator`] is the boat's end of the link, [`payload`] what else is on board. Sockets and clocks are only
+//! in [`link`] and `node`.
 
 pub mod bow_watch;
 pub mod bridge;
@@ -18,6 +19,7 @@ pub mod nav_estimate;
 pub mod nmea;
 #[cfg(feature = "net")]
 pub mod node;
+pub mod payload;
 pub mod preflight;
 pub mod protocol;
 pub mod record;

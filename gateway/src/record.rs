@@ -86,7 +86,8 @@ impl StepEncoder {
     }
 }
 
-fn json(topic: &str, at: SimTime, message: &impl Serialize) -> Entry {
-    let bytes = serde_json::to_vec(message).expect("inputs and events are JSON");
+/// The entry of a message as JSON.
+pub(crate) fn json(topic: &str, at: SimTime, message: &impl Serialize) -> Entry {
+    let bytes = serde_json::to_vec(message).expect("what a gateway records is JSON");
     Entry::Message { topic: topic.to_owned(), schema: None, bytes, at }
 }

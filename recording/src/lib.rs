@@ -14,6 +14,8 @@
 //! |---|---|---|
 //! | `link/<boat>` | every byte of the link, both ways | message |
 //! | `input`, `event` | everything else that the gateway was given, and what happened | JSON |
+//! | `payload/<name>` | every byte between a payload of the boat and its clients, both ways | message |
+//! | `values/<name>` | what a sensor among them measured, as far as its bytes are understood | JSON |
 //!
 //! All of it is CDR, as the profile `ros2` demands: a message of ours, or a JSON object as the text of a
 //! `std_msgs/msg/String`. `log_time` is the time of the game or of the gateway's clock, counted from the UTC at which the
@@ -41,7 +43,7 @@ pub use bag::{Bag, RecordedMessage, RecordingError};
 pub use damaged::Damaged;
 pub use file_name::free_path;
 pub use game_recording::{Ending, FRAME, Header, INPUTS, Recording, picture};
-pub use recorder::{NewFile, Recorder};
+pub use recorder::{BulkRecorder, NewFile, Recorder};
 pub use writer::{Decision, Entry, Opening, Writer};
 
 use std::collections::BTreeMap;

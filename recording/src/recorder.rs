@@ -25,11 +25,23 @@ const WAITING: usize = 1 << 14;
 /// Writes a recording on a thread of its own. Dropped, it completes the file without a result.
 pub struct Recorder {
     path: PathBuf,
+    queue: Queue,
+    /// Until it ends.
+    thread: Option<JoinHandle<()>>,
+}
+
+/// Records what may be left out, such as the pictures of a camera: it takes up no more than half of the queue, so that where the disk does
+/// not keep up everything else still finds room.
+#[derive(Clone)]
+pub struct BulkRecorder(Queue);
+
+/// The way to the thread.
+#[derive(Clone)]
+struct Queue {
+    jobs: SyncSender<Job>,
     /// How much may wait for the disk, bytes.
     waiting_max: usize,
     shared: Arc<Shared>,
-    /// Until it ends: the way to the thread, and the thread.
-    running: Option<(SyncSender<Job>, JoinHandle<()>)>,
 }
 
 enum Job {
@@ -41,8 +53,10 @@ enum Job {
 struct Shared {
     bytes: AtomicU64,
     dropped: AtomicU64,
-    /// Bytes that entries take up that wait.
+    bulk_dropped: AtomicU64,
+    /// Entries that wait, and the bytes that they take up.
     waiting: AtomicUsize,
+    waiting_bytes: AtomicUsize,
     failed: OnceLock<String>,
 }
 
@@ -96,23 +110,29 @@ impl Recorder {
     ) -> Result<Recorder, RecordError> {
         let writer = Writer::begin(file, opening)?;
         let (sender, jobs) = sync_channel(WAITING);
-        let shared = Arc::new(Shared::default());
-        let (theirs, size_of) = (Arc::clone(&shared), path.clone());
+        let queue = Queue { jobs: sender, waiting_max, shared: Arc::default() };
+        let (theirs, size_of) = (Arc::clone(&queue.shared), path.clone());
         let thread = std::thread::Builder::new().name("recorder".to_owned());
         let thread = thread.spawn(move || write(writer, &jobs, &theirs, &size_of))?;
-        Ok(Recorder { path, waiting_max, shared, running: Some((sender, thread)) })
+        Ok(Recorder { path, queue, thread: Some(thread) })
     }
 
     /// Records something; drops it, and counts that, where the disk does not keep up.
     pub fn record(&self, entry: Entry) {
-        let size = entry.size();
-        let waiting = self.shared.waiting.fetch_add(size, Ordering::Relaxed);
-        let job = Job::Write(entry, utc::now_ns());
-        let is_full = waiting + size > self.waiting_max;
-        if is_full || self.running.as_ref().is_none_or(|(sender, _)| sender.try_send(job).is_err()) {
-            self.shared.waiting.fetch_sub(size, Ordering::Relaxed);
-            self.shared.dropped.fetch_add(1, Ordering::Relaxed);
-        }
+        let is_taken = self.queue.offer(entry, WAITING, self.queue.waiting_max);
+        self.queue.shared.dropped.fetch_add(u64::from(!is_taken), Ordering::Relaxed);
+    }
+
+    /// What records into the same file for others, as long as this recorder is there.
+    #[must_use]
+    pub fn bulk(&self) -> BulkRecorder {
+        BulkRecorder(self.queue.clone())
+    }
+
+    /// How many entries of its [`BulkRecorder`]s found no room.
+    #[must_use]
+    pub fn bulk_dropped(&self) -> u64 {
+        self.queue.shared.bulk_dropped.load(Ordering::Relaxed)
     }
 
     /// How it stands.
@@ -120,36 +140,64 @@ impl Recorder {
     pub fn state(&self) -> RecordingState {
         RecordingState {
             file: self.path.display().to_string(),
-            bytes: self.shared.bytes.load(Ordering::Relaxed),
-            dropped: self.shared.dropped.load(Ordering::Relaxed),
-            failed: self.shared.failed.get().cloned(),
+            bytes: self.queue.shared.bytes.load(Ordering::Relaxed),
+            dropped: self.queue.shared.dropped.load(Ordering::Relaxed),
+            failed: self.queue.shared.failed.get().cloned(),
         }
     }
 
     /// Completes the file with this result, to which how much was dropped is added, and says how it stands then.
     pub fn end(mut self, mut result: Facts) -> RecordingState {
-        result.insert("dropped".to_owned(), self.shared.dropped.load(Ordering::Relaxed).to_string());
-        if let Some((sender, _)) = &self.running {
-            // A thread that is gone has said why.
-            drop(sender.send(Job::End(result)));
-        }
-        self.join();
+        result.insert("dropped".to_owned(), self.queue.shared.dropped.load(Ordering::Relaxed).to_string());
+        self.complete(result);
         self.state()
     }
 
-    fn join(&mut self) {
-        if let Some((sender, thread)) = self.running.take() {
-            drop(sender);
-            if thread.join().is_err() {
-                self.shared.failed.get_or_init(|| "its thread broke down".to_owned());
-            }
+    /// Completes the file, once. What bulk recorders record after that is dropped.
+    fn complete(&mut self, result: Facts) {
+        let Some(thread) = self.thread.take() else { return };
+        // A thread that is gone has said why.
+        drop(self.queue.jobs.send(Job::End(result)));
+        if thread.join().is_err() {
+            self.queue.shared.failed.get_or_init(|| "its thread broke down".to_owned());
         }
     }
 }
 
 impl Drop for Recorder {
     fn drop(&mut self) {
-        self.join();
+        self.complete(Facts::new());
+    }
+}
+
+impl BulkRecorder {
+    /// Records something; drops it, and counts that, where half of the queue is full.
+    pub fn record(&self, entry: Entry) {
+        let is_taken = self.0.offer(entry, WAITING / 2, self.0.waiting_max / 2);
+        self.0.shared.bulk_dropped.fetch_add(u64::from(!is_taken), Ordering::Relaxed);
+    }
+}
+
+impl Queue {
+    /// Hands an entry over if no more than this wait then; whether it was taken.
+    fn offer(&self, entry: Entry, entries_max: usize, bytes_max: usize) -> bool {
+        let size = entry.size();
+        let bytes = self.shared.waiting_bytes.fetch_add(size, Ordering::Relaxed) + size;
+        let entries = self.shared.waiting.fetch_add(1, Ordering::Relaxed) + 1;
+        let has_room = entries <= entries_max && bytes <= bytes_max;
+        let is_taken = has_room && self.jobs.try_send(Job::Write(entry, utc::now_ns())).is_ok();
+        if !is_taken {
+            self.shared.written(size);
+        }
+        is_taken
+    }
+}
+
+impl Shared {
+    /// An entry of this size waits no longer.
+    fn written(&self, size: usize) {
+        self.waiting.fetch_sub(1, Ordering::Relaxed);
+        self.waiting_bytes.fetch_sub(size, Ordering::Relaxed);
     }
 }
 
@@ -167,7 +215,7 @@ fn write<W: Write + Seek>(mut writer: Writer<W>, jobs: &Receiver<Job>, shared: &
             Ok(Job::Write(entry, utc_ns)) => {
                 let written = if is_broken() { Ok(()) } else { writer.write(&entry, utc_ns) };
                 shared.dropped.fetch_add(u64::from(is_broken()), Ordering::Relaxed);
-                shared.waiting.fetch_sub(entry.size(), Ordering::Relaxed);
+                shared.written(entry.size());
                 written
             }
             Ok(Job::End(result)) => break result,
@@ -284,6 +332,31 @@ mod tests {
         assert_eq!(bag.result().map(|result| result["dropped"].as_str()), Some("3"));
         for topic in [FRAME, INPUTS] {
             assert_eq!(bag.on(topic).count() + 3, recorded as usize, "{topic}");
+        }
+    }
+
+    fn message(topic: &str, size: usize) -> Entry {
+        Entry::Message { topic: topic.to_owned(), schema: None, bytes: vec![b'1'; size], at: SimTime::ZERO }
+    }
+
+    #[test]
+    fn bulk_leaves_room_for_everything_else_and_the_file_is_completed_though_somebody_still_records_bulk() {
+        for (size, waiting_max) in [(1000, 100_000), (1, WAITING_BYTES)] {
+            let disk = Disk::default();
+            let recorder = Recorder::over(disk.clone(), PathBuf::new(), &opening(), waiting_max).expect("it begins");
+            let stuck = disk.0.lock().expect("nobody panics");
+            let bulk = recorder.bulk();
+            while recorder.bulk_dropped() < 1000 {
+                bulk.record(message("payload/camera", size));
+            }
+            (0..40).for_each(|_| recorder.record(message("link/blue_one", size)));
+            assert_eq!(recorder.state().dropped, 0, "pieces of {size} bytes");
+            drop(stuck);
+            assert_eq!(recorder.end(Facts::new()).failed, None);
+            bulk.record(message("payload/camera", size));
+            let bag = Bag::of(disk.0.lock().expect("nobody panics").get_ref().clone()).expect("a recording");
+            assert_eq!((bag.on("link/blue_one").count(), bag.is_cut()), (40, false), "pieces of {size} bytes");
+            assert!(bag.on("payload/camera").count() > 40);
         }
     }
 }

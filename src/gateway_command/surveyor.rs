@@ -13,6 +13,7 @@ use game::gateway::Gateway;
 use gateway::bridge::Preflight;
 use gateway::link::LinkAddress;
 use gateway::node::{NodeEvent, Outside, Settings, on_enter};
+use gateway::payload::PayloadPort;
 use recording::utc;
 use std::io::IsTerminal;
 use std::net::SocketAddr;
@@ -32,6 +33,10 @@ pub(crate) struct Args {
     /// Where the boat is: tcp://HOST:PORT, udp://HOST:PORT, serial:///dev/ttyUSB0?baud=38400
     #[arg(long, value_name = "URL")]
     link: String,
+    /// A payload to pass through and record, NAME=URL[,listen=HOST:PORT], of an
+    /// EXO2 sonde its values too: [,exo2] or [,exo2=http]; may be repeated
+    #[arg(long, value_name = "PAYLOAD", conflicts_with = "at_game_pace")]
+    payload: Vec<PayloadPort>,
     /// Where it takes operator commands with or without a game: an address of this machine and a port, 0 for any
     #[arg(long, value_name = "HOST:PORT", default_value = "127.0.0.1:0", value_parser = control_address)]
     control_listen: SocketAddr,
@@ -75,6 +80,7 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let link = LinkAddress::to_connect(&args.link).map_err(|e| anyhow!("--link: {e}"))?;
     let gateway = super::gateway_file(args.config.as_deref())?;
+    PayloadPort::check(&args.payload).map_err(|e| anyhow!("--payload: {e}"))?;
     let preflight = preflight(args, &link, &gateway)?;
     let stop = stop::on_ctrl_c_or_parent(args.for_parent)?;
     let record = recording(args)?;
@@ -106,11 +112,12 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let silence = Duration::from_secs_f64(args.silence_s);
     // An emulated boat in a hurry is stopped by nobody: a busy machine would look like a gateway that hangs.
     let guard = if args.at_game_pace { None } else { Some(child_process::own_program()?) };
-    let outside = Outside { link, silence, control: args.control_listen, guard };
+    let payloads = args.payload.clone();
+    let outside = Outside { link, silence, control: args.control_listen, guard, payloads };
     let (mut last, mut registration) = (String::new(), None::<Registration>);
     let mut notify = |event: NodeEvent<'_>| match event {
         NodeEvent::Looking { reason } => log.remark(format!("{}: looking for the game: {reason}", args.vehicle)),
-        NodeEvent::Listening { .. } => {}
+        NodeEvent::Listening { what, reach } => log.remark(format!("{what} at {reach}")),
         NodeEvent::ControlPort { address: control, token } => {
             let (vehicle, pid, token) = (args.vehicle.clone(), std::process::id(), token.as_ref().map(Token::hex));
             let entry = bus::GatewayEntry { vehicle, game: game.clone(), control, pid, token };

@@ -158,14 +158,14 @@ fn enter_in_the_gateways_own_terminal_is_an_e_stop() {
 const GUARD_PROMISES: Duration = Duration::from_millis(500);
 
 /// A boat's end of a link: it reports something and notes what it is sent.
-struct Wire {
+pub(crate) struct Wire {
     link: Arc<Link>,
-    received: Arc<Watched<String>>,
+    pub(crate) received: Arc<Watched<String>>,
     stop: Arc<AtomicBool>,
 }
 
 impl Wire {
-    fn listen(address: &str) -> Wire {
+    pub(crate) fn listen(address: &str) -> Wire {
         let address = LinkAddress::to_listen(address).expect("an address");
         let received = Arc::new(Watched::new(String::new()));
         let noted = Arc::clone(&received);
@@ -188,20 +188,20 @@ impl Wire {
     }
 
     /// Where a gateway reaches it.
-    fn address(&self) -> String {
+    pub(crate) fn address(&self) -> String {
         let reach = self.link.reach();
         if reach.starts_with('/') { format!("serial://{reach}?baud=115200") } else { reach }
     }
 
     /// Waits until this was received, from the last forgetting on.
-    fn wait_for(&self, what: &str, limit: Duration) -> Duration {
+    pub(crate) fn wait_for(&self, what: &str, limit: Duration) -> Duration {
         let start = Instant::now();
         let came = self.received.wait(limit, |text| text.contains(what));
         assert!(came, "{what:?} not within {limit:?}: {:?}", self.received.visit(|text| text.clone()));
         start.elapsed()
     }
 
-    fn forget(&self) {
+    pub(crate) fn forget(&self) {
         self.received.visit(String::clear);
     }
 }

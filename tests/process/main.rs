@@ -7,6 +7,7 @@
 
 mod boat_alone;
 mod external;
+mod fake_payload;
 mod faults;
 mod games;
 mod gateway;
@@ -15,6 +16,7 @@ mod hosts;
 mod keys;
 mod mavlink;
 mod network;
+mod payload;
 mod place;
 mod policy;
 mod preflight;

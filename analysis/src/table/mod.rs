@@ -10,21 +10,23 @@
 //! | `picture/<team>` | an own boat or a contact in a picture (`seen` says which) |
 //! | `inputs` | one thing that the game was given |
 //! | `say/<team>` | a shared variable of a boat |
-//! | `link/<boat>` | a line on the link, by the time of the piece that ended it |
+//! | `link/<boat>`, `payload/<name>` | a line on the link or of a payload's connection, by the time of the piece that ended it |
 //! | `events` | an event of the game (no topic of the file, but told in its frames) |
 //! | any other | a message; JSON is laid flat, with numbered lists |
 
 mod cells;
 mod message;
 
+use crate::link_line::{Line, Lines};
 use cells::Cells;
 use game::external::LinkBytes;
 use game::message::{Frame, Message};
 use game::outcome::EventOutcome;
+use game::payload::PayloadBytes;
 use game::{Scenario, SimTime};
 use recording::{Bag, Damaged, FRAME, RecordedMessage, RecordingError};
 use serde_json::Value;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use thiserror::Error;
 
 /// What happened, as if it were a topic.
@@ -93,6 +95,7 @@ pub fn write(bag: &Bag, scenario: Option<&Scenario>, topic: &str, sink: &mut Sin
         (EVENTS, _, Some(scenario)) => events(bag, scenario, sink),
         (_, None, _) => json(bag, topic, sink),
         (_, Some(LinkBytes::SCHEMA), _) => link(bag, topic, sink),
+        (_, Some(PayloadBytes::SCHEMA), _) => payload(bag, topic, sink),
         (_, Some(schema), Some(scenario)) if let Some(columns) = message::columns(schema, scenario) => {
             let columns: Vec<String> = std::iter::once("t_s".to_owned()).chain(columns).collect();
             sink(&columns)?;
@@ -133,9 +136,9 @@ fn json(bag: &Bag, topic: &str, sink: &mut Sink<'_>) -> Result<Damaged, TableErr
 /// A row for each line on a link.
 fn link(bag: &Bag, topic: &str, sink: &mut Sink<'_>) -> Result<Damaged, TableError> {
     sink(&["t_s", "direction", "text"].map(str::to_owned))?;
-    let mut lines = crate::link_line::Lines::default();
+    let mut lines = Lines::default();
     let mut last = SimTime::ZERO;
-    let mut put = |at, line: crate::link_line::Line| {
+    let mut put = |at, line: Line| {
         let direction = if line.outward { "to_boat" } else { "from_boat" };
         sink(&[cells::time(at), direction.to_owned(), line.text])
     };
@@ -143,9 +146,36 @@ fn link(bag: &Bag, topic: &str, sink: &mut Sink<'_>) -> Result<Damaged, TableErr
     for message in bag.on(topic) {
         last = message.at;
         let Some(bytes) = damaged.sound(message.read::<LinkBytes>()) else { continue };
-        lines.take(&bytes).into_iter().try_for_each(|line| put(last, line))?;
+        lines.take(bytes.outward, &bytes.data).into_iter().try_for_each(|line| put(last, line))?;
     }
     lines.rest().into_iter().try_for_each(|line| put(last, line))?;
+    Ok(damaged)
+}
+
+/// A row for each line between a payload and a client.
+fn payload(bag: &Bag, topic: &str, sink: &mut Sink<'_>) -> Result<Damaged, TableError> {
+    sink(&["t_s", "connection", "direction", "text"].map(str::to_owned))?;
+    let mut open: BTreeMap<u32, Lines> = BTreeMap::new();
+    let mut last = SimTime::ZERO;
+    let mut put = |at, connection: u32, line: Line| {
+        let direction = if line.outward { "to_payload" } else { "from_payload" };
+        sink(&[cells::time(at), connection.to_string(), direction.to_owned(), line.text])
+    };
+    let mut damaged = Damaged::default();
+    for message in bag.on(topic) {
+        last = message.at;
+        let Some(bytes) = damaged.sound(message.read::<PayloadBytes>()) else { continue };
+        let PayloadBytes { connection, outward, data, .. } = bytes;
+        let lines = open.entry(connection).or_default();
+        let ended = if data.is_empty() { lines.end(outward) } else { None };
+        lines.take(outward, &data).into_iter().chain(ended).try_for_each(|line| put(last, connection, line))?;
+        if lines.is_empty() {
+            open.remove(&connection);
+        }
+    }
+    for (connection, lines) in open {
+        lines.rest().into_iter().try_for_each(|line| put(last, connection, line))?;
+    }
     Ok(damaged)
 }
 

@@ -10,6 +10,7 @@ use game::external::{ExternalOrder, LinkBytes, NavReport};
 use game::input::{InputRecord, Inputs};
 use game::message::{Frame, JoinRequest, Message, Orders, PolicyProposal, Role, Say, Stamp};
 use game::outcome::EventOutcome;
+use game::payload::PayloadBytes;
 use game::picture::Nav;
 use game::refusal::Refusals;
 use game::{Picture, Scenario, SimTime, VehicleId};
@@ -44,6 +45,8 @@ fn seeds() -> Vec<Vec<u8>> {
     let report = NavReport { stamp: stamp(NavReport::VERSION), ticket: TICKET, vehicle, valid, age_ns: 30, nav };
     let data = b"$GPHDT,12.5,T*30\r\n".to_vec();
     let link = LinkBytes { stamp: stamp(LinkBytes::VERSION), vehicle, outward: false, data };
+    let data = b"data\r".to_vec();
+    let payload = PayloadBytes { stamp: stamp(PayloadBytes::VERSION), connection: 3, outward: true, data };
     let all = played::orders().map(|order| ExternalOrder {
         stamp: stamp(ExternalOrder::VERSION),
         given_ns: SimTime(7),
@@ -52,7 +55,7 @@ fn seeds() -> Vec<Vec<u8>> {
     let orders = Orders { stamp: stamp(Orders::VERSION), ticket: TICKET, orders: played::orders().to_vec() };
     seeds.extend(all.iter().map(codec::encode));
     seeds.extend([codec::encode(&report), codec::encode(&link), codec::encode(&played::proposal())]);
-    seeds.push(codec::encode(&orders));
+    seeds.extend([codec::encode(&orders), codec::encode(&payload)]);
     seeds
 }
 
@@ -130,6 +133,7 @@ fn check(bytes: &[u8]) {
             readers.hear(bytes, say.stamp.seq);
         }
         read::<LinkBytes>(bytes);
+        read::<PayloadBytes>(bytes);
         if let Some(order) = read::<ExternalOrder>(bytes) {
             assert_eq!(order.order.order().is_some(), order.order.kind <= 3);
         }

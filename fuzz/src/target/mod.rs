@@ -1,6 +1,7 @@
 //! The kinds of input, and what is promised of each.
 
 mod address;
+mod exo2;
 mod keys;
 mod mavlink;
 mod message;
@@ -33,8 +34,9 @@ pub struct Target {
 }
 
 /// All of them.
-pub const TARGETS: [Target; 11] = [
+pub const TARGETS: [Target; 12] = [
     address::TARGET,
+    exo2::TARGET,
     keys::TARGET,
     mavlink::TARGET,
     message::TARGET,

@@ -6,17 +6,16 @@
 
 use super::NodeError;
 use super::loop_input::LoopInput;
+use super::tcp_port::TcpPort;
 use crate::supervisor::Scope;
 use bus::token::{self, Checked, Guard};
-use bus::{Connections, CurrentToken, GATEWAY_PORT_KEY, Slot, clock};
+use bus::{CurrentToken, GATEWAY_PORT_KEY, Slot};
 use game::external::{FleetCommand, GatewayCommand, GatewayStatus, OperatorCommand, OperatorReply};
-use socket2::SockRef;
 use std::io::{self, BufRead, BufReader, Read, Write};
-use std::net::{IpAddr, Shutdown, SocketAddr, TcpListener, TcpStream};
+use std::net::{SocketAddr, TcpStream};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::sync_channel;
-use std::thread::JoinHandle;
 use std::time::Duration;
 
 /// The most connections at once.
@@ -28,13 +27,11 @@ const WRITE_MAX: Duration = Duration::from_secs(2);
 const REQUEST_MAX: u64 = 64 * 1024;
 /// How long the gateway loop may take to reply.
 const REPLY_MAX: Duration = Duration::from_secs(2);
-/// How often the thread that accepts looks whether it is to end.
-const LOOK: Duration = Duration::from_millis(100);
 
 /// A port that is open as long as this is kept.
 pub(super) struct ControlPort {
     server: Arc<Server>,
-    thread: Option<JoinHandle<()>>,
+    _port: TcpPort,
     pub(super) address: SocketAddr,
     /// The token that it asks for.
     pub(super) token: CurrentToken,
@@ -47,8 +44,6 @@ struct Server {
     input: LoopInput,
     /// Whether the gateway loop runs.
     is_running: AtomicBool,
-    is_closing: AtomicBool,
-    connections: Connections,
 }
 
 impl ControlPort {
@@ -59,23 +54,14 @@ impl ControlPort {
         token: CurrentToken,
         input: LoopInput,
     ) -> Result<ControlPort, NodeError> {
-        let failed = |source| NodeError::ControlPort { listen, source };
-        let listener = TcpListener::bind(listen).map_err(failed)?;
-        // On Linux it holds for `accept` too.
-        SockRef::from(&listener).set_read_timeout(Some(LOOK)).map_err(failed)?;
-        let address = listener.local_addr().map_err(failed)?;
-        let server = Arc::new(Server {
-            vehicle: vehicle.to_owned(),
-            token: token.clone(),
-            input,
-            is_running: AtomicBool::new(false),
-            is_closing: AtomicBool::new(false),
-            connections: Connections::new(CONNECTIONS_MAX),
-        });
+        let is_running = AtomicBool::new(false);
+        let server = Arc::new(Server { vehicle: vehicle.to_owned(), token: token.clone(), input, is_running });
         let shared = Arc::clone(&server);
-        let thread = std::thread::Builder::new().name("control port".to_owned());
-        let thread = thread.spawn(move || shared.accept(&listener)).map_err(failed)?;
-        Ok(ControlPort { server, thread: Some(thread), address, token })
+        // However a connection ends, nobody misses it.
+        let serve = move |slot: &Slot, stream: &TcpStream| drop(shared.serve(slot, stream));
+        let port = TcpPort::open(listen, "control port", CONNECTIONS_MAX, serve);
+        let port = port.map_err(|source| NodeError::ControlPort { listen, source })?;
+        Ok(ControlPort { server, address: port.address, _port: port, token })
     }
 
     /// From now on the gateway loop answers.
@@ -84,38 +70,7 @@ impl ControlPort {
     }
 }
 
-impl Drop for ControlPort {
-    fn drop(&mut self) {
-        self.server.is_closing.store(true, Ordering::SeqCst);
-        // A thread that panicked has nothing to give back.
-        self.thread.take().map(JoinHandle::join).into_iter().for_each(drop);
-        self.server.connections.close();
-    }
-}
-
 impl Server {
-    fn accept(self: &Arc<Self>, listener: &TcpListener) {
-        while !self.is_closing.load(Ordering::SeqCst) {
-            match listener.accept() {
-                Ok((stream, from)) => self.open(stream, from.ip()),
-                Err(e) if e.kind() == io::ErrorKind::WouldBlock => {}
-                // Too many open files, for example: it may pass.
-                Err(_) => clock::rest(LOOK),
-            }
-        }
-    }
-
-    /// A connection has its thread. One for which there is none finds itself closed.
-    fn open(self: &Arc<Self>, stream: TcpStream, from: IpAddr) {
-        let Ok(other) = stream.try_clone() else { return };
-        // The thread that reads from it finds out; it may be closed already.
-        let slot = self.connections.admit(from, move || drop(other.shutdown(Shutdown::Both)));
-        let server = Arc::clone(self);
-        // However it ends, nobody misses it.
-        let serve = move || drop(server.serve(&slot, &stream));
-        drop(std::thread::Builder::new().name("control port".to_owned()).spawn(serve));
-    }
-
     /// Answers requests, line by line, until one is garbage or too long, or none comes.
     fn serve(&self, slot: &Slot, mut stream: &TcpStream) -> io::Result<()> {
         stream.set_nodelay(true)?;

@@ -234,9 +234,14 @@ impl GatewayLoop<'_> {
         }
         status.latency_us =
             [self.counters.sentence_to_topic.summary_us(), self.counters.order_to_sentence.summary_us()];
-        let lost = self.recorder.as_ref().map_or(0, |recorder| recorder.state().dropped);
+        let lost =
+            self.recorder.as_ref().map_or([0; 2], |recorder| [recorder.state().dropped, recorder.bulk_dropped()]);
         let more = [("nav reports", self.counters.reports), ("displaced writes", self.link.displaced())];
-        let rest = [("calls dropped", self.input.calls.dropped()), ("messages not recorded", lost)];
+        let rest = [
+            ("calls dropped", self.input.calls.dropped()),
+            ("messages not recorded", lost[0]),
+            ("messages of payloads not recorded", lost[1]),
+        ];
         status.counts.extend(more.into_iter().chain(rest).map(|(name, count)| (name.to_owned(), count)));
         status
     }

@@ -1,10 +1,11 @@
 //! What of this machine has to be well before a boat is driven from it.
 
 use crate::preflight::Check;
+use std::io;
 use std::path::Path;
 
-/// A day of a gateway's recording takes a tenth of this.
-const SPACE_MIN_MIB: u64 = 1024;
+/// What a disk must have free for a gateway's recording, of which a day takes a tenth of this, MiB.
+pub(super) const SPACE_MIN_MIB: u64 = 1024;
 /// Where systemd keeps who holds off what.
 const INHIBITORS: &str = "/run/systemd/inhibit";
 
@@ -16,14 +17,19 @@ pub fn machine_checks(folder: &Path) -> Vec<Check> {
 
 fn space(folder: &Path) -> Check {
     let name = "recording space";
-    match rustix::fs::statvfs(folder) {
-        Ok(about) => {
-            let free_mib = about.f_bavail.saturating_mul(about.f_frsize) >> 20;
+    match free_mib(folder) {
+        Ok(free_mib) => {
             let found = format!("{free_mib} MiB free in {}, expected {SPACE_MIN_MIB}", folder.display());
             Check::of(name, free_mib >= SPACE_MIN_MIB, found)
         }
         Err(e) => Check::not_done(name, format!("{}: {e}", folder.display())),
     }
+}
+
+/// What the disk that this is on has free, MiB.
+pub(super) fn free_mib(path: &Path) -> io::Result<u64> {
+    let about = rustix::fs::statvfs(path)?;
+    Ok(about.f_bavail.saturating_mul(about.f_frsize) >> 20)
 }
 
 fn sleep(inhibitors: &Path) -> Check {

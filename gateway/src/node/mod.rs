@@ -13,6 +13,8 @@ mod join;
 mod latency;
 mod loop_input;
 mod machine_check;
+mod payload;
+mod tcp_port;
 mod terminal_key;
 
 pub use emulator::{EmulatorSettings, emulate};
@@ -26,6 +28,7 @@ use crate::game_clock::GameClock;
 use crate::geofence::GeofenceError;
 use crate::link::{BoatLink, Link, LinkAddress, LinkError, LinkEvent, LinkSettings, OnPort};
 use crate::nmea::date_and_time;
+use crate::payload::PayloadPort;
 use crate::protocol::Protocol;
 use crate::record::{self, StepEncoder};
 use crate::supervisor::Scope;
@@ -44,6 +47,8 @@ use game::{SimTime, VehicleId, codec};
 use gateway_loop::{Counters, GatewayLoop, InGame};
 use guard::Guarded;
 use loop_input::{Call, LoopInput, LoopOutput, loop_input};
+use machine_check::SPACE_MIN_MIB;
+use payload::Payloads;
 use recording::{NewFile, RecordError, Recorder, utc};
 use std::net::SocketAddr;
 use std::path::PathBuf;
@@ -81,7 +86,7 @@ pub struct Settings {
     pub stop: Arc<AtomicBool>,
 }
 
-/// What a gateway has beside the network of the game: the way to its boat, and a port for operators.
+/// What a gateway has beside the network of the game: the way to its boat, a port for operators, and the boat's payloads.
 pub struct Outside {
     /// The address of the boat.
     pub link: LinkAddress,
@@ -91,6 +96,8 @@ pub struct Outside {
     pub control: SocketAddr,
     /// The program whose `gateway guard` stops the boat when this process cannot; `None` is without.
     pub guard: Option<PathBuf>,
+    /// The payloads of the boat that are passed through.
+    pub payloads: Vec<PayloadPort>,
 }
 
 /// What a link tells its gateway.
@@ -216,7 +223,7 @@ pub fn serve(settings: &Settings, outside: &Outside, notify: &mut dyn FnMut(Node
         let link_settings = LinkSettings { silence: Some(outside.silence), ..LinkSettings::default() };
         Ok(Box::new(Link::open_watched(&outside.link, link_settings, on_port, on_event)?))
     };
-    connect(settings, input, (Some(port), guarded), open, notify)
+    connect(settings, input, (Some(port), guarded, &outside.payloads), open, notify)
 }
 
 /// The guard, where there is to be one. A boat is not left alone since it cannot be started.
@@ -240,14 +247,14 @@ pub fn serve_over(
     open: impl FnOnce(OnLinkEvent) -> Result<Box<dyn BoatLink>, LinkError>,
     notify: &mut dyn FnMut(NodeEvent<'_>),
 ) -> Result<(), NodeError> {
-    connect(settings, loop_input(), (None, None), open, notify)
+    connect(settings, loop_input(), (None, None, &[]), open, notify)
 }
 
 /// Opens the link, runs the loop, and finds the game meanwhile.
 fn connect(
     settings: &Settings,
     (input, output): (LoopInput, LoopOutput),
-    (port, guarded): (Option<ControlPort>, Option<Guarded>),
+    (port, guarded, payloads): (Option<ControlPort>, Option<Guarded>, &[PayloadPort]),
     open: impl FnOnce(OnLinkEvent) -> Result<Box<dyn BoatLink>, LinkError>,
     notify: &mut dyn FnMut(NodeEvent<'_>),
 ) -> Result<(), NodeError> {
@@ -265,11 +272,15 @@ fn connect(
     let recorder = recorder(settings, &plan)?;
     let calls = input.calls.clone();
     let link = open(Box::new(move |event| calls.put(Call::Link(event))))?;
+    let clock = Clock::start();
+    let record = recorder.as_ref().map(Recorder::bulk).zip(settings.record.clone());
+    let shell = payload::Shell { record, space_min_mib: SPACE_MIN_MIB, clock, calls: input.calls.clone() };
+    let payloads = Payloads::open(payloads, &shell, notify);
     let mut gateway_loop = GatewayLoop {
         game_clock: GameClock::new(SimTime::from_s(plan.gateway.order_ttl_s)),
         bridge: Bridge::new(plan),
         link,
-        clock: Clock::start(),
+        clock,
         input: output,
         in_game: None,
         settings,
@@ -291,7 +302,7 @@ fn connect(
     drop(gateway_loop);
     // It ends however it came to that; who looks for a game does so too.
     settings.stop.store(true, Ordering::Relaxed);
-    drop((port, finder));
+    drop((port, finder, payloads));
     notify(NodeEvent::Ended(&status));
     in_game.into_iter().for_each(InGame::leave);
     result

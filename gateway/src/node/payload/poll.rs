@@ -1,0 +1,164 @@
+//! A sonde that is asked by the gateway itself, as long as no client is connected, so that its values are recorded all the same.
+
+use super::forward::{connect, is_pause};
+use super::shared_line::SharedLine;
+use super::tap::Tap;
+use super::turn::PollTurn;
+use super::{Payload, Way};
+use crate::link::HostPort;
+use crate::payload::Exo2Port;
+use crate::payload::exo2::{Command, Sonde};
+use bus::clock;
+use std::io::{self, ErrorKind, Read, Write};
+use std::net::TcpStream;
+use std::time::Duration;
+
+/// How often it is asked, at the most.
+const EVERY: Duration = Duration::from_secs(1);
+/// How long an answer by HTTP may take.
+const ANSWER_MAX: Duration = Duration::from_secs(5);
+/// More than so much is no answer, bytes.
+const ANSWER_LENGTH_MAX: usize = 64 * 1024;
+/// After so many questions without an answer it is asked for its parameters again: it may have others now.
+const UNANSWERED_MAX: u32 = 5;
+
+/// What to ask the sonde next.
+struct Questions<'a> {
+    payload: &'a Payload,
+    /// What was known of it when its parameters were asked for, and when it was last asked.
+    begun: Sonde,
+    last: Sonde,
+    unanswered: u32,
+}
+
+/// Asks the sonde whenever it has no client, until all is over.
+pub(super) fn run(payload: &Payload, way: &Way, exo2: Exo2Port) {
+    while let Some(turn) = payload.turn.poll() {
+        let mut questions = Questions::new(payload);
+        let asked = match (way, exo2) {
+            (Way::Tcp(at), Exo2Port::Http) => by_http(payload, at, &mut questions, &turn),
+            (Way::Tcp(at), Exo2Port::Lines) => by_lines(payload, at, &mut questions, &turn),
+            (Way::Shared(line), _) => over_line(line, &mut questions, &turn),
+        };
+        if let Err(e) = asked {
+            payload.remark(&format!("the sonde at {} cannot be asked: {e}", payload.port.address));
+        }
+        turn.is_wanted_within(EVERY);
+    }
+}
+
+impl Questions<'_> {
+    fn new(payload: &Payload) -> Questions<'_> {
+        let sonde = payload.taps.sonde().unwrap_or_default();
+        Questions { payload, begun: sonde.clone(), last: sonde, unanswered: 0 }
+    }
+
+    /// Its parameters until it has told them, and then their values.
+    fn next(&mut self) -> Command {
+        let sonde = self.payload.taps.sonde().unwrap_or_default();
+        self.unanswered = if sonde == self.last { self.unanswered + 1 } else { 0 };
+        if self.unanswered > UNANSWERED_MAX {
+            self.payload.remark(&format!("the sonde does not answer `{}`", self.command(&sonde).word()));
+            (self.begun, self.unanswered) = (sonde.clone(), 0);
+        }
+        self.last = sonde;
+        self.command(&self.last)
+    }
+
+    fn command(&self, sonde: &Sonde) -> Command {
+        if sonde.told == self.begun.told { Command::Parameters } else { Command::Values }
+    }
+}
+
+/// Over one connection, a line at a time.
+fn by_lines(payload: &Payload, at: &HostPort, questions: &mut Questions<'_>, turn: &PollTurn<'_>) -> io::Result<()> {
+    let stream = connect(at)?;
+    let connection = payload.taps.open();
+    while !turn.is_wanted_within(Duration::ZERO) {
+        match ask(&stream, &connection, &line(questions.next()), turn, EVERY)? {
+            Answer::Ended => return Err(ErrorKind::ConnectionAborted.into()),
+            // What goes on and on is read no faster than this.
+            Answer::TooLong => drop(turn.is_wanted_within(EVERY)),
+            Answer::Open => {}
+        }
+    }
+    Ok(())
+}
+
+/// Over a line whose answers come to its clients too.
+fn over_line(line_to: &SharedLine, questions: &mut Questions<'_>, turn: &PollTurn<'_>) -> io::Result<()> {
+    // Who unplugged it is told so already.
+    while line_to.is_up() && line_to.send(0, line(questions.next()).as_bytes()) {
+        if turn.is_wanted_within(EVERY) {
+            break;
+        }
+    }
+    Ok(())
+}
+
+/// By HTTP, a connection for each question.
+fn by_http(payload: &Payload, at: &HostPort, questions: &mut Questions<'_>, turn: &PollTurn<'_>) -> io::Result<()> {
+    loop {
+        let request = match questions.next() {
+            Command::Values => format!("GET /data HTTP/1.0\r\nHost: {at}\r\n\r\n"),
+            other => {
+                let word = other.word();
+                let head = format!("POST /data HTTP/1.0\r\nHost: {at}\r\nContent-Type: text/plain");
+                format!("{head}\r\nContent-Length: {}\r\n\r\n{word}", word.len())
+            }
+        };
+        match ask(&connect(at)?, &payload.taps.open(), &request, turn, ANSWER_MAX)? {
+            Answer::Ended => {}
+            _ if turn.is_wanted_within(EVERY) => return Ok(()),
+            _ => return Err(io::Error::new(ErrorKind::TimedOut, format!("no complete answer for {ANSWER_MAX:?}"))),
+        }
+        if turn.is_wanted_within(EVERY) {
+            return Ok(());
+        }
+    }
+}
+
+/// How far an answer has come.
+enum Answer {
+    /// The other side has closed the connection.
+    Ended,
+    TooLong,
+    /// There may be more to come.
+    Open,
+}
+
+/// Sends a question, and reads what comes for so long, unless somebody else wants the turn.
+fn ask(
+    mut stream: &TcpStream,
+    (number, tap): &(u32, Tap),
+    question: &str,
+    turn: &PollTurn<'_>,
+    limit: Duration,
+) -> io::Result<Answer> {
+    tap.take(*number, true, question.as_bytes());
+    stream.write_all(question.as_bytes())?;
+    let (asked, mut length, mut piece) = (clock::now(), 0, [0; 4096]);
+    while clock::since(asked) < limit && !turn.is_wanted_within(Duration::ZERO) {
+        match stream.read(&mut piece) {
+            Ok(0) => {
+                tap.end(*number, false);
+                return Ok(Answer::Ended);
+            }
+            Ok(count) => {
+                tap.take(*number, false, &piece[..count]);
+                length += count;
+            }
+            Err(e) if is_pause(&e) => {}
+            Err(e) => return Err(e),
+        }
+        if length > ANSWER_LENGTH_MAX {
+            return Ok(Answer::TooLong);
+        }
+    }
+    Ok(Answer::Open)
+}
+
+/// A command as the sonde takes it.
+fn line(command: Command) -> String {
+    format!("{}\r", command.word())
+}

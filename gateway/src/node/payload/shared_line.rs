@@ -1,0 +1,159 @@
+//! A payload on a serial line or UDP port, which its clients share: all are sent what it says, and it is sent what each of them says.
+
+use super::forward::{is_pause, prepare};
+use super::tap::Tap;
+use super::{ANSWER_PAUSE, CONNECT_MAX, Payload};
+use crate::link::{Link, LinkAddress, LinkError, LinkEvent, LinkSettings};
+use bus::{Slot, Watched, clock};
+use parking_lot::Mutex;
+use std::io::{self, Read, Write};
+use std::net::{Shutdown, TcpStream};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::time::Duration;
+
+/// The most bytes of a client that are written at once, so that the others have their turn: a quarter of a second at 9600 baud.
+const PIECE: usize = 256;
+/// How long the line may take to write them.
+const WRITE_LIMIT: Duration = Duration::from_secs(2);
+/// The most pieces that wait for a client which does not read.
+const WAITING_MAX: usize = 64;
+/// From the line to all clients.
+const TO_ALL: u32 = 0;
+
+/// The line.
+pub(super) struct SharedLine {
+    link: Link,
+    /// One piece at a time: of two that wait, the link keeps the newer alone.
+    writing: Mutex<()>,
+    ends: Arc<Ends>,
+}
+
+/// Both ends of it.
+struct Ends {
+    payload: Arc<Payload>,
+    tap: Tap,
+    is_up: Watched<bool>,
+    clients: Mutex<Vec<Client>>,
+}
+
+struct Client {
+    number: u32,
+    pieces: SyncSender<Arc<[u8]>>,
+    /// To close it.
+    stream: TcpStream,
+}
+
+impl SharedLine {
+    pub(super) fn open(payload: &Arc<Payload>, address: &LinkAddress) -> Result<SharedLine, LinkError> {
+        let (_, tap) = payload.taps.open();
+        let ends = Ends { payload: Arc::clone(payload), tap, is_up: Watched::new(false), clients: Mutex::default() };
+        let ends = Arc::new(ends);
+        let settings = LinkSettings { silence: None, ..LinkSettings::default() };
+        let theirs = Arc::clone(&ends);
+        let link = Link::open(address, settings, move |event| theirs.take(event))?;
+        Ok(SharedLine { link, writing: Mutex::new(()), ends })
+    }
+
+    /// Whether the line is there, or comes soon.
+    pub(super) fn is_up(&self) -> bool {
+        self.ends.is_up.wait(CONNECT_MAX, |is_up| *is_up)
+    }
+
+    /// Sends the payload something, behind what others send; whether the line took it.
+    pub(super) fn send(&self, connection: u32, bytes: &[u8]) -> bool {
+        let _writing = self.writing.lock();
+        self.ends.tap.take(connection, true, bytes);
+        self.link.send_and_wait(bytes, WRITE_LIMIT)
+    }
+
+    /// Serves a client, until it or the line is gone.
+    pub(super) fn serve(&self, slot: &Slot, stream: &TcpStream) {
+        let payload = &self.ends.payload;
+        let Some(_turn) = payload.turn.client() else { return };
+        if !self.is_up() {
+            return payload.remark(&format!("a client finds nothing at {}", payload.port.address));
+        }
+        let (number, _) = payload.taps.open();
+        let (sender, pieces) = sync_channel(WAITING_MAX);
+        match prepare(stream).and_then(|()| stream.try_clone()) {
+            Ok(stream) => self.ends.clients.lock().push(Client { number, pieces: sender, stream }),
+            Err(_) => return,
+        }
+        std::thread::scope(|scope| {
+            let thread = std::thread::Builder::new().name(format!("payload {}", payload.port.name));
+            match thread.spawn_scoped(scope, move || write(stream, &pieces)) {
+                Ok(_) => self.read(number, slot, stream),
+                Err(e) => payload.remark(&format!("no thread for a client: {e}")),
+            }
+            // Its queue is closed with it, and that ends the thread.
+            self.ends.clients.lock().retain(|client| client.number != number);
+            drop(stream.shutdown(Shutdown::Both));
+        });
+    }
+
+    /// Sends the payload what a client says.
+    fn read(&self, number: u32, slot: &Slot, mut stream: &TcpStream) {
+        let mut piece = [0; PIECE];
+        loop {
+            match stream.read(&mut piece) {
+                Ok(0) => {
+                    self.ends.tap.end(number, true);
+                    // The answer may be on its way.
+                    return clock::rest(ANSWER_PAUSE);
+                }
+                Ok(count) => {
+                    slot.touch();
+                    if !self.send(number, &piece[..count]) {
+                        return self.ends.payload.remark(&format!("the line took nothing for {WRITE_LIMIT:?}"));
+                    }
+                }
+                Err(e) if is_pause(&e) => {}
+                Err(_) => return,
+            }
+        }
+    }
+}
+
+impl Ends {
+    fn take(&self, event: LinkEvent) {
+        match event {
+            LinkEvent::Up { .. } => self.is_up.visit(|is_up| *is_up = true),
+            LinkEvent::Bytes { bytes, .. } => {
+                self.tap.take(TO_ALL, false, &bytes);
+                self.give(&bytes.into());
+            }
+            LinkEvent::Down { reason, .. } | LinkEvent::Failed { reason, .. } => {
+                self.is_up.visit(|is_up| *is_up = false);
+                self.payload.remark(&reason);
+                self.clients.lock().iter().for_each(Client::close);
+            }
+            LinkEvent::Written { .. } => {}
+        }
+    }
+
+    /// Gives all clients a piece; one that has too many already is cut off.
+    fn give(&self, piece: &Arc<[u8]>) {
+        for client in &*self.clients.lock() {
+            if client.pieces.try_send(Arc::clone(piece)).is_err() {
+                self.payload.remark("a client does not read: disconnected");
+                client.close();
+            }
+        }
+    }
+}
+
+impl Client {
+    /// Its threads find out.
+    fn close(&self) {
+        drop(self.stream.shutdown(Shutdown::Both));
+    }
+}
+
+/// Writes a client what comes for it.
+fn write(mut stream: &TcpStream, pieces: &Receiver<Arc<[u8]>>) {
+    let written: io::Result<()> = pieces.iter().try_for_each(|piece| stream.write_all(&piece));
+    if written.is_err() {
+        drop(stream.shutdown(Shutdown::Both));
+    }
+}

@@ -1,0 +1,88 @@
+//! A TCP port that is served as long as it is kept: a thread for each of its connections, of which there are so many at most.
+
+use bus::{Connections, Slot, clock};
+use socket2::SockRef;
+use std::io;
+use std::net::{IpAddr, Shutdown, SocketAddr, TcpListener, TcpStream};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+/// How often the thread that accepts looks whether it is to end.
+const LOOK: Duration = Duration::from_millis(100);
+
+/// A port. Dropped, it is closed, and so are its connections.
+pub(super) struct TcpPort {
+    server: Arc<Server>,
+    thread: Option<JoinHandle<()>>,
+    pub(super) address: SocketAddr,
+}
+
+/// Serves a connection, until it returns.
+type Serve = Box<dyn Fn(&Slot, &TcpStream) + Send + Sync>;
+
+/// What the threads share.
+struct Server {
+    /// The name of the threads.
+    name: String,
+    serve: Serve,
+    is_closing: AtomicBool,
+    connections: Connections,
+}
+
+impl TcpPort {
+    /// Opens a port for so many connections; a newcomer takes the place of whoever idles longest.
+    pub(super) fn open(
+        listen: SocketAddr,
+        name: &str,
+        connections_max: usize,
+        serve: impl Fn(&Slot, &TcpStream) + Send + Sync + 'static,
+    ) -> io::Result<TcpPort> {
+        let listener = TcpListener::bind(listen)?;
+        // On Linux it holds for `accept` too.
+        SockRef::from(&listener).set_read_timeout(Some(LOOK))?;
+        let address = listener.local_addr()?;
+        let server = Arc::new(Server {
+            name: name.to_owned(),
+            serve: Box::new(serve),
+            is_closing: AtomicBool::new(false),
+            connections: Connections::new(connections_max),
+        });
+        let shared = Arc::clone(&server);
+        let thread = std::thread::Builder::new().name(name.to_owned()).spawn(move || shared.accept(&listener))?;
+        Ok(TcpPort { server, thread: Some(thread), address })
+    }
+}
+
+impl Drop for TcpPort {
+    fn drop(&mut self) {
+        self.server.is_closing.store(true, Ordering::SeqCst);
+        // A thread that panicked has nothing to give back.
+        self.thread.take().map(JoinHandle::join).into_iter().for_each(drop);
+        self.server.connections.close();
+    }
+}
+
+impl Server {
+    fn accept(self: &Arc<Self>, listener: &TcpListener) {
+        while !self.is_closing.load(Ordering::SeqCst) {
+            match listener.accept() {
+                Ok((stream, from)) => self.open(stream, from.ip()),
+                Err(e) if e.kind() == io::ErrorKind::WouldBlock => {}
+                // Too many open files, for example: it may pass.
+                Err(_) => clock::rest(LOOK),
+            }
+        }
+    }
+
+    /// A connection has its thread. One for which there is none finds itself closed.
+    fn open(self: &Arc<Self>, stream: TcpStream, from: IpAddr) {
+        let Ok(other) = stream.try_clone() else { return };
+        // The thread that reads from it finds out; it may be closed already.
+        let slot = self.connections.admit(from, move || drop(other.shutdown(Shutdown::Both)));
+        let server = Arc::clone(self);
+        let serve = move || (server.serve)(&slot, &stream);
+        drop(std::thread::Builder::new().name(self.name.clone()).spawn(serve));
+    }
+}

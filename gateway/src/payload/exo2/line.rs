@@ -1,0 +1,96 @@
+//! The lines that go one way between a sonde and a client, whether they talk by lines or by HTTP.
+
+/// The longest line that is read, bytes: some ten characters for each of the most parameters that are believed.
+const LINE_MAX: usize = 2048;
+
+/// Puts lines together from bytes, however they are cut: ended by CR, LF or both, or by the length that the head of an HTTP message
+/// says. Of such a head the first line is given, and no other.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Lines {
+    line: Vec<u8>,
+    is_overlong: bool,
+    /// Whether the byte before was a CR, of which a LF is part.
+    after_cr: bool,
+    part: Part,
+}
+
+/// What the next byte belongs to.
+#[derive(Clone, Copy, Debug, Default)]
+enum Part {
+    #[default]
+    Line,
+    /// The head of an HTTP message, whose body has this length, bytes.
+    Head { body: usize },
+    /// The body, of which so many bytes are left.
+    Body { left: usize },
+    /// Nothing that can be read: the body of an HTTP message in chunks, which also may be several messages.
+    Chunks,
+}
+
+impl Lines {
+    /// Takes a byte; the line that it ends, unless that is empty, too long or no text.
+    pub(super) fn take(&mut self, byte: u8) -> Option<String> {
+        if std::mem::take(&mut self.after_cr) && byte == b'\n' {
+            return None;
+        }
+        let is_end = matches!(byte, b'\r' | b'\n');
+        if !is_end {
+            self.add(byte);
+        }
+        match self.part {
+            Part::Chunks => {
+                self.line.clear();
+                None
+            }
+            Part::Body { left } => {
+                self.part = if left > 1 { Part::Body { left: left - 1 } } else { Part::Line };
+                if is_end || left <= 1 { self.end() } else { None }
+            }
+            Part::Line if is_end => {
+                self.after_cr = byte == b'\r';
+                let line = self.end();
+                if line.as_deref().is_some_and(begins_http) {
+                    self.part = Part::Head { body: 0 };
+                }
+                line
+            }
+            Part::Head { body } if is_end => {
+                self.after_cr = byte == b'\r';
+                let is_empty = self.line.is_empty() && !self.is_overlong;
+                let line = self.end().unwrap_or_default().to_ascii_lowercase();
+                self.part = match line.split_once(':').map(|(name, value)| (name.trim(), value.trim())) {
+                    _ if is_empty && body > 0 => Part::Body { left: body },
+                    _ if is_empty => Part::Line,
+                    Some(("content-length", length)) => Part::Head { body: length.parse().unwrap_or(0) },
+                    Some(("transfer-encoding", coding)) if coding != "identity" => Part::Chunks,
+                    _ => self.part,
+                };
+                None
+            }
+            Part::Line | Part::Head { .. } => None,
+        }
+    }
+
+    /// Nothing more comes: the line that was not ended.
+    pub(super) fn end(&mut self) -> Option<String> {
+        let line = std::mem::take(&mut self.line);
+        if std::mem::take(&mut self.is_overlong) || line.is_empty() {
+            return None;
+        }
+        String::from_utf8(line).ok()
+    }
+
+    fn add(&mut self, byte: u8) {
+        self.is_overlong |= self.line.len() >= LINE_MAX;
+        if self.is_overlong {
+            self.line.clear();
+        } else {
+            self.line.push(byte);
+        }
+    }
+}
+
+/// Whether a line is the first of an HTTP message, of a request or of a response.
+fn begins_http(line: &str) -> bool {
+    line.starts_with("HTTP/1.") || line.ends_with(" HTTP/1.0") || line.ends_with(" HTTP/1.1")
+}
