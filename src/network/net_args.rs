@@ -99,9 +99,9 @@ impl HubArgs {
         if listen.is_empty() && self.lan {
             listen.push(format!("tcp/0.0.0.0:{}", bus::DEFAULT_PORT));
         } else if listen.is_empty() {
-            let port = bus::free_port(true).map_err(|e| anyhow!("no free port to listen on: {e}"))?;
-            listen.push(format!("tcp/127.0.0.1:{port}"));
+            listen.push(format!("tcp/127.0.0.1:{}", free_port(true)?));
         }
+        listen.iter_mut().try_for_each(with_port)?;
         let keys = self.keys.load()?;
         match (&keys, listen.iter().find(|endpoint| !bus::is_loopback(endpoint))) {
             (None, Some(open)) if !self.insecure => bail!(
@@ -165,6 +165,18 @@ impl LeafArgs {
     }
 }
 
+fn free_port(prefer_default: bool) -> Result<u16> {
+    bus::free_port(prefer_default).map_err(|e| anyhow!("no free port to listen on: {e}"))
+}
+
+/// Port 0 is any that is free: chosen here, so that it is known to whoever is told the endpoint.
+fn with_port(endpoint: &mut String) -> Result<()> {
+    if let Some(rest) = endpoint.strip_suffix(":0") {
+        *endpoint = format!("{rest}:{}", free_port(false)?);
+    }
+    Ok(())
+}
+
 /// Where the game of this machine listens.
 fn local_endpoint(games: &[bus::Entry]) -> Result<String> {
     match games {
@@ -188,4 +200,25 @@ pub(crate) fn unique_game_name(scenario: &str) -> Result<GameName> {
 /// What people on other machines, or other users of this one, need for joining and controlling a game.
 pub(crate) fn token_text(token: &Token) -> String {
     format!("its token, for agents and operators elsewhere: {TOKEN_VARIABLE}={}", token.hex())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn port_0_becomes_one_that_is_free_and_every_other_stays() {
+        let given = |text: &str| {
+            let mut endpoint = text.to_owned();
+            with_port(&mut endpoint).map(|()| endpoint).unwrap()
+        };
+        for text in ["tcp/127.0.0.1:7447", "tcp/127.0.0.1:10", "tcp/0.0.0.0:7440"] {
+            assert_eq!(given(text), text);
+        }
+        for text in ["tcp/127.0.0.1:0", "tcp/[::1]:0"] {
+            let endpoint = given(text);
+            let (before, port) = endpoint.rsplit_once(':').unwrap();
+            assert!(text.starts_with(before) && port.parse::<u16>().unwrap() > 0, "{endpoint}");
+        }
+    }
 }
