@@ -127,6 +127,8 @@ impl Report for TournamentReport {
 
 /// Where the page of a sweep asks for the games of a point, before its number.
 const GAMES_OF_POINT: &str = "/sweep_games/";
+/// So many games of a point are listed.
+const LISTED_MAX: usize = 10_000;
 
 /// The report of a sweep: its own page, and its games.
 struct SweepReport {
@@ -165,10 +167,10 @@ impl SweepReport {
         self.rows.as_ref().ok()?.get(index)
     }
 
-    /// All games of a point, for the page.
+    /// The games of a point, for the page.
     fn games_at(&self, point: usize) -> Option<Value> {
         let plan = self.plan.as_ref().ok().filter(|plan| point < plan.points().len())?;
-        let first = point * plan.games_per_point();
+        let (count, first) = (plan.games_per_point(), point * plan.games_per_point());
         let game = |index: usize| {
             let (job, result) = (plan.job(index), self.row(index).map(|row| &row.result));
             json!({
@@ -181,8 +183,8 @@ impl SweepReport {
                 "why": result.and_then(|result| result.as_ref().err()),
             })
         };
-        let games: Vec<Value> = (first..first + plan.games_per_point()).map(game).collect();
-        Some(json!({"games": games, "problem": self.rows.as_ref().err()}))
+        let games: Vec<Value> = (first..first + count.min(LISTED_MAX)).map(game).collect();
+        Some(json!({"games": games, "left_out": count - games.len(), "problem": self.rows.as_ref().err()}))
     }
 
     fn find(&self, name: &str) -> Result<Game> {
