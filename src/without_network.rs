@@ -16,7 +16,7 @@ pub(crate) enum Command {
     #[command(
         after_help = "Examples:\n  squall run strategy_4_vs_3\n  squall run surveyor_2v2 --sea gale --blue learned --red strategy_3\n  squall run surveyor_2v2 --set link.delay_s=1 --seed 7 --both-sides"
     )]
-    Run(run_command::Args),
+    Run(Box<run_command::Args>),
     /// Plays a recorded game again, and checks that the same comes of it.
     #[command(after_help = "Examples:\n  squall replay runs/game.mcap --check")]
     Replay(replay_command::Args),
