@@ -70,7 +70,7 @@ impl Received {
 /// Cuts what a boat sends into what has a name.
 #[derive(Clone, Debug)]
 enum Framer {
-    Nmea(nmea::Framer),
+    Nmea(Box<nmea::Framer>),
     Mavlink(mavlink::Framer),
 }
 
@@ -100,7 +100,7 @@ impl SensorCheck {
     #[must_use]
     pub fn new(gateway: &Gateway) -> SensorCheck {
         let framer = match gateway.protocol {
-            BoatProtocol::Surveyor => Framer::Nmea(nmea::Framer::new()),
+            BoatProtocol::Surveyor => Framer::Nmea(Box::new(nmea::Framer::new())),
             BoatProtocol::Mavlink => Framer::Mavlink(mavlink::Framer::default()),
         };
         SensorCheck {
