@@ -44,7 +44,7 @@ fn framed<'a>(pieces: impl IntoIterator<Item = &'a [u8]>) -> (Vec<String>, Count
 fn repaired(bytes: &[u8]) {
     let gateway = Gateway { protocol: BoatProtocol::Mavlink, ..game::scenario::default_gateway() };
     let (mut protocol, mut boat) =
-        (Protocol::new(&gateway), ArduPilot::new(game::LatLon { lat_deg: 42.0, lon_deg: -71.0 }));
+        (Protocol::new(&gateway), ArduPilot::new(game::LatLon { lat_deg: 42.0, lon_deg: -71.0 }, None));
     let (mut messages, mut framer, now) = (Vec::new(), Framer::new(), SimTime::from_s(1.0));
     framer.push(bytes, &mut |Received { message, .. }| messages.push(message));
     let (mut out, mut to_boat, mut to_us) = (Vec::new(), Writer::new(255, 190), Writer::new(1, 1));
