@@ -100,7 +100,7 @@ impl SensorCheck {
     #[must_use]
     pub fn new(gateway: &Gateway) -> SensorCheck {
         let framer = match gateway.protocol {
-            BoatProtocol::Surveyor => Framer::Nmea(Box::new(nmea::Framer::new())),
+            BoatProtocol::Surveyor => Framer::Nmea(Box::default()),
             BoatProtocol::Mavlink => Framer::Mavlink(mavlink::Framer::default()),
         };
         SensorCheck {
