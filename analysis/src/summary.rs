@@ -8,6 +8,9 @@ use recording::{Bag, Damaged, Recording};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
+/// What comes within less than this has no rate, s.
+const RATE_OVER_MIN_S: f64 = 0.1;
+
 /// A game on one page.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
@@ -60,7 +63,7 @@ pub struct Topic {
     pub count: u64,
     /// How many bytes in them.
     pub bytes: u64,
-    /// Messages a simulated second, from the first to the last; none where there are no two of different times.
+    /// Messages a simulated second, from the first to the last; none where these are less than a tenth of a second apart.
     pub rate_hz: Option<f64>,
 }
 
@@ -118,7 +121,7 @@ pub fn topics(bag: &Bag) -> BTreeMap<String, Topic> {
     }
     let rated = |(name, (topic, [first, last])): (&str, (Topic, [i64; 2]))| {
         let span_s = (last - first) as f64 * 1e-9;
-        let rate_hz = (span_s > 0.0).then(|| (topic.count - 1) as f64 / span_s);
+        let rate_hz = (span_s >= RATE_OVER_MIN_S).then(|| (topic.count - 1) as f64 / span_s);
         (name.to_owned(), Topic { rate_hz, ..topic })
     };
     topics.into_iter().map(rated).collect()

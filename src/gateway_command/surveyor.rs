@@ -33,9 +33,9 @@ pub(crate) struct Args {
     /// Where the boat is: tcp://HOST:PORT, udp://HOST:PORT, serial:///dev/ttyUSB0?baud=38400
     #[arg(long, value_name = "URL")]
     link: String,
-    /// A payload to pass through and record, NAME=URL[,listen=HOST:PORT], of an
-    /// EXO2 sonde its values too: [,exo2] or [,exo2=http]; may be repeated
-    #[arg(long, value_name = "PAYLOAD", conflicts_with = "at_game_pace")]
+    /// A payload that is passed through and recorded, as camera=tcp://192.168.1.23:5001; ,listen=HOST:PORT says where; ,exo2 or ,exo2=http
+    /// records the values of a sonde; may be repeated
+    #[arg(long, value_name = "NAME=URL", conflicts_with = "at_game_pace")]
     payload: Vec<PayloadPort>,
     /// Where it takes operator commands with or without a game: an address of this machine and a port, 0 for any
     #[arg(long, value_name = "HOST:PORT", default_value = "127.0.0.1:0", value_parser = control_address)]
