@@ -2,7 +2,7 @@
 
 use crate::link_line::{Line, Lines};
 use game::external::{FailsafeReport, GatewayStatus, LinkBytes};
-use recording::{Bag, Damaged, Recording};
+use recording::{Bag, Damaged, Kind, Recording};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -44,7 +44,9 @@ pub(crate) fn gateways(recording: &Recording) -> Vec<Gateway> {
 /// What a recording tells of a boat's gateway: a game's, or the gateway's own.
 #[must_use]
 pub fn gateway_of(bag: &Bag, boat: &str) -> Gateway {
-    let mut gateway = Gateway { boat: boat.to_owned(), ..Gateway::default() };
+    // The recording of a gateway begins with it, and a gateway begins safed.
+    let state = (bag.kind() == Kind::Gateway).then(|| "safed".to_owned());
+    let mut gateway = Gateway { boat: boat.to_owned(), state, ..Gateway::default() };
     traffic(bag, &mut gateway);
     // Each status holds the failsafes so far, and a gateway that was started anew begins again: every one is taken once.
     for message in bag.on(&format!("status/{boat}")) {

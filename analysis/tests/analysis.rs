@@ -1,6 +1,6 @@
 //! What a recording tells afterwards: statistics, tables and logs of a small made-up game, to the byte where others read them.
 
-use analysis::{Comparison, GameSeries, Incomparable, Summary, alog, table};
+use analysis::{Comparison, GameSeries, Incomparable, Summary, alog, gateway_of, table};
 use game::event::{Event, Logged};
 use game::external::{FailsafeReport, GatewayStatus, LinkBytes};
 use game::input::Input;
@@ -8,7 +8,7 @@ use game::message::{Frame, GameInfo, Message, Stamp, VehicleTruth};
 use game::picture::{Contact, FlagView, Nav, OwnBoat};
 use game::water::Water;
 use game::{FlagId, Order, Outcome, Picture, SimTime, TeamId, VehicleId};
-use recording::{Decision, Ending, Entry, Header, Recording, Writer};
+use recording::{Bag, Decision, Ending, Entry, Facts, Header, Kind, Opening, Recording, Writer};
 use std::io::Cursor;
 use std::path::Path;
 
@@ -104,6 +104,24 @@ fn bytes_of(header: &Header, decisions: u64) -> Vec<u8> {
 
 fn recording() -> Recording {
     Recording::of(bytes_of(&header(), 4)).unwrap_or_else(|e| panic!("{e}"))
+}
+
+#[test]
+fn a_gateways_own_recording_begins_safed_and_tells_each_change() {
+    let state_after = |changes: &[&str]| {
+        let (kind, facts) = (Kind::Gateway, Facts::new());
+        let opening = Opening { kind, began_utc_ns: 0, facts, more: vec![], teams: vec![] };
+        let mut writer = Writer::begin(Cursor::new(Vec::new()), &opening).expect("it begins");
+        for to in changes {
+            let bytes = format!("{{\"event\":{{\"state\":{{\"from\":\"safed\",\"to\":\"{to}\"}}}}}}").into_bytes();
+            let entry = Entry::Message { topic: "event".to_owned(), schema: None, bytes, at: SimTime(1) };
+            writer.write(&entry, 1).expect("it is written");
+        }
+        let bytes = writer.end(Facts::new()).expect("it ends").into_inner();
+        gateway_of(&Bag::of(bytes).expect("a recording"), "blue_one").state
+    };
+    assert_eq!(state_after(&[]).as_deref(), Some("safed"));
+    assert_eq!(state_after(&["armed", "e-stopped"]).as_deref(), Some("e-stopped"));
 }
 
 #[test]
