@@ -32,6 +32,17 @@ enum Wrong {
 
 const WRONGS: [Wrong; 3] = [Wrong::Bilge, Wrong::TooMuch, Wrong::TooLittle];
 
+impl Wrong {
+    /// What is wrong on a side, and what that means.
+    fn words(self) -> [&'static str; 2] {
+        match self {
+            Wrong::Bilge => ["bilge pump runs", "the boat takes in water"],
+            Wrong::TooMuch => ["thruster draws too much", "something may be in its propeller"],
+            Wrong::TooLittle => ["thruster draws no current", "it may be off or broken"],
+        }
+    }
+}
+
 /// The alarms of a boat.
 #[derive(Clone, Debug)]
 pub(super) struct Alarms {
@@ -58,7 +69,7 @@ impl Alarms {
     /// The boat's error code; `None` is none.
     pub(super) fn take_error(&mut self, error: Option<String>, events: &mut Vec<Event>) {
         if error != self.error {
-            events.extend(error.as_ref().map(|code| Event::Warning(format!("the boat reports error {code:?}"))));
+            events.extend(error.as_deref().map(error_text).map(Event::Warning));
             self.error = error;
         }
     }
@@ -86,10 +97,8 @@ impl Alarms {
                 let alarm = &mut self.currents[wrong as usize][side];
                 alarm.since = amps.map(|amps| (alarm.since.map_or(now, |(since, _)| since), amps));
                 let lasts = alarm.since.is_some_and(|(since, _)| (now - since).as_s() >= self.watch.debounce_s);
-                // It is told until it is over.
-                let is_told = lasts || (alarm.is_told && alarm.since.is_some());
-                match (std::mem::replace(&mut alarm.is_told, is_told), alarm.since) {
-                    (false, Some((_, amps))) if is_told => events.push(Event::Warning(text(wrong, side, amps))),
+                match (std::mem::replace(&mut alarm.is_told, lasts), alarm.since) {
+                    (false, Some((_, amps))) if lasts => events.push(Event::Warning(text(wrong, side, amps))),
                     (true, None) => events.push(Event::Remark(format!("over: {}", name(wrong, side)))),
                     _ => {}
                 }
@@ -114,7 +123,7 @@ impl Alarms {
 
     /// What is wrong now, in words.
     pub(super) fn texts(&self) -> Vec<String> {
-        let error = self.error.iter().map(|code| format!("the boat reports error {code:?}"));
+        let error = self.error.as_deref().map(error_text).into_iter();
         let currents = WRONGS.into_iter().flat_map(|wrong| [0, 1].map(|side| (wrong, side)));
         let currents = currents.filter_map(|(wrong, side)| {
             let CurrentAlarm { since, is_told } = self.currents[wrong as usize][side];
@@ -134,21 +143,17 @@ fn ordered_pct(command: Command) -> Option<[f64; 2]> {
     }
 }
 
+fn error_text(code: &str) -> String {
+    format!("the boat reports error {code:?}")
+}
+
 fn name(wrong: Wrong, side: usize) -> String {
-    let side = SIDES[side];
-    match wrong {
-        Wrong::Bilge => format!("the {side} bilge pump runs"),
-        Wrong::TooMuch => format!("the {side} thruster draws too much"),
-        Wrong::TooLittle => format!("the {side} thruster draws no current"),
-    }
+    let [what, _] = wrong.words();
+    format!("the {} {what}", SIDES[side])
 }
 
 fn text(wrong: Wrong, side: usize, amps: f64) -> String {
-    let why = match wrong {
-        Wrong::Bilge => "the boat takes in water",
-        Wrong::TooMuch => "something may be in its propeller",
-        Wrong::TooLittle => "it may be off or broken",
-    };
+    let [_, why] = wrong.words();
     format!("{}, {amps:.1} A: {why}", name(wrong, side))
 }
 
