@@ -25,6 +25,7 @@ use game::outcome::EventOutcome;
 use game::payload::PayloadBytes;
 use game::{Scenario, SimTime};
 use recording::{Bag, Damaged, FRAME, RecordedMessage, RecordingError};
+use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use thiserror::Error;
@@ -133,41 +134,49 @@ fn json(bag: &Bag, topic: &str, sink: &mut Sink<'_>) -> Result<Damaged, TableErr
     Ok(damaged)
 }
 
+/// Bytes that went one way, and over which connection, where there are several.
+struct Piece {
+    connection: Option<u32>,
+    outward: bool,
+    data: Vec<u8>,
+}
+
 /// A row for each line on a link.
 fn link(bag: &Bag, topic: &str, sink: &mut Sink<'_>) -> Result<Damaged, TableError> {
-    sink(&["t_s", "direction", "text"].map(str::to_owned))?;
-    let mut lines = Lines::default();
-    let mut last = SimTime::ZERO;
-    let mut put = |at, line: Line| {
-        let direction = if line.outward { "to_boat" } else { "from_boat" };
-        sink(&[cells::time(at), direction.to_owned(), line.text])
-    };
-    let mut damaged = Damaged::default();
-    for message in bag.on(topic) {
-        last = message.at;
-        let Some(bytes) = damaged.sound(message.read::<LinkBytes>()) else { continue };
-        lines.take(bytes.outward, &bytes.data).into_iter().try_for_each(|line| put(last, line))?;
-    }
-    lines.rest().into_iter().try_for_each(|line| put(last, line))?;
-    Ok(damaged)
+    let piece = |LinkBytes { outward, data, .. }| Piece { connection: None, outward, data };
+    lines(bag, topic, ("boat", &["t_s", "direction", "text"]), piece, sink)
 }
 
 /// A row for each line between a payload and a client.
 fn payload(bag: &Bag, topic: &str, sink: &mut Sink<'_>) -> Result<Damaged, TableError> {
-    sink(&["t_s", "connection", "direction", "text"].map(str::to_owned))?;
-    let mut open: BTreeMap<u32, Lines> = BTreeMap::new();
+    let piece = |PayloadBytes { connection, outward, data, .. }| Piece { connection: Some(connection), outward, data };
+    lines(bag, topic, ("payload", &["t_s", "connection", "direction", "text"]), piece, sink)
+}
+
+/// A row for each line in the bytes to and from `whom`.
+fn lines<M: Message + DeserializeOwned>(
+    bag: &Bag,
+    topic: &str,
+    (whom, columns): (&str, &[&str]),
+    piece_of: impl Fn(M) -> Piece,
+    sink: &mut Sink<'_>,
+) -> Result<Damaged, TableError> {
+    sink(&columns.iter().map(ToString::to_string).collect::<Vec<_>>())?;
+    let mut open: BTreeMap<Option<u32>, Lines> = BTreeMap::new();
     let mut last = SimTime::ZERO;
-    let mut put = |at, connection: u32, line: Line| {
-        let direction = if line.outward { "to_payload" } else { "from_payload" };
-        sink(&[cells::time(at), connection.to_string(), direction.to_owned(), line.text])
+    let mut put = |at, connection: Option<u32>, line: Line| {
+        let direction = if line.outward { format!("to_{whom}") } else { format!("from_{whom}") };
+        let connection = connection.map(|number| number.to_string());
+        let cells = std::iter::once(cells::time(at)).chain(connection).chain([direction, line.text]);
+        sink(&cells.collect::<Vec<_>>())
     };
     let mut damaged = Damaged::default();
     for message in bag.on(topic) {
         last = message.at;
-        let Some(bytes) = damaged.sound(message.read::<PayloadBytes>()) else { continue };
-        let PayloadBytes { connection, outward, data, .. } = bytes;
+        let Some(Piece { connection, outward, data }) = damaged.sound(message.read()).map(&piece_of) else { continue };
         let lines = open.entry(connection).or_default();
-        let ended = if data.is_empty() { lines.end(outward) } else { None };
+        // No bytes of a connection say that this side has closed it.
+        let ended = if connection.is_some() && data.is_empty() { lines.end(outward) } else { None };
         lines.take(outward, &data).into_iter().chain(ended).try_for_each(|line| put(last, connection, line))?;
         if lines.is_empty() {
             open.remove(&connection);
