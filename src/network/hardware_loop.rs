@@ -1,7 +1,7 @@
 //! The hardware loop, closed on one machine: water of its own, an emulated boat and a gateway for every real one.
 
 use super::child_process::{self, ChildProcess, option};
-use super::net_args::unique_game_name;
+use super::net_args::{free_port, unique_game_name};
 use super::pace_args::PaceArgs;
 use crate::game_args::GameArgs;
 use crate::output_file;
@@ -63,7 +63,7 @@ impl LoopArgs {
         if let Some(folder) = &self.record_gateways {
             output_file::make_folder(folder)?;
         }
-        let port = bus::free_port(false).map_err(|e| anyhow!("no free port on this machine: {e}"))?;
+        let port = free_port(false)?;
         let name = unique_game_name("water")?.as_str().to_owned();
         let endpoint = format!("tcp/127.0.0.1:{port}");
         let place = (name.as_str(), endpoint.as_str());

@@ -165,8 +165,9 @@ impl LeafArgs {
     }
 }
 
-fn free_port(prefer_default: bool) -> Result<u16> {
-    bus::free_port(prefer_default).map_err(|e| anyhow!("no free port to listen on: {e}"))
+/// A port of this machine that nobody listens on.
+pub(crate) fn free_port(prefer_default: bool) -> Result<u16> {
+    bus::free_port(prefer_default).map_err(|e| anyhow!("no free port on this machine: {e}"))
 }
 
 /// Port 0 is any that is free: chosen here, so that it is known to whoever is told the endpoint.

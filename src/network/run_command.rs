@@ -2,14 +2,14 @@
 
 use super::child_process::{self, ChildProcess, option};
 use super::hardware_loop::{HardwareLoop, LoopArgs};
-use super::net_args::{token_text, unique_game_name};
+use super::net_args::{free_port, token_text, unique_game_name};
 use super::pace_args::PaceArgs;
 use super::page_args::PageArgs;
 use crate::game_args::GameArgs;
 use crate::run_command::{self, InProcess, Player, Shell};
 use crate::screen::{self, Screen};
 use crate::stop;
-use anyhow::{Result, anyhow, bail};
+use anyhow::{Result, bail};
 use bus::Token;
 use bus::keys::{Bundle, Identity};
 use clap::{ArgGroup, Args as _, FromArgMatches};
@@ -97,7 +97,7 @@ impl Player for Processes<'_> {
         (stop, screen): Shell,
     ) -> Result<Option<Report>> {
         let args = self.args;
-        let port = bus::free_port(false).map_err(|e| anyhow!("no free port on this machine: {e}"))?;
+        let port = free_port(false)?;
         let game = unique_game_name(&scenario.name)?.as_str().to_owned();
         let endpoint = format!("tcp/127.0.0.1:{port}");
         let place = (game.as_str(), endpoint.as_str());
