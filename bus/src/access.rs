@@ -1,8 +1,8 @@
 //! What others may do at a hub: the rules for zenoh's access control.
 //!
 //! Everything is denied that no rule allows. The rules bind whoever is linked with the hub, not the hub's own session: so what
-//! only the sim may do (publish pictures, answer the queries that are its own, be alive as the sim, hear orders and
-//! navigation) needs no rule at all. Without keys, all others have the same rights; with keys each has those of its part.
+//! only the sim may do (publish pictures and what gateways report, answer the queries that are its own, be alive as the sim,
+//! hear orders, navigation and reports) needs no rule at all. Without keys, all others have the same rights; with keys each has those of its part.
 //!
 //! What the hub sends on has a topic that is spelled out here, none that others can make up: zenoh 1.10 panics, and the sim with
 //! it, where it has to send a key of more than 65535 bytes.
@@ -24,7 +24,15 @@ struct Rights {
 
 /// Anybody who reaches a hub without keys.
 const ANYBODY: Rights = Rights {
-    publishes: &["order/**", "say/{team}", "policy/{boat}", "nav/{boat}", "link/{boat}", "status/{boat}", "control"],
+    publishes: &[
+        "order/**",
+        "say/{team}",
+        "policy/{boat}",
+        "nav/{boat}",
+        "report/status/{boat}",
+        "report/link/{boat}",
+        "control",
+    ],
     hears: &[
         "frame",
         "picture/{team}",
@@ -59,7 +67,7 @@ const TEAM: Rights = Rights {
     answers: &["helm/{boat}"],
 };
 const GATEWAY: Rights = Rights {
-    publishes: &["nav/{boat}", "link/{boat}", "status/{boat}", "control"],
+    publishes: &["nav/{boat}", "report/status/{boat}", "report/link/{boat}", "control"],
     hears: &["external/{boat}", "frame", "run", "control", "released"],
     asks: &["scenario", "join/gateway/{boat}"],
     answers: &["operate/{boat}"],

@@ -48,6 +48,14 @@ pub enum BusError {
     /// The game does not know this token.
     #[error("the token is not that of this game: `squall sim` showed it when it began")]
     WrongToken,
+    /// A node answers that does not know the token, or knows another one.
+    #[error(
+        "{key} was answered, but not by a node that knows this token: it is the token of another game, or a stranger answers"
+    )]
+    Unsealed {
+        /// The key that was asked.
+        key: String,
+    },
     /// The keys are not those that are needed here, or the other side's are not.
     #[error("{0}")]
     Keys(String),

@@ -1,15 +1,13 @@
 //! A node's session on the network: publish, subscribe, queries, liveliness tokens.
 
 use crate::keys::{self, Bundle};
-use crate::simulated::{self, SimulatedPublisher, SimulatedQuery, SimulatedSession};
-use crate::token::{self, Token};
-use crate::{BusError, Net, access, linger};
+use crate::simulated::{self, SimulatedPublisher, SimulatedSession};
+use crate::{BusError, Net, Token, linger};
 use game::Scenario;
 use game::codec;
 use game::message::Message;
 use game::topic::GameName;
 use serde::Serialize;
-use serde::de::DeserializeOwned;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -29,19 +27,19 @@ pub enum Priority {
 }
 
 /// Something declared that lasts as long as this is kept.
-pub struct Declaration(#[expect(dead_code, reason = "kept for its drop")] Box<dyn Send + Sync>);
+pub struct Declaration(#[expect(dead_code, reason = "kept for its drop")] pub(crate) Box<dyn Send + Sync>);
 
 /// A node's session.
 #[derive(Clone)]
 pub struct Bus {
-    network: Network,
-    token: Option<Token>,
-    keys: Option<Arc<Bundle>>,
+    pub(crate) network: Network,
+    pub(crate) token: Option<Token>,
+    pub(crate) keys: Option<Arc<Bundle>>,
 }
 
 /// The network that a session is on.
 #[derive(Clone)]
-enum Network {
+pub(crate) enum Network {
     Zenoh(Session),
     Simulated(SimulatedSession),
 }
@@ -54,19 +52,7 @@ enum Sender {
     Simulated(SimulatedPublisher),
 }
 
-/// A query of another node, to be answered once.
-pub struct Query {
-    asker: Asker,
-    /// What came with it.
-    pub payload: Vec<u8>,
-}
-
-enum Asker {
-    Zenoh(zenoh::query::Query),
-    Simulated(SimulatedQuery),
-}
-
-fn failed(doing: &'static str, key: &str) -> impl FnOnce(zenoh::Error) -> BusError {
+pub(crate) fn failed(doing: &'static str, key: &str) -> impl FnOnce(zenoh::Error) -> BusError {
     move |e| BusError::Use { doing, key: key.to_owned(), reason: reason(&e) }
 }
 
@@ -196,76 +182,6 @@ impl Bus {
         let builder = session.declare_subscriber(key.clone()).allowed_origin(origin);
         let subscriber = builder.callback(callback).wait();
         Ok(Declaration(Box::new(subscriber.map_err(failed("subscribe to", &key))?)))
-    }
-
-    /// Calls `take` with every query at `key`.
-    ///
-    /// # Errors
-    /// [`BusError`] if the session is closed.
-    pub fn answer(&self, key: String, take: impl Fn(Query) + Send + Sync + 'static) -> Result<Declaration, BusError> {
-        let session = match &self.network {
-            Network::Zenoh(session) => session,
-            Network::Simulated(session) => {
-                let callback = move |mut query: SimulatedQuery| {
-                    let payload = std::mem::take(&mut query.payload);
-                    take(Query { asker: Asker::Simulated(query), payload });
-                };
-                return Ok(Declaration(Box::new(session.answer(key, callback))));
-            }
-        };
-        let callback = move |query: zenoh::query::Query| {
-            let payload = query.payload().map(|bytes| bytes.to_bytes().into_owned()).unwrap_or_default();
-            take(Query { asker: Asker::Zenoh(query), payload });
-        };
-        let queryable = session.declare_queryable(key.clone()).callback(callback).wait();
-        Ok(Declaration(Box::new(queryable.map_err(failed("answer at", &key))?)))
-    }
-
-    /// Asks at `key`; gives the first answer that comes within `limit`. Answers go behind everything else, and one that a
-    /// congested link cannot take is dropped.
-    ///
-    /// # Errors
-    /// [`BusError`] if the session is closed.
-    pub fn ask(&self, key: &str, payload: Vec<u8>, limit: Duration) -> Result<Option<Vec<u8>>, BusError> {
-        self.ask_at(qos::Priority::DataLow, key, payload, limit)
-    }
-
-    fn ask_at(
-        &self,
-        priority: qos::Priority,
-        key: &str,
-        payload: Vec<u8>,
-        limit: Duration,
-    ) -> Result<Option<Vec<u8>>, BusError> {
-        let session = match &self.network {
-            Network::Zenoh(session) => session,
-            Network::Simulated(session) => return Ok(session.ask(key, payload, limit)),
-        };
-        let query = session.get(key).payload(payload).timeout(limit);
-        let query = query.congestion_control(CongestionControl::Drop).priority(priority).express(true);
-        let replies = query.wait().map_err(failed("ask at", key))?;
-        let answers = std::iter::from_fn(|| replies.recv().ok());
-        let mut sound = answers.filter_map(|reply| reply.into_result().ok());
-        Ok(sound.next().map(|sample| sample.payload().to_bytes().into_owned()))
-    }
-
-    /// Asks at `key` for something that may need the game's token, and proves that this node knows it if asked to; gives the
-    /// first answer that comes within `limit`, of each of two questions. They go before everything else: some of them command boats.
-    ///
-    /// # Errors
-    /// [`BusError`] if the session is closed, if a token is needed and there is none or another one, if the keys of this node are
-    /// not of somebody who may ask this, or if the answer is not understood.
-    pub fn request<B: Serialize, T: DeserializeOwned>(
-        &self,
-        key: &str,
-        body: &B,
-        limit: Duration,
-    ) -> Result<Option<T>, BusError> {
-        if let Some(keys) = self.keys().filter(|keys| !access::may_ask(keys.identity(), key)) {
-            return Err(BusError::NotAllowed { identity: keys.identity().clone() });
-        }
-        let ask = |payload| self.ask_at(qos::Priority::RealTime, key, payload, limit);
-        token::request(self.token.as_ref(), key, body, ask)
     }
 
     /// Shows that this node is there, under `key`, until dropped or dead.
@@ -410,29 +326,6 @@ impl Publisher {
                 publisher.put(bytes);
                 Ok(())
             }
-        }
-    }
-}
-
-impl Query {
-    /// The key that was asked.
-    #[must_use]
-    pub fn key(&self) -> &str {
-        match &self.asker {
-            Asker::Zenoh(query) => query.key_expr().as_str(),
-            Asker::Simulated(query) => query.key(),
-        }
-    }
-
-    /// Answers with bytes that are JSON.
-    pub fn answer(self, json: Vec<u8>) {
-        match self.asker {
-            Asker::Zenoh(query) => {
-                let key = query.key_expr().clone();
-                // Whoever asked may be gone by now; then nobody misses the answer.
-                drop(query.reply(key, json).encoding(Encoding::APPLICATION_JSON).wait());
-            }
-            Asker::Simulated(query) => query.answer(json),
         }
     }
 }

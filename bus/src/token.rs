@@ -20,8 +20,10 @@ use thiserror::Error;
 
 /// The environment variable that holds the token for the commands of a game.
 pub const TOKEN_VARIABLE: &str = "SQUALL_TOKEN";
-/// A challenge is good for so long.
-const GOOD_FOR: Duration = Duration::from_secs(10);
+/// How long after the challenge a proof counts: a node that intercepts one cannot use it later. A round trip takes less.
+const GOOD_FOR: Duration = Duration::from_millis(900);
+/// How often a request is tried whose proofs come too late, as from a machine that is busy.
+const ATTEMPTS: usize = 5;
 /// Challenges that are open at once; the oldest go first.
 const OPEN_MAX: usize = 1024;
 
@@ -50,9 +52,9 @@ impl Token {
         hex(&self.0)
     }
 
-    fn mac(&self, challenge: &str, key: &str, body: &[u8]) -> Hmac<Sha256> {
+    fn mac(&self, parts: &[&[u8]]) -> Hmac<Sha256> {
         let mut mac = Hmac::<Sha256>::new_from_slice(&self.0).expect("a key of any length will do");
-        for part in [challenge.as_bytes(), key.as_bytes(), body] {
+        for part in parts {
             // With its length, so that no two lists of parts look alike.
             mac.update(&(part.len() as u64).to_le_bytes());
             mac.update(part);
@@ -60,15 +62,24 @@ impl Token {
         mac
     }
 
+    /// The HMAC-SHA256 of these parts under the token.
+    pub(crate) fn hmac(&self, parts: &[&[u8]]) -> Vec<u8> {
+        self.mac(parts).finalize().into_bytes().to_vec()
+    }
+
+    /// Whether `mac` is the HMAC-SHA256 of these parts under the token; takes the same time for every wrong one.
+    pub(crate) fn verifies(&self, parts: &[&[u8]], mac: &[u8]) -> bool {
+        self.mac(parts).verify_slice(mac).is_ok()
+    }
+
     fn prove(&self, challenge: String, key: &str, body: &[u8]) -> Proof {
-        let mac = hex(&self.mac(&challenge, key, body).finalize().into_bytes());
+        let mac = hex(&self.hmac(&[challenge.as_bytes(), key.as_bytes(), body]));
         Proof { challenge, mac }
     }
 
     fn is_proven(&self, proof: &Proof, key: &str, body: &[u8]) -> bool {
-        let given = bytes_of(&proof.mac);
-        // In constant time.
-        given.is_some_and(|given| self.mac(&proof.challenge, key, body).verify_slice(&given).is_ok())
+        let parts = [proof.challenge.as_bytes(), key.as_bytes(), body];
+        bytes_of(&proof.mac).is_some_and(|mac| self.verifies(&parts, &mac))
     }
 }
 
@@ -152,7 +163,7 @@ pub fn request<B: Serialize, T: DeserializeOwned>(
 ) -> Result<Option<T>, BusError> {
     let refused = |reason| BusError::Request { key: key.to_owned(), reason };
     let mut payload = first(body);
-    for _ in 0..2 {
+    for _ in 0..ATTEMPTS {
         let Some(answer) = ask(payload)? else { return Ok(None) };
         match read(token, key, body, &answer).map_err(|e| refused(format!("not understood: {e}")))? {
             Answered::Answer(answer) => return Ok(Some(answer)),

@@ -5,6 +5,7 @@
 //! command ([`ExternalOrder`]). Commands of operators ([`OperatorCommand`]) and the status of a gateway
 //! ([`GatewayStatus`]) are JSON.
 
+use crate::codec;
 use crate::frame::Ned;
 use crate::id::VehicleId;
 use crate::message::{Message, Stamp, VehicleOrder};
@@ -67,6 +68,54 @@ pub struct LinkBytes {
 impl Message for LinkBytes {
     const SCHEMA: &'static str = "squall_msgs/msg/LinkBytes";
     const VERSION: u8 = 1;
+}
+
+/// What a gateway reports for others. The sim passes it on if it comes with the ticket of the boat's gateway, and nobody else
+/// may publish it: so nobody forges it, and nobody hears the ticket.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Reported {
+    /// [`GatewayStatus`], as JSON.
+    Status,
+    /// [`LinkBytes`].
+    Link,
+}
+
+impl Reported {
+    /// All kinds.
+    pub const ALL: [Reported; 2] = [Reported::Status, Reported::Link];
+
+    /// A report as it travels: the ticket, 64 bits, little-endian, then the message as it is passed on.
+    #[must_use]
+    pub fn with_ticket(ticket: u64, message: &[u8]) -> Vec<u8> {
+        [&ticket.to_le_bytes(), message].concat()
+    }
+
+    /// The ticket of a report and the message, if it is long enough to have one.
+    #[must_use]
+    pub fn split_ticket(report: &[u8]) -> Option<(u64, &[u8])> {
+        let (ticket, message) = report.split_first_chunk()?;
+        Some((u64::from_le_bytes(*ticket), message))
+    }
+
+    /// Whether this is a message of this kind about this boat.
+    #[must_use]
+    pub fn is_about(self, message: &[u8], vehicle: VehicleId, name: &str) -> bool {
+        match self {
+            Reported::Status => {
+                serde_json::from_slice::<GatewayStatus>(message).is_ok_and(|status| status.vehicle == name)
+            }
+            Reported::Link => codec::decode::<LinkBytes>(message).is_ok_and(|bytes| bytes.vehicle == vehicle),
+        }
+    }
+}
+
+impl fmt::Display for Reported {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Reported::Status => "status",
+            Reported::Link => "link",
+        })
+    }
 }
 
 /// An operator's command to a gateway.

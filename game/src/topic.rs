@@ -2,6 +2,7 @@
 //!
 //! All keys begin with `squall/<game>/`, so that games on one network never meet.
 
+use crate::external::Reported;
 use crate::id::{TeamId, VehicleId};
 use crate::message::Role;
 use crate::scenario::Scenario;
@@ -100,13 +101,19 @@ pub fn external_order(game: &GameName, scenario: &Scenario, vehicle: VehicleId) 
     format!("squall/{}/external/{}", game.0, scenario.vehicles[vehicle.index()].name)
 }
 
-/// The bytes between a gateway and its boat (publish).
+/// What a gateway reports for others, to the sim alone (publish): see [`Reported`].
+#[must_use]
+pub fn report(game: &GameName, what: Reported, vehicle: &str) -> String {
+    format!("squall/{}/report/{what}/{vehicle}", game.0)
+}
+
+/// The bytes between a gateway and its boat, from the sim (publish).
 #[must_use]
 pub fn link(game: &GameName, vehicle: &str) -> String {
     format!("squall/{}/link/{vehicle}", game.0)
 }
 
-/// How a gateway and its boat are (publish).
+/// How a gateway and its boat are, from the sim (publish).
 #[must_use]
 pub fn status(game: &GameName, vehicle: &str) -> String {
     format!("squall/{}/status/{vehicle}", game.0)

@@ -191,7 +191,7 @@ fn tell(args: &Args, command: &OperatorCommand) -> Result<OperatorReply> {
 }
 
 fn ask(bus: &Bus, game: &GameName, vehicle: &str, command: &OperatorCommand) -> Result<OperatorReply> {
-    let answer = bus.request(&topic::operate(game, vehicle), command, bus::ANSWER)?;
+    let answer = bus.request_node(&topic::operate(game, vehicle), command, bus::ANSWER)?;
     answer.with_context(|| format!("no gateway of {vehicle} answers"))
 }
 

@@ -38,7 +38,7 @@ impl Observer {
     pub(crate) fn helm(&self, vehicle: VehicleId, question: HelmQuestion) -> Result<Option<HelmReport>> {
         let question = serde_json::to_vec(&question).context("a question is JSON")?;
         let key = topic::helm(&self.game, &self.info.scenario, vehicle);
-        let Some(answer) = self.bus.ask(&key, question, bus::ANSWER)? else { return Ok(None) };
+        let Some(answer) = self.bus.ask_node(&key, question, bus::ANSWER)? else { return Ok(None) };
         let report: Option<HelmReport> =
             serde_json::from_slice(&answer).context("the agent is of another version of Squall")?;
         let name = &self.info.scenario.vehicles[vehicle.index()].name;

@@ -20,8 +20,8 @@ use std::time::{Duration, Instant};
 const PROMISED: Duration = Duration::from_millis(200);
 
 /// A game, the gateway of its real boat, and the boat.
-struct Rig {
-    sim: Sim,
+pub(crate) struct Rig {
+    pub(crate) sim: Sim,
     _agents: Process,
     _gateway: Process,
     boat: Boat,
@@ -29,7 +29,7 @@ struct Rig {
 }
 
 impl Rig {
-    fn start(sim_args: &[&str]) -> Rig {
+    pub(crate) fn start(sim_args: &[&str]) -> Rig {
         let sim = Sim::start("real_attacker", &[&["--pace", "realtime"], sim_args].concat());
         let boat = Boat::start(sim.info(&sim.bus()).scenario.field.plan.datum);
         let control = SocketAddr::from(([127, 0, 0, 1], bus::free_port(false).expect("a free port")));
@@ -50,8 +50,14 @@ impl Rig {
         ask_gateway(self.control, Some(&token()), &command, LIMIT).expect("the gateway answers")
     }
 
-    fn tell(&self, command: OperatorCommand) -> OperatorReply {
+    pub(crate) fn tell(&self, command: OperatorCommand) -> OperatorReply {
         self.ask(GatewayCommand::Boat { name: "blue_one".to_owned(), command })
+    }
+
+    /// Arms the boat, as soon as it can be.
+    pub(crate) fn arm(&self) {
+        self.tell(OperatorCommand::Release);
+        wait_until("the boat is armed", || self.tell(OperatorCommand::Arm).refused.is_none());
     }
 
     /// The boat keeps its station by itself, and is sent nothing: what comes next is meant.

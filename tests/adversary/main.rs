@@ -13,6 +13,7 @@ mod disturbed_game;
 mod fake_sim;
 mod intruder;
 mod network;
+mod operate;
 #[path = "../process/support.rs"]
 #[allow(dead_code, unreachable_pub, reason = "shared with the tests of whole games")]
 mod support;

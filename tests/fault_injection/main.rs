@@ -21,6 +21,7 @@ mod page;
 mod plan;
 mod play;
 mod real_boat;
+mod stranger;
 mod wire_monitor;
 
 use check::faults_of;

@@ -3,6 +3,7 @@
 use crate::plan::{Plan, SIM};
 use crate::play::{WAIT, net};
 use crate::real_boat::{WAITED_S, Wire};
+use crate::stranger;
 use bus::game_search::GameSearch;
 use bus::{ANSWER, Bus, Watched, clock};
 use game::external::{OperatorCommand, OperatorReply};
@@ -109,10 +110,12 @@ impl Operator<'_> {
     fn ask(&mut self, command: &OperatorCommand) -> Option<OperatorReply> {
         let key = topic::operate(&self.game, &self.vehicle);
         // Who is cut off has no answer either.
-        let reply: Option<OperatorReply> = self.bus.request(&key, command, ANSWER).ok().flatten();
+        let reply: Option<OperatorReply> = self.bus.request_node(&key, command, ANSWER).ok().flatten();
         let must_answer = self.has_answered && self.is_undisturbed();
         assert!(reply.is_some() || !must_answer, "the gateway does not answer {command:?}");
         self.has_answered |= reply.is_some();
+        let is_forged = reply.as_ref().is_some_and(|reply| reply.status.state == stranger::FORGED);
+        assert!(!is_forged, "a stranger's answer counts");
         reply
     }
 

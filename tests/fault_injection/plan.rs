@@ -124,6 +124,11 @@ impl Plan {
         GAMES[self.game] == "real_boat"
     }
 
+    /// Whether somebody without the token is there, who wants to take the real boat.
+    pub(crate) fn has_stranger(&self) -> bool {
+        self.has_real_boat() && self.seed.is_multiple_of(2)
+    }
+
     /// The number of the gateway's node.
     pub(crate) fn gateway(&self) -> usize {
         FIRST_AGENT + self.agents.len()

@@ -3,7 +3,7 @@
 use crate::plan::{GAMES, Plan};
 use crate::real_boat::{self, Wire};
 use crate::wire_monitor::WireMonitor;
-use crate::{gateway_node, operator, page};
+use crate::{gateway_node, operator, page, stranger};
 use agent::node::News;
 use bus::game_search::GameSearch;
 use bus::simulated::{Run, SimulatedNetwork};
@@ -134,11 +134,16 @@ fn add_real_boat(network: &SimulatedNetwork, plan: &Plan, scenario: &Scenario, o
     network.node(Duration::from_millis(200), "gateway", move || gateway_node::connect(&to_boat, &name, &ends));
     let over_for_page = Arc::clone(over);
     let (watched, ends, plan_of, over) = (Arc::clone(&wire), Arc::clone(&stop), plan.clone(), Arc::clone(over));
+    let (seed, name, game_over) = (plan.seed, vehicle.clone(), Arc::clone(&over_for_page));
+    let intrude = move || stranger::intrude(seed, &self::name(), &name, &game_over);
     let operate = move || operator::operate(&plan_of, &watched, &vehicle, &over, &ends);
     network.node(operator::BEGINS, "operator", operate);
     let (watched, plan_of, over) = (Arc::clone(&wire), plan.clone(), Arc::clone(&over_for_page));
     network.node(page::BEGINS, "page", move || page::look(&plan_of, &watched, &over));
     let (datum, cuts) = (scenario.field.plan.datum, plan.wire_cuts.clone());
+    if plan.has_stranger() {
+        network.node(stranger::BEGINS, "stranger", intrude);
+    }
     network.node(Duration::ZERO, "boat", move || real_boat::sail(&wire, datum, &cuts, &stop));
 }
 

@@ -95,7 +95,7 @@ impl Loop {
     pub(crate) fn try_ask(&self, command: &OperatorCommand) -> Option<OperatorReply> {
         let bus = self.sim.bus();
         let key = topic::operate(&self.sim.name(), "blue_one");
-        bus.request(&key, command, Duration::from_secs(10)).expect("the hub is there")
+        bus.request_node(&key, command, Duration::from_secs(10)).expect("the hub is there")
     }
 
     pub(crate) fn status(&self) -> GatewayStatus {

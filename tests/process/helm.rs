@@ -20,7 +20,7 @@ fn a_helm_says_what_it_thinks_and_its_functions_if_they_are_asked_for() {
     let two = scenario.vehicle_by_name("blue_two").expect("it is there");
     let ask = |question: &[u8]| -> HelmReport {
         let key = topic::helm(&name, &scenario, two);
-        let answer = bus.ask(&key, question.to_vec(), LIMIT).expect("the hub is there");
+        let answer = bus.ask_node(&key, question.to_vec(), LIMIT).expect("the hub is there");
         serde_json::from_slice(&answer.expect("an answer")).expect("a report")
     };
     for (question, whole) in [(&b"{\"functions\":true}"[..], true), (b"", false), (b"ahoy", false)] {

@@ -103,7 +103,11 @@ fn a_gateway_that_outlives_its_sim_joins_the_next_and_asks_for_its_token() {
     std::thread::spawn(move || said.for_each(drop));
     // What may be done by nobody without the token of the game that it is in.
     let release = |bus: &Bus| {
-        bus.request::<_, OperatorReply>(&topic::operate(&next.name(), "blue_one"), &OperatorCommand::Release, LIMIT)
+        bus.request_node::<_, OperatorReply>(
+            &topic::operate(&next.name(), "blue_one"),
+            &OperatorCommand::Release,
+            LIMIT,
+        )
     };
     wait_until("the session of before is connected again", || matches!(release(&before), Err(BusError::WrongToken)));
     let reply = release(&user.bus(&next)).expect("the token is known").expect("an answer");

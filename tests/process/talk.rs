@@ -17,7 +17,7 @@ fn boats_that_talk_play_the_same_game_across_processes_as_in_one() {
 fn variable(bus: &bus::Bus, name: &GameName, info: &GameInfo, vehicle: &str, variable: &str) -> String {
     let scenario = &info.scenario;
     let key = topic::helm(name, scenario, scenario.vehicle_by_name(vehicle).expect("it is there"));
-    let answer = bus.ask(&key, Vec::new(), Duration::from_secs(10)).expect("the hub is there").expect("an answer");
+    let answer = bus.ask_node(&key, Vec::new(), Duration::from_secs(10)).expect("the hub is there").expect("an answer");
     let report: HelmReport = serde_json::from_slice(&answer).expect("a report");
     report.variables.into_iter().find(|v| v.name == variable).expect("it has it").value
 }

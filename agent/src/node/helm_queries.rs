@@ -77,7 +77,7 @@ impl HelmQueries {
 
     fn take(&mut self, runner: &mut MindRunner, vehicle: VehicleId, query: Query) {
         // A query without a payload wants the short answer.
-        let wants: HelmQuestion = serde_json::from_slice(&query.payload).unwrap_or_default();
+        let wants: HelmQuestion = serde_json::from_slice(query.payload()).unwrap_or_default();
         let asked = Asked { vehicle, wants, query, at: clock::now() };
         if !wants.functions {
             // Modes and weights are there without anybody looking: a list of boats costs a helm nothing.

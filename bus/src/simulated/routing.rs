@@ -6,7 +6,8 @@ use super::scheduler::{Call, current};
 use super::session::SimulatedQuery;
 use super::state::State;
 use crate::Watched;
-use std::collections::BTreeSet;
+use crate::seal::Parcel;
+use std::collections::{BTreeSet, VecDeque};
 use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
@@ -81,12 +82,12 @@ pub(super) enum Packet {
         query: u64,
         id: u64,
         key: String,
-        payload: Vec<u8>,
+        payload: Parcel,
     },
     /// An answer, or that no more will come.
     Answer {
         query: u64,
-        answer: Option<Vec<u8>>,
+        answer: Option<Parcel>,
     },
     Token {
         key: String,
@@ -98,7 +99,7 @@ pub(super) enum Packet {
 /// What is asked for.
 #[derive(Clone, Debug)]
 pub(super) enum Asked {
-    Payload(Vec<u8>),
+    Payload(Parcel),
     /// Which tokens are there, as a list in JSON.
     Tokens,
 }
@@ -121,7 +122,8 @@ pub(super) struct PendingQuery {
 /// What has come of a query.
 #[derive(Default)]
 pub(crate) struct Answers {
-    pub(crate) first: Option<Vec<u8>>,
+    /// In the order in which they came; the asker takes them out.
+    pub(crate) waiting: VecDeque<Parcel>,
     pub(crate) is_complete: bool,
 }
 
@@ -358,7 +360,7 @@ impl State {
             Asked::Payload(payload) => payload,
             Asked::Tokens => {
                 let tokens = serde_json::to_vec(&self.tokens(hub, key, None)).expect("a list of strings is JSON");
-                return self.answer_back(hub, query, Some(tokens));
+                return self.answer_back(hub, query, Some(Parcel::new(tokens)));
             }
         };
         let beyond = self.declared_beyond(hub, Kind::Queryable, key, from);
@@ -384,7 +386,7 @@ impl State {
     }
 
     /// Somebody who was asked has answered, or will not any more.
-    pub(super) fn answer_at_hub(&mut self, hub: usize, query: u64, answer: Option<Vec<u8>>) -> Vec<Call> {
+    pub(super) fn answer_at_hub(&mut self, hub: usize, query: u64, answer: Option<Parcel>) -> Vec<Call> {
         let Some(pending) = self.queries.get_mut(&query) else { return vec![] };
         if answer.is_none() {
             pending.open = pending.open.saturating_sub(1);
@@ -395,7 +397,7 @@ impl State {
         self.answer_back(hub, query, answer)
     }
 
-    fn answer_back(&mut self, hub: usize, query: u64, answer: Option<Vec<u8>>) -> Vec<Call> {
+    fn answer_back(&mut self, hub: usize, query: u64, answer: Option<Parcel>) -> Vec<Call> {
         let Some(asker) = self.queries.get(&query).map(|pending| pending.asker) else { return vec![] };
         if asker == hub {
             return self.answered(query, answer);
@@ -407,12 +409,12 @@ impl State {
     }
 
     /// Whoever asked is answered.
-    fn answered(&mut self, query: u64, answer: Option<Vec<u8>>) -> Vec<Call> {
+    fn answered(&mut self, query: u64, answer: Option<Parcel>) -> Vec<Call> {
         let Some(pending) = self.queries.get(&query) else { return vec![] };
         let answers = Arc::clone(&pending.answers);
         vec![Box::new(move || {
             answers.visit(|answers| match answer {
-                Some(answer) => answers.first = answers.first.take().or(Some(answer)),
+                Some(answer) => answers.waiting.push_back(answer),
                 None => answers.is_complete = true,
             });
         })]
@@ -420,7 +422,7 @@ impl State {
 }
 
 /// Calls a queryable.
-fn asking(take: &TakeQuery, session: usize, query: u64, key: String, payload: Vec<u8>) -> Call {
+fn asking(take: &TakeQuery, session: usize, query: u64, key: String, payload: Parcel) -> Call {
     let take = Arc::clone(take);
     Box::new(move || {
         let current = current().expect("events happen in threads of the simulation");

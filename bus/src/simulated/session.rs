@@ -3,7 +3,8 @@
 use super::routing::{Answers, Asked, Declared, Packet, PendingQuery, What};
 use super::scheduler::{Call, World, current, is_in_callback, wait_until};
 use super::state::{SessionState, State};
-use crate::{Net, Watched};
+use crate::seal::Parcel;
+use crate::{Net, Watched, clock};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
@@ -41,7 +42,7 @@ pub(crate) struct SimulatedQuery {
     session: usize,
     query: u64,
     key: String,
-    pub(crate) payload: Vec<u8>,
+    pub(crate) payload: Parcel,
 }
 
 impl SimulatedSession {
@@ -171,16 +172,29 @@ impl SimulatedSession {
         id
     }
 
-    pub(crate) fn ask(&self, key: &str, payload: Vec<u8>, limit: Duration) -> Option<Vec<u8>> {
-        self.query(key, Asked::Payload(payload), limit)
+    /// The first answer that is accepted.
+    pub(crate) fn ask(
+        &self,
+        key: &str,
+        payload: Parcel,
+        limit: Duration,
+        accept: impl FnMut(&Parcel) -> bool,
+    ) -> Option<Parcel> {
+        self.query(key, Asked::Payload(payload), limit, accept)
     }
 
     pub(crate) fn who_is_alive(&self, key: &str, limit: Duration) -> Vec<String> {
-        let tokens = self.query(key, Asked::Tokens, limit);
-        tokens.and_then(|json| serde_json::from_slice(&json).ok()).unwrap_or_default()
+        let tokens = self.query(key, Asked::Tokens, limit, |_| true);
+        tokens.and_then(|json| serde_json::from_slice(&json.bytes).ok()).unwrap_or_default()
     }
 
-    fn query(&self, key: &str, asked: Asked, limit: Duration) -> Option<Vec<u8>> {
+    fn query(
+        &self,
+        key: &str,
+        asked: Asked,
+        limit: Duration,
+        mut accept: impl FnMut(&Parcel) -> bool,
+    ) -> Option<Parcel> {
         let answers = Arc::new(Watched::new(Answers::default()));
         let mut state = self.world.state.lock();
         state.number += 1;
@@ -199,9 +213,18 @@ impl SimulatedSession {
         }
         drop(state);
         calls.into_iter().for_each(|call| call());
-        answers.wait(limit, |answers| answers.first.is_some() || answers.is_complete);
+        let start = clock::now();
+        let accepted = loop {
+            let left = limit.saturating_sub(clock::since(start));
+            answers.wait(left, |answers| !answers.waiting.is_empty() || answers.is_complete);
+            match answers.visit(|answers| answers.waiting.pop_front()) {
+                Some(answer) if accept(&answer) => break Some(answer),
+                Some(_) => {}
+                None => break None,
+            }
+        };
         drop(self.world.state.lock().queries.remove(&query));
-        answers.visit(|answers| answers.first.take())
+        accepted
     }
 
     pub(crate) fn close(&self) {
@@ -260,7 +283,7 @@ impl SimulatedQuery {
         world: Arc<World>,
         session: usize,
         query: u64,
-        (key, payload): (String, Vec<u8>),
+        (key, payload): (String, Parcel),
     ) -> SimulatedQuery {
         SimulatedQuery { world, session, query, key, payload }
     }
@@ -270,11 +293,11 @@ impl SimulatedQuery {
         &self.key
     }
 
-    pub(crate) fn answer(&self, answer: Vec<u8>) {
+    pub(crate) fn answer(&self, answer: Parcel) {
         self.send(Some(answer));
     }
 
-    fn send(&self, answer: Option<Vec<u8>>) {
+    fn send(&self, answer: Option<Parcel>) {
         let mut state = self.world.state.lock();
         let calls = state.answer_from(self.session, self.query, answer);
         drop(state);
@@ -289,7 +312,7 @@ impl Drop for SimulatedQuery {
 }
 
 impl State {
-    fn answer_from(&mut self, session: usize, query: u64, answer: Option<Vec<u8>>) -> Vec<Call> {
+    fn answer_from(&mut self, session: usize, query: u64, answer: Option<Parcel>) -> Vec<Call> {
         let SessionState { is_open, is_hub, link, .. } = self.sessions[session];
         match link {
             _ if !is_open => vec![],

@@ -16,7 +16,7 @@ use bus::token::{self, Checked, Guard};
 use bus::{Bus, CurrentToken, Declaration, Priority, Publisher, Query, clock};
 use game::codec;
 use game::external::{
-    FleetCommand, GatewayCommand, GatewayStatus, LinkBytes, NavReport, OperatorCommand, OperatorReply,
+    FleetCommand, GatewayCommand, GatewayStatus, LinkBytes, NavReport, OperatorCommand, OperatorReply, Reported,
 };
 use game::frame::Ned;
 use game::message::{Frame, Message, Stamp};
@@ -65,7 +65,7 @@ pub(super) struct InGame {
     bus: Bus,
     nav: Publisher,
     status: Publisher,
-    /// Every byte of the link, for recorders.
+    /// Every byte of the link, for recorders and observers.
     link_bytes: Publisher,
     vehicle: VehicleId,
     /// The other real boats.
@@ -133,11 +133,18 @@ impl GatewayLoop<'_> {
             if clock::now() >= self.counters.status_at {
                 self.counters.status_at = clock::now() + STATUS_EVERY;
                 let status = self.full_status();
-                if let Some(in_game) = &self.in_game {
-                    in_game.status.send_json(serde_json::to_vec(&status).expect("a status is JSON"))?;
-                }
+                self.report_status(&status)?;
                 (self.notify)(NodeEvent::Status(&status));
             }
+        }
+        Ok(())
+    }
+
+    /// Reports the status to the sim, which passes it on.
+    fn report_status(&self, status: &GatewayStatus) -> Result<(), NodeError> {
+        if let (Some(ticket), Some(in_game)) = (self.counters.ticket, &self.in_game) {
+            let json = serde_json::to_vec(status).expect("a status is JSON");
+            in_game.status.send_raw(Reported::with_ticket(ticket, &json))?;
         }
         Ok(())
     }
@@ -207,8 +214,8 @@ impl GatewayLoop<'_> {
         let (scenario, name) = (&info.scenario, &self.settings.vehicle);
         let in_game = InGame {
             nav: bus.publisher(topic::nav(&game, scenario, vehicle), Priority::Normal)?,
-            status: bus.publisher(topic::status(&game, name), Priority::Normal)?,
-            link_bytes: bus.publisher(topic::link(&game, name), Priority::Normal)?,
+            status: bus.publisher(topic::report(&game, Reported::Status, name), Priority::Normal)?,
+            link_bytes: bus.publisher(topic::report(&game, Reported::Link, name), Priority::Normal)?,
             vehicle,
             others: scenario.externals().filter(|other| *other != vehicle).collect(),
             _subscriptions: subscribe(&bus, &game, &info, vehicle, &self.back)?,
@@ -353,16 +360,17 @@ impl GatewayLoop<'_> {
     }
 
     fn operate(&mut self, query: Query) -> Result<(), NodeError> {
-        let refused = match self.guard.check(query.key(), &query.payload, OperatorCommand::needs_token) {
+        let token = self.settings.place.token().get();
+        let refused = match self.guard.check(query.key(), query.payload(), OperatorCommand::needs_token) {
             Checked::Granted(command) => self.execute(command)?,
             Checked::Challenged(challenge) => {
-                query.answer(challenge);
+                query.answer_as(challenge, token.as_ref());
                 return Ok(());
             }
             Checked::Garbage(e) => Some(format!("the command is not understood: {e}")),
         };
         let reply = OperatorReply { refused, status: self.full_status() };
-        query.answer(token::answer(&reply));
+        query.answer_as(token::answer(&reply), token.as_ref());
         Ok(())
     }
 
@@ -407,6 +415,10 @@ impl GatewayLoop<'_> {
         for event in &out.events {
             (self.notify)(NodeEvent::Event { at_s: now.as_s(), event });
         }
+        // Operators wait for this: a stop counts as done when the status shows it.
+        if out.events.iter().any(|event| matches!(event, Event::State { .. })) {
+            self.report_status(&self.full_status())?;
+        }
         self.record_step(now, &input, &out)?;
         Ok(out.refused)
     }
@@ -414,15 +426,15 @@ impl GatewayLoop<'_> {
     /// Publishes the bytes that went over the link, and records the whole step.
     fn record_step(&mut self, now: SimTime, input: &Input, out: &Output) -> Result<(), NodeError> {
         let link_bytes = self.in_game.as_ref().map(|in_game| &in_game.link_bytes);
-        let is_heard = link_bytes.is_some_and(Publisher::is_heard);
-        if !is_heard && self.recorder.is_none() {
+        let ticket = self.counters.ticket.filter(|_| link_bytes.is_some_and(Publisher::is_heard));
+        if ticket.is_none() && self.recorder.is_none() {
             return Ok(());
         }
         for entry in self.encoder.step(now, self.counters.game_now, input, out) {
-            if let (true, Some(link_bytes), Entry::Message { schema: Some(LinkBytes::SCHEMA), bytes, .. }) =
-                (is_heard, link_bytes, &entry)
+            if let (Some(ticket), Some(link_bytes), Entry::Message { schema: Some(LinkBytes::SCHEMA), bytes, .. }) =
+                (ticket, link_bytes, &entry)
             {
-                link_bytes.send_encoded::<LinkBytes>(bytes.clone())?;
+                link_bytes.send_raw(Reported::with_ticket(ticket, bytes))?;
             }
             if let Some(recorder) = &self.recorder {
                 recorder.record(entry);

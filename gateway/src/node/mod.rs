@@ -339,7 +339,7 @@ fn subscribe(
         bus.subscribe(topic::external_order(game, scenario, vehicle), take_order)?,
         bus.answer(topic::operate(game, name), move |query| {
             // It is read again, to be answered, behind others.
-            let command = Guard::default().check(query.key(), &query.payload, OperatorCommand::needs_token);
+            let command = Guard::default().check(query.key(), query.payload(), OperatorCommand::needs_token);
             if matches!(command, Checked::Granted(OperatorCommand::EStop)) {
                 queries.stop(Scope::Boat);
             }

@@ -106,7 +106,7 @@ impl Sim {
             bus.answer(topic::events(&game), move |question| question.answer(sent.visit(|events| json(events))))
                 .expect("it answers"),
             bus.answer(topic::helm(&game, &scenario, BLUE_ONE), |question| {
-                let asked: HelmQuestion = serde_json::from_slice(&question.payload).expect("a question");
+                let asked: HelmQuestion = serde_json::from_slice(question.payload()).expect("a question");
                 let mode = format!("functions:{}", asked.functions);
                 question.answer(json(&Some(HelmReport { mode, ..report(BLUE_ONE) })));
             })
@@ -116,7 +116,7 @@ impl Sim {
             })
             .expect("it listens"),
             bus.answer(topic::control(&game), move |query| {
-                let Checked::Granted(control) = Guard::default().check(query.key(), &query.payload, |_| true) else {
+                let Checked::Granted(control) = Guard::default().check(query.key(), query.payload(), |_| true) else {
                     panic!("a control")
                 };
                 asked.visit(|all| all.push(control));

@@ -26,7 +26,7 @@ fn gateway(bus: &Bus, takes: Duration) -> (Told, Declaration) {
     let noted = Arc::clone(&told);
     let key = topic::operate(&GameName::new("pond").expect("a good name"), BOAT);
     let answer = move |question: bus::Query| {
-        let Checked::Granted(command) = Guard::default().check(question.key(), &question.payload, |_| true) else {
+        let Checked::Granted(command) = Guard::default().check(question.key(), question.payload(), |_| true) else {
             panic!("a command")
         };
         let refused = (command == OperatorCommand::Release).then(|| "an E-stop is in force".to_owned());

@@ -13,6 +13,8 @@ use std::time::Duration;
 pub(super) enum Sender {
     /// The node with this ticket.
     Member(u64),
+    /// The gateway with this ticket, of what it reports for others.
+    Reporting(u64),
     /// Nodes that want to join.
     Joining,
     /// Whoever publishes on this topic, which is subscribed to only for the recorder.
@@ -28,6 +30,8 @@ impl Sender {
     fn share(self) -> usize {
         match self {
             Sender::Member(_) => 128,
+            // Every byte between a gateway and its boat is among it.
+            Sender::Reporting(_) => 2048,
             Sender::Joining => 64,
             Sender::Recorded(_) => 2048,
             Sender::Network => 1024,
@@ -73,7 +77,7 @@ impl MessageInbox {
     /// Takes in a message, if its sender has joined where it must, and has room left.
     pub(super) fn put(&self, message: Incoming) {
         let sender = message.sender();
-        if let Sender::Member(ticket) = sender
+        if let Sender::Member(ticket) | Sender::Reporting(ticket) = sender
             && !self.gate.visit(|gate| gate.tickets.contains(&ticket))
         {
             return self.refuse(Refusal::Ticket);
@@ -92,7 +96,8 @@ impl MessageInbox {
         }
     }
 
-    fn refuse(&self, refusal: Refusal) {
+    /// Counts a message that is not taken in.
+    pub(super) fn refuse(&self, refusal: Refusal) {
         self.gate.visit(|gate| gate.refusals.count(refusal));
     }
 

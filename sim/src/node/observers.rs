@@ -1,7 +1,6 @@
 //! What a sim answers observers, and the topics that it subscribes to only for the recorder.
 
 use crate::contest::Contest;
-use game::external::{GatewayStatus, LinkBytes};
 use game::message::{Message, PolicyProposal, Say};
 use game::outcome::EventOutcome;
 use game::{Scenario, codec};
@@ -35,20 +34,12 @@ impl RecordedTopic {
     fn cdr<M: Message + DeserializeOwned>(topic: String) -> RecordedTopic {
         RecordedTopic { topic, schema: Some(M::SCHEMA), is_sound: |bytes| codec::decode::<M>(bytes).is_ok() }
     }
-
-    fn status(vehicle: &str) -> RecordedTopic {
-        let is_sound = |bytes: &[u8]| serde_json::from_slice::<GatewayStatus>(bytes).is_ok();
-        RecordedTopic { topic: format!("status/{vehicle}"), schema: None, is_sound }
-    }
 }
 
-/// Team messages, proposals, and what gateways publish.
+/// Team messages and proposals.
 pub(super) fn recorded_topics(scenario: &Scenario) -> Vec<RecordedTopic> {
     let boats = scenario.vehicles.iter().map(|vehicle| &vehicle.name);
-    let real = || scenario.externals().map(|vehicle| &scenario.vehicles[vehicle.index()].name);
     let says = scenario.teams.iter().map(|team| RecordedTopic::cdr::<Say>(format!("say/{}", team.name)));
     let proposals = boats.map(|name| RecordedTopic::cdr::<PolicyProposal>(format!("policy/{name}")));
-    let links = real().map(|name| RecordedTopic::cdr::<LinkBytes>(format!("link/{name}")));
-    let statuses = real().map(|name| RecordedTopic::status(name));
-    says.chain(proposals).chain(links).chain(statuses).collect()
+    says.chain(proposals).collect()
 }

@@ -16,13 +16,14 @@ use bus::token::Guard;
 use bus::{Bus, Declaration, Inbox, Priority, Publisher, Query, clock, inbox};
 use game::codec;
 use game::event::EventCursor;
-use game::external::ExternalOrder;
+use game::external::{ExternalOrder, Reported};
 use game::message::{Frame, GameInfo, Message, Role, Stamp, VehicleOrder};
 use game::refusal::{Refusal, Refusals};
 use game::run_state::{Phase, RunState};
 use game::topic::{self, GameName};
 use game::{Order, Picture, SimTime, TeamId, VehicleId};
 use recording::Entry;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -68,6 +69,8 @@ pub(super) struct GameServer<'w> {
     pub(super) overruns: u64,
     /// Topics that are subscribed to only for the recorder.
     recorded_topics: Vec<RecordedTopic>,
+    /// What the gateways of real boats report for others.
+    reports: BTreeMap<(VehicleId, Reported), Publisher>,
     /// What each real boat is to do.
     external_orders: Vec<(VehicleId, Publisher)>,
     /// The answer to the query what the game is.
@@ -103,7 +106,7 @@ impl<'w> GameServer<'w> {
         }
         let scenario = contest.scenario();
         let recorded_topics = if recorder.is_some() { observers::recorded_topics(scenario) } else { vec![] };
-        let declarations = subscriptions::open(&bus, game, &inboxes, &recorded_topics)?;
+        let declarations = subscriptions::open(&bus, game, scenario, &inboxes, &recorded_topics)?;
         let is_lockstep = settings.pace == Pace::Lockstep;
         let timing = if is_lockstep { Timing::Lockstep } else { Timing::Realtime };
         let speed = if let Pace::Realtime { factor } = settings.pace { Some(factor) } else { settings.speed };
@@ -111,6 +114,7 @@ impl<'w> GameServer<'w> {
         let pictures: Result<Vec<Publisher>, _> = teams.map(|key| bus.publisher(key, Priority::Normal)).collect();
         let to_boat = |v| Ok((v, bus.publisher(topic::external_order(game, scenario, v), Priority::Urgent)?));
         let external_orders: Vec<_> = scenario.externals().map(to_boat).collect::<Result<_, NodeError>>()?;
+        let reports = subscriptions::report_publishers(&bus, game, scenario)?;
         let is_real = !external_orders.is_empty();
         let game_info =
             GameInfo { version: game::VERSION.to_owned(), pace: settings.pace.to_string(), scenario: scenario.clone() };
@@ -125,6 +129,7 @@ impl<'w> GameServer<'w> {
             pictures: pictures?,
             asked: None,
             external_orders,
+            reports,
             frames: bus.publisher(topic::frame(game), Priority::Normal)?,
             shown: EventCursor::default(),
             frame: None,

@@ -3,11 +3,14 @@
 use super::control_inbox::ControlInbox;
 use super::message_inbox::{MessageInbox, Sender};
 use super::observers::RecordedTopic;
-use bus::{Bus, BusError, Declaration, InboxSender, Query};
-use game::external::NavReport;
+use bus::{Bus, BusError, Declaration, InboxSender, Priority, Publisher, Query};
+use game::external::{NavReport, Reported};
 use game::message::{Message, Orders};
+use game::refusal::Refusal;
 use game::topic::{self, GameName};
+use game::{Scenario, VehicleId};
 use serde::de::DeserializeOwned;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// What comes in from the network.
@@ -15,6 +18,13 @@ pub(super) enum Incoming {
     Orders(Orders),
     /// The report, and its bytes for the recorder.
     Nav(NavReport, Vec<u8>),
+    /// What a gateway reports for others: its ticket, the boat and the message.
+    Report {
+        ticket: u64,
+        vehicle: VehicleId,
+        what: Reported,
+        message: Vec<u8>,
+    },
     Join(Query),
     /// For the recorder only: the topic's place in the list, and the message.
     RecordedMessage(usize, Vec<u8>),
@@ -30,6 +40,7 @@ impl Incoming {
         match self {
             Incoming::Orders(orders) => Sender::Member(orders.ticket),
             Incoming::Nav(report, _) => Sender::Member(report.ticket),
+            Incoming::Report { ticket, .. } => Sender::Reporting(*ticket),
             Incoming::Join(_) => Sender::Joining,
             Incoming::RecordedMessage(topic, _) => Sender::Recorded(*topic),
             Incoming::Gone(..) => Sender::Network,
@@ -74,12 +85,40 @@ impl Inboxes {
             others.put(Incoming::Look);
         }
     }
+
+    /// A callback for what a gateway reports of its boat.
+    fn report(&self, vehicle: VehicleId, what: Reported) -> impl Fn(&[u8]) + Send + Sync + use<> {
+        let others = Arc::clone(&self.others);
+        move |bytes: &[u8]| match Reported::split_ticket(bytes) {
+            Some((ticket, message)) => {
+                others.put(Incoming::Report { ticket, vehicle, what, message: message.to_vec() });
+            }
+            None => others.refuse(Refusal::Garbage),
+        }
+    }
+}
+
+/// Where what gateways report of each real boat is published.
+pub(super) fn report_publishers(
+    bus: &Bus,
+    game: &GameName,
+    scenario: &Scenario,
+) -> Result<BTreeMap<(VehicleId, Reported), Publisher>, BusError> {
+    let mut publishers = BTreeMap::new();
+    for vehicle in scenario.externals() {
+        let name = &scenario.vehicles[vehicle.index()].name;
+        for (what, key) in [(Reported::Status, topic::status(game, name)), (Reported::Link, topic::link(game, name))] {
+            publishers.insert((vehicle, what), bus.publisher(key, Priority::Normal)?);
+        }
+    }
+    Ok(publishers)
 }
 
 /// Opens everything that comes in; `recorded` are the topics that are subscribed to only for the recorder.
 pub(super) fn open(
     bus: &Bus,
     game: &GameName,
+    scenario: &Scenario,
     inboxes: &Inboxes,
     recorded: &[RecordedTopic],
 ) -> Result<Vec<Declaration>, BusError> {
@@ -110,6 +149,12 @@ pub(super) fn open(
         bus.answer(topic::all_join(game), move |query| joins.put(Incoming::Join(query)))?,
         bus.show_alive(topic::alive(game, &bus.id()))?,
     ];
+    for vehicle in scenario.externals() {
+        for what in Reported::ALL {
+            let key = topic::report(game, what, &scenario.vehicles[vehicle.index()].name);
+            declarations.push(bus.subscribe(key, inboxes.report(vehicle, what))?);
+        }
+    }
     for (i, RecordedTopic { topic, .. }) in recorded.iter().enumerate() {
         let others = others();
         let take = move |bytes: &[u8]| others.put(Incoming::RecordedMessage(i, bytes.to_vec()));

@@ -102,7 +102,7 @@ pub(super) fn operate(
 fn ask(bus: &Bus, game: &LiveGame, vehicle: VehicleId, command: &OperatorCommand) -> Result<OperatorReply, String> {
     let name = game.name_of(vehicle);
     let reply: Result<Option<OperatorReply>, BusError> =
-        bus.request(&topic::operate(&game.name, name), command, ANSWER);
+        bus.request_node(&topic::operate(&game.name, name), command, ANSWER);
     let reply = reply.map_err(|e| e.to_string())?.ok_or_else(|| format!("no gateway of {name} answers"))?;
     if reply.status.vehicle == name {
         Ok(reply)

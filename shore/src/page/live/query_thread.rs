@@ -129,7 +129,7 @@ impl QueryThread {
     fn ask_helm(&self, Turn { vehicle, functions, is_listed }: Turn) {
         let question = serde_json::to_vec(&HelmQuestion { functions }).unwrap_or_default();
         let key = topic::helm(&self.game.name, self.game.scenario(), vehicle);
-        let answer = self.bus.ask(&key, question, HELM_ANSWER).ok().flatten();
+        let answer = self.bus.ask_node(&key, question, HELM_ANSWER).ok().flatten();
         let name = self.game.name_of(vehicle);
         let answer = match answer.map(|bytes| serde_json::from_slice::<Option<HelmReport>>(&bytes)) {
             Some(Ok(Some(report))) => HelmAnswer { report: Some(report), ..HelmAnswer::default() },

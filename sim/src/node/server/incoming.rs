@@ -8,11 +8,10 @@ use crate::node::subscriptions::{Incoming, Question};
 use crate::node::{Pace, gateways};
 use bus::token::{self, Checked};
 use bus::{Query, clock, random_number};
-use game::SimTime;
-use game::external::NavReport;
+use game::external::{LinkBytes, NavReport, Reported};
 use game::message::{Control, ControlReply, JoinReply, JoinRequest, Message, Orders, Role};
 use game::refusal::Refusal;
-use game::topic;
+use game::{SimTime, VehicleId, topic};
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
@@ -66,6 +65,7 @@ impl GameServer<'_> {
         match incoming {
             Incoming::Orders(message) => self.take_orders(&message),
             Incoming::Nav(report, bytes) => self.take_nav(&report, bytes),
+            Incoming::Report { ticket, vehicle, what, message } => self.pass_on_report(ticket, vehicle, what, message),
             Incoming::Join(query) => self.join(query),
             Incoming::RecordedMessage(i, bytes) => {
                 let RecordedTopic { topic, schema, is_sound } = &self.recorded_topics[i];
@@ -112,6 +112,26 @@ impl GameServer<'_> {
         self.refusals.add(Refusal::BadNumber, u64::from(taken.is_err()));
     }
 
+    /// Publishes what the gateway of a boat reports of it, if the gateway has joined for that boat.
+    fn pass_on_report(&mut self, ticket: u64, vehicle: VehicleId, what: Reported, message: Vec<u8>) {
+        if !self.gateways.vehicles_of(ticket).any(|own| own == vehicle) {
+            return self.refusals.count(Refusal::NotYours);
+        }
+        let name = self.name_of(vehicle).to_owned();
+        if !what.is_about(&message, vehicle, &name) {
+            return self.refusals.count(Refusal::Garbage);
+        }
+        // That the session is closed shows at the next picture.
+        let passed_on = match (what, self.reports.get(&(vehicle, what))) {
+            (_, None) => Ok(()),
+            (Reported::Status, Some(publisher)) => publisher.send_json(message.clone()),
+            (Reported::Link, Some(publisher)) => publisher.send_encoded::<LinkBytes>(message.clone()),
+        };
+        passed_on.unwrap_or_default();
+        let schema = (what == Reported::Link).then_some(LinkBytes::SCHEMA);
+        self.record_message(format!("{what}/{name}"), schema, message);
+    }
+
     /// Simulated time by the clock: the open decision's, and what has passed since it was opened. Only fixes are told the
     /// time by it: a fix would seem up to a decision older than it is otherwise.
     fn moment(&self) -> SimTime {
@@ -121,7 +141,7 @@ impl GameServer<'_> {
     }
 
     fn join(&mut self, query: Query) {
-        let reply = match self.guard.check::<JoinRequest>(query.key(), &query.payload, |_| true) {
+        let reply = match self.guard.check::<JoinRequest>(query.key(), query.payload(), |_| true) {
             Checked::Granted(request) => self.join_at(query.key(), &request),
             Checked::Challenged(challenge) => return query.answer(challenge),
             Checked::Garbage(e) => JoinReply::Refused { reason: format!("the request is not understood: {e}") },
@@ -157,7 +177,7 @@ impl GameServer<'_> {
 
     fn asked_to_control(&mut self, query: Query) {
         let reply: ControlReply =
-            match self.guard.check(query.key(), &query.payload, |control: &Control| !control.stops()) {
+            match self.guard.check(query.key(), query.payload(), |control: &Control| !control.stops()) {
                 Checked::Granted(control) => self.control(control),
                 Checked::Challenged(challenge) => return query.answer(challenge),
                 Checked::Garbage(e) => {

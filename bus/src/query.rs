@@ -1,0 +1,200 @@
+//! Questions and answers over a session.
+
+use crate::keys::Bundle;
+use crate::seal::Parcel;
+use crate::session::{Network, failed};
+use crate::simulated::SimulatedQuery;
+use crate::{Bus, BusError, Declaration, Token, access, token};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use std::time::Duration;
+use zenoh::Wait;
+use zenoh::bytes::Encoding;
+use zenoh::qos::{self, CongestionControl};
+use zenoh::query::{ConsolidationMode, QueryTarget};
+
+/// A query of another node, to be answered once.
+pub struct Query {
+    asker: Asker,
+    question: Parcel,
+    /// The token of the node that was asked.
+    token: Option<Token>,
+}
+
+enum Asker {
+    Zenoh(zenoh::query::Query),
+    Simulated(SimulatedQuery),
+}
+
+impl Bus {
+    /// Calls `take` with every query at `key`.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed.
+    pub fn answer(&self, key: String, take: impl Fn(Query) + Send + Sync + 'static) -> Result<Declaration, BusError> {
+        let token = self.token.clone();
+        let session = match &self.network {
+            Network::Zenoh(session) => session,
+            Network::Simulated(session) => {
+                let callback = move |mut query: SimulatedQuery| {
+                    let question = std::mem::take(&mut query.payload);
+                    take(Query { asker: Asker::Simulated(query), question, token: token.clone() });
+                };
+                return Ok(Declaration(Box::new(session.answer(key, callback))));
+            }
+        };
+        let callback = move |query: zenoh::query::Query| {
+            let question = Parcel::of(query.payload(), query.attachment());
+            take(Query { asker: Asker::Zenoh(query), question, token: token.clone() });
+        };
+        let queryable = session.declare_queryable(key.clone()).callback(callback).wait();
+        Ok(Declaration(Box::new(queryable.map_err(failed("answer at", &key))?)))
+    }
+
+    /// Asks at `key`, where only the sim may answer; gives its answer if that comes within `limit`. Answers go behind
+    /// everything else, and one that a congested link cannot take is dropped.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed.
+    pub fn ask(&self, key: &str, payload: Vec<u8>, limit: Duration) -> Result<Option<Vec<u8>>, BusError> {
+        self.ask_at(qos::Priority::DataLow, key, Parcel::new(payload), limit, |_| true)
+    }
+
+    /// As [`Bus::ask`], at a key where other nodes answer. In a game without keys anybody may: if this node knows the token,
+    /// only the answer of a node that knows it too counts.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed, or if nobody but nodes without the token has answered.
+    pub fn ask_node(&self, key: &str, payload: Vec<u8>, limit: Duration) -> Result<Option<Vec<u8>>, BusError> {
+        self.ask_node_at(qos::Priority::DataLow, key, payload, limit)
+    }
+
+    fn ask_node_at(
+        &self,
+        priority: qos::Priority,
+        key: &str,
+        payload: Vec<u8>,
+        limit: Duration,
+    ) -> Result<Option<Vec<u8>>, BusError> {
+        // With keys, access control lets nobody else answer.
+        let Some(token) = self.token.as_ref().filter(|_| self.keys.is_none()) else {
+            return self.ask_at(priority, key, Parcel::new(payload), limit, |_| true);
+        };
+        let question = Parcel::question(payload);
+        let mut refused = false;
+        let answer = self.ask_at(priority, key, question.clone(), limit, |answer| {
+            let is_sealed = question.is_answered_by(key, answer, token);
+            refused |= !is_sealed;
+            is_sealed
+        })?;
+        if answer.is_none() && refused { Err(BusError::Unsealed { key: key.to_owned() }) } else { Ok(answer) }
+    }
+
+    /// The first answer that is accepted.
+    fn ask_at(
+        &self,
+        priority: qos::Priority,
+        key: &str,
+        question: Parcel,
+        limit: Duration,
+        mut accept: impl FnMut(&Parcel) -> bool,
+    ) -> Result<Option<Vec<u8>>, BusError> {
+        let session = match &self.network {
+            Network::Zenoh(session) => session,
+            Network::Simulated(session) => {
+                return Ok(session.ask(key, question, limit, accept).map(|answer| answer.bytes));
+            }
+        };
+        let query = session.get(key).payload(question.bytes).timeout(limit);
+        // All who answer are asked, and each answer is seen when it comes: one that says nothing holds up nobody.
+        let query = query.target(QueryTarget::All).consolidation(ConsolidationMode::None);
+        let query = query.attachment((!question.attachment.is_empty()).then_some(question.attachment));
+        let query = query.congestion_control(CongestionControl::Drop).priority(priority).express(true);
+        let replies = query.wait().map_err(failed("ask at", key))?;
+        let answers = std::iter::from_fn(|| replies.recv().ok()).filter_map(|reply| reply.into_result().ok());
+        let mut parcels = answers.map(|sample| Parcel::of(Some(sample.payload()), sample.attachment()));
+        Ok(parcels.find(|answer| accept(answer)).map(|answer| answer.bytes))
+    }
+
+    /// Asks the sim at `key` for something that may need the game's token, and proves that this node knows it if asked to;
+    /// gives the first answer that comes within `limit`, of each question. They go before everything else: some of them
+    /// command boats.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed, if a token is needed and there is none or another one, if the keys of this node are
+    /// not of somebody who may ask this, or if the answer is not understood.
+    pub fn request<B: Serialize, T: DeserializeOwned>(
+        &self,
+        key: &str,
+        body: &B,
+        limit: Duration,
+    ) -> Result<Option<T>, BusError> {
+        self.check_may_ask(key)?;
+        let ask = |payload| self.ask_at(qos::Priority::RealTime, key, Parcel::new(payload), limit, |_| true);
+        token::request(self.token.as_ref(), key, body, ask)
+    }
+
+    /// As [`Bus::request`], of a node that is not the sim: in a game without keys, one that knows the token.
+    ///
+    /// # Errors
+    /// As [`Bus::request`], and if this node has neither the token nor keys: nobody could prove to it who answers.
+    pub fn request_node<B: Serialize, T: DeserializeOwned>(
+        &self,
+        key: &str,
+        body: &B,
+        limit: Duration,
+    ) -> Result<Option<T>, BusError> {
+        self.check_may_ask(key)?;
+        if self.token.is_none() && self.keys.is_none() {
+            return Err(BusError::NeedsToken);
+        }
+        let ask = |payload| self.ask_node_at(qos::Priority::RealTime, key, payload, limit);
+        token::request(self.token.as_ref(), key, body, ask)
+    }
+
+    fn check_may_ask(&self, key: &str) -> Result<(), BusError> {
+        match self.keys().map(Bundle::identity) {
+            Some(identity) if !access::may_ask(identity, key) => {
+                Err(BusError::NotAllowed { identity: identity.clone() })
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Query {
+    /// The key that was asked.
+    #[must_use]
+    pub fn key(&self) -> &str {
+        match &self.asker {
+            Asker::Zenoh(query) => query.key_expr().as_str(),
+            Asker::Simulated(query) => query.key(),
+        }
+    }
+
+    /// What is asked.
+    #[must_use]
+    pub fn payload(&self) -> &[u8] {
+        &self.question.bytes
+    }
+
+    /// Answers with bytes that are JSON, as a node that knows the token of its session.
+    pub fn answer(self, json: Vec<u8>) {
+        let token = self.token.clone();
+        self.answer_as(json, token.as_ref());
+    }
+
+    /// Answers with bytes that are JSON, as a node that knows this token now.
+    pub fn answer_as(self, json: Vec<u8>, token: Option<&Token>) {
+        let answer = self.question.answer(self.key(), json, token);
+        match self.asker {
+            Asker::Zenoh(query) => {
+                let reply = query.reply(query.key_expr().clone(), answer.bytes).encoding(Encoding::APPLICATION_JSON);
+                let reply = reply.attachment((!answer.attachment.is_empty()).then_some(answer.attachment));
+                // Whoever asked may be gone by now; then nobody misses the answer.
+                drop(reply.wait());
+            }
+            Asker::Simulated(query) => query.answer(answer),
+        }
+    }
+}

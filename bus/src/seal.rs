@@ -1,0 +1,80 @@
+//! The seal of an answer: proof that the node that answers knows the game's token.
+//!
+//! Without keys, any node may declare that it answers at the topic of a boat. A question therefore goes to all of them and
+//! carries a nonce as its attachment; the attachment of an answer is the HMAC-SHA256, under the game's token, of nonce, key,
+//! question and answer. An answer that was made for another question, or by a node without the token, does not count.
+
+use crate::{Token, random_bytes};
+use zenoh::bytes::ZBytes;
+
+/// The first part of what is sealed: no proof of a request begins like this.
+const TAG: &[u8] = b"answer";
+
+/// The bytes of a question or an answer, with its nonce or seal; that is empty where there is none.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Parcel {
+    pub(crate) bytes: Vec<u8>,
+    pub(crate) attachment: Vec<u8>,
+}
+
+impl Parcel {
+    /// Bytes with neither.
+    pub(crate) fn new(bytes: Vec<u8>) -> Parcel {
+        Parcel { bytes, attachment: Vec::new() }
+    }
+
+    /// What zenoh has received.
+    pub(crate) fn of(bytes: Option<&ZBytes>, attachment: Option<&ZBytes>) -> Parcel {
+        let [bytes, attachment] =
+            [bytes, attachment].map(|part| part.map(|part| part.to_bytes().into_owned()).unwrap_or_default());
+        Parcel { bytes, attachment }
+    }
+
+    /// A question whose answers are to be sealed.
+    pub(crate) fn question(bytes: Vec<u8>) -> Parcel {
+        Parcel { bytes, attachment: random_bytes::<16>().to_vec() }
+    }
+
+    /// The answer of a node that knows `token`, if it knows one, to this question at `key`.
+    pub(crate) fn answer(&self, key: &str, bytes: Vec<u8>, token: Option<&Token>) -> Parcel {
+        let token = token.filter(|_| !self.attachment.is_empty());
+        let attachment = token.map(|token| token.hmac(&self.sealed(key, &bytes))).unwrap_or_default();
+        Parcel { bytes, attachment }
+    }
+
+    /// Whether `answer` was given to this question at `key` by a node that knows `token`.
+    pub(crate) fn is_answered_by(&self, key: &str, answer: &Parcel, token: &Token) -> bool {
+        !self.attachment.is_empty() && token.verifies(&self.sealed(key, &answer.bytes), &answer.attachment)
+    }
+
+    fn sealed<'a>(&'a self, key: &'a str, answer: &'a [u8]) -> [&'a [u8]; 5] {
+        [TAG, &self.attachment, key.as_bytes(), &self.bytes, answer]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const KEY: &str = "squall/pond/operate/blue_one";
+
+    #[test]
+    fn only_an_answer_to_this_question_by_a_node_with_the_token_is_sealed() {
+        let token = Token::random();
+        let question = Parcel::question(b"status".to_vec());
+        let answer = question.answer(KEY, b"armed".to_vec(), Some(&token));
+        assert!(question.is_answered_by(KEY, &answer, &token));
+        let another_answer = Parcel { bytes: b"safed".to_vec(), ..answer.clone() };
+        for (what, key, question, answer) in [
+            ("another answer", KEY, &question, &another_answer),
+            ("another key", "squall/pond/operate/red_one", &question, &answer),
+            ("another nonce", KEY, &Parcel::question(b"status".to_vec()), &answer),
+            ("another question", KEY, &Parcel { bytes: b"arm".to_vec(), ..question.clone() }, &answer),
+            ("another token", KEY, &question, &question.answer(KEY, b"armed".to_vec(), Some(&Token::random()))),
+            ("no token", KEY, &question, &question.answer(KEY, b"armed".to_vec(), None)),
+            ("no nonce", KEY, &Parcel::new(b"status".to_vec()), &answer),
+        ] {
+            assert!(!question.is_answered_by(key, answer, &token), "{what}");
+        }
+    }
+}
