@@ -226,8 +226,9 @@ fn a_gateway_speaks_for_its_own_boat_only() {
     };
     assert!(answer("blue_one")["answer"]["Refused"].is_object());
     assert!(answer("red_one")["answer"]["Granted"].is_object());
-    // It neither answers for another's boat nor commands it, and hears no order to it.
-    let _forged = red_one.answer("operate/blue_one");
+    // Nobody but the gateway of a boat answers for it, whatever keys he has; it hears no order to another boat.
+    let others = ["team-blue", "observer", "operator"].map(|name| traitor(&sim, &own, name));
+    let _forged: Vec<_> = others.iter().chain([&red_one]).map(|other| other.answer("operate/blue_one")).collect();
     // A session hears what it publishes itself.
     let listener = traitor(&sim, &own, "gateway-red_one");
     let orders = ["external/blue_one", "**"].map(|word| listener.listen(word));
