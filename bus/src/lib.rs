@@ -26,6 +26,7 @@ mod runtime;
 mod session;
 mod sim_liveness;
 pub mod simulated;
+pub mod stop;
 mod thread;
 pub mod token;
 mod watched;
