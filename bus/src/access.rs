@@ -32,8 +32,10 @@ const ANYBODY: Rights = Rights {
         "report/status/{boat}",
         "report/link/{boat}",
         "control",
+        "stop/{boat}",
     ],
     hears: &[
+        "stop/{boat}",
         "frame",
         "picture/{team}",
         "say/{team}",
@@ -61,21 +63,25 @@ const ANYBODY: Rights = Rights {
 };
 /// The agents of a team, and policies that propose to them: no truth, and nothing of other teams.
 const TEAM: Rights = Rights {
-    publishes: &["order/{team}/*", "say/{team}", "policy/{boat}", "control"],
+    publishes: &["order/{team}/*", "say/{team}", "policy/{boat}", "control", "stop/{boat}"],
     hears: &["picture/{team}", "say/{team}", "policy/{boat}", "run", "control", "released"],
     asks: &["scenario", "join/agent/{team}"],
     answers: &["helm/{boat}"],
 };
 const GATEWAY: Rights = Rights {
-    publishes: &["nav/{boat}", "report/status/{boat}", "report/link/{boat}", "control"],
-    hears: &["external/{boat}", "frame", "run", "control", "released"],
+    publishes: &["nav/{boat}", "report/status/{boat}", "report/link/{boat}", "control", "stop/{boat}"],
+    hears: &["external/{boat}", "frame", "run", "control", "stop/{boat}", "released"],
     asks: &["scenario", "join/gateway/{boat}"],
     answers: &["operate/{boat}"],
 };
-const OBSERVER: Rights =
-    Rights { publishes: &["control"], asks: &["scenario", "events", "water", "helm/{boat}"], answers: &[], ..ANYBODY };
+const OBSERVER: Rights = Rights {
+    publishes: &["control", "stop/{boat}"],
+    asks: &["scenario", "events", "water", "helm/{boat}"],
+    answers: &[],
+    ..ANYBODY
+};
 const OPERATOR: Rights = Rights {
-    publishes: &["control", "policy/{boat}"],
+    publishes: &["control", "stop/{boat}", "policy/{boat}"],
     asks: &["scenario", "events", "water", "helm/{boat}", "control", "operate/{boat}"],
     ..OBSERVER
 };

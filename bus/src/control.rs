@@ -1,8 +1,9 @@
 //! Controlling a game from outside of it.
 
-use crate::{ANSWER, Bus, BusError, Priority, clock};
+use crate::{ANSWER, Bus, BusError, Priority, Watched, clock, start_thread};
 use game::message::{Control, ControlReply};
 use game::topic::{self, GameName};
+use std::sync::Arc;
 use std::time::Duration;
 
 /// How long the sim may take to answer a stop before it is said again.
@@ -10,6 +11,9 @@ const STOP_ANSWER: Duration = Duration::from_millis(200);
 
 /// How often a stop is said by those whom the sim does not answer.
 const SAID_UNASKED: u32 = 3;
+
+/// What the sim has answered to one of several questions.
+type Answered = Watched<Option<Result<ControlReply, BusError>>>;
 
 /// Controls a game. What stops boats is published to everybody, gateways too, and needs no token; a link may lose it, so it is
 /// said again until the sim has answered. The rest is asked of the sim.
@@ -34,20 +38,31 @@ pub fn control(bus: &Bus, game: &GameName, control: Control) -> Result<(), BusEr
 fn stop(bus: &Bus, key: &str, control: Control) -> Result<Option<ControlReply>, BusError> {
     let publisher = bus.publisher(key.to_owned(), Priority::Urgent)?;
     let (start, json) = (clock::now(), serde_json::to_vec(&control).expect("a control is JSON"));
+    let answered = Arc::new(Answered::default());
     for said in 1.. {
         publisher.send_json(json.clone())?;
-        let asked = clock::now();
-        let reply = match bus.request(key, &control, STOP_ANSWER) {
+        ask(bus, key, control, ANSWER.saturating_sub(clock::since(start)), &answered);
+        answered.wait(STOP_ANSWER, Option::is_some);
+        match answered.visit(Option::take) {
             // Whoever may only look may stop all the same, and must not ask.
-            Err(BusError::NotAllowed { .. }) if said < SAID_UNASKED => None,
-            Err(BusError::NotAllowed { .. }) => Some(Ok(())),
-            reply => reply?,
-        };
-        if reply.is_some() || clock::since(start) >= ANSWER {
-            return Ok(reply);
+            Some(Err(BusError::NotAllowed { .. })) if said < SAID_UNASKED => clock::rest(STOP_ANSWER),
+            Some(Err(BusError::NotAllowed { .. })) => return Ok(Some(Ok(()))),
+            Some(reply) => return reply.map(Some),
+            None if clock::since(start) >= ANSWER => return Ok(None),
+            None => {}
         }
-        // Without a link there is nobody to ask, which shows at once.
-        clock::rest(STOP_ANSWER.saturating_sub(clock::since(asked)));
     }
     Ok(None)
+}
+
+/// Asks the sim. On a long way the next question goes out before the answer to this one is back.
+fn ask(bus: &Bus, key: &str, control: Control, limit: Duration, answered: &Arc<Answered>) {
+    let (bus, key, answered) = (bus.clone(), key.to_owned(), Arc::clone(answered));
+    let asked = start_thread("stop-question", move || {
+        if let Some(reply) = bus.request(&key, &control, limit).transpose() {
+            answered.visit(|answered| *answered = Some(reply));
+        }
+    });
+    // Where there is no thread it is asked again.
+    drop(asked);
 }

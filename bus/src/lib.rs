@@ -28,6 +28,7 @@ mod seal;
 mod session;
 mod sim_liveness;
 pub mod simulated;
+pub mod stop;
 mod thread;
 pub mod token;
 mod watched;

@@ -1,6 +1,7 @@
 //! A node's session on the network: publish, subscribe, queries, liveliness tokens.
 
 use crate::keys::{self, Bundle};
+use crate::net::is_loopback;
 use crate::simulated::{self, SimulatedPublisher, SimulatedSession};
 use crate::{BusError, Net, Token, linger};
 use game::Scenario;
@@ -35,6 +36,7 @@ pub struct Bus {
     pub(crate) network: Network,
     pub(crate) token: Option<Token>,
     pub(crate) keys: Option<Arc<Bundle>>,
+    is_on_this_machine: bool,
 }
 
 /// The network that a session is on.
@@ -76,7 +78,8 @@ impl Bus {
     }
 
     fn of(network: Network, net: &Net) -> Bus {
-        Bus { network, token: net.token.clone(), keys: net.keys.clone() }
+        let is_on_this_machine = !net.lan && net.connect.iter().all(|endpoint| is_loopback(endpoint));
+        Bus { network, token: net.token.clone(), keys: net.keys.clone(), is_on_this_machine }
     }
 
     /// Connects to a hub.
@@ -103,6 +106,16 @@ impl Bus {
     #[must_use]
     pub fn keys(&self) -> Option<&Bundle> {
         self.keys.as_deref()
+    }
+
+    /// Whether the hub is reached by loopback.
+    pub(crate) fn is_on_this_machine(&self) -> bool {
+        self.is_on_this_machine
+    }
+
+    /// The game's token, where it is known.
+    pub(crate) fn token(&self) -> Option<&Token> {
+        self.token.as_ref()
     }
 
     /// The same session, for a node that knows this token.

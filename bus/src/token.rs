@@ -72,12 +72,12 @@ impl Token {
         self.mac(parts).verify_slice(mac).is_ok()
     }
 
-    fn prove(&self, challenge: String, key: &str, body: &[u8]) -> Proof {
+    pub(crate) fn prove(&self, challenge: String, key: &str, body: &[u8]) -> Proof {
         let mac = hex(&self.hmac(&[challenge.as_bytes(), key.as_bytes(), body]));
         Proof { challenge, mac }
     }
 
-    fn is_proven(&self, proof: &Proof, key: &str, body: &[u8]) -> bool {
+    pub(crate) fn is_proven(&self, proof: &Proof, key: &str, body: &[u8]) -> bool {
         let parts = [proof.challenge.as_bytes(), key.as_bytes(), body];
         bytes_of(&proof.mac).is_some_and(|mac| self.verifies(&parts, &mac))
     }
@@ -124,9 +124,9 @@ impl From<Option<Token>> for CurrentToken {
 
 /// That whoever sends this knows the token.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-struct Proof {
-    challenge: String,
-    mac: String,
+pub(crate) struct Proof {
+    pub(crate) challenge: String,
+    pub(crate) mac: String,
 }
 
 /// A request as it travels: JSON, the body as its sender spelled it.
@@ -146,7 +146,7 @@ enum Answer<T> {
 }
 
 /// A request with no proof yet.
-fn first<T: Serialize>(body: &T) -> Vec<u8> {
+pub(crate) fn first<T: Serialize>(body: &T) -> Vec<u8> {
     json(&Request { body: spelled(body), proof: None })
 }
 
@@ -175,7 +175,7 @@ pub fn request<B: Serialize, T: DeserializeOwned>(
 }
 
 /// What an answer means.
-enum Answered<T> {
+pub(crate) enum Answered<T> {
     Answer(T),
     /// Ask again with this.
     Again(Vec<u8>),
@@ -184,7 +184,7 @@ enum Answered<T> {
 }
 
 /// Reads an answer to a request on `key`.
-fn read<B: Serialize, T: DeserializeOwned>(
+pub(crate) fn read<B: Serialize, T: DeserializeOwned>(
     token: Option<&Token>,
     key: &str,
     body: &B,

@@ -125,6 +125,12 @@ pub fn operate(game: &GameName, vehicle: &str) -> String {
     format!("squall/{}/operate/{vehicle}", game.0)
 }
 
+/// Where anybody stops a real boat: a command that needs no token (publish).
+#[must_use]
+pub fn stop(game: &GameName, vehicle: &str) -> String {
+    format!("squall/{}/stop/{vehicle}", game.0)
+}
+
 /// How the run of the game stands (publish).
 #[must_use]
 pub fn run(game: &GameName) -> String {

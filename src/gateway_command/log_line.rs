@@ -72,7 +72,7 @@ impl Log {
 }
 
 /// A state, in red where the boat was stopped.
-fn state(text: &str) -> String {
+pub(super) fn state(text: &str) -> String {
     if ["failsafe", "e-stopped"].iter().any(|stopped| text.starts_with(stopped)) {
         style::bad(text)
     } else {

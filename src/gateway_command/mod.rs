@@ -1,6 +1,7 @@
 //! `squall gateway`: real boats in games, emulated boats for real back seats, and tools for the link between.
 
 mod check;
+mod console;
 mod emulate;
 mod guard;
 mod log_line;
@@ -37,6 +38,8 @@ enum Command {
     Stop(stop_boat::Args),
     /// Sends an operator command to a boat's gateway: arm, disarm, estop, release, ...
     Tell(tell::Args),
+    /// Operates boats line by line over connections that stay open: for quick stops.
+    Console(console::Args),
     /// What a gateway starts to stop its boat when it is killed or hangs.
     #[command(hide = true)]
     Guard,
@@ -63,6 +66,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         Command::Check(args) => check::run(args),
         Command::Stop(args) => stop_boat::run(args),
         Command::Tell(args) => tell::run(args),
+        Command::Console(args) => console::run(args),
         Command::Guard => guard::run(),
         Command::Replay(args) => replay::run(args),
     }

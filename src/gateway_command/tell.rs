@@ -1,7 +1,7 @@
 //! `squall gateway tell`: an operator command to a boat's gateway.
 //!
-//! It goes straight to the gateway's control port where that is known, and over the network of the game otherwise; to all boats
-//! it goes both ways at once.
+//! What stops boats takes every path at once. The rest goes straight to the gateway's control port where that is known, and over
+//! the network of the game otherwise; to all boats it goes both ways.
 
 use super::log_line::full;
 use super::mission_file;
@@ -10,6 +10,7 @@ use crate::observer::Observer;
 use crate::screen;
 use crate::water_args::within;
 use anyhow::{Context, Error, Result, anyhow, bail};
+use bus::stop::{StopClient, StopCommand, StopNews, StopOrders};
 use bus::{Bus, BusError, Token, ask_gateway};
 use clap::ValueEnum;
 use game::external::{BoatMode, FleetCommand, GatewayCommand, OperatorCommand, OperatorReply};
@@ -18,23 +19,39 @@ use game::topic::{self, GameName};
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::OnceLock;
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 
 /// All boats at once.
-const ALL: &str = "all";
+pub(super) const ALL: &str = "all";
 /// How long a gateway's control port may take to answer.
 const PORT_ANSWER: Duration = Duration::from_secs(3);
 /// How long to wait for the next answer of all.
 const NEXT_ANSWER: Duration = Duration::from_secs(10);
+/// How long boats may take to report that they have stopped.
+const STOP_MAX: Duration = Duration::from_secs(10);
 
 /// Whom, and what.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The vehicle, by name; all of them with "all", for estop, release and status
-    vehicle: String,
+    #[command(flatten)]
+    words: Words,
+    /// The gateway's control port, as it shows it [default: those of this machine's gateways, or by way of the game]
+    #[arg(long, value_name = "HOST:PORT")]
+    gateway: Option<SocketAddr>,
+    #[command(flatten)]
+    leaf: LeafArgs,
+}
+
+/// A command in words.
+#[derive(clap::Args)]
+pub(super) struct Words {
+    /// The vehicle, by name; all of them with "all", for estop, disarm, release and status
+    pub(super) vehicle: String,
     /// The command
-    command: CommandArg,
+    pub(super) command: CommandArg,
     /// For mission: a .sea file, its lines as the boat receives them (PSEAR, then OIWPL; index 0 is the recovery point)
     file: Option<PathBuf>,
     /// For hold-heading: the true heading, degrees
@@ -43,15 +60,10 @@ pub(crate) struct Args {
     /// For hold-heading: thrust ahead, % of all
     #[arg(long, value_name = "PCT", value_parser = within(0.0, 100.0, "per cent"))]
     thrust_pct: Option<f64>,
-    /// The gateway's control port, as it shows it [default: those of this machine's gateways, or by way of the game]
-    #[arg(long, value_name = "HOST:PORT")]
-    gateway: Option<SocketAddr>,
-    #[command(flatten)]
-    leaf: LeafArgs,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum CommandArg {
+pub(super) enum CommandArg {
     /// Print its status
     Status,
     /// Follow orders, if everything that this needs is there
@@ -83,53 +95,59 @@ enum CommandArg {
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
-    let command = command_of(args)?;
-    if args.vehicle == ALL {
+    let command = args.words.command()?;
+    if let Some(stop) = StopCommand::of(&command) {
+        return tell_stop(args, stop);
+    }
+    if args.words.vehicle == ALL {
         return tell_all(args);
     }
     let reply = tell(args, &command)?;
     screen::show(&full(&reply.status));
     match reply.refused {
         None => Ok(ExitCode::SUCCESS),
-        Some(reason) => Err(anyhow!("{} refuses: {reason}", args.vehicle)),
+        Some(reason) => Err(anyhow!("{} refuses: {reason}", args.words.vehicle)),
     }
 }
 
-fn command_of(args: &Args) -> Result<OperatorCommand> {
-    Ok(match (args.command, &args.file) {
-        (CommandArg::Mission, None) => bail!("mission needs a .sea file"),
-        (CommandArg::Mission, Some(path)) => OperatorCommand::Mission(mission_file::read(path)?),
-        (_, Some(path)) => bail!("{} is given, and only mission takes a file", path.display()),
-        (CommandArg::HoldHeading, None) => match (args.heading_deg, args.thrust_pct) {
-            (Some(heading_deg), Some(thrust_pct)) => {
-                OperatorCommand::Mode(BoatMode::Heading { heading_deg, thrust_pct })
+impl Words {
+    /// The command to a boat.
+    pub(super) fn command(&self) -> Result<OperatorCommand> {
+        Ok(match (self.command, &self.file) {
+            (CommandArg::Mission, None) => bail!("mission needs a .sea file"),
+            (CommandArg::Mission, Some(path)) => OperatorCommand::Mission(mission_file::read(path)?),
+            (_, Some(path)) => bail!("{} is given, and only mission takes a file", path.display()),
+            (CommandArg::HoldHeading, None) => match (self.heading_deg, self.thrust_pct) {
+                (Some(heading_deg), Some(thrust_pct)) => {
+                    OperatorCommand::Mode(BoatMode::Heading { heading_deg, thrust_pct })
+                }
+                _ => bail!("hold-heading needs --heading-deg and --thrust-pct"),
+            },
+            _ if self.heading_deg.is_some() || self.thrust_pct.is_some() => {
+                bail!("--heading-deg and --thrust-pct are for hold-heading")
             }
-            _ => bail!("hold-heading needs --heading-deg and --thrust-pct"),
-        },
-        _ if args.heading_deg.is_some() || args.thrust_pct.is_some() => {
-            bail!("--heading-deg and --thrust-pct are for hold-heading")
-        }
-        (CommandArg::RiverNav, None) => OperatorCommand::Mode(BoatMode::RiverNav),
-        (CommandArg::Autopilot, None) => OperatorCommand::Mode(BoatMode::Autopilot),
-        (CommandArg::CalibrateCompass, None) => OperatorCommand::Mode(BoatMode::CompassCalibration),
-        (CommandArg::Depth, None) => OperatorCommand::Mode(BoatMode::Depth),
-        (CommandArg::GravityVector, None) => OperatorCommand::Mode(BoatMode::GravityVector),
-        (CommandArg::Status, None) => OperatorCommand::Status,
-        (CommandArg::Arm, None) => OperatorCommand::Arm,
-        (CommandArg::Disarm, None) => OperatorCommand::Disarm,
-        (CommandArg::Estop, None) => OperatorCommand::EStop,
-        (CommandArg::Release, None) => OperatorCommand::Release,
-        (CommandArg::StationKeep, None) => OperatorCommand::StationKeep,
-        (CommandArg::GoToErp, None) => OperatorCommand::GoToErp,
-    })
+            (CommandArg::RiverNav, None) => OperatorCommand::Mode(BoatMode::RiverNav),
+            (CommandArg::Autopilot, None) => OperatorCommand::Mode(BoatMode::Autopilot),
+            (CommandArg::CalibrateCompass, None) => OperatorCommand::Mode(BoatMode::CompassCalibration),
+            (CommandArg::Depth, None) => OperatorCommand::Mode(BoatMode::Depth),
+            (CommandArg::GravityVector, None) => OperatorCommand::Mode(BoatMode::GravityVector),
+            (CommandArg::Status, None) => OperatorCommand::Status,
+            (CommandArg::Arm, None) => OperatorCommand::Arm,
+            (CommandArg::Disarm, None) => OperatorCommand::Disarm,
+            (CommandArg::Estop, None) => OperatorCommand::EStop,
+            (CommandArg::Release, None) => OperatorCommand::Release,
+            (CommandArg::StationKeep, None) => OperatorCommand::StationKeep,
+            (CommandArg::GoToErp, None) => OperatorCommand::GoToErp,
+        })
+    }
 }
 
 /// A control port, and the token of the game of its gateway.
-struct Port {
+pub(super) struct Port {
     /// The boat, where it is known.
-    vehicle: Option<String>,
-    at: SocketAddr,
-    token: Option<Token>,
+    pub(super) vehicle: Option<String>,
+    pub(super) at: SocketAddr,
+    pub(super) token: Option<Token>,
 }
 
 impl Port {
@@ -142,8 +160,8 @@ impl Port {
 fn ports(args: &Args) -> Result<Vec<Port>> {
     let given = args.leaf.token()?;
     let mut ports: Vec<Port> = Vec::new();
-    let stops_all = args.vehicle == ALL && args.command == CommandArg::Estop;
-    for entry in args.leaf.local_gateways(stops_all) {
+    let stops = args.words.vehicle == ALL && matches!(args.words.command, CommandArg::Estop | CommandArg::Disarm);
+    for entry in args.leaf.local_gateways(stops) {
         let token = given.clone().or_else(|| entry.token?.parse().ok());
         ports.push(Port { vehicle: Some(entry.vehicle), at: entry.control, token });
     }
@@ -157,35 +175,35 @@ fn ports(args: &Args) -> Result<Vec<Port>> {
     Ok(ports)
 }
 
-fn tell(args: &Args, command: &OperatorCommand) -> Result<OperatorReply> {
+/// The control ports that are meant, of those that are known.
+fn ports_meant(args: &Args) -> Result<Vec<Port>> {
+    let vehicle = &args.words.vehicle;
     let is_meant = |port: &Port| match args.gateway {
+        _ if vehicle == ALL => true,
         Some(at) => port.at == at,
-        None => port.vehicle.as_ref() == Some(&args.vehicle),
+        None => port.vehicle.as_ref() == Some(vehicle),
     };
     let mut ports = ports(args)?;
     ports.retain(is_meant);
-    match ports.as_slice() {
-        [] => {}
-        [port] => {
-            let command = GatewayCommand::Boat { name: args.vehicle.clone(), command: command.clone() };
-            match port.ask(&command) {
-                // It may be ending; the one that comes after it is found by way of the game.
-                Err(error @ BusError::Use { .. }) if args.gateway.is_none() => screen::remark(&error.to_string()),
-                reply => return Ok(reply?),
-            }
-        }
-        several => {
-            let at: Vec<String> = several.iter().map(|port| port.at.to_string()).collect();
-            bail!(
-                "several gateways on this machine are for {}: choose with --gateway among {}",
-                args.vehicle,
-                at.join(", ")
-            );
+    if let ([_, _, ..], true) = (ports.as_slice(), vehicle != ALL) {
+        let at: Vec<String> = ports.iter().map(|port| port.at.to_string()).collect();
+        bail!("several gateways on this machine are for {vehicle}: choose with --gateway among {}", at.join(", "));
+    }
+    Ok(ports)
+}
+
+fn tell(args: &Args, command: &OperatorCommand) -> Result<OperatorReply> {
+    let vehicle = &args.words.vehicle;
+    if let Some(port) = ports_meant(args)?.first() {
+        match port.ask(&GatewayCommand::Boat { name: vehicle.clone(), command: command.clone() }) {
+            // It may be ending; the one that comes after it is found by way of the game.
+            Err(error @ BusError::Use { .. }) if args.gateway.is_none() => screen::remark(&error.to_string()),
+            reply => return Ok(reply?),
         }
     }
     let observer = Observer::connect(&args.leaf)?;
-    observer.vehicle(&args.vehicle)?;
-    let reply = ask(&observer.bus, &observer.game, &args.vehicle, command);
+    observer.vehicle(vehicle)?;
+    let reply = ask(&observer.bus, &observer.game, vehicle, command);
     observer.bus.close();
     reply
 }
@@ -193,6 +211,99 @@ fn tell(args: &Args, command: &OperatorCommand) -> Result<OperatorReply> {
 fn ask(bus: &Bus, game: &GameName, vehicle: &str, command: &OperatorCommand) -> Result<OperatorReply> {
     let answer = bus.request_node(&topic::operate(game, vehicle), command, bus::ANSWER)?;
     answer.with_context(|| format!("no gateway of {vehicle} answers"))
+}
+
+/// Sends a command to a boat: to its control port if that is among these, or else over the game's network.
+pub(super) fn to_boat(
+    ports: &[Port],
+    game: Option<(&Bus, &GameName)>,
+    vehicle: &str,
+    command: &OperatorCommand,
+) -> Result<OperatorReply> {
+    let port = ports.iter().find(|port| port.vehicle.as_deref() == Some(vehicle));
+    let asked = port.map(|port| port.ask(&GatewayCommand::Boat { name: vehicle.to_owned(), command: command.clone() }));
+    match (asked, game) {
+        (Some(Ok(reply)), _) => Ok(reply),
+        (None | Some(Err(BusError::Use { .. })), Some((bus, game))) => ask(bus, game, vehicle, command),
+        (Some(Err(error)), _) => Err(error.into()),
+        (None, None) => bail!("no gateway of {vehicle} is known"),
+    }
+}
+
+/// Ends an E-stop of all boats, in the game and at these ports; gives what has failed.
+pub(super) fn release_all(ports: &[Port], game: Option<(&Bus, &GameName)>) -> Vec<String> {
+    std::thread::scope(|scope| {
+        let release = |port: &Port| match port.ask(&GatewayCommand::Fleet(FleetCommand::Release)) {
+            Ok(OperatorReply { refused: Some(reason), status }) => {
+                Some(format!("{} refuses: {reason}", status.vehicle))
+            }
+            Ok(_) => None,
+            Err(e) => Some(e.to_string()),
+        };
+        let asked: Vec<_> = ports.iter().map(|port| scope.spawn(move || release(port))).collect();
+        let of_game = game.map(|(bus, game)| bus::control(bus, game, Control::Release).map_err(|e| e.to_string()));
+        let of_ports = asked.into_iter().filter_map(|asked| asked.join().ok().flatten());
+        of_game.into_iter().filter_map(Result::err).chain(of_ports).collect()
+    })
+}
+
+/// Stops a boat or all of them on every path that is known, and prints what they report.
+fn tell_stop(args: &Args, command: StopCommand) -> Result<ExitCode> {
+    let target = (args.words.vehicle != ALL).then_some(args.words.vehicle.as_str());
+    let ports = ports_meant(args)?;
+    let client = Arc::new(StopClient::open(STOP_MAX)?);
+    client.stop(target, command);
+    for port in &ports {
+        client.add_gateway(port.at, port.vehicle.as_deref(), port.token.clone())?;
+    }
+    let no_game = Arc::new(OnceLock::new());
+    // A gateway that is named needs no game.
+    if target.is_none() || args.gateway.is_none() {
+        if let Ok(net) = args.leaf.net()
+            && net.keys.is_none()
+        {
+            client.add_hub(&net.connect, args.leaf.game.as_ref(), net.token.as_ref())?;
+        }
+        let (leaf, target) = (args.leaf.clone(), target.map(str::to_owned));
+        let (joins, reason) = (Arc::clone(&client), Arc::clone(&no_game));
+        std::thread::spawn(move || {
+            if let Err(e) = join(&leaf, target.as_deref(), &joins) {
+                drop(reason.set(format!("{e:#}")));
+                joins.visit(StopOrders::complete);
+            }
+        });
+    }
+    // Where there is nothing but a game, and that is not there, nothing is waited for.
+    client.wait(STOP_MAX, |orders| orders.is_done() || no_game.get().is_some());
+    let is_alone = ports.is_empty() && no_game.get().is_some();
+    let left = client.finish(if is_alone { Duration::ZERO } else { STOP_MAX });
+    for news in client.visit(StopOrders::take_news) {
+        if let StopNews::Done { vehicle, state, after, .. } = news {
+            screen::show(&format!("{vehicle}: {} after {} ms\n", super::log_line::state(&state), after.as_millis()));
+        }
+    }
+    match (left.is_empty(), no_game.get()) {
+        (true, None) if client.visit(|orders| orders.is_done()) => {}
+        (true, None) => screen::remark("the game does not answer: only the gateways that are known were told"),
+        (true, Some(reason)) => screen::remark(&format!("only gateways were told, and no game: {reason}")),
+        (false, None) => return Err(anyhow!(left.join("; "))),
+        (false, Some(reason)) => return Err(anyhow!("{}; {reason}", left.join("; "))),
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Adds the topics of the game to the paths, if it has this boat.
+fn join(leaf: &LeafArgs, target: Option<&str>, client: &StopClient) -> Result<()> {
+    let observer = Observer::connect(leaf)?;
+    let scenario = &observer.info.scenario;
+    let boats: Vec<String> = scenario.externals().map(|boat| scenario.vehicles[boat.index()].name.clone()).collect();
+    if let Some(target) = target {
+        observer.vehicle(target)?;
+        if !boats.iter().any(|boat| boat == target) {
+            bail!("{target} is simulated: it has no gateway");
+        }
+    }
+    Ok(client.join(&observer.bus, &observer.game, &boats)?)
 }
 
 /// What came of a part of a command to all.
@@ -208,11 +319,10 @@ enum Outcome {
 /// Sends a command to all boats: over the game's network and straight to every gateway that is known, at once. None waits for
 /// another, and the status of every real boat is printed as it comes.
 fn tell_all(args: &Args) -> Result<ExitCode> {
-    let (control, fleet) = match args.command {
+    let (control, fleet) = match args.words.command {
         CommandArg::Status => (None, None),
-        CommandArg::Estop => (Some(Control::EStop), Some(FleetCommand::EStop)),
         CommandArg::Release => (Some(Control::Release), Some(FleetCommand::Release)),
-        _ => bail!("only estop, release and status go to all; tell each boat by its name"),
+        _ => bail!("only estop, disarm, release and status go to all; tell each boat by its name"),
     };
     let ports = ports(args)?;
     let known: Vec<String> = ports.iter().filter_map(|port| port.vehicle.clone()).collect();

@@ -6,6 +6,7 @@
 )]
 
 mod boat_alone;
+mod console;
 mod external;
 mod fake_payload;
 mod faults;

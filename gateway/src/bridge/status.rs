@@ -50,7 +50,9 @@ impl Bridge {
         }
     }
 
-    fn state_in_words(&self) -> String {
+    /// The supervisor's state.
+    #[must_use]
+    pub fn state_in_words(&self) -> String {
         match self.supervisor.state() {
             State::EStopped => format!("e-stopped (by an E-stop of {})", self.supervisor.stopped_by()),
             state if self.protocol.is_uploading() => format!("{state}, uploading a mission"),

@@ -1,18 +1,20 @@
-//! The control port of a gateway: what operators ask over TCP, with a game or without.
+//! The control port of a gateway: what operators ask over TCP, with a game or without. Stops come as datagrams, too.
 //!
 //! A line is a request, as on the network (`bus::token`), and so is the answer to it. Everybody may ask for the status and stop
-//! the boat; for the rest the game's token is proven. An E-stop waits for nothing; nobody's silence, garbage or number of
+//! the boat; for the rest the game's token is proven. A stop waits for nothing; nobody's silence, garbage or number of
 //! connections keeps it out.
 
 use super::NodeError;
-use super::loop_input::LoopInput;
+use super::loop_input::{LoopInput, Stop};
 use super::tcp_port::TcpPort;
 use crate::supervisor::Scope;
+use bus::stop::{DatagramPort, StopRequest};
 use bus::token::{self, Checked, Guard};
 use bus::{CurrentToken, GATEWAY_PORT_KEY, Slot};
 use game::external::{FleetCommand, GatewayCommand, GatewayStatus, OperatorCommand, OperatorReply};
+use std::collections::BTreeMap;
 use std::io::{self, BufRead, BufReader, Read, Write};
-use std::net::{SocketAddr, TcpStream};
+use std::net::{SocketAddr, TcpStream, UdpSocket};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::sync_channel;
@@ -28,10 +30,16 @@ const REQUEST_MAX: u64 = 64 * 1024;
 /// How long the gateway loop may take to reply.
 const REPLY_MAX: Duration = Duration::from_secs(2);
 
+/// How long the loop may take until the answer to a datagram says how the boat is: the next datagram waits meanwhile.
+const STATE_MAX: Duration = Duration::from_millis(50);
+/// How often another port is tried where any will do, and its number is free for TCP alone.
+const ATTEMPTS: usize = 16;
+
 /// A port that is open as long as this is kept.
 pub(super) struct ControlPort {
     server: Arc<Server>,
     _port: TcpPort,
+    _datagrams: DatagramPort,
     pub(super) address: SocketAddr,
     /// The token that it asks for.
     pub(super) token: CurrentToken,
@@ -54,14 +62,28 @@ impl ControlPort {
         token: CurrentToken,
         input: LoopInput,
     ) -> Result<ControlPort, NodeError> {
+        let open = || ControlPort::open_once(listen, vehicle, token.clone(), input.clone());
+        let attempts = if listen.port() == 0 { ATTEMPTS } else { 1 };
+        (1..attempts).fold(open(), |opened, _| opened.or_else(|_| open()))
+    }
+
+    fn open_once(
+        listen: SocketAddr,
+        vehicle: &str,
+        token: CurrentToken,
+        input: LoopInput,
+    ) -> Result<ControlPort, NodeError> {
         let is_running = AtomicBool::new(false);
         let server = Arc::new(Server { vehicle: vehicle.to_owned(), token: token.clone(), input, is_running });
         let shared = Arc::clone(&server);
         // However a connection ends, nobody misses it.
         let serve = move |slot: &Slot, stream: &TcpStream| drop(shared.serve(slot, stream));
-        let port = TcpPort::open(listen, "control port", CONNECTIONS_MAX, serve);
-        let port = port.map_err(|source| NodeError::ControlPort { listen, source })?;
-        Ok(ControlPort { server, address: port.address, _port: port, token })
+        let failed = |source| NodeError::ControlPort { listen, source };
+        let port = TcpPort::open(listen, "control port", CONNECTIONS_MAX, serve).map_err(failed)?;
+        let (shared, address) = (Arc::clone(&server), port.address);
+        let read = |socket| DatagramPort::open(socket, "control datagrams", move |bytes| shared.serve_datagram(bytes));
+        let datagrams = UdpSocket::bind(address).and_then(read).map_err(failed)?;
+        Ok(ControlPort { server, address, _port: port, _datagrams: datagrams, token })
     }
 
     /// From now on the gateway loop answers.
@@ -106,19 +128,20 @@ impl Server {
     }
 
     fn execute(&self, command: GatewayCommand, is_running: bool) -> OperatorReply {
-        let status = || GatewayCommand::Boat { name: self.vehicle.clone(), command: OperatorCommand::Status };
-        let (stop, ask) = match command {
-            GatewayCommand::Boat { name, .. } if name != self.vehicle => {
-                return self.refusal(&format!("this is the gateway of {}, not of {name}", self.vehicle));
-            }
-            GatewayCommand::Boat { command: OperatorCommand::EStop, .. } => (Some(Scope::Boat), status()),
-            GatewayCommand::Fleet(FleetCommand::EStop) => (Some(Scope::Fleet), status()),
-            command => (None, command),
-        };
-        // The loop reads E-stops before everything else: what is left to be asked is how the boat is then.
-        if let Some(scope) = stop {
-            self.input.stop(scope);
+        if let GatewayCommand::Boat { name, command } = &command
+            && *name != self.vehicle
+            && !(name.is_empty() && *command == OperatorCommand::Status)
+        {
+            return self.refusal(&format!("this is the gateway of {}, not of {name}", self.vehicle));
         }
+        // The loop reads stops before everything else: what is left to be asked is how the boat is then.
+        let ask = match self.stop_in(&command) {
+            Some(stop) => {
+                self.input.stop(stop);
+                GatewayCommand::Boat { name: self.vehicle.clone(), command: OperatorCommand::Status }
+            }
+            None => command,
+        };
         if !is_running {
             let is_free = matches!(&ask, GatewayCommand::Boat { command: OperatorCommand::Status, .. });
             let refused = (!is_free).then(|| "there is no link to the boat yet".to_owned());
@@ -130,13 +153,38 @@ impl Server {
         reply.unwrap_or_else(|_| self.refusal("the gateway is ending, or does not answer"))
     }
 
+    /// The stop of this boat that a command is, if it is one.
+    fn stop_in(&self, command: &GatewayCommand) -> Option<Stop> {
+        match command {
+            GatewayCommand::Boat { name, command } if *name == self.vehicle => Stop::of(command),
+            GatewayCommand::Fleet(FleetCommand::EStop) => Some(Stop::EStop(Scope::Fleet)),
+            _ => None,
+        }
+    }
+
+    /// Obeys a stop, and answers how the boat is after it. Before the loop runs there is no boat to tell of.
+    fn serve_datagram(&self, bytes: &[u8]) -> Option<Vec<u8>> {
+        let request = StopRequest::decode(bytes)?;
+        let asks_status = matches!(request.command, GatewayCommand::Boat { command: OperatorCommand::Status, .. });
+        let count = match self.stop_in(&request.command) {
+            Some(stop) => self.input.stop(stop),
+            None if asks_status => 0,
+            None => return None,
+        };
+        if !self.is_running.load(Ordering::SeqCst) {
+            return None;
+        }
+        let state = self.input.state_after(count, STATE_MAX).filter(|state| !state.is_empty())?;
+        request.answer(bytes.len(), self.token.get().as_ref(), &BTreeMap::from([(self.vehicle.clone(), state)]))
+    }
+
     fn refusal(&self, reason: &str) -> OperatorReply {
         OperatorReply { refused: Some(reason.to_owned()), status: self.status_before() }
     }
 
     /// The status where the loop is not asked.
     fn status_before(&self) -> GatewayStatus {
-        let is_stopped = self.input.has_stop();
+        let is_stopped = self.input.has_e_stop();
         let state = if is_stopped { "e-stopped, as soon as there is a link" } else { "no link to the boat yet" };
         let link = "no link yet: looking for the game".to_owned();
         GatewayStatus { vehicle: self.vehicle.clone(), link, state: state.to_owned(), ..GatewayStatus::default() }
@@ -174,13 +222,46 @@ mod tests {
             assert!(matches!(ask(Some(&other), command.clone()), Err(BusError::WrongToken)));
             assert!(ask(Some(&token), command).expect("a reply").refused.expect("refused").contains("no link"));
         }
-        assert!(!output.take_stop(Scope::Boat) && !output.take_stop(Scope::Fleet));
+        let [boat_stop, fleet_stop] = [Scope::Boat, Scope::Fleet].map(Stop::EStop);
+        assert!(!output.take_stop(boat_stop) && !output.take_stop(fleet_stop));
         assert_eq!(ask(None, boat(OperatorCommand::EStop)).expect("a reply").refused, None);
         let stopped = ask(None, GatewayCommand::Fleet(FleetCommand::EStop)).expect("a reply");
         assert!(stopped.refused.is_none() && stopped.status.state.contains("e-stopped"), "{stopped:?}");
-        assert!(output.take_stop(Scope::Boat) && output.take_stop(Scope::Fleet));
+        assert!(output.take_stop(boat_stop) && output.take_stop(fleet_stop));
         let other = GatewayCommand::Boat { name: "red_one".to_owned(), command: OperatorCommand::EStop };
         assert!(ask(None, other).expect("a reply").refused.expect("refused").contains("of blue_one, not of red_one"));
+    }
+
+    #[test]
+    fn a_datagram_stops_the_boat_and_its_answer_is_no_longer_than_it_and_nothing_else_is_done() {
+        let (port, token, output) = port();
+        let socket = UdpSocket::bind("127.0.0.1:0").expect("a free port");
+        socket.connect(port.address).expect("an address");
+        socket.set_read_timeout(Some(Duration::from_millis(300))).expect("a time");
+        let request = |command| StopRequest { session: 1, number: 2, game: None, command };
+        // Before its loop runs it obeys, and knows nothing to answer.
+        socket.send(&request(boat(OperatorCommand::EStop)).encode()).expect("it is sent");
+        let mut buffer = [0; 2000];
+        assert!(socket.recv(&mut buffer).is_err() && output.take_stop(Stop::EStop(Scope::Boat)));
+        port.begin();
+        output.show_state(output.stop_count(), "armed".to_owned());
+        let other = GatewayCommand::Boat { name: "red_one".to_owned(), command: OperatorCommand::EStop };
+        let refused = [other, boat(OperatorCommand::Arm), GatewayCommand::Fleet(FleetCommand::Release)];
+        let refused = refused.map(|command| request(command).encode());
+        for bytes in refused.iter().map(Vec::as_slice).chain([&b"garbage"[..], &[b' '; 1401]]) {
+            socket.send(bytes).expect("it is sent");
+            assert!(socket.recv(&mut buffer).is_err(), "{}", String::from_utf8_lossy(bytes));
+        }
+        assert_eq!(output.stop_count(), 1);
+        let status = request(boat(OperatorCommand::Status)).encode();
+        socket.send(&status).expect("it is sent");
+        let count = socket.recv(&mut buffer).expect("an answer");
+        let text = String::from_utf8_lossy(&buffer[..count]);
+        assert!(count <= status.len() && text.contains("armed") && text.contains("mac"), "{text}");
+        assert!(!text.contains(&token.hex()));
+        // What has no room for an answer gets none.
+        socket.send(br#"{"body":{"fleet":"e_stop"}}"#).expect("it is sent");
+        assert!(socket.recv(&mut buffer).is_err() && output.take_stop(Stop::EStop(Scope::Fleet)));
     }
 
     #[test]
@@ -199,7 +280,7 @@ mod tests {
         for _ in 0..50 {
             let stopped = ask_gateway(port.address, None, &GatewayCommand::Fleet(FleetCommand::EStop), LIMIT);
             assert_eq!(stopped.expect("a reply").refused, None);
-            assert!(output.take_stop(Scope::Fleet));
+            assert!(output.take_stop(Stop::EStop(Scope::Fleet)));
         }
         drop((idle, garbage));
     }
@@ -216,7 +297,7 @@ mod tests {
         };
         // A browser can be made to send this, by any page.
         let post = b"POST / HTTP/1.1\r\n\r\n{\"body\":{\"fleet\":\"e_stop\"}}\n";
-        assert!(said(post).contains("not understood") && !output.take_stop(Scope::Fleet));
+        assert!(said(post).contains("not understood") && !output.take_stop(Stop::EStop(Scope::Fleet)));
         assert!(said(&[b'['; 1000].iter().chain(b"\n").copied().collect::<Vec<u8>>()).contains("not understood"));
         assert_eq!(said(&vec![b'x'; 10 * REQUEST_MAX as usize]), "");
     }

@@ -5,7 +5,7 @@ use super::game_finder::FoundGame;
 use super::guard::{Guarded, HEARTBEAT, HUNG};
 use super::join::Join;
 use super::latency::Latency;
-use super::loop_input::{Call, LoopInput, LoopOutput};
+use super::loop_input::{Call, LoopInput, LoopOutput, Stop};
 use super::{NodeError, NodeEvent, Settings, subscribe};
 use crate::bridge::{Bridge, Event, Input, NavOut, Output};
 use crate::game_clock::{GameClock, OrderTime};
@@ -35,6 +35,8 @@ const SHUTDOWN_MAX: Duration = Duration::from_millis(500);
 const WRITING_MAX: usize = 64;
 /// What has waited longer for the loop is too old to go by: it was suspended, or had no processor.
 const WAITED_MAX: Duration = Duration::from_millis(500);
+/// Why a request is refused that a disarm has overtaken.
+const DISARMED: &str = "the boat was disarmed meanwhile: ask again";
 /// A message that comes again within this time is not repeated.
 const REMARK_AGAIN: Duration = Duration::from_secs(10);
 
@@ -120,7 +122,9 @@ impl GatewayLoop<'_> {
         let mut beat_at = LastRun::now();
         while !stop.load(Ordering::Relaxed) {
             beat_at = self.beat(beat_at)?;
+            let stop_count = self.input.stop_count();
             self.take_requests()?;
+            self.input.show_state(stop_count, self.bridge.state_in_words());
             let due = self.bridge.due(self.clock.now());
             let wait = self.clock.until(due);
             let call = self.input.calls.take(if self.guarded.is_some() { wait.min(HEARTBEAT) } else { wait });
@@ -183,13 +187,17 @@ impl GatewayLoop<'_> {
         }
     }
 
-    /// E-stops before everything else, then at most one request at the control port and one at the hub.
+    /// Stops before everything else, then at most one request at the control port and one at the hub.
     fn take_requests(&mut self) -> Result<(), NodeError> {
-        if self.input.take_stop(Scope::Fleet) {
+        if self.input.take_stop(Stop::EStop(Scope::Fleet)) {
             self.step(Input::Fleet(FleetCommand::EStop), None)?;
         }
-        if self.input.take_stop(Scope::Boat) {
+        if self.input.take_stop(Stop::EStop(Scope::Boat)) {
             self.step(Input::Operator(OperatorCommand::EStop), None)?;
+        }
+        if self.input.take_stop(Stop::Disarm) {
+            self.step(Input::Operator(OperatorCommand::Disarm), None)?;
+            self.refuse_earlier()?;
         }
         if let Some(found) = self.input.take_found() {
             self.enter(found?)?;
@@ -203,9 +211,22 @@ impl GatewayLoop<'_> {
             drop(reply.try_send(OperatorReply { refused, status: self.full_status() }));
         }
         match self.input.queries.take_now() {
-            Some(query) => self.operate(query),
+            Some(query) => self.operate(query, None),
             None => Ok(()),
         }
+    }
+
+    /// Refuses what was requested before a disarm that has overtaken it: it must not arm the boat again.
+    fn refuse_earlier(&mut self) -> Result<(), NodeError> {
+        while let Some((command, reply)) = self.input.port_requests.take_now() {
+            let refused = command.needs_token().then(|| DISARMED.to_owned());
+            // Whoever asked may be gone.
+            drop(reply.try_send(OperatorReply { refused, status: self.full_status() }));
+        }
+        while let Some(query) = self.input.queries.take_now() {
+            self.operate(query, Some(DISARMED))?;
+        }
+        Ok(())
     }
 
     /// Enters the game that was found.
@@ -359,9 +380,11 @@ impl GatewayLoop<'_> {
         self.step(Input::Others(others), None)
     }
 
-    fn operate(&mut self, query: Query) -> Result<(), NodeError> {
+    /// Answers a query; nothing that needs the token is done while there is an objection.
+    fn operate(&mut self, query: Query, objection: Option<&str>) -> Result<(), NodeError> {
         let token = self.settings.place.token().get();
         let refused = match self.guard.check(query.key(), query.payload(), OperatorCommand::needs_token) {
+            Checked::Granted(command) if objection.is_some() && command.needs_token() => objection.map(str::to_owned),
             Checked::Granted(command) => self.execute(command)?,
             Checked::Challenged(challenge) => {
                 query.answer_as(challenge, token.as_ref());

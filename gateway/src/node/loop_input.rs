@@ -5,13 +5,13 @@ use super::game_finder::FoundGame;
 use crate::link::LinkEvent;
 use crate::supervisor::Scope;
 use bus::game_search::Joined;
-use bus::{Inbox, InboxSender, Query, inbox};
-use game::external::{ExternalOrder, GatewayCommand, OperatorReply};
+use bus::{Inbox, InboxSender, Query, Watched, inbox};
+use game::external::{ExternalOrder, GatewayCommand, OperatorCommand, OperatorReply};
 use parking_lot::Mutex;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::SyncSender;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// The most calls that wait for the loop.
 const CALLS_MAX: usize = 4096;
@@ -59,18 +59,42 @@ pub(super) struct LoopOutput {
     found: Arc<Mutex<Option<Result<FoundGame, NodeError>>>>,
 }
 
-/// E-stops that came and that the loop has not carried out. They wait behind nothing, and nothing can displace them.
+/// What stops the boat.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Stop {
+    EStop(Scope),
+    Disarm,
+}
+
+impl Stop {
+    /// The stop that a command to this boat is, if it is one.
+    pub(super) fn of(command: &OperatorCommand) -> Option<Stop> {
+        match command {
+            OperatorCommand::EStop => Some(Stop::EStop(Scope::Boat)),
+            OperatorCommand::Disarm => Some(Stop::Disarm),
+            _ => None,
+        }
+    }
+}
+
+/// Stops that came and that the loop has not carried out. They wait behind nothing, and nothing can displace them.
 #[derive(Default)]
 struct Stops {
     boat: AtomicBool,
     fleet: AtomicBool,
+    disarm: AtomicBool,
+    /// How many have come.
+    count: AtomicU64,
+    /// The boat's state, and how many stops had been carried out then.
+    state: Watched<(u64, String)>,
 }
 
 impl Stops {
-    fn of(&self, scope: Scope) -> &AtomicBool {
-        match scope {
-            Scope::Boat => &self.boat,
-            Scope::Fleet => &self.fleet,
+    fn of(&self, stop: Stop) -> &AtomicBool {
+        match stop {
+            Stop::EStop(Scope::Boat) => &self.boat,
+            Stop::EStop(Scope::Fleet) => &self.fleet,
+            Stop::Disarm => &self.disarm,
         }
     }
 }
@@ -94,17 +118,27 @@ pub(super) fn loop_input() -> (LoopInput, LoopOutput) {
 }
 
 impl LoopInput {
-    /// An E-stop.
-    pub(super) fn stop(&self, scope: Scope) {
+    /// A stop. Gives the count of those that have come.
+    pub(super) fn stop(&self, stop: Stop) -> u64 {
+        let is_first = !self.stops.of(stop).swap(true, Ordering::SeqCst);
+        // It is counted once it can be seen.
+        let count = self.stops.count.fetch_add(1, Ordering::SeqCst) + 1;
         // Of many only the first wakes the loop: they cannot fill the inbox.
-        if !self.stops.of(scope).swap(true, Ordering::SeqCst) {
+        if is_first {
             self.wake();
         }
+        count
     }
 
     /// Whether an E-stop waits to be carried out.
-    pub(super) fn has_stop(&self) -> bool {
-        [Scope::Boat, Scope::Fleet].iter().any(|scope| self.stops.of(*scope).load(Ordering::SeqCst))
+    pub(super) fn has_e_stop(&self) -> bool {
+        [Scope::Boat, Scope::Fleet].iter().any(|scope| self.stops.of(Stop::EStop(*scope)).load(Ordering::SeqCst))
+    }
+
+    /// The boat's state after so many stops; none if the loop does not come to them within `limit`.
+    pub(super) fn state_after(&self, count: u64, limit: Duration) -> Option<String> {
+        self.stops.state.wait(limit, |(carried_out, _)| *carried_out >= count);
+        self.stops.state.visit(|(carried_out, state)| (*carried_out >= count).then(|| state.clone()))
     }
 
     /// The game, or why there is none. It cannot be displaced either.
@@ -137,9 +171,19 @@ impl LoopOutput {
         self.found.lock().take()
     }
 
-    /// Takes the E-stop that is to be carried out, if there is one.
-    pub(super) fn take_stop(&self, scope: Scope) -> bool {
-        self.stops.of(scope).swap(false, Ordering::SeqCst)
+    /// Takes the stop that is to be carried out, if there is one.
+    pub(super) fn take_stop(&self, stop: Stop) -> bool {
+        self.stops.of(stop).swap(false, Ordering::SeqCst)
+    }
+
+    /// How many stops have come.
+    pub(super) fn stop_count(&self) -> u64 {
+        self.stops.count.load(Ordering::SeqCst)
+    }
+
+    /// The boat is in this state, and so many stops were carried out before.
+    pub(super) fn show_state(&self, stop_count: u64, state: String) {
+        self.stops.state.visit(|shown| *shown = (stop_count, state));
     }
 }
 
@@ -151,13 +195,27 @@ mod tests {
     #[test]
     fn a_full_inbox_takes_stops_all_the_same_and_stops_do_not_fill_it() {
         let (input, output) = loop_input();
-        (0..2 * CALLS_MAX).for_each(|_| input.stop(Scope::Fleet));
+        let [boat, fleet] = [Scope::Boat, Scope::Fleet].map(Stop::EStop);
+        (0..2 * CALLS_MAX).for_each(|_| drop(input.stop(fleet)));
         assert!(matches!(output.calls.take(Duration::ZERO), Some(Call::Look)) && output.calls.take_now().is_none());
-        assert!(output.take_stop(Scope::Fleet) && !output.take_stop(Scope::Fleet));
+        assert!(output.take_stop(fleet) && !output.take_stop(fleet));
         (0..2 * CALLS_MAX).for_each(|_| input.calls.put(Call::Release));
-        assert!(!input.has_stop());
-        input.stop(Scope::Boat);
-        assert!(input.has_stop() && output.take_stop(Scope::Boat) && !output.take_stop(Scope::Fleet));
+        assert!(!input.has_e_stop());
+        input.stop(boat);
+        assert!(input.has_e_stop() && output.take_stop(boat) && !output.take_stop(fleet));
+        input.stop(Stop::Disarm);
+        assert!(output.take_stop(Stop::Disarm) && !output.take_stop(Stop::Disarm));
         assert!(output.calls.take_now().is_some(), "the loop is awake");
+    }
+
+    #[test]
+    fn the_state_is_that_after_the_stop() {
+        let (input, output) = loop_input();
+        output.show_state(output.stop_count(), "armed".to_owned());
+        assert_eq!(input.state_after(0, Duration::ZERO).as_deref(), Some("armed"));
+        let count = input.stop(Stop::Disarm);
+        assert_eq!(input.state_after(count, Duration::from_millis(1)), None);
+        output.show_state(output.stop_count(), "safed".to_owned());
+        assert_eq!(input.state_after(count, Duration::ZERO).as_deref(), Some("safed"));
     }
 }

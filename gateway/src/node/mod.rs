@@ -37,7 +37,7 @@ use bus::token::{Checked, Guard};
 use bus::{Bus, BusError, Declaration, LinkLock, LinkLockError, Place, Token};
 use clock::Clock;
 use control_port::ControlPort;
-use game::external::{GatewayStatus, OperatorCommand};
+use game::external::{FleetCommand, GatewayCommand, GatewayStatus, OperatorCommand};
 use game::frame::LatLon;
 use game::gateway::Gateway;
 use game::message::{Control, GameInfo};
@@ -46,7 +46,7 @@ use game::topic::{self, GameName};
 use game::{SimTime, VehicleId, codec};
 use gateway_loop::{Counters, GatewayLoop, InGame};
 use guard::Guarded;
-use loop_input::{Call, LoopInput, LoopOutput, loop_input};
+use loop_input::{Call, LoopInput, LoopOutput, Stop, loop_input};
 use machine_check::SPACE_MIN_MIB;
 use payload::Payloads;
 use recording::{NewFile, RecordError, Recorder, utc};
@@ -325,7 +325,7 @@ fn subscribe(
     input: &LoopInput,
 ) -> Result<Vec<Declaration>, BusError> {
     let scenario = &info.scenario;
-    let [orders, queries, controls, releases, frames] = std::array::from_fn(|_| input.clone());
+    let [orders, queries, stops, controls, releases, frames] = std::array::from_fn(|_| input.clone());
     let take_order = move |bytes: &[u8]| {
         let Ok(order) = codec::decode(bytes) else { return };
         let mut latest_order = orders.latest_order.lock();
@@ -340,15 +340,20 @@ fn subscribe(
         bus.answer(topic::operate(game, name), move |query| {
             // It is read again, to be answered, behind others.
             let command = Guard::default().check(query.key(), query.payload(), OperatorCommand::needs_token);
-            if matches!(command, Checked::Granted(OperatorCommand::EStop)) {
-                queries.stop(Scope::Boat);
+            if let Checked::Granted(command) = command
+                && let Some(stop) = Stop::of(&command)
+            {
+                queries.stop(stop);
             }
             queries.query(query);
+        })?,
+        bus.subscribe(topic::stop(game, name), move |bytes| {
+            stop_in(bytes).into_iter().for_each(|s| drop(stops.stop(s)))
         })?,
         bus.subscribe(topic::control(game), move |bytes| {
             // Everything else reaches the boat as an order, if at all.
             if let Ok(Control::EStop) = serde_json::from_slice(bytes) {
-                controls.stop(Scope::Fleet);
+                controls.stop(Stop::EStop(Scope::Fleet));
             }
         })?,
         bus.subscribe(topic::released(game), move |_| releases.calls.put(Call::Release))?,
@@ -359,6 +364,14 @@ fn subscribe(
         subscriptions.push(bus.subscribe(topic::frame(game), take_frame)?);
     }
     Ok(subscriptions)
+}
+
+/// What is published to stop the boat: an operator's command, or one for all boats.
+fn stop_in(bytes: &[u8]) -> Option<Stop> {
+    match serde_json::from_slice(bytes) {
+        Ok(GatewayCommand::Fleet(FleetCommand::EStop)) => Some(Stop::EStop(Scope::Fleet)),
+        _ => Stop::of(&serde_json::from_slice(bytes).ok()?),
+    }
 }
 
 fn external_vehicle(info: &GameInfo, name: &str) -> Result<VehicleId, NodeError> {

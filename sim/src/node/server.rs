@@ -12,6 +12,7 @@ use super::subscriptions::{self, Inboxes, Question};
 use super::working_time::WorkingTime;
 use super::{GameRecorder, NodeError, Pace, ProgressMessage, Reporter, Settings};
 use crate::contest::Contest;
+use bus::stop::HubStopPort;
 use bus::token::Guard;
 use bus::{Bus, Declaration, Inbox, Priority, Publisher, Query, clock, inbox};
 use game::codec;
@@ -86,6 +87,7 @@ pub(super) struct GameServer<'w> {
     opened: Option<Instant>,
     pace: Pace,
     declarations: Vec<Declaration>,
+    _stop_port: HubStopPort,
 }
 
 impl<'w> GameServer<'w> {
@@ -116,6 +118,8 @@ impl<'w> GameServer<'w> {
         let external_orders: Vec<_> = scenario.externals().map(to_boat).collect::<Result<_, NodeError>>()?;
         let reports = subscriptions::report_publishers(&bus, game, scenario)?;
         let is_real = !external_orders.is_empty();
+        let real: Vec<String> = scenario.externals().map(|v| scenario.vehicles[v.index()].name.clone()).collect();
+        let stop_port = HubStopPort::open(&bus, &settings.net, game, &real)?;
         let game_info =
             GameInfo { version: game::VERSION.to_owned(), pace: settings.pace.to_string(), scenario: scenario.clone() };
         Ok(GameServer {
@@ -152,6 +156,7 @@ impl<'w> GameServer<'w> {
             opened: None,
             pace: settings.pace,
             declarations,
+            _stop_port: stop_port,
             bus,
             contest,
         })

@@ -117,6 +117,7 @@ impl GameWatcher {
             session.update_picture_subscriptions(&self.shared);
         }
         self.shared.state.lock().end();
+        self.shared.stops.leave();
         self.shared.news.send_replace(());
         left.visit(|left| *left = true);
         drop((query_thread, request_thread));
@@ -146,6 +147,8 @@ impl GameSession {
             state.generation
         };
         shared.news.send_replace(());
+        let boats: Vec<String> = game.scenario().externals().map(|boat| game.name_of(boat).to_owned()).collect();
+        shared.stops.join(&bus, &game.name, &boats)?;
         let subscriptions = Subscriptions { shared: Arc::clone(shared), generation };
         let mut standing = vec![subscriptions.clone().frames(&bus, &game)?, subscriptions.clone().run(&bus, &game)?];
         for vehicle in game.scenario().externals() {
@@ -281,7 +284,8 @@ mod tests {
     #[test]
     fn what_was_asked_of_one_game_is_forgotten_before_the_next_is_looked_for() {
         let (commands, to_do) = inbox(1);
-        let shared = Arc::new(SharedState::new(commands.clone(), Box::new(|_| ()), |_| Err(String::new())));
+        let shared = SharedState::new(commands.clone(), Box::new(|_| ()), |_| Err(String::new()));
+        let shared = Arc::new(shared.unwrap());
         assert!(commands.offer(Command::Control(Control::Stop)));
         let (found, finds) = sync_channel(1);
         let searched = Arc::clone(&shared);

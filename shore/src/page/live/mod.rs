@@ -15,7 +15,8 @@ mod stopping;
 mod viewer;
 
 use super::view::{Access, Changes, View, Viewer};
-use bus::{InboxSender, Place, inbox, start_thread};
+use bus::stop::StopClient;
+use bus::{ANSWER, InboxSender, Place, inbox, start_thread};
 use game::external::Mission;
 use game::message::Control;
 use game::topic::GameName;
@@ -47,6 +48,7 @@ struct SharedState {
     state: Mutex<LiveState>,
     news: Changes,
     commands: InboxSender<Command>,
+    stops: StopClient,
     stopping: Stopping,
     /// Where a person reads what went wrong.
     tell: Tell,
@@ -77,9 +79,11 @@ impl LiveView {
         read_mission: ReadMission,
     ) -> std::io::Result<LiveView> {
         let (commands, to_do) = inbox(COMMANDS_MAX);
-        let shared = Arc::new(SharedState::new(commands, tell, read_mission));
+        let shared = Arc::new(SharedState::new(commands, tell, read_mission)?);
         let watcher = GameWatcher { shared: Arc::clone(&shared), place, game, commands: to_do };
         start_thread("page-live", move || watcher.run())?;
+        let late = Arc::clone(&shared);
+        start_thread("page-late", move || stopping::tell_late(&late))?;
         Ok(LiveView { shared })
     }
 
@@ -110,17 +114,19 @@ impl View for LiveView {
 
 impl SharedState {
     /// With an empty state.
-    fn new(commands: InboxSender<Command>, tell: Tell, read_mission: ReadMission) -> SharedState {
-        SharedState {
+    fn new(commands: InboxSender<Command>, tell: Tell, read_mission: ReadMission) -> std::io::Result<SharedState> {
+        Ok(SharedState {
             state: Mutex::default(),
             news: Changes::default(),
             commands,
+            // Whoever looks at the page asks again.
+            stops: StopClient::open(ANSWER)?,
             stopping: Stopping::default(),
             tell,
             read_mission,
             pages: AtomicU64::new(1),
             is_closing: AtomicBool::new(false),
-        }
+        })
     }
 
     fn is_closing(&self) -> bool {

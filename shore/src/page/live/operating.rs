@@ -3,6 +3,7 @@
 
 use super::SharedState;
 use super::live_state::{LiveGame, LiveState};
+use bus::stop::StopCommand;
 use bus::{ANSWER, Bus, BusError, start_thread};
 use game::VehicleId;
 use game::external::{OperatorCommand, OperatorReply};
@@ -74,8 +75,15 @@ pub(super) fn operate(
     }
     let Some(bus) = state.bus.clone() else { return Err("there is no game now".to_owned()) };
     state.operating.begin(page, vehicle, &command)?;
+    // A stop takes every path, and this query is one of them. What is asked last counts.
+    let stop = StopCommand::of(&command);
+    match stop {
+        Some(stop) => shared.stops.stop(Some(name), stop),
+        None if command != OperatorCommand::Status => shared.stops.cancel(Some(name)),
+        None => {}
+    }
     let (generation, needs_token, word) = (state.generation, command.needs_token(), word(&command));
-    let at_work = Arc::clone(shared);
+    let (at_work, named) = (Arc::clone(shared), name.to_owned());
     let thread = start_thread("page-operate", move || {
         let reply = ask(&bus, &game, vehicle, &command);
         let mut state = at_work.state.lock();
@@ -86,6 +94,8 @@ pub(super) fn operate(
                     state.statuses.insert(vehicle, Arc::new(status));
                     refused
                 }
+                // It was shown to have come by another path.
+                Err(_) if stop.is_some_and(|stop| at_work.stops.visit(|orders| orders.is_shown(&named, stop))) => None,
                 Err(reason) => Some(reason),
             };
             state.operating.end(page, needs_token, Operated { vehicle, command: word, refused });

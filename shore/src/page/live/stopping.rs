@@ -1,20 +1,19 @@
-//! E-stops and halts that pages ask for. Each goes over the game's network and straight to every gateway that has told its
-//! control port, in threads of their own: none waits for another, nor behind anything else that pages ask for.
+//! E-stops and halts that pages ask for. An E-stop goes over the game's network and straight to every gateway that has told its
+//! control port, at once (`bus::stop`). None waits for anything else that pages ask for.
 
 use super::SharedState;
 use super::live_state::LiveState;
-use bus::{ask_gateway, start_thread};
-use game::external::{FleetCommand, GatewayCommand};
+use bus::start_thread;
+use bus::stop::{StopCommand, StopNews};
 use game::message::Control;
-use std::net::SocketAddr;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 /// The most threads at once; each ends within some seconds.
 const THREADS_MAX: usize = 256;
-/// How long a gateway may take.
-const GATEWAY_ANSWER: Duration = Duration::from_secs(3);
+/// How often it is looked at whether the view closes.
+const ROUND: Duration = Duration::from_millis(500);
 
 /// The threads that are under way.
 #[derive(Default)]
@@ -22,26 +21,36 @@ pub(super) struct Stopping(AtomicUsize);
 
 /// Stops boats. Gateways can be reached without a game.
 pub(super) fn stop(shared: &Arc<SharedState>, state: &LiveState, control: Control) -> Result<(), String> {
-    let gateways: Vec<SocketAddr> = match control {
-        Control::EStop => state.statuses.values().filter_map(|status| status.control.as_ref()?.parse().ok()).collect(),
-        _ => vec![],
-    };
-    if gateways.is_empty() {
-        state.on()?;
+    if control == Control::EStop && !shared.stops.gateways().is_empty() {
+        shared.stops.stop(None, StopCommand::EStop);
+        return Ok(());
     }
-    for at in gateways {
-        begin(shared, move |shared| {
-            let stopped = ask_gateway(at, None, &GatewayCommand::Fleet(FleetCommand::EStop), GATEWAY_ANSWER);
-            stopped.err().iter().for_each(|e| (shared.tell)(&format!("an E-stop was asked for on the page: {e}")));
-        })?;
-    }
-    if let (Some(bus), Some(game)) = (state.bus.clone(), state.game.clone()) {
+    state.on()?;
+    if control == Control::EStop {
+        shared.stops.stop(None, StopCommand::EStop);
+    } else if let (Some(bus), Some(game)) = (state.bus.clone(), state.game.clone()) {
         begin(shared, move |shared| {
             let stopped = bus::control(&bus, &game.name, control);
             stopped.err().iter().for_each(|e| (shared.tell)(&format!("{control:?} was asked for on the page: {e}")));
         })?;
     }
     Ok(())
+}
+
+/// Tells which boats do not stop, until the view closes.
+pub(super) fn tell_late(shared: &SharedState) {
+    while !shared.is_closing() {
+        for news in shared.stops.news(ROUND) {
+            let late = match news {
+                StopNews::Late { vehicle, command } => {
+                    format!("{} was asked for on the page: {vehicle} does not report it", command.operator_command())
+                }
+                StopNews::Sim(Err(reason)) => format!("an E-stop was asked for on the page: {reason}"),
+                _ => continue,
+            };
+            (shared.tell)(&late);
+        }
+    }
 }
 
 /// Runs `work` in a thread of its own.

@@ -62,6 +62,9 @@ impl PageViewer {
         if control == Control::Release && game.has_real_boats() && self.access < Access::Operate {
             return Err("real boats are released by who opens the page with the operator's token".to_owned());
         }
+        if control == Control::Release {
+            self.shared.stops.cancel(None);
+        }
         self.send(Command::Control(control))
     }
 

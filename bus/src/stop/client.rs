@@ -1,0 +1,369 @@
+//! The client of operators: sends stops on every path that there is, and hears how boats are.
+
+use super::gateway_link::{DatagramPath, GatewayPath, OnNews, PathNews};
+use super::orders::{Saying, Source, StopOrders};
+use super::{StopCommand, StopNews};
+use crate::net::address;
+use crate::{
+    Bus, BusError, CurrentToken, Declaration, Priority, Publisher, Token, Watched, clock, control, start_thread,
+};
+use game::external::{FleetCommand, GatewayCommand, GatewayStatus, OperatorCommand};
+use game::message::Control;
+use game::topic::{self, GameName};
+use parking_lot::Mutex;
+use std::collections::BTreeMap;
+use std::io;
+use std::net::{SocketAddr, ToSocketAddrs};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Weak};
+use std::time::{Duration, Instant};
+
+/// How often the status is asked for on every path.
+const STATUS_AGAIN: Duration = Duration::from_secs(1);
+/// A game that is slow to answer is waited for so long, when all boats that are known have stopped.
+const GAME_MAX: Duration = Duration::from_secs(3);
+/// The most control ports.
+const GATEWAYS_MAX: usize = 256;
+
+/// Stops boats. Dropped, it closes all paths of its own.
+pub struct StopClient(Arc<Shared>);
+
+/// What its threads share.
+struct Shared {
+    orders: Watched<StopOrders>,
+    game: Mutex<Option<GamePath>>,
+    gateways: Mutex<BTreeMap<SocketAddr, GatewayPath>>,
+    /// Control ports that statuses have named, to be opened.
+    named: Mutex<BTreeMap<SocketAddr, String>>,
+    hubs: Mutex<Vec<DatagramPath>>,
+    is_closing: AtomicBool,
+}
+
+/// The topics of a game.
+struct GamePath {
+    bus: Bus,
+    name: GameName,
+    control: Publisher,
+    stops: BTreeMap<String, Publisher>,
+    _statuses: Vec<Declaration>,
+}
+
+impl StopClient {
+    /// A client that has no paths yet. A stop that no boat shows is said again for so long.
+    ///
+    /// # Errors
+    /// If the system has no thread to give.
+    pub fn open(limit: Duration) -> io::Result<StopClient> {
+        let shared = Arc::new(Shared {
+            orders: Watched::new(StopOrders::new(limit)),
+            game: Mutex::default(),
+            gateways: Mutex::default(),
+            named: Mutex::default(),
+            hubs: Mutex::default(),
+            is_closing: AtomicBool::new(false),
+        });
+        let at_work = Arc::clone(&shared);
+        start_thread("stop-client", move || at_work.run())?;
+        Ok(StopClient(shared))
+    }
+
+    /// Another path: a gateway's control port, with the token that it asks for. A port that is known already gets the token.
+    ///
+    /// # Errors
+    /// If the system has no socket or thread to give, or if there are too many.
+    pub fn add_gateway(&self, at: SocketAddr, vehicle: Option<&str>, token: Option<Token>) -> io::Result<()> {
+        self.0.add_gateway(at, vehicle, token)
+    }
+
+    /// Another path: datagrams to a sim, where it listens at these endpoints.
+    ///
+    /// # Errors
+    /// If the system has no socket or thread to give. An endpoint of another kind, or of an unknown host, is no path.
+    pub fn add_hub(&self, endpoints: &[String], game: Option<&GameName>, token: Option<&Token>) -> io::Result<()> {
+        for endpoint in endpoints.iter().filter(|endpoint| endpoint.starts_with("tcp/")) {
+            let found = address(endpoint).to_socket_addrs().ok().and_then(|mut found| found.next());
+            let Some(at) = found else { continue };
+            let shared = Arc::downgrade(&self.0);
+            let on_news: OnNews = Arc::new(move |news| {
+                if let (Some(shared), PathNews::States(states, _)) = (shared.upgrade(), news) {
+                    shared.hub_answered(&states);
+                }
+            });
+            let game = game.map(|game| game.as_str().to_owned());
+            let path = DatagramPath::open(at, game, token.cloned().into(), on_news)?;
+            self.0.hubs.lock().push(path);
+        }
+        self.0.orders.visit(StopOrders::hurry);
+        Ok(())
+    }
+
+    /// Another path: the topics of a game with these real boats, in place of those of the game before.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed.
+    pub fn join(&self, bus: &Bus, game: &GameName, boats: &[String]) -> Result<(), BusError> {
+        let (mut stops, mut statuses, is_here) = (BTreeMap::new(), Vec::new(), bus.is_on_this_machine());
+        for boat in boats {
+            stops.insert(boat.clone(), bus.publisher(topic::stop(game, boat), Priority::Urgent)?);
+            let (shared, name) = (Arc::downgrade(&self.0), boat.clone());
+            statuses.push(bus.subscribe(topic::status(game, boat), move |bytes| {
+                let status = serde_json::from_slice::<GatewayStatus>(bytes).ok();
+                if let (Some(shared), Some(status)) = (shared.upgrade(), status.filter(|status| status.vehicle == name))
+                {
+                    shared.hear(&status, is_here);
+                }
+            })?);
+        }
+        let control = bus.publisher(topic::control(game), Priority::Urgent)?;
+        let path = GamePath { bus: bus.clone(), name: game.clone(), control, stops, _statuses: statuses };
+        let before = self.0.game.lock().replace(path);
+        // A callback of a subscription that is dropped may be under way: nothing is locked meanwhile.
+        drop(before);
+        let unanswered = self.0.orders.visit(|orders| {
+            boats.iter().for_each(|boat| orders.expect(boat));
+            orders.complete();
+            orders.hurry();
+            orders.unanswered()
+        });
+        unanswered.into_iter().for_each(|stop| self.0.ask_sim(stop));
+        Ok(())
+    }
+
+    /// The game is gone, or its session.
+    pub fn leave(&self) {
+        let path = self.0.game.lock().take();
+        drop(path);
+    }
+
+    /// Stops a boat, or all of them; an earlier stop like it is forgotten.
+    pub fn stop(&self, target: Option<&str>, command: StopCommand) {
+        let now = clock::now();
+        let number = self.0.orders.visit(|orders| orders.ask(now, target.map(str::to_owned), command));
+        self.0.say(now);
+        if target.is_none() && command == StopCommand::EStop {
+            self.0.ask_sim(number);
+        }
+    }
+
+    /// Reads or changes what is known of boats and stops.
+    pub fn visit<R>(&self, visit: impl FnOnce(&mut StopOrders) -> R) -> R {
+        self.0.orders.visit(visit)
+    }
+
+    /// Waits up to `limit` until `holds`, and returns whether it does.
+    pub fn wait(&self, limit: Duration, holds: impl FnMut(&StopOrders) -> bool) -> bool {
+        self.0.orders.wait(limit, holds)
+    }
+
+    /// Nothing more is asked for: waits up to `limit` until everything is done, and gives what is not. Where no game is there to
+    /// name its boats, those that are known count.
+    #[must_use]
+    pub fn finish(&self, limit: Duration) -> Vec<String> {
+        let start = clock::now();
+        self.wait(limit.min(GAME_MAX), StopOrders::is_done);
+        self.wait(limit.saturating_sub(clock::since(start)), |orders| orders.unfinished().is_empty());
+        self.visit(|orders| orders.unfinished())
+    }
+
+    /// Something else is asked of a boat, or of all: earlier stops are not said any more.
+    pub fn cancel(&self, target: Option<&str>) {
+        self.visit(|orders| orders.cancel(target));
+    }
+
+    /// The control ports that are known, with their boats and tokens.
+    #[must_use]
+    pub fn gateways(&self) -> Vec<(SocketAddr, Option<String>, Option<Token>)> {
+        let gateways = self.0.gateways.lock();
+        let known = gateways.iter().map(|(at, gateway)| (*at, gateway.vehicle.lock().clone(), gateway.token.get()));
+        known.collect()
+    }
+
+    /// The news, as soon as there are any, within `limit`.
+    pub fn news(&self, limit: Duration) -> Vec<StopNews> {
+        self.0.orders.wait(limit, StopOrders::has_news);
+        self.0.orders.visit(StopOrders::take_news)
+    }
+}
+
+impl Drop for StopClient {
+    fn drop(&mut self) {
+        self.0.is_closing.store(true, Ordering::SeqCst);
+        self.0.orders.visit(StopOrders::hurry);
+        self.leave();
+        let (gateways, hubs) = (std::mem::take(&mut *self.0.gateways.lock()), std::mem::take(&mut *self.0.hubs.lock()));
+        // All of them end at the same time.
+        gateways.values().for_each(GatewayPath::close);
+        hubs.iter().for_each(DatagramPath::close);
+    }
+}
+
+impl Shared {
+    /// Says again what is due, until this is closed.
+    fn run(self: &Arc<Self>) {
+        let mut status_at = clock::now();
+        while !self.is_closing.load(Ordering::SeqCst) {
+            let now = clock::now();
+            self.say(now);
+            let named = std::mem::take(&mut *self.named.lock());
+            for (at, vehicle) in named {
+                let token = self.game.lock().as_ref().and_then(|game| game.bus.token().cloned());
+                // A status names it again.
+                drop(self.add_gateway(at, Some(&vehicle), token));
+            }
+            // The answer to a stop says how the boat is.
+            if now >= status_at && !self.orders.visit(|orders| orders.is_asked_within(now, STATUS_AGAIN)) {
+                status_at = now + STATUS_AGAIN;
+                self.ask_status();
+            }
+            let (next, changes) = self.orders.visit(|orders| (orders.next(now), orders.changes()));
+            let wait = next.saturating_duration_since(clock::now());
+            self.orders.wait(wait, |orders| orders.changes() != changes);
+        }
+    }
+
+    fn add_gateway(self: &Arc<Self>, at: SocketAddr, vehicle: Option<&str>, token: Option<Token>) -> io::Result<()> {
+        let mut gateways = self.gateways.lock();
+        if let Some(gateway) = gateways.get(&at) {
+            if token.is_some() {
+                gateway.token.set(token);
+            }
+            return Ok(());
+        }
+        if gateways.len() >= GATEWAYS_MAX {
+            return Err(io::Error::other(format!("more than {GATEWAYS_MAX} gateways")));
+        }
+        // Until its boat is known it stands for that.
+        let expected = vehicle.map_or_else(|| at.to_string(), str::to_owned);
+        self.orders.visit(|orders| orders.expect(&expected));
+        let (shared, unnamed) = (Arc::downgrade(self), vehicle.is_none().then_some(expected));
+        let on_news: OnNews = Arc::new(move |news| gateway_said(&shared, unnamed.as_deref(), news));
+        let gateway = GatewayPath::open(at, vehicle.map(str::to_owned), CurrentToken::from(token), on_news)?;
+        gateways.insert(at, gateway);
+        drop(gateways);
+        self.orders.visit(StopOrders::hurry);
+        Ok(())
+    }
+
+    /// Asks everybody how boats are.
+    fn ask_status(&self) {
+        let ask = |name: String| GatewayCommand::Boat { name, command: OperatorCommand::Status };
+        for gateway in self.gateways.lock().values() {
+            let vehicle = gateway.vehicle.lock().clone().unwrap_or_default();
+            gateway.send(&ask(vehicle), 0);
+        }
+        self.hubs.lock().iter().for_each(|hub| hub.send(&ask(String::new()), 0));
+    }
+
+    /// Says what is due, the quickest paths first.
+    fn say(&self, now: Instant) {
+        for saying in self.orders.visit(|orders| orders.due(now)) {
+            self.say_to_hubs(&saying);
+            self.say_to_game(&saying);
+            for gateway in self.gateways.lock().values() {
+                let vehicle = gateway.vehicle.lock().clone();
+                let is_open = vehicle.as_ref().is_none_or(|vehicle| saying.boats.contains(vehicle));
+                if let Some(command) = saying.command_to(vehicle.as_deref()).filter(|_| is_open) {
+                    gateway.send(&command, saying.number);
+                }
+            }
+        }
+    }
+
+    fn say_to_hubs(&self, saying: &Saying) {
+        let hubs = self.hubs.lock();
+        if saying.to_everybody && saying.command == StopCommand::EStop {
+            hubs.iter().for_each(|hub| hub.send(&GatewayCommand::Fleet(FleetCommand::EStop), saying.number));
+            return;
+        }
+        // A stop of all cannot be said to some of them by this path.
+        let boats = saying.boats.iter().filter(|_| saying.command == StopCommand::Disarm || !saying.is_of_fleet);
+        for command in boats.filter_map(|boat| saying.command_to(Some(boat))) {
+            hubs.iter().for_each(|hub| hub.send(&command, saying.number));
+        }
+    }
+
+    fn say_to_game(&self, saying: &Saying) {
+        let game = self.game.lock();
+        let Some(game) = &*game else { return };
+        let send = |publisher: &Publisher, json: Vec<u8>| drop(publisher.send_json(json));
+        if saying.to_everybody && saying.command == StopCommand::EStop {
+            send(&game.control, serde_json::to_vec(&Control::EStop).unwrap_or_default());
+        }
+        let command = match saying.command_to(None) {
+            Some(command @ GatewayCommand::Fleet(_)) => serde_json::to_vec(&command),
+            _ => serde_json::to_vec(&saying.command.operator_command()),
+        };
+        let command = command.unwrap_or_default();
+        for publisher in saying.boats.iter().filter_map(|boat| game.stops.get(boat)) {
+            send(publisher, command.clone());
+        }
+    }
+
+    /// Asks the sim to stop all boats, and waits for its answer: it stops those that it simulates.
+    fn ask_sim(self: &Arc<Self>, stop: u64) {
+        let game = self.game.lock().as_ref().map(|game| (game.bus.clone(), game.name.clone()));
+        let Some((bus, name)) = game else { return };
+        let shared = Arc::downgrade(self);
+        let asked = start_thread("stop-sim", move || {
+            let answer = control(&bus, &name, Control::EStop).map_err(|e| e.to_string());
+            if let Some(shared) = shared.upgrade() {
+                shared.orders.visit(|orders| orders.sim_answered(clock::now(), stop, answer));
+            }
+        });
+        if let Err(e) = asked {
+            self.orders.visit(|orders| orders.sim_answered(clock::now(), stop, Err(format!("no thread: {e}"))));
+        }
+    }
+
+    /// A status that was published; `is_here` if the game is on this machine.
+    fn hear(&self, status: &GatewayStatus, is_here: bool) {
+        self.orders.visit(|orders| {
+            orders.report(clock::now(), &status.vehicle, &status.state, Source::Published);
+        });
+        let control = status.control.as_ref().and_then(|control| control.parse::<SocketAddr>().ok());
+        // One of loopback may be of another machine.
+        let control = control.filter(|at| !at.ip().is_unspecified() && (is_here || !at.ip().is_loopback()));
+        let mut named = self.named.lock();
+        if let Some(at) = control.filter(|_| named.len() < GATEWAYS_MAX) {
+            named.insert(at, status.vehicle.clone());
+        }
+    }
+
+    fn hub_answered(&self, states: &BTreeMap<String, String>) {
+        self.orders.visit(|orders| {
+            for (vehicle, state) in states {
+                orders.expect(vehicle);
+                if !state.is_empty() {
+                    orders.report(clock::now(), vehicle, state, Source::Published);
+                }
+            }
+            orders.complete();
+        });
+    }
+}
+
+/// A gateway has something to say; it was expected by this name as long as its boat was not known.
+fn gateway_said(shared: &Weak<Shared>, unnamed: Option<&str>, news: PathNews) {
+    let Some(shared) = shared.upgrade() else { return };
+    shared.orders.visit(|orders| match news {
+        PathNews::Connected => orders.hurry(),
+        PathNews::States(states, stop) => {
+            unnamed.iter().for_each(|name| orders.forget(name));
+            let source = if stop == 0 { Source::Published } else { Source::Answer(stop) };
+            for (vehicle, state) in &states {
+                orders.report(clock::now(), vehicle, state, source);
+            }
+        }
+    });
+}
+
+impl Saying {
+    /// The command to a boat's gateway; to one whose boat is not known, if it is for all.
+    fn command_to(&self, vehicle: Option<&str>) -> Option<GatewayCommand> {
+        if self.is_of_fleet && self.command == StopCommand::EStop {
+            return Some(GatewayCommand::Fleet(FleetCommand::EStop));
+        }
+        let name = vehicle.or_else(|| self.boats.first().map(String::as_str).filter(|_| !self.is_of_fleet))?.to_owned();
+        Some(GatewayCommand::Boat { name, command: self.command.operator_command() })
+    }
+}

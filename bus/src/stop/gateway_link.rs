@@ -1,0 +1,222 @@
+//! The operator's end of a path: datagrams to a control port or a sim, and a connection to a control port that is kept open.
+
+use super::datagram::{States, StopRequest, answered_number};
+use super::datagram_port::DatagramPort;
+use crate::token::{Answered, first, read};
+use crate::{CurrentToken, GATEWAY_PORT_KEY, clock, random_number, start_thread};
+use game::external::{GatewayCommand, OperatorReply};
+use parking_lot::Mutex;
+use std::collections::VecDeque;
+use std::io::{self, BufRead, BufReader, Read, Write};
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, Shutdown, SocketAddr, TcpStream, UdpSocket};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+/// The requests whose answers are awaited; the oldest go first.
+const AWAITED_MAX: usize = 128;
+/// The longest answer, bytes.
+const ANSWER_BYTES_MAX: u64 = 1 << 20;
+/// How long connecting may take, and how soon it is tried again.
+const CONNECT_MAX: Duration = Duration::from_secs(3);
+const CONNECT_AGAIN: Duration = Duration::from_millis(300);
+/// A connection on which nothing comes for so long is opened anew: the status is asked for every second.
+const SILENT_MAX: Duration = Duration::from_secs(4);
+/// A peer that takes nothing keeps no stop waiting for the other paths.
+const WRITE_MAX: Duration = Duration::from_millis(20);
+
+/// What comes of a path.
+pub(super) enum PathNews {
+    /// It is open.
+    Connected,
+    /// How boats are, in answer to this stop; 0 is none.
+    States(States, u64),
+}
+
+/// Where it goes.
+pub(super) type OnNews = Arc<dyn Fn(PathNews) + Send + Sync>;
+
+/// Datagrams to one address.
+pub(super) struct DatagramPath {
+    socket: UdpSocket,
+    session: u64,
+    game: Option<String>,
+    sent: Arc<Mutex<Sent>>,
+    port: DatagramPort,
+}
+
+/// Requests whose answers are awaited, and the stop that each is about.
+#[derive(Default)]
+struct Sent {
+    number: u64,
+    awaited: VecDeque<(StopRequest, u64)>,
+}
+
+impl DatagramPath {
+    pub(super) fn open(
+        at: SocketAddr,
+        game: Option<String>,
+        token: CurrentToken,
+        on_news: OnNews,
+    ) -> io::Result<DatagramPath> {
+        let any: IpAddr = if at.is_ipv4() { Ipv4Addr::UNSPECIFIED.into() } else { Ipv6Addr::UNSPECIFIED.into() };
+        let socket = UdpSocket::bind((any, 0))?;
+        // Nothing from elsewhere is read.
+        socket.connect(at)?;
+        let sent = Arc::new(Mutex::new(Sent::default()));
+        let answered = Arc::clone(&sent);
+        let port = DatagramPort::open(socket.try_clone()?, "stop-answers", move |bytes| {
+            let number = answered_number(bytes)?;
+            let awaited = answered.lock().awaited.iter().find(|(request, _)| request.number == number).cloned();
+            let (request, stop) = awaited?;
+            let states = request.read_answer(bytes, token.get().as_ref())?;
+            on_news(PathNews::States(states, stop));
+            None
+        })?;
+        Ok(DatagramPath { socket, session: random_number(), game, sent, port })
+    }
+
+    /// Ends soon; dropping this waits for it.
+    pub(super) fn close(&self) {
+        self.port.close();
+    }
+
+    /// Sends a request, for this stop.
+    pub(super) fn send(&self, command: &GatewayCommand, stop: u64) {
+        let mut sent = self.sent.lock();
+        sent.number += 1;
+        let (number, game, command) = (sent.number, self.game.clone(), command.clone());
+        let request = StopRequest { session: self.session, number, game, command };
+        let bytes = request.encode();
+        sent.awaited.push_back((request, stop));
+        let surplus = sent.awaited.len().saturating_sub(AWAITED_MAX);
+        sent.awaited.drain(..surplus);
+        drop(sent);
+        // It is sent again, and by other paths.
+        drop(self.socket.send(&bytes));
+    }
+}
+
+/// A gateway's control port, over TCP and UDP at once.
+pub(super) struct GatewayPath {
+    /// Its boat, once that is known.
+    pub(super) vehicle: Arc<Mutex<Option<String>>>,
+    pub(super) token: CurrentToken,
+    datagrams: DatagramPath,
+    connection: Arc<Connection>,
+}
+
+/// The connection that is kept open.
+struct Connection {
+    at: SocketAddr,
+    open: Mutex<Option<Open>>,
+    on_news: OnNews,
+    is_closing: AtomicBool,
+}
+
+struct Open {
+    stream: TcpStream,
+    /// The commands whose answers are awaited, and the stops that they are.
+    awaited: VecDeque<(GatewayCommand, u64)>,
+}
+
+impl GatewayPath {
+    /// Begins to connect to a port; `vehicle` is its boat, where that is known.
+    pub(super) fn open(
+        at: SocketAddr,
+        vehicle: Option<String>,
+        token: CurrentToken,
+        on_news: OnNews,
+    ) -> io::Result<GatewayPath> {
+        let vehicle = Arc::new(Mutex::new(vehicle));
+        let learnt = Arc::clone(&vehicle);
+        let learn: OnNews = Arc::new(move |mut news| {
+            if let PathNews::States(states, _) = &mut news {
+                let mut vehicle = learnt.lock();
+                let own = vehicle.get_or_insert_with(|| states.keys().next().cloned().unwrap_or_default());
+                // It speaks for no other boat.
+                states.retain(|name, _| name == own);
+            }
+            on_news(news);
+        });
+        let datagrams = DatagramPath::open(at, None, token.clone(), Arc::clone(&learn))?;
+        let connection = Connection { at, open: Mutex::default(), on_news: learn, is_closing: AtomicBool::new(false) };
+        let connection = Arc::new(connection);
+        let at_work = Arc::clone(&connection);
+        start_thread("stop-connection", move || at_work.run())?;
+        Ok(GatewayPath { vehicle, token, datagrams, connection })
+    }
+
+    /// Ends soon; dropping this waits for it.
+    pub(super) fn close(&self) {
+        self.datagrams.close();
+    }
+
+    /// Sends a command by both ways, for this stop.
+    pub(super) fn send(&self, command: &GatewayCommand, stop: u64) {
+        self.datagrams.send(command, stop);
+        self.connection.send(command, stop);
+    }
+}
+
+impl Drop for GatewayPath {
+    fn drop(&mut self) {
+        self.connection.is_closing.store(true, Ordering::SeqCst);
+        self.connection.close();
+    }
+}
+
+impl Connection {
+    fn run(&self) {
+        while !self.is_closing.load(Ordering::SeqCst) {
+            if let Ok(stream) = TcpStream::connect_timeout(&self.at, CONNECT_MAX) {
+                // However it ends, it is opened anew.
+                drop(self.read(stream));
+                self.close();
+            }
+            clock::rest(CONNECT_AGAIN);
+        }
+    }
+
+    fn read(&self, stream: TcpStream) -> io::Result<()> {
+        stream.set_nodelay(true)?;
+        stream.set_write_timeout(Some(WRITE_MAX))?;
+        stream.set_read_timeout(Some(SILENT_MAX))?;
+        let mut reader = BufReader::new(stream.try_clone()?);
+        *self.open.lock() = Some(Open { stream, awaited: VecDeque::new() });
+        (self.on_news)(PathNews::Connected);
+        loop {
+            let mut line = Vec::new();
+            reader.by_ref().take(ANSWER_BYTES_MAX).read_until(b'\n', &mut line)?;
+            let awaited = self.open.lock().as_mut().and_then(|open| open.awaited.pop_front());
+            let Some((command, stop)) = awaited.filter(|_| line.ends_with(b"\n")) else { return Ok(()) };
+            match read(None, GATEWAY_PORT_KEY, &command, &line) {
+                Ok(Answered::Answer(OperatorReply { refused: None, status })) => {
+                    (self.on_news)(PathNews::States(States::from([(status.vehicle, status.state)]), stop));
+                }
+                // It is another boat's, or its gateway does not run yet.
+                Ok(_) => {}
+                Err(_) => return Ok(()),
+            }
+        }
+    }
+
+    fn send(&self, command: &GatewayCommand, stop: u64) {
+        let mut line = first(command);
+        line.push(b'\n');
+        let mut open = self.open.lock();
+        let Some(Open { stream, awaited }) = &mut *open else { return };
+        awaited.push_back((command.clone(), stop));
+        if awaited.len() > AWAITED_MAX || (&*stream).write_all(&line).is_err() {
+            // It takes nothing any more, and part of a line is none.
+            drop(stream.shutdown(Shutdown::Both));
+            *open = None;
+        }
+    }
+
+    fn close(&self) {
+        if let Some(Open { stream, .. }) = self.open.lock().take() {
+            drop(stream.shutdown(Shutdown::Both));
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! Where the sim takes stops as datagrams, beside the links of its session.
+
+use super::datagram::{States, StopRequest};
+use super::datagram_port::DatagramPort;
+use crate::net::address;
+use crate::{Bus, BusError, Declaration, Net, Priority, Publisher, Watched, clock, simulated};
+use game::external::{FleetCommand, GatewayCommand, GatewayStatus, OperatorCommand};
+use game::message::Control;
+use game::topic::{self, GameName};
+use std::collections::BTreeMap;
+use std::net::{ToSocketAddrs, UdpSocket};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// A state that is older is not told.
+const FRESH: Duration = Duration::from_secs(3);
+
+/// The ports of a sim. Dropped, they are closed.
+pub struct HubStopPort {
+    _ports: Vec<DatagramPort>,
+    _statuses: Vec<Declaration>,
+}
+
+/// The states of the real boats, and when each was heard.
+type Heard = BTreeMap<String, Option<(String, Instant)>>;
+
+/// What the threads share.
+struct Server {
+    game: GameName,
+    bus: Bus,
+    control: Publisher,
+    stops: BTreeMap<String, Publisher>,
+    heard: Arc<Watched<Heard>>,
+}
+
+impl HubStopPort {
+    /// Takes stops at the hosts and ports on which the hub of a game with these real boats listens. In a game with keys there is
+    /// none: a datagram does not say who sends it.
+    ///
+    /// # Errors
+    /// [`BusError`] if a port is taken, or the session is closed.
+    pub fn open(bus: &Bus, net: &Net, game: &GameName, boats: &[String]) -> Result<HubStopPort, BusError> {
+        let heard = Arc::new(Watched::new(boats.iter().map(|boat| (boat.clone(), None)).collect::<Heard>()));
+        let (mut stops, mut statuses) = (BTreeMap::new(), Vec::new());
+        if simulated::is_inside() || net.keys.is_some() {
+            return Ok(HubStopPort { _ports: vec![], _statuses: vec![] });
+        }
+        for boat in boats {
+            stops.insert(boat.clone(), bus.publisher(topic::stop(game, boat), Priority::Urgent)?);
+            let (heard, boat) = (Arc::clone(&heard), boat.clone());
+            statuses.push(bus.subscribe(topic::status(game, &boat), move |bytes| {
+                let status = serde_json::from_slice::<GatewayStatus>(bytes).ok();
+                if let Some(status) = status.filter(|status| status.vehicle == boat) {
+                    heard.visit(|heard| heard.insert(boat.clone(), Some((status.state, clock::now()))));
+                }
+            })?);
+        }
+        let control = bus.publisher(topic::control(game), Priority::Urgent)?;
+        let server = Arc::new(Server { game: game.clone(), bus: bus.clone(), control, stops, heard });
+        let mut ports = Vec::new();
+        for endpoint in net.listen.iter().filter(|endpoint| endpoint.starts_with("tcp/")) {
+            let failed = |e: std::io::Error| BusError::Open {
+                what: format!("to take stops at udp/{}", address(endpoint)),
+                reason: e.to_string(),
+            };
+            let found = address(endpoint).to_socket_addrs().map_err(failed)?;
+            // A name may have addresses of a kind that this machine does not use.
+            let (bound, missed): (Vec<_>, Vec<_>) = found.map(UdpSocket::bind).partition(Result::is_ok);
+            if bound.is_empty() {
+                let missed = missed.into_iter().find_map(Result::err);
+                return Err(failed(missed.unwrap_or_else(|| std::io::Error::other("it has no address"))));
+            }
+            for socket in bound.into_iter().flatten() {
+                let server = Arc::clone(&server);
+                ports.push(DatagramPort::open(socket, "stops", move |bytes| server.serve(bytes)).map_err(failed)?);
+            }
+        }
+        Ok(HubStopPort { _ports: ports, _statuses: statuses })
+    }
+}
+
+impl Server {
+    fn serve(&self, bytes: &[u8]) -> Option<Vec<u8>> {
+        let request = StopRequest::decode(bytes)?;
+        if request.game.as_ref().is_some_and(|game| game != self.game.as_str()) {
+            return None;
+        }
+        let publish = |publisher: &Publisher, json: serde_json::Result<Vec<u8>>| {
+            // A session that is closed has nobody to stop.
+            json.into_iter().for_each(|json| drop(publisher.send_json(json)));
+        };
+        match &request.command {
+            // This session hears it, too.
+            GatewayCommand::Fleet(FleetCommand::EStop) => publish(&self.control, serde_json::to_vec(&Control::EStop)),
+            GatewayCommand::Boat { name, command } if *command != OperatorCommand::Status => {
+                publish(self.stops.get(name)?, serde_json::to_vec(command));
+            }
+            _ => {}
+        }
+        let now = clock::now();
+        let state = |heard: &Option<(String, Instant)>| {
+            let fresh = heard.as_ref().filter(|(_, at)| now.saturating_duration_since(*at) < FRESH);
+            fresh.map(|(state, _)| state.clone()).unwrap_or_default()
+        };
+        // Of all boats, which tells the operator that there are no others.
+        let states: States =
+            self.heard.visit(|heard| heard.iter().map(|(boat, heard)| (boat.clone(), state(heard))).collect());
+        request.answer(bytes.len(), self.bus.token(), &states)
+    }
+}

@@ -1,0 +1,188 @@
+//! The operator console: stops take every path, and are done when the boats report them.
+
+use crate::boat_alone::Wire;
+use crate::support::{LIMIT, Process, Sim, stderr, stdout, temporary};
+use std::io::Write;
+use std::net::SocketAddr;
+use std::process::{ExitStatus, Stdio};
+use std::sync::mpsc::{Receiver, channel};
+use std::time::Instant;
+
+const BOATS: [&str; 2] = ["blue_one", "red_one"];
+/// From a line to the report, on one machine that is busy.
+const PROMPT_MS: u128 = 1000;
+
+/// A game with two real boats that say little, and their gateways.
+struct Fleet {
+    sim: Sim,
+    wires: [Wire; 2],
+    gateways: [Process; 2],
+    controls: [SocketAddr; 2],
+}
+
+impl Fleet {
+    fn start() -> Fleet {
+        let sim = Sim::start("two_real", &["--pace", "realtime"]);
+        let wires = BOATS.map(|_| Wire::listen("tcp://127.0.0.1:0"));
+        let controls = BOATS.map(|_| SocketAddr::from(([127, 0, 0, 1], bus::free_port(false).expect("a free port"))));
+        let gateways = std::array::from_fn(|i| {
+            let args = ["gateway", "surveyor", "--vehicle", BOATS[i], "--no-record", "--control-listen"];
+            sim.quiet(&[&args[..], &[&controls[i].to_string(), "--link", &wires[i].address()]].concat())
+        });
+        Fleet { sim, wires, gateways, controls }
+    }
+
+    fn forget(&self) {
+        self.wires.iter().for_each(Wire::forget);
+    }
+
+    /// A console that knows both boats.
+    fn console(&self) -> Console {
+        self.console_of(&["blue_one  safed", "red_one  safed"])
+    }
+
+    /// A console, once it has said this.
+    fn console_of(&self, beginnings: &[&str]) -> Console {
+        let controls = self.controls.map(|at| at.to_string());
+        let mut command =
+            self.sim.squall(&["gateway", "console", "--gateway", &controls[0], "--gateway", &controls[1]]);
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut process = Process::start(command);
+        let (sender, lines) = channel();
+        let said = process.lines();
+        std::thread::spawn(move || said.map_while(|line| sender.send(line).ok()).for_each(drop));
+        let console = Console { process, lines };
+        console.wait_for(beginnings);
+        console
+    }
+}
+
+struct Console {
+    process: Process,
+    lines: Receiver<String>,
+}
+
+impl Console {
+    fn say(&mut self, line: &str) {
+        let stdin = self.process.0.stdin.as_mut().expect("piped");
+        stdin.write_all(format!("{line}\n").as_bytes()).expect("it reads");
+    }
+
+    /// Waits for lines that begin like these, in any order, and gives the times that they tell, ms.
+    fn wait_for(&self, beginnings: &[&str]) -> Vec<u128> {
+        let (mut left, mut times, mut all) = (beginnings.to_vec(), Vec::new(), Vec::new());
+        let start = Instant::now();
+        while !left.is_empty() {
+            let line = self.lines.recv_timeout(LIMIT.saturating_sub(start.elapsed()));
+            let line = line.unwrap_or_else(|_| panic!("{left:?} is not said: {all:?}"));
+            if let Some(i) = left.iter().position(|beginning| line.starts_with(beginning)) {
+                left.remove(i);
+                times.extend(
+                    line.split("  after ").nth(1).and_then(|time| time.trim_end_matches(" ms").parse::<u128>().ok()),
+                );
+            }
+            all.push(line);
+        }
+        times
+    }
+
+    /// Says a line, and waits for the reports of these boats.
+    fn ask(&mut self, line: &str, reports: &[&str]) {
+        self.say(line);
+        let times = self.wait_for(reports);
+        assert!(times.len() == reports.len() && times.iter().all(|ms| *ms < PROMPT_MS), "{line}: {times:?} ms");
+    }
+
+    fn end(mut self) -> (ExitStatus, String) {
+        drop(self.process.0.stdin.take());
+        let status = self.process.wait();
+        let mut said = String::new();
+        std::io::Read::read_to_string(&mut self.process.0.stderr.take().expect("piped"), &mut said).expect("text");
+        (status, said)
+    }
+}
+
+const ALL_STOPPED: [&str; 2] = ["blue_one  e-stopped  after ", "red_one  e-stopped  after "];
+const ALL_SAFED: [&str; 2] = ["blue_one  safed  after ", "red_one  safed  after "];
+
+#[test]
+fn a_console_stops_one_boat_or_all_and_releases_them() {
+    let fleet = Fleet::start();
+    let mut console = fleet.console();
+    console.ask("blue_one estop", &ALL_STOPPED[..1]);
+    console.say("status");
+    console.wait_for(&["blue_one  e-stopped (by an E-stop of this boat), ", "red_one  safed, "]);
+    // Of both, by Enter alone.
+    console.ask("", &ALL_STOPPED);
+    console.ask("blue_one release", &["blue_one  e-stopped  after "]);
+    console.ask("all release", &["all  released  after "]);
+    console.wait_for(&["red_one  safed"]);
+    // The stop of it alone may have come by a slower path than its release.
+    console.say("blue_one release");
+    console.wait_for(&["blue_one  safed"]);
+    console.ask("red_one disarm", &ALL_SAFED[1..]);
+    console.ask("all disarm", &ALL_SAFED);
+    console.say("blue_one dance");
+    console.say("blue_one arm");
+    let (status, said) = console.end();
+    assert!(status.success(), "{said}");
+    assert!(said.contains("dance") && said.contains("blue_one refuses: "), "{said}");
+}
+
+#[test]
+fn a_sim_that_is_suspended_or_killed_keeps_no_stop_from_the_boats_nor_from_its_report() {
+    let mut fleet = Fleet::start();
+    let mut console = fleet.console();
+    fleet.sim.process.signal("STOP");
+    console.ask("all estop", &ALL_STOPPED);
+    let told = fleet.sim.run(&["gateway", "tell", "all", "estop"]);
+    assert!(told.status.success() && stdout(&told).contains("red_one: e-stopped"), "{}", stderr(&told));
+    fleet.sim.process.signal("CONT");
+    fleet.sim.process.kill();
+    for _ in 0..3 {
+        fleet.forget();
+        console.ask("estop", &ALL_STOPPED);
+    }
+    let (status, said) = console.end();
+    assert!(status.success(), "{said}");
+}
+
+#[test]
+fn a_boat_that_does_not_report_its_stop_fails_the_console_and_tell() {
+    let mut fleet = Fleet::start();
+    let mut console = fleet.console();
+    fleet.gateways[1].signal("STOP");
+    console.wait_for(&["red_one  silent"]);
+    console.ask("all estop", &ALL_STOPPED[..1]);
+    console.wait_for(&["red_one  does not report E-stop"]);
+    let told = fleet.sim.run(&["gateway", "tell", "red_one", "estop"]);
+    assert!(!told.status.success() && stderr(&told).contains("red_one"), "{told:?}");
+    let (status, said) = console.end();
+    assert!(!status.success() && said.contains("red_one does not report that it has stopped: safed"), "{said}");
+    // Its stop was said for as long as the console was there.
+    fleet.gateways[1].signal("CONT");
+    let mut console = fleet.console_of(&["red_one  e-stopped"]);
+    console.ask("all estop", &ALL_STOPPED);
+    assert!(console.end().0.success());
+}
+
+#[test]
+fn tell_stops_boats_by_way_of_the_game_alone_within_its_time() {
+    let fleet = Fleet::start();
+    let console = fleet.console();
+    // Whoever knows no gateway, as on another machine.
+    let nothing = temporary();
+    for (name, reports) in
+        [("red_one", &["red_one: e-stopped"][..]), ("all", &["blue_one: e-stopped", "red_one: e-stopped"])]
+    {
+        let mut command = fleet.sim.squall(&["gateway", "tell", name, "estop"]);
+        let told = command.env("XDG_RUNTIME_DIR", nothing.path()).output().expect("the program starts");
+        let said = stdout(&told);
+        assert!(told.status.success(), "{name}: {said}{}", stderr(&told));
+        assert!(reports.iter().all(|report| said.contains(report)), "{name}: {said}");
+    }
+    let mut command = fleet.sim.squall(&["gateway", "tell", "nobody", "estop"]);
+    let told = command.env("XDG_RUNTIME_DIR", nothing.path()).output().expect("the program starts");
+    assert!(!told.status.success() && stderr(&told).contains("nobody"), "{told:?}");
+    drop(console);
+}
