@@ -7,9 +7,11 @@
 //! Everything here is blocking or calls back; callbacks run on zenoh's threads and must only hand over.
 
 mod access;
+mod admission;
 pub mod clock;
 mod connections;
 mod control;
+mod descriptor;
 mod entropy;
 mod error;
 pub mod game_search;
@@ -21,6 +23,7 @@ mod linger;
 mod link_lock;
 mod local_registry;
 mod net;
+mod open_files;
 mod place;
 mod query;
 mod runtime;

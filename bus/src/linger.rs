@@ -3,17 +3,13 @@
 //! zenoh gives every TCP and TLS socket a linger time of ten seconds. Linux then waits in `close` until the peer has taken
 //! what was sent to it, even where the socket is non-blocking; zenoh closes sockets in the threads that serve all its other
 //! links. So a peer that is cut off or stopped would hold up everybody for ten seconds. Without the option the system sends
-//! what is left on its own. zenoh does not give its sockets away, so they are found among this process's descriptors.
+//! what is left on its own.
 
-use socket2::SockRef;
-use std::net::SocketAddr;
-use std::os::fd::{BorrowedFd, RawFd};
+use crate::descriptor::{self, Ends, Kind};
+use std::os::fd::RawFd;
 use zenoh::sample::SampleKind;
 use zenoh::session::{Link, LinkEvent};
 use zenoh::{Session, Wait};
-
-/// Where the system lists the descriptors of the process that asks: Linux has both, macOS and the BSDs the second.
-const DESCRIPTORS: [&str; 2] = ["/proc/self/fd", "/dev/fd"];
 
 /// Takes the option off the socket of every link of a session, of those there are and of those to come.
 pub(crate) fn disable(session: &Session) -> zenoh::Result<()> {
@@ -26,40 +22,32 @@ pub(crate) fn disable(session: &Session) -> zenoh::Result<()> {
     session.info().link_events_listener().history(true).callback(take).background().wait()
 }
 
+/// The ends of a link. One that is no connection has none.
+pub(crate) fn ends(link: &Link) -> Option<Ends> {
+    let address = |locator: &zenoh::config::Locator| locator.address().as_str().parse().ok();
+    Some((address(link.src())?, address(link.dst())?))
+}
+
 /// Takes the option off the socket of a link. A link that is no connection, such as one over UDP, has none.
 fn disable_for(link: &Link) {
-    let address = |locator: &zenoh::config::Locator| locator.address().as_str().parse::<SocketAddr>().ok();
-    if let (Some(local), Some(peer)) = (address(link.src()), address(link.dst())) {
-        descriptors().into_iter().for_each(|descriptor| disable_if(descriptor, local, peer));
+    if let Some(ends) = ends(link) {
+        descriptor::all().into_iter().flatten().for_each(|descriptor| disable_if(descriptor, ends));
     }
 }
 
-/// The descriptors of this process.
-fn descriptors() -> Vec<RawFd> {
-    let Some(folder) = DESCRIPTORS.iter().find_map(|folder| std::fs::read_dir(folder).ok()) else { return vec![] };
-    folder.flatten().filter_map(|entry| entry.file_name().to_str()?.parse().ok()).collect()
-}
-
-/// Takes the option off a descriptor if it is the socket between these two addresses.
-#[expect(unsafe_code, reason = "zenoh does not give its sockets away: only their numbers can be known")]
-fn disable_if(descriptor: RawFd, local: SocketAddr, peer: SocketAddr) {
-    // SAFETY: the number is not -1, the descriptor is not closed, and the system checks it at each call. If another thread
-    // closes it meanwhile, the calls fail; if its number is used anew, it has other addresses and is left alone. The socket
-    // with these addresses stays open, since zenoh holds its link while it reports it.
-    let borrowed = unsafe { BorrowedFd::borrow_raw(descriptor) };
-    let socket = SockRef::from(&borrowed);
-    let is_at = |address: std::io::Result<socket2::SockAddr>, wanted| {
-        address.ok().and_then(|address| address.as_socket()) == Some(wanted)
-    };
-    if is_at(socket.local_addr(), local) && is_at(socket.peer_addr(), peer) {
+/// Takes the option off a descriptor if it is the socket between these two addresses. That stays open: zenoh holds its link
+/// while it reports it.
+fn disable_if(descriptor: RawFd, ends: Ends) {
+    if matches!(descriptor::kind(descriptor), Kind::Connection(found) if found == ends) {
         // A socket that is closed already needs it no more.
-        drop(socket.set_linger(None));
+        drop(descriptor::with_socket(descriptor, |socket| socket.set_linger(None)));
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use socket2::SockRef;
     use std::net::{TcpListener, TcpStream};
     use std::time::Duration;
 
@@ -72,7 +60,8 @@ mod tests {
         let time = Some(Duration::from_secs(10));
         sockets.iter().for_each(|socket| SockRef::from(socket).set_linger(time).expect("a TCP socket"));
         let local = sockets[1].local_addr().expect("an address");
-        descriptors().into_iter().for_each(|descriptor| disable_if(descriptor, local, address));
+        let all = descriptor::all().expect("the system lists them");
+        all.into_iter().for_each(|descriptor| disable_if(descriptor, (local, address)));
         assert_eq!(linger(), [time, None]);
     }
 }

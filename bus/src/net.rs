@@ -1,6 +1,7 @@
 //! Where a node listens, whom it connects to, and whether it scouts.
 
 use crate::keys::{Bundle, Identity};
+use crate::open_files::OpenFiles;
 use crate::runtime::check_threads_for_keys;
 use crate::session::reason;
 use crate::{BusError, Token, access, random_bytes};
@@ -39,6 +40,7 @@ const PUBLISHED_MAX: usize = 1 << 18;
 const ACCEPT_MS: usize = 5000;
 /// Nodes that are linked with a hub, and as many that are about to be: if the process may have four times as many files open.
 const NODES_MAX: usize = 1000;
+pub(crate) const FILES_MAX: u64 = 4 * NODES_MAX as u64;
 
 /// The longest zenoh configuration, bytes.
 const CONFIG_MAX: u64 = 1 << 20;
@@ -69,8 +71,8 @@ impl Net {
         Some(first.replace("/0.0.0.0:", "/127.0.0.1:").replace("/[::]:", "/[::1]:"))
     }
 
-    /// The zenoh configuration of the hub of a game.
-    pub(crate) fn hub(&self, game: &GameName, scenario: &Scenario) -> Result<Config, BusError> {
+    /// The zenoh configuration of the hub of a game, for so many nodes.
+    pub(crate) fn hub(&self, game: &GameName, scenario: &Scenario, nodes: usize) -> Result<Config, BusError> {
         if let Some(keys) = self.keys.as_ref().filter(|keys| *keys.identity() != Identity::Sim) {
             let reason = format!("a sim is served with the keys of sim, these are those of {}", keys.identity());
             return Err(BusError::Keys(format!("{}: {reason}", keys.folder().display())));
@@ -81,13 +83,14 @@ impl Net {
             set(&mut config, "access_control", &access::control(game, scenario, self.keys.is_some()).to_string())?;
         }
         set(&mut config, "mode", "\"router\"")?;
-        set(&mut config, "listen/endpoints", &self.list(&self.listen))?;
+        let listen: Vec<String> = self.endpoints(&self.listen).into_iter().map(with_handshake_time).collect();
+        set(&mut config, "listen/endpoints", &json!(listen).to_string())?;
         set(&mut config, "connect/endpoints", &self.list(&self.connect))?;
         // Our messages carry simulated time; a hybrid clock in every sample would only cost.
         set(&mut config, "timestamping/enabled", "false")?;
         // Whatever a node asks for, what it sends through the hub waits for nobody: the others would wait with it.
         set(&mut config, "qos/network", NEVER_WAIT)?;
-        limit_strangers(&mut config, game)?;
+        limit_strangers(&mut config, game, nodes)?;
         Ok(config)
     }
 
@@ -146,21 +149,39 @@ impl Net {
         endpoints.iter().map(told).collect()
     }
 
+    /// The ports on which it listens.
+    pub(crate) fn ports(&self) -> Vec<u16> {
+        self.listen.iter().filter_map(|endpoint| address(endpoint).rsplit(':').next()?.parse().ok()).collect()
+    }
+
     fn list(&self, endpoints: &[String]) -> String {
         serde_json::to_string(&self.endpoints(endpoints)).expect("a list of strings is JSON")
     }
 }
 
+/// A TLS endpoint whose handshakes may take as long as what comes after them.
+fn with_handshake_time(endpoint: String) -> String {
+    if !endpoint.starts_with("tls/") {
+        return endpoint;
+    }
+    let separator = if endpoint.contains('#') { ';' } else { '#' };
+    format!("{endpoint}{separator}tls_handshake_timeout_ms={ACCEPT_MS}")
+}
+
+/// How many nodes a hub that may have these files open has room for.
+pub(crate) fn nodes_max(files: OpenFiles) -> usize {
+    usize::try_from(files.usual / 4).map_or(NODES_MAX, |nodes| nodes.min(NODES_MAX))
+}
+
 /// Keeps within bounds what nodes that are linked with a hub, or try to be, can make it hold.
-fn limit_strangers(config: &mut Config, game: &GameName) -> Result<(), BusError> {
-    let files = rustix::process::getrlimit(rustix::process::Resource::Nofile).current;
-    let nodes = files.map_or(NODES_MAX, |files| NODES_MAX.min(files as usize / 4));
+fn limit_strangers(config: &mut Config, game: &GameName, nodes: usize) -> Result<(), BusError> {
     let all = topic::matching(game, "**");
     let smaller = |messages: &[&str], size: usize| json!({ "messages": messages, "flows": ["ingress"], "key_exprs": [&all], "size_limit": size });
     let filters = json!([smaller(&["put", "delete"], PUBLISHED_MAX), smaller(&["query"], QUESTION_MAX)]);
     for (key, value) in [
         ("transport/unicast/max_sessions", nodes.to_string()),
-        ("transport/unicast/accept_pending", nodes.to_string()),
+        // zenoh would refuse the newcomer: we end somebody else first (`crate::admission`).
+        ("transport/unicast/accept_pending", (2 * nodes).to_string()),
         ("transport/unicast/accept_timeout", ACCEPT_MS.to_string()),
         ("transport/link/rx/max_message_size", MESSAGE_MAX.to_string()),
         ("low_pass_filter", filters.to_string()),

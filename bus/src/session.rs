@@ -1,9 +1,10 @@
 //! A node's session on the network: publish, subscribe, queries, liveliness tokens.
 
 use crate::keys::{self, Bundle};
-use crate::net::is_loopback;
+use crate::net::{FILES_MAX, is_loopback, nodes_max};
+use crate::open_files::OpenFiles;
 use crate::simulated::{self, SimulatedPublisher, SimulatedSession};
-use crate::{BusError, Net, Token, linger};
+use crate::{BusError, Net, Token, admission, linger};
 use game::Scenario;
 use game::codec;
 use game::message::Message;
@@ -74,7 +75,14 @@ impl Bus {
         if simulated::is_inside() {
             return simulated(SimulatedSession::hub(net), net, what);
         }
-        open(net.hub(game, scenario)?, net, what)
+        let files = OpenFiles::reserve(FILES_MAX);
+        let nodes = nodes_max(files);
+        let bus = open(net.hub(game, scenario, nodes)?, net, what.clone())?;
+        if let Network::Zenoh(session) = &bus.network {
+            let begun = admission::begin(session, net.ports(), files, nodes);
+            begun.map_err(|e| BusError::Open { what, reason: reason(&e) })?;
+        }
+        Ok(bus)
     }
 
     fn of(network: Network, net: &Net) -> Bus {

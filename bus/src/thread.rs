@@ -10,8 +10,7 @@ use std::thread::JoinHandle;
 /// If the system has no thread to give.
 pub fn start_thread(name: &str, body: impl FnOnce() + Send + 'static) -> std::io::Result<()> {
     if simulated::is_inside() {
-        drop(simulated::spawn(body));
-        return Ok(());
+        return simulated::spawn(body).map(drop);
     }
     std::thread::Builder::new().name(name.to_owned()).spawn(body).map(drop)
 }
@@ -33,15 +32,17 @@ impl Drop for Done {
 
 impl NodeThread {
     /// Starts a thread.
-    #[must_use]
-    pub fn start(body: impl FnOnce() + Send + 'static) -> NodeThread {
+    ///
+    /// # Errors
+    /// If the system has no thread to give.
+    pub fn start(body: impl FnOnce() + Send + 'static) -> std::io::Result<NodeThread> {
         let is_done = Arc::new(Watched::new(false));
         let done = Done(Arc::clone(&is_done));
         let handle = simulated::spawn(move || {
             let _done = done;
             body();
-        });
-        NodeThread { is_done, handle }
+        })?;
+        Ok(NodeThread { is_done, handle })
     }
 }
 

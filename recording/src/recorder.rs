@@ -17,6 +17,8 @@ use std::time::{Duration, Instant};
 const FLUSH: Duration = Duration::from_secs(1);
 /// So long the thread lets entries gather: to be woken for each would cost the game more than the writing does.
 const GATHER: Duration = Duration::from_millis(20);
+/// What is gathered for one write, bytes.
+const BUFFER: usize = 1 << 16;
 /// Memory that entries may take up that wait for the disk, bytes.
 const WAITING_BYTES: usize = 128 << 20;
 /// How many they may be.
@@ -72,9 +74,15 @@ impl NewFile {
     /// Makes the file; an old one of this name is not touched.
     ///
     /// # Errors
-    /// [`RecordError`] if it cannot be made.
+    /// [`RecordError`] if it cannot be made, or the disk has no room for a beginning.
     pub fn create(path: &Path) -> Result<NewFile, RecordError> {
-        Ok(NewFile { path: path.to_owned(), file: Some(File::create_new(path)?) })
+        let mut file = File::create_new(path)?;
+        // Whatever fails from here on, it is removed.
+        let new = NewFile { path: path.to_owned(), file: Some(file.try_clone()?) };
+        file.write_all(&[0; BUFFER])?;
+        file.rewind()?;
+        file.set_len(0)?;
+        Ok(new)
     }
 }
 
@@ -97,7 +105,7 @@ impl Recorder {
     /// Never: a new file is used once.
     pub fn begin(mut file: NewFile, opening: &Opening) -> Result<Recorder, RecordError> {
         let open = file.file.as_ref().expect("a new file is there until it is used").try_clone()?;
-        let begun = Recorder::over(BufWriter::with_capacity(1 << 16, open), file.path.clone(), opening, WAITING_BYTES)?;
+        let begun = Recorder::over(BufWriter::with_capacity(BUFFER, open), file.path.clone(), opening, WAITING_BYTES)?;
         file.file = None;
         Ok(begun)
     }

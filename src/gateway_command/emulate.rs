@@ -152,7 +152,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         // The parent process may have asked for any free port.
         NodeEvent::Listening { what, reach } => log.print(format!("{what} at {reach}\n")),
         NodeEvent::Event { at_s, event } => log.event(at_s, event),
-        NodeEvent::ControlPort { .. } | NodeEvent::Status(_) | NodeEvent::Ended(_) => {}
+        NodeEvent::Recording(_) | NodeEvent::ControlPort { .. } | NodeEvent::Status(_) | NodeEvent::Ended(_) => {}
     };
     let emulated = gateway::node::emulate(&settings, &mut notify);
     log.end(String::new());

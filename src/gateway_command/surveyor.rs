@@ -91,9 +91,6 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     if let Some(operator) = &args.without_preflight {
         log.remark(format!("WARNING: {operator} answers for arming without a pre-flight check"));
     }
-    if let Some(path) = &record {
-        log.remark(format!("recording to {}", path.display()));
-    }
     let game = args.leaf.game.as_ref().map(|game| game.as_str().to_owned());
     let settings = Settings {
         game: args.leaf.game.clone(),
@@ -117,6 +114,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let (mut last, mut registration) = (String::new(), None::<Registration>);
     let mut notify = |event: NodeEvent<'_>| match event {
         NodeEvent::Looking { reason } => log.remark(format!("{}: looking for the game: {reason}", args.vehicle)),
+        NodeEvent::Recording(file) => log.remark(format!("recording to {}", file.display())),
         NodeEvent::Listening { what, reach } => log.remark(format!("{what} at {reach}")),
         NodeEvent::ControlPort { address: control, token } => {
             let (vehicle, pid, token) = (args.vehicle.clone(), std::process::id(), token.as_ref().map(Token::hex));

@@ -9,6 +9,7 @@ use anyhow::{Context, Result, anyhow, bail};
 use bus::keys::Identity;
 use game::Scenario;
 use game::gateway::{BoatProtocol, Gateway};
+use recording::NewFile;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::time::Duration;
@@ -62,6 +63,10 @@ impl LoopArgs {
         };
         if let Some(folder) = &self.record_gateways {
             output_file::make_folder(folder)?;
+            // A gateway that refuses would leave its boat out of the game.
+            for file in names.iter().map(|name| folder.join(format!("{name}.mcap"))) {
+                drop(NewFile::create(&file).with_context(|| format!("cannot record into {}", file.display()))?);
+            }
         }
         let port = free_port(false)?;
         let name = unique_game_name("water")?.as_str().to_owned();

@@ -1,13 +1,14 @@
 //! Attacks on whatever a game makes its machine hold: memory, descriptors, tables, and the patience of others.
 
+use crate::crowd::{FILES, is_withstood, squall_with_files};
 use crate::disturbed_game::DisturbedGame;
 use crate::intruder::{Intruder, Target};
-use crate::support::{FOUR, LIMIT, Process, Sim, wait_until};
+use crate::support::{FOUR, LIMIT, Process, Sim, free_endpoint, wait_until};
 use game::message::Control;
 use serde_json::Value;
 use std::any::Any;
-use std::io::{Read, Write};
-use std::net::{TcpListener, TcpStream};
+use std::io::Read;
+use std::net::TcpListener;
 use std::time::{Duration, Instant};
 use zenoh::{Config, Wait};
 
@@ -135,21 +136,11 @@ fn router(target: &Target) -> Box<dyn Any> {
 }
 
 fn silent_connections(target: &Target) -> Box<dyn Any> {
-    Box::new(connections(target, &[], 1500))
+    Box::new(target.connections(&[], 1500))
 }
 
 fn half_handshakes(target: &Target) -> Box<dyn Any> {
-    Box::new(connections(target, &first_words(), 1500))
-}
-
-/// Connections that say this much. Where there are no descriptors left for more, there are fewer.
-pub(crate) fn connections(target: &Target, words: &[u8], count: usize) -> Vec<TcpStream> {
-    let connect = |_| {
-        let mut stream = TcpStream::connect(target.address()).ok()?;
-        stream.write_all(words).ok()?;
-        Some(stream)
-    };
-    (0..count).map_while(connect).collect()
+    Box::new(target.connections(&first_words(), 1500))
 }
 
 /// What a session says first, as it says it to a listener that does not answer.
@@ -229,13 +220,27 @@ fn an_e_stop_gets_through_every_attack() {
 #[test]
 fn connections_that_say_nothing_keep_agents_out_for_seconds_only() {
     let sim = Sim::start("patient", &["--join-s", "600"]);
-    let silent = connections(&Target::of(&sim), &[], 1500);
+    let silent = Target::of(&sim).connections(&[], 1500);
     let start = Instant::now();
     let _agents: Vec<Process> = FOUR.iter().map(|name| sim.agent(&[name])).collect();
     sim.wait_for_kind("started");
     eprintln!("beside {} silent connections: all have joined after {:.1?}", silent.len(), start.elapsed());
     assert!(start.elapsed() < Duration::from_secs(20), "{:?}", start.elapsed());
     sim.stop();
+}
+
+#[test]
+fn who_crowds_the_port_keeps_nobody_out_and_disturbs_nobody() {
+    for files in FILES {
+        let endpoint = free_endpoint();
+        let sim = Sim::start_with(squall_with_files(files), "long", &["--listen", &endpoint, "--pace", "20x"]);
+        let mut agents = FOUR.map(|name| sim.agent(&[name]));
+        sim.wait_for_kind("started");
+        is_withstood(&sim, files, &sim.bus(), &|| Target::of(&sim).open("client").is_some());
+        agents.iter_mut().for_each(|agent| assert!(agent.0.try_wait().expect("it can be asked").is_none()));
+        let done = sim.stop();
+        FOUR.iter().for_each(|name| assert_eq!(done["outcome"]["counts"]["boats"][name]["agents_lost"], 0, "{name}"));
+    }
 }
 
 /// Where there is no room, those who are there go on, and others get in when there is room again.

@@ -1,5 +1,6 @@
 //! A game with keys: who has none, or not the right ones, does nothing at all; who has some does what is his.
 
+use crate::crowd::{FILES, is_withstood, squall_with_files};
 use crate::disturbed_game::DisturbedGame;
 use crate::intruder::{Intruder, Target};
 use crate::support::{FOUR, Process, Sim, free_endpoint, squall, temporary, wait_until};
@@ -9,7 +10,7 @@ use bus::{Bus, BusError, Net};
 use game::message::Control;
 use serde_json::{Value, json};
 use std::path::Path;
-use std::process::Stdio;
+use std::process::{Command, Stdio};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
@@ -28,7 +29,11 @@ fn keys(valid: Duration) -> TempDir {
 
 /// A sim with keys, which needs no token.
 fn sim(keys: &TempDir, scenario: &str, args: &[&str]) -> Sim {
-    let mut program = squall(&[]);
+    sim_by(squall(&[]), keys, scenario, args)
+}
+
+/// The same by this program.
+fn sim_by(mut program: Command, keys: &TempDir, scenario: &str, args: &[&str]) -> Sim {
     program.env_remove(TOKEN_VARIABLE);
     let (endpoint, folder) = (free_endpoint(), keys.path().join("sim").display().to_string());
     Sim::start_with(program, scenario, &[&["--listen", &endpoint, "--keys", &folder], args].concat())
@@ -93,6 +98,21 @@ fn who_has_no_certificate_of_the_game_gets_no_session() {
     let refused = agent(&elsewhere, &sim, &own.path().join("team-blue"), &FOUR[..1]).refusal();
     assert!(refused.contains("--host localhost"), "{refused}");
     sim.stop();
+}
+
+#[test]
+fn who_crowds_the_port_keeps_nobody_with_keys_out_and_disturbs_nobody() {
+    let own = keys(DAY);
+    for files in FILES {
+        let sim = sim_by(squall_with_files(files), &own, "long", &["--pace", "20x"]);
+        let mut agents = agents(&sim, &own);
+        sim.wait_for_kind("started");
+        let operator = node(&sim, &own, "operator").expect("good keys");
+        is_withstood(&sim, files, &operator, &|| node(&sim, &own, "observer").is_ok());
+        agents.iter_mut().for_each(|agent| assert!(agent.0.try_wait().expect("it can be asked").is_none()));
+        let done = sim.stop();
+        FOUR.iter().for_each(|name| assert_eq!(done["outcome"]["counts"]["boats"][name]["agents_lost"], 0, "{name}"));
+    }
 }
 
 /// Links that stand are kept: nobody is cut off in the middle of a game.

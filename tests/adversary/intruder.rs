@@ -3,6 +3,8 @@
 use crate::support::Sim;
 use game::topic::{self, GameName};
 use serde_json::{Value, json};
+use std::io::Write;
+use std::net::TcpStream;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 use zenoh::bytes::ZBytes;
@@ -34,7 +36,18 @@ impl Target {
 
     /// Where it listens, for whoever does not speak zenoh.
     pub(crate) fn address(&self) -> &str {
-        self.endpoint.strip_prefix("tcp/").expect("it listens on TCP")
+        self.endpoint.split_once('/').expect("an endpoint").1
+    }
+
+    /// Connections that say this much. Where there are no descriptors left for more, there are fewer.
+    pub(crate) fn connections(&self, words: &[u8], count: usize) -> Vec<TcpStream> {
+        let connect = |_| {
+            let mut stream = TcpStream::connect(self.address()).ok()?;
+            // It may be closed at once.
+            drop(stream.write_all(words));
+            Some(stream)
+        };
+        (0..count).map_while(connect).collect()
     }
 
     pub(crate) fn topic(&self, rest: &str) -> String {

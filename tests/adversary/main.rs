@@ -9,6 +9,7 @@ mod another_machine;
 mod attack;
 mod boat;
 mod control_port;
+mod crowd;
 mod disturbed_game;
 mod fake_sim;
 mod intruder;

@@ -6,6 +6,7 @@
 )]
 
 mod certificate;
+mod crowd;
 #[allow(dead_code, reason = "shared with the games without keys")]
 mod disturbed_game;
 #[allow(dead_code, reason = "shared with the games without keys")]

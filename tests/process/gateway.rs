@@ -4,15 +4,18 @@
 //! in the water itself, by the truth about its thrusters.
 
 use crate::proxy::{PASS, Proxy, REFUSE, SWALLOW};
-use crate::support::{LIMIT, Process, Sim, newest, result_of, run, stderr, stdout, temporary, wait_until, wait_within};
+use crate::support::{
+    LIMIT, Process, Sim, newest, refusal_of, result_of, run, squall, squall_on_a_disk_of, stderr, stdout, temporary,
+    wait_until, wait_within,
+};
 use bus::{Bus, Declaration, Watched};
 use game::codec;
 use game::external::{GatewayStatus, OperatorCommand, OperatorReply};
 use game::message::Frame;
 use game::topic;
-use std::io::Write;
-use std::net::TcpStream;
-use std::process::Stdio;
+use std::io::{Read, Write};
+use std::net::{TcpListener, TcpStream};
+use std::process::{Command, Stdio};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -23,6 +26,9 @@ const SLACK: Duration = Duration::from_millis(1500);
 /// this after 3.5 + 1.1 s.
 const STILL_NEWTON: f64 = 0.5;
 const LAG: Duration = Duration::from_millis(4600);
+
+/// What a boat is sent first: thrust zero, then standby.
+const STANDBY: &str = "$PSEAC,T,0,0,0,*0C\r\n$PSEAC,L,0,0,0,*14\r\n";
 
 /// All of it.
 pub(crate) struct Loop {
@@ -200,6 +206,63 @@ fn a_gateway_that_is_asked_to_end_stops_the_boat_first() {
         assert!(all.gateway.wait().success());
         all.stops_within(Duration::from_millis(200));
     }
+}
+
+/// What a gateway says that is to fail within this time, whether it found the boat or not.
+fn refusal_within(limit: Duration, mut gateway: Command) -> String {
+    let start = Instant::now();
+    gateway.stdout(Stdio::null()).stderr(Stdio::piped());
+    let said = Process::start(gateway).refusal();
+    assert!(start.elapsed() < limit, "{:?}: {said}", start.elapsed());
+    said
+}
+
+#[test]
+fn a_gateway_that_cannot_record_ends_at_once_with_the_reason_and_leaves_the_boat_alone() {
+    let (dir, boat) = (temporary(), TcpListener::bind("127.0.0.1:0").expect("a port"));
+    boat.set_nonblocking(true).expect("a socket");
+    let link = format!("tcp://{}", boat.local_addr().expect("it is bound"));
+    let [taken, nowhere, full] = ["taken.mcap", "nowhere/x.mcap", "full.mcap"].map(|name| dir.path().join(name));
+    std::fs::write(&taken, "of the run before").expect("a file can be written");
+    for (path, blocks, reason) in
+        [(&taken, 2048, "File exists"), (&nowhere, 2048, "No such file"), (&full, 0, "File too large")]
+    {
+        let file = path.display().to_string();
+        let args =
+            ["gateway", "surveyor", "--vehicle", "blue_one", "--game", "nobody", "--link", &link, "--record", &file];
+        let said = refusal_within(LIMIT / 4, squall_on_a_disk_of(blocks, &args));
+        assert!(said.contains(&format!("cannot record into {file}")) && said.contains(reason), "{said}");
+        assert!(!said.contains("recording to") && !said.contains("operators reach"), "{said}");
+        assert!(boat.accept().is_err(), "{reason}: the boat is connected to");
+    }
+    assert_eq!(std::fs::read_to_string(&taken).expect("it is there"), "of the run before");
+    assert!(!full.exists(), "nothing is left of a recording that did not begin");
+}
+
+#[test]
+fn a_gateway_that_fails_sends_its_boat_standby_first_and_ends() {
+    let boat = TcpListener::bind("127.0.0.1:0").expect("a port");
+    let link = format!("tcp://{}", boat.local_addr().expect("it is bound"));
+    let args = ["gateway", "surveyor", "--vehicle", "blue_one", "--game", "nobody", "--wait-s", "0.001", "--no-record"];
+    let said = refusal_within(LIMIT / 4, squall(&[&args[..], &["--link", &link]].concat()));
+    assert!(said.contains("no game to join"), "{said}");
+    let mut words = String::new();
+    boat.accept().expect("it was connected to").0.read_to_string(&mut words).expect("text");
+    assert!(words.starts_with(STANDBY), "{words:?}");
+    // Nor does it wait for a boat that is not there.
+    let nowhere = format!("serial://{}?baud=38400", temporary().path().join("none").display());
+    refusal_within(LIMIT / 4, squall(&[&args[..], &["--link", &nowhere]].concat()));
+}
+
+#[test]
+fn gateways_that_could_not_record_begin_no_game() {
+    let (dir, gateways) = (temporary(), "scenarios/gateways/emulated.toml");
+    let file = dir.path().join("blue_one.mcap").display().to_string();
+    std::fs::write(&file, "of the run before").expect("a file can be written");
+    let records = dir.path().display().to_string();
+    let args = ["run", "scenarios/games/mixed_2v2.toml", "--emulate", "--pace", "10x", "--no-record"];
+    let said = refusal_of(&[&args[..], &["--gateway", gateways, "--record-gateways", &records]].concat());
+    assert!(said.contains(&format!("cannot record into {file}")) && said.contains("File exists"), "{said}");
 }
 
 #[test]

@@ -1,6 +1,9 @@
 //! Recordings as people make them: of whole games, of games that were killed, of real boats; and games played again.
 
-use crate::support::{FOUR, Process, Sim, own, refusal_of, result_of, run, squall, stdout, temporary, wait_until};
+use crate::support::{
+    FOUR, Process, Sim, own, refusal_of, result_of, run, squall, squall_on_a_disk_of, stderr, stdout, temporary,
+    wait_until,
+};
 use bus::Priority;
 use game::VehicleId;
 use game::external::LinkBytes;
@@ -134,14 +137,11 @@ fn what_is_no_recording_is_refused_with_the_reason() {
     }
 }
 
-/// Runs the program where no file may be longer than one or two MiB, as the shell counts: a disk that is full.
+/// Runs the program on a disk that is full after one or two MiB, as the shell counts.
 #[cfg(unix)]
 fn run_on_a_full_disk(args: &[&str]) -> (bool, String) {
-    let mut shell = std::process::Command::new("sh");
-    let limited = "trap '' XFSZ; ulimit -f 2048; exec \"$0\" \"$@\"";
-    shell.current_dir(env!("CARGO_MANIFEST_DIR")).args(["-c", limited, env!("CARGO_BIN_EXE_squall")]).args(args);
-    let output = shell.output().expect("a shell");
-    (output.status.success(), String::from_utf8_lossy(&output.stderr).into_owned())
+    let output = squall_on_a_disk_of(2048, args).output().expect("a shell");
+    (output.status.success(), stderr(&output))
 }
 
 #[test]

@@ -22,6 +22,14 @@ pub(crate) fn squall(args: &[&str]) -> Command {
     command
 }
 
+/// The same where no file may have more blocks, of 512 or 1024 bytes as the shell counts: a disk that is full.
+pub(crate) fn squall_on_a_disk_of(blocks: u32, args: &[&str]) -> Command {
+    let mut shell = Command::new("sh");
+    let limited = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" \"$@\"");
+    shell.current_dir(env!("CARGO_MANIFEST_DIR")).args(["-c", &limited, env!("CARGO_BIN_EXE_squall")]).args(args);
+    shell
+}
+
 /// The token of all games of the tests.
 pub(crate) fn token() -> Token {
     "0123456789abcdef".repeat(4).parse().expect("64 digits")

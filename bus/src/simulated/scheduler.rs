@@ -4,6 +4,7 @@ use super::state::{Node, State, Status, Thread};
 use parking_lot::Mutex;
 use std::any::Any;
 use std::cell::{Cell, RefCell};
+use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
@@ -97,13 +98,16 @@ pub(crate) fn wait_until(address: usize, deadline: Option<Instant>) -> bool {
 }
 
 /// Starts another thread of the same node, inside of a simulation; a thread of its own elsewhere.
-pub(crate) fn spawn(body: impl FnOnce() + Send + 'static) -> Option<JoinHandle<()>> {
+///
+/// # Errors
+/// If the system has no thread to give.
+pub(crate) fn spawn(body: impl FnOnce() + Send + 'static) -> io::Result<Option<JoinHandle<()>>> {
     match current() {
         Some(Current { world, node, .. }) => {
             world.spawn(node, Box::new(body));
-            None
+            Ok(None)
         }
-        None => Some(thread::spawn(body)),
+        None => thread::Builder::new().spawn(body).map(Some),
     }
 }
 

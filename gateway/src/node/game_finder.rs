@@ -37,7 +37,10 @@ struct Wanted {
 }
 
 /// Begins to look. What is found, or why nothing can be, is given to the loop.
-pub(super) fn begin(settings: &Settings, input: LoopInput) -> NodeThread {
+///
+/// # Errors
+/// If the system has no thread to give.
+pub(super) fn begin(settings: &Settings, input: LoopInput) -> std::io::Result<NodeThread> {
     let Settings { game, place, vehicle, gateway, at_game_pace, wait, stop, .. } = settings;
     let wanted = Wanted {
         game: game.clone(),

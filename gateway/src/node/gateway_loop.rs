@@ -31,6 +31,9 @@ use std::time::{Duration, Instant};
 const STATUS_EVERY: Duration = Duration::from_millis(500);
 /// How long the shutdown message may take.
 const SHUTDOWN_MAX: Duration = Duration::from_millis(500);
+/// How long an error waits for a boat that has not been reached yet, to send it standby.
+const REACH_MAX: Duration = Duration::from_secs(2);
+const NOT_REACHED: &str = "not connected yet";
 /// The most sentences with orders whose completion is awaited.
 const WRITING_MAX: usize = 64;
 /// What has waited longer for the loop is too old to go by: it was suspended, or had no processor.
@@ -103,7 +106,7 @@ impl Counters {
             ticket: None,
             game_now: SimTime::ZERO,
             reports: 0,
-            link: "not connected yet".to_owned(),
+            link: NOT_REACHED.to_owned(),
             tag: 0,
             writing: VecDeque::new(),
             order_came: None,
@@ -151,6 +154,17 @@ impl GatewayLoop<'_> {
             in_game.status.send_raw(Reported::with_ticket(ticket, &json))?;
         }
         Ok(())
+    }
+
+    /// Waits until the boat is reached and was sent standby, if the first attempt is still under way.
+    pub(super) fn await_boat(&mut self) {
+        let start = clock::now();
+        while self.counters.link == NOT_REACHED && clock::since(start) < REACH_MAX {
+            if let Some(Call::Link(event)) = self.input.calls.take(HEARTBEAT) {
+                // There is an error already.
+                drop(self.take_link(event));
+            }
+        }
     }
 
     /// Shows the guard that the loop runs, and the core if it has not for so long that the guard may have stopped the boat.
@@ -318,6 +332,7 @@ impl GatewayLoop<'_> {
     fn take_link(&mut self, event: LinkEvent) -> Result<(), NodeError> {
         match event {
             LinkEvent::Up { name, .. } => {
+                "up".clone_into(&mut self.counters.link);
                 self.remark(&format!("connected to {name}"));
                 self.step(Input::LinkUp, None)
             }

@@ -9,7 +9,7 @@ use parking_lot::Mutex;
 use rustix::net::sockopt::{Timeout, set_socket_timeout};
 use rustix::net::{
     AddressFamily, RecvAncillaryBuffer, RecvAncillaryMessage, RecvFlags, SendAncillaryBuffer, SendAncillaryMessage,
-    SendFlags, SocketFlags, SocketType, recvmsg, sendmsg, socketpair,
+    SendFlags, Shutdown, SocketFlags, SocketType, recvmsg, sendmsg, shutdown, socketpair,
 };
 use std::io::{self, IoSlice, IoSliceMut};
 use std::mem::MaybeUninit;
@@ -107,7 +107,8 @@ impl Guarded {
 
 impl Drop for Inner {
     fn drop(&mut self) {
-        // It has been told so, or is gone.
+        // One that was not told of an end waits for this one: it ends as if this process had died.
+        let _ = shutdown(&self.socket, Shutdown::Both);
         drop(self.process.lock().wait());
     }
 }
@@ -200,5 +201,23 @@ fn write(link: &OwnedFd, bytes: &[u8]) {
             Err(rustix::io::Errno::AGAIN | rustix::io::Errno::INTR) => clock::rest(Duration::from_millis(2)),
             Err(_) => return,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::mpsc::channel;
+
+    #[test]
+    fn a_guard_that_was_not_told_of_the_end_is_not_waited_for_without_end() {
+        // Like a guard it reads until the other end is closed.
+        let guarded = Guarded::start(Command::new("cat"), b"stop").expect("it starts");
+        let (sender, dropped) = channel();
+        std::thread::spawn(move || {
+            drop(guarded);
+            sender.send(())
+        });
+        assert_eq!(dropped.recv_timeout(Duration::from_secs(10)), Ok(()));
     }
 }

@@ -34,7 +34,12 @@ impl Join {
         let (bus, place, game, scenario) = (bus.clone(), place.clone(), game.clone(), scenario.clone());
         let joining = Joining { bus, place, game, scenario, vehicle: [vehicle.to_owned()] };
         let ended = Arc::clone(&stop);
-        let thread = NodeThread::start(move || joining.keep_joined(&sim, &ended, &calls));
+        let failed = |e: std::io::Error| BusError::Use {
+            doing: "start the thread that joins as",
+            key: vehicle.to_owned(),
+            reason: e.to_string(),
+        };
+        let thread = NodeThread::start(move || joining.keep_joined(&sim, &ended, &calls)).map_err(failed)?;
         Ok(Join { stop, _thread: thread })
     }
 }

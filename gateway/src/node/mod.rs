@@ -51,7 +51,7 @@ use machine_check::SPACE_MIN_MIB;
 use payload::Payloads;
 use recording::{NewFile, RecordError, Recorder, utc};
 use std::net::SocketAddr;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -121,6 +121,8 @@ pub enum NodeEvent<'a> {
     Status(&'a GatewayStatus),
     /// It has ended, with this status.
     Ended(&'a GatewayStatus),
+    /// It records into this file.
+    Recording(&'a Path),
     /// The control port is open, or asks for another token from now on.
     ControlPort {
         /// Where it listens.
@@ -161,7 +163,7 @@ pub enum NodeError {
     #[error(transparent)]
     Locked(#[from] LinkLockError),
     /// The recording cannot be written.
-    #[error("{path}: {source}")]
+    #[error("cannot record into {path}")]
     Record {
         /// The file.
         path: PathBuf,
@@ -200,6 +202,8 @@ pub enum NodeError {
 /// [`NodeError`] if another gateway on this machine has the link, if the game refuses, or if the network, the link or the
 /// recording cannot work. A boat or a sim that goes away is none: the gateway waits for it.
 pub fn serve(settings: &Settings, outside: &Outside, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Result<(), NodeError> {
+    // Before anything that others notice.
+    let file = recording_file(settings, notify)?;
     let _lock = match LinkLock::take(&outside.link.to_string()) {
         Ok(lock) => Some(lock),
         Err(held @ LinkLockError::Held { .. }) => return Err(held.into()),
@@ -223,7 +227,7 @@ pub fn serve(settings: &Settings, outside: &Outside, notify: &mut dyn FnMut(Node
         let link_settings = LinkSettings { silence: Some(outside.silence), ..LinkSettings::default() };
         Ok(Box::new(Link::open_watched(&outside.link, link_settings, on_port, on_event)?))
     };
-    connect(settings, input, (Some(port), guarded, &outside.payloads), open, notify)
+    connect(settings, input, file, (Some(port), guarded, &outside.payloads), open, notify)
 }
 
 /// The guard, where there is to be one. A boat is not left alone since it cannot be started.
@@ -247,13 +251,15 @@ pub fn serve_over(
     open: impl FnOnce(OnLinkEvent) -> Result<Box<dyn BoatLink>, LinkError>,
     notify: &mut dyn FnMut(NodeEvent<'_>),
 ) -> Result<(), NodeError> {
-    connect(settings, loop_input(), (None, None, &[]), open, notify)
+    let file = recording_file(settings, notify)?;
+    connect(settings, loop_input(), file, (None, None, &[]), open, notify)
 }
 
 /// Opens the link, runs the loop, and finds the game meanwhile.
 fn connect(
     settings: &Settings,
     (input, output): (LoopInput, LoopOutput),
+    file: Option<NewFile>,
     (port, guarded, payloads): (Option<ControlPort>, Option<Guarded>, &[PayloadPort]),
     open: impl FnOnce(OnLinkEvent) -> Result<Box<dyn BoatLink>, LinkError>,
     notify: &mut dyn FnMut(NodeEvent<'_>),
@@ -269,7 +275,7 @@ fn connect(
         dry_run: settings.dry_run,
         preflight: settings.preflight.clone(),
     };
-    let recorder = recorder(settings, &plan)?;
+    let recorder = file.and_then(|file| recorder(file, settings, &plan, notify));
     let calls = input.calls.clone();
     let link = open(Box::new(move |event| calls.put(Call::Link(event))))?;
     let clock = Clock::start();
@@ -295,7 +301,13 @@ fn connect(
     };
     let finder = game_finder::begin(settings, input);
     port.iter().for_each(ControlPort::begin);
-    let result = gateway_loop.run(&settings.stop);
+    let result = match &finder {
+        Ok(_) => gateway_loop.run(&settings.stop),
+        Err(e) => Err(NodeError::Refused(format!("no thread to look for the game: {e}"))),
+    };
+    if result.is_err() {
+        gateway_loop.await_boat();
+    }
     let status = gateway_loop.full_status();
     // The boat is stopped before the network closes.
     let in_game = gateway_loop.in_game.take();
@@ -308,12 +320,26 @@ fn connect(
     result
 }
 
-/// The recording, if there is to be one.
-fn recorder(settings: &Settings, plan: &Plan) -> Result<Option<Recorder>, NodeError> {
+/// The file of the recording, if there is to be one.
+fn recording_file(settings: &Settings, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Result<Option<NewFile>, NodeError> {
     let Some(path) = &settings.record else { return Ok(None) };
-    let opening = record::opening(plan, utc::now_ns(), settings.commit);
-    let begun = NewFile::create(path).and_then(|file| Recorder::begin(file, &opening));
-    begun.map(Some).map_err(|source| NodeError::Record { path: path.clone(), source })
+    let file = NewFile::create(path).map_err(|source| NodeError::Record { path: path.clone(), source })?;
+    notify(NodeEvent::Recording(path));
+    Ok(Some(file))
+}
+
+/// The recording. A boat is not left alone since it cannot begin.
+fn recorder(
+    file: NewFile,
+    settings: &Settings,
+    plan: &Plan,
+    notify: &mut dyn FnMut(NodeEvent<'_>),
+) -> Option<Recorder> {
+    let begun = Recorder::begin(file, &record::opening(plan, utc::now_ns(), settings.commit));
+    if let Err(e) = &begun {
+        notify(NodeEvent::Event { at_s: 0.0, event: &Event::Warning(format!("nothing is recorded: {e}")) });
+    }
+    begun.ok()
 }
 
 /// Subscribes to what comes from the sim and from operators.
@@ -348,7 +374,7 @@ fn subscribe(
             queries.query(query);
         })?,
         bus.subscribe(topic::stop(game, name), move |bytes| {
-            stop_in(bytes).into_iter().for_each(|s| drop(stops.stop(s)))
+            stop_in(bytes).into_iter().for_each(|stop| _ = stops.stop(stop))
         })?,
         bus.subscribe(topic::control(game), move |bytes| {
             // Everything else reaches the boat as an order, if at all.

@@ -102,12 +102,15 @@ impl GameWatcher {
         let queries =
             QueryThread { shared: Arc::clone(&self.shared), bus: session.bus.clone(), game: Arc::clone(&session.game) };
         let until = Arc::clone(&left);
-        let query_thread = NodeThread::start(move || queries.ask(&until));
+        // The game is shown without them too.
+        let no_thread = |e: &std::io::Error| (self.shared.tell)(&format!("no thread to ask the game from: {e}"));
+        let query_thread = NodeThread::start(move || queries.ask(&until)).inspect_err(no_thread);
         let (requests, requested) = inbox(REQUESTS);
         let (shared, bus, game) = (Arc::clone(&self.shared), session.bus.clone(), session.game.name.clone());
         let until = Arc::clone(&left);
         // The sim may take its time to answer, and a stop must not wait for that.
-        let request_thread = NodeThread::start(move || request(&shared, &bus, &game, (&requested, &until)));
+        let request_thread =
+            NodeThread::start(move || request(&shared, &bus, &game, (&requested, &until))).inspect_err(no_thread);
         while !self.shared.is_closing() && session.sim.state() == SimState::Alive {
             if let Some(command) = self.commands.take(ROUND) {
                 GameSession::send(command, &requests);

@@ -1,0 +1,135 @@
+//! Keeps room at the port of a hub for nodes that want to connect, whoever else does.
+//!
+//! A connection waits until zenoh has made a link of it. Of those that wait there are so many at most: for one more, another is
+//! ended, by the rule of [`Connections`]. zenoh's TLS listener (1.10, `tls-listener` 0.11) needs more than that: while the process
+//! can open no more files it only tries to accept, and closes none of the connections that it has, so that it would never
+//! recover. When files run short, the port is closed for a moment, and the files that are kept are lent to what has come through
+//! already: then the listener has nothing more to accept, and closes what was ended.
+
+use crate::descriptor::{self, Ends, Kind};
+use crate::open_files::OpenFiles;
+use crate::{Connections, Slot, clock, linger, start_thread};
+use parking_lot::Mutex;
+use std::collections::{BTreeMap, BTreeSet};
+use std::os::fd::RawFd;
+use std::sync::Arc;
+use std::time::Duration;
+use zenoh::sample::SampleKind;
+use zenoh::session::LinkEvent;
+use zenoh::{Session, Wait};
+
+/// How often the port is looked at, and how often while many wait there.
+const LOOK: Duration = Duration::from_millis(100);
+const LOOK_OFTEN: Duration = Duration::from_millis(10);
+
+/// The connections that are links.
+type Links = Mutex<BTreeSet<Ends>>;
+
+/// What is known of the port.
+struct Port {
+    numbers: Vec<u16>,
+    /// zenoh keeps them open as long as the session.
+    listeners: Vec<RawFd>,
+    files: OpenFiles,
+    waiting_max: usize,
+    waiting: Connections,
+    /// Of each connection that waits.
+    slots: BTreeMap<Ends, Slot>,
+    is_closed: bool,
+}
+
+/// Begins to keep room at these ports of a session for as long as it is open: `waiting_max` connections may wait.
+pub(crate) fn begin(session: &Session, numbers: Vec<u16>, files: OpenFiles, waiting_max: usize) -> zenoh::Result<()> {
+    let links = Arc::new(Links::default());
+    let watched = Arc::downgrade(&links);
+    let note = move |event: LinkEvent| {
+        let Some(ends) = linger::ends(event.link()) else { return };
+        match event.kind() {
+            SampleKind::Put => links.lock().insert(ends),
+            SampleKind::Delete => links.lock().remove(&ends),
+        };
+    };
+    session.info().link_events_listener().history(true).callback(note).background().wait()?;
+    let waiting = Connections::new(waiting_max);
+    let listeners = listeners(&numbers);
+    // What the system has accepted already is to find room among the files that are kept.
+    let queue_max = i32::try_from(files.kept() / 2).unwrap_or(i32::MAX);
+    for listener in &listeners {
+        descriptor::with_socket(*listener, |socket| socket.listen(queue_max))?;
+    }
+    let slots = BTreeMap::new();
+    let mut port = Port { numbers, listeners, files, waiting_max, waiting, slots, is_closed: false };
+    // The session has dropped its callback when it is closed.
+    let look = move || {
+        while let Some(links) = watched.upgrade() {
+            let rest = port.look(&links);
+            drop(links);
+            clock::rest(rest);
+        }
+    };
+    Ok(start_thread("admission", look)?)
+}
+
+impl Port {
+    /// Finds who waits, ends those that are too many, and says when to look again.
+    fn look(&mut self, links: &Links) -> Duration {
+        let descriptors = descriptor::all().or_else(|_| {
+            self.close(true);
+            descriptor::all()
+        });
+        let descriptors = descriptors.unwrap_or_default();
+        let is_usual = |descriptor: &RawFd| u64::try_from(*descriptor).is_ok_and(|number| number < self.files.usual);
+        let used = descriptors.iter().filter(|descriptor| is_usual(descriptor)).count() as u64;
+        self.close(self.files.usual - used < self.files.kept() / 2);
+        let mut found = BTreeMap::new();
+        for descriptor in descriptors {
+            if let Kind::Connection(ends) = descriptor::kind(descriptor)
+                && self.numbers.contains(&ends.0.port())
+            {
+                found.insert(ends, descriptor);
+            }
+        }
+        // What became a link meanwhile is known by now.
+        let links = links.lock();
+        found.retain(|ends, _| !links.contains(ends));
+        drop(links);
+        self.slots.retain(|ends, _| found.contains_key(ends));
+        for (ends, descriptor) in found {
+            let admit = || self.waiting.admit(ends.1.ip().to_canonical(), move || descriptor::end(descriptor, ends));
+            self.slots.entry(ends).or_insert_with(admit);
+        }
+        let are_many = 2 * self.slots.len() > self.waiting_max;
+        if self.is_closed || are_many { LOOK_OFTEN } else { LOOK }
+    }
+
+    /// Lets nobody connect for now, and lends the files that are kept; or the contrary.
+    fn close(&mut self, is_closed: bool) {
+        if self.is_closed != is_closed {
+            self.is_closed = is_closed;
+            // In this order: whoever still came through would take them.
+            self.listeners.iter().for_each(|listener| filter(*listener, is_closed));
+            self.files.lend(is_closed);
+        }
+    }
+}
+
+/// The sockets of this process that listen on one of these ports.
+fn listeners(ports: &[u16]) -> Vec<RawFd> {
+    let is_one = |it: &RawFd| matches!(descriptor::kind(*it), Kind::Listener(port) if ports.contains(&port));
+    descriptor::all().unwrap_or_default().into_iter().filter(is_one).collect()
+}
+
+/// Has the system drop what comes for a listener, or not any more. Whoever connects tries again after a second, by itself.
+#[cfg(target_os = "linux")]
+fn filter(listener: RawFd, is_closed: bool) {
+    /// `BPF_RET | BPF_K` of classic BPF (`linux/bpf_common.h`), with zero: nothing of the packet is taken.
+    const DROP: [socket2::SockFilter; 1] = [socket2::SockFilter::new(0x06, 0, 0, 0)];
+    let change =
+        |socket: &socket2::SockRef<'_>| if is_closed { socket.attach_filter(&DROP) } else { socket.detach_filter() };
+    // Where that cannot be done, a flood takes longer to be over.
+    drop(descriptor::with_socket(listener, change));
+}
+
+/// Other systems have no such filter: there a flood takes longer to be over.
+#[cfg(not(target_os = "linux"))]
+fn filter(_listener: RawFd, _is_closed: bool) {}

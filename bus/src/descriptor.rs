@@ -1,0 +1,70 @@
+//! The descriptors of this process. zenoh does not give its sockets away: they are found here, by their addresses.
+
+use socket2::{SockRef, Type};
+use std::io;
+use std::net::{Shutdown, SocketAddr};
+use std::os::fd::{BorrowedFd, RawFd};
+
+/// Where the system lists the descriptors of the process that asks: Linux has both, macOS and the BSDs the second.
+const FOLDERS: [&str; 2] = ["/proc/self/fd", "/dev/fd"];
+
+/// The two ends of a connection: ours, and that of the peer.
+pub(crate) type Ends = (SocketAddr, SocketAddr);
+
+/// What a descriptor is.
+pub(crate) enum Kind {
+    Connection(Ends),
+    /// A TCP socket that listens on this port.
+    Listener(u16),
+    Other,
+}
+
+/// The numbers of all descriptors.
+///
+/// # Errors
+/// If the system lists none, or there is no descriptor left to read the list with.
+pub(crate) fn all() -> io::Result<Vec<RawFd>> {
+    let open = FOLDERS.iter().map(std::fs::read_dir).reduce(|first, second| first.or(second));
+    let folder = open.unwrap_or_else(|| Err(io::ErrorKind::NotFound.into()))?;
+    Ok(folder.flatten().filter_map(|entry| entry.file_name().to_str()?.parse().ok()).collect())
+}
+
+/// A descriptor as a socket, whatever it is: the system checks that at each call.
+#[expect(unsafe_code, reason = "zenoh does not give its sockets away: only their numbers can be known")]
+fn borrow<'a>(descriptor: RawFd) -> BorrowedFd<'a> {
+    // SAFETY: the number comes from the system, so it is not -1, and the descriptor is not closed through this. If another thread
+    // closes it meanwhile, calls fail. If its number is used anew, it has other addresses: whoever changes something looks at these,
+    // and while the socket is sure to stay open, or at a duplicate of it.
+    unsafe { BorrowedFd::borrow_raw(descriptor) }
+}
+
+/// What this descriptor is now.
+pub(crate) fn kind(descriptor: RawFd) -> Kind {
+    let borrowed = borrow(descriptor);
+    let socket = SockRef::from(&borrowed);
+    let Some(local) = socket.local_addr().ok().and_then(|address| address.as_socket()) else { return Kind::Other };
+    match socket.peer_addr() {
+        Ok(peer) => peer.as_socket().map_or(Kind::Other, |peer| Kind::Connection((local, peer))),
+        Err(_) if socket.r#type().is_ok_and(|kind| kind == Type::STREAM) => Kind::Listener(local.port()),
+        Err(_) => Kind::Other,
+    }
+}
+
+/// Calls `change` with the socket of a descriptor, whose owner must keep it open meanwhile.
+pub(crate) fn with_socket<T>(descriptor: RawFd, change: impl FnOnce(&SockRef<'_>) -> T) -> T {
+    let borrowed = borrow(descriptor);
+    change(&SockRef::from(&borrowed))
+}
+
+/// Ends a connection, if the descriptor is still of it; the owner finds out and closes it.
+pub(crate) fn end(descriptor: RawFd, ends: Ends) {
+    // A duplicate stays what it is, though its owner may close the descriptor at any time.
+    let Ok(duplicate) = borrow(descriptor).try_clone_to_owned() else { return };
+    let socket = SockRef::from(&duplicate);
+    let is_at =
+        |address: io::Result<socket2::SockAddr>, wanted| address.ok().and_then(|at| at.as_socket()) == Some(wanted);
+    if is_at(socket.local_addr(), ends.0) && is_at(socket.peer_addr(), ends.1) {
+        // It may have ended by itself.
+        drop(socket.shutdown(Shutdown::Both));
+    }
+}

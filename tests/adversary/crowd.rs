@@ -1,0 +1,122 @@
+//! Connections that crowd the port of a simulation that may open few files: nobody who may come in is kept out, nobody is disturbed.
+
+use crate::intruder::Target;
+use crate::support::{Sim, squall, wait_until, wait_within};
+use bus::Bus;
+use game::message::Control;
+use game::topic;
+use serde_json::Value;
+use std::any::Any;
+use std::collections::VecDeque;
+use std::net::TcpStream;
+use std::process::Command;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+/// What a simulation may open; there are half as many connections more.
+pub(crate) const FILES: [usize; 2] = [1024, 128];
+/// The first bytes of a TLS handshake (RFC 8446), of which there are to be 512.
+const HALF_HELLO: [u8; 11] = [0x16, 3, 1, 2, 0, 1, 0, 1, 0xfc, 3, 3];
+
+/// Who may come in is in within this time.
+const IN: Duration = Duration::from_secs(10);
+/// Frames come ten times a second and more. A link that a busy machine leaves congested is closed, and opened again after a second.
+const GAP: Duration = Duration::from_secs(2);
+
+/// A crowd, by name; it is there for as long as what it gives is kept.
+type Crowd = (&'static str, fn(&Target, usize) -> Box<dyn Any>);
+
+const CROWDS: [Crowd; 4] = [
+    ("silent", |target, count| Box::new(target.connections(&[], count))),
+    ("half-way through a handshake", |target, count| Box::new(target.connections(&HALF_HELLO, count))),
+    ("with garbage", |target, count| Box::new(target.connections(&[b'x'; 5000], count))),
+    ("new ones all the time", |target, count| Box::new(Stream::start(target, count))),
+];
+
+/// Some hundred new connections a second.
+struct Stream {
+    is_over: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Stream {
+    fn start(target: &Target, count: usize) -> Stream {
+        let (is_over, at) = (Arc::new(AtomicBool::new(false)), target.address().to_owned());
+        let over = Arc::clone(&is_over);
+        let thread = std::thread::spawn(move || {
+            let mut newest = VecDeque::new();
+            while !over.load(Ordering::Relaxed) {
+                newest.extend(TcpStream::connect(&at));
+                if newest.len() > count {
+                    newest.pop_front();
+                }
+                std::thread::sleep(Duration::from_millis(2));
+            }
+        });
+        let stream = Stream { is_over, thread: Some(thread) };
+        // Until it fills all that there is to be filled.
+        std::thread::sleep(Duration::from_secs(5));
+        stream
+    }
+}
+
+impl Drop for Stream {
+    fn drop(&mut self) {
+        self.is_over.store(true, Ordering::Relaxed);
+        self.thread.take().into_iter().for_each(|thread| thread.join().expect("it does not panic"));
+    }
+}
+
+/// The program, where it may open so many files.
+pub(crate) fn squall_with_files(files: usize) -> Command {
+    let program = squall(&[]);
+    let mut shell = Command::new("sh");
+    shell.args(["-c", &format!("ulimit -n {files}; exec \"$0\" \"$@\"")]).arg(program.get_program());
+    shell.current_dir(env!("CARGO_MANIFEST_DIR"));
+    program.get_envs().for_each(|(name, value)| drop(value.map(|value| shell.env(name, value))));
+    shell
+}
+
+/// The longest time between two frames, in microseconds, and when the last came.
+#[derive(Default)]
+struct Gaps {
+    longest_us: AtomicU64,
+    last: Mutex<Option<Instant>>,
+}
+
+impl Gaps {
+    fn note(&self) {
+        let now = Instant::now();
+        let last = self.last.lock().expect("nobody panics with it").replace(now);
+        let gap = last.map_or(Duration::ZERO, |last| now - last);
+        self.longest_us.fetch_max(gap.as_micros() as u64, Ordering::Relaxed);
+    }
+}
+
+/// Crowds the port of a simulation that may open so many files, in whose game this operator is, and `comes_in` tries to be.
+pub(crate) fn is_withstood(sim: &Sim, files: usize, operator: &Bus, comes_in: &dyn Fn() -> bool) {
+    let gaps = Arc::new(Gaps::default());
+    let noted = Arc::clone(&gaps);
+    let _heard = operator.subscribe(topic::frame(&sim.name()), move |_| noted.note()).expect("it is in the game");
+    for (what, crowd) in CROWDS {
+        let kept = crowd(&Target::of(sim), files * 3 / 2);
+        let during = wait_within(IN, &format!("somebody comes in beside connections {what}"), comes_in);
+        sim.newest_progress();
+        let asked = Instant::now();
+        bus::control(operator, &sim.name(), Control::EStop).expect("it is published");
+        sim.wait_for_event("e_stopped", Value::Null);
+        let stopped = asked.elapsed();
+        drop(kept);
+        let after = wait_within(IN, &format!("somebody comes in after connections {what}"), comes_in);
+        let gap = Duration::from_micros(gaps.longest_us.swap(0, Ordering::Relaxed));
+        eprintln!(
+            "{files} files, {what}: in after {during:.1?}, later after {after:.1?}; E-stop after {stopped:.1?}; no frame for {gap:.1?}"
+        );
+        assert!(stopped < Duration::from_secs(1) && gap < GAP, "{what}");
+        wait_until("it is released", || bus::control(operator, &sim.name(), Control::Release).is_ok());
+        sim.wait_for_event("released", Value::Null);
+    }
+    sim.play_on(1.0);
+}
