@@ -225,6 +225,8 @@ impl Bridge {
                 self.control.take(now, &control);
                 self.recovery_point.take(&control, self.protocol.is_uploading());
             }
+            Report::Station(text) => out.events.push(Event::Warning(text)),
+            Report::ForeignOrder => self.control.note_foreign(now),
             Report::Power(power) => {
                 self.battery.take(now, power.volts);
                 let command = self.last_sent.map(|(_, command)| command);

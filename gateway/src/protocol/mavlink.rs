@@ -12,8 +12,9 @@ use super::{Command, UploadStep, mission_check};
 use crate::mavlink::dialect::{
     ATTITUDE_DATA, AttitudeTargetTypemask, COMMAND_LONG_DATA, GLOBAL_POSITION_INT_DATA, GPS_RAW_INT_DATA,
     HEARTBEAT_DATA, HOME_POSITION_DATA, MISSION_ACK_DATA, MavAutopilot, MavCmd, MavFrame, MavMessage, MavMissionResult,
-    MavModeFlag, MavState, MavType, PositionTargetTypemask, SET_ATTITUDE_TARGET_DATA,
-    SET_POSITION_TARGET_LOCAL_NED_DATA, SYS_STATUS_DATA, SYSTEM_TIME_DATA,
+    MavModeFlag, MavState, MavType, NAV_CONTROLLER_OUTPUT_DATA, POSITION_TARGET_GLOBAL_INT_DATA,
+    PositionTargetTypemask, SET_ATTITUDE_TARGET_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA, SYS_STATUS_DATA,
+    SYSTEM_TIME_DATA,
 };
 use crate::mavlink::{AUTOPILOT, Framer, Received, RoverMode, Writer};
 use crate::nmea::Mode;
@@ -31,7 +32,7 @@ const AGAIN_S: f64 = 0.5;
 /// Below this speed, m/s, a velocity is not sent: its direction would be that of a rounding error.
 const VELOCITY_MIN_M_S: f64 = 0.01;
 /// What we need of the boat: the numbers of messages, and how often, 1/s.
-const STREAMS: [(u32, f64); 7] = [
+const STREAMS: [(u32, f64); 9] = [
     (HEARTBEAT_DATA::ID, 5.0),
     (GLOBAL_POSITION_INT_DATA::ID, 10.0),
     (ATTITUDE_DATA::ID, 10.0),
@@ -39,6 +40,9 @@ const STREAMS: [(u32, f64); 7] = [
     (SYS_STATUS_DATA::ID, 1.0),
     (SYSTEM_TIME_DATA::ID, 1.0),
     (HOME_POSITION_DATA::ID, 0.5),
+    // Which set-points it follows, to compare with our own.
+    (NAV_CONTROLLER_OUTPUT_DATA::ID, 5.0),
+    (POSITION_TARGET_GLOBAL_INT_DATA::ID, 5.0),
 ];
 /// They are asked for again after this time, s: the boat may have been started anew.
 const STREAMS_AGAIN_S: f64 = 10.0;
@@ -111,13 +115,16 @@ impl Mavlink {
     }
 
     fn take(&mut self, now: SimTime, received: &Received, take: &mut dyn FnMut(Report)) {
+        let ours = (self.settings.system, self.settings.component);
         if !self.boat.is_its(received) {
+            if (received.system, received.component) != ours {
+                self.boat.report_stranger(received, take);
+            }
             return;
         }
-        let ours = (self.settings.system, self.settings.component);
         match &received.message {
             MavMessage::HEARTBEAT(heartbeat) => {
-                let control = self.boat.take_heartbeat(heartbeat, &mut self.asked);
+                let control = self.boat.take_heartbeat(now, heartbeat, &mut self.asked);
                 take(Report::Control(control));
             }
             MavMessage::HOME_POSITION(home) => {
@@ -413,7 +420,11 @@ pub(super) fn shown(command: Command) -> Shown {
         Command::Task(Task::GoToErp) => Mode::GoToErp,
         Command::Task(Task::Mission) => Mode::Waypoint,
     };
-    Shown { mode, heading_deg: None, thrust: None, difference: None }
+    let heading_deg = match command {
+        Command::SetPoint(SetPoint::Speed { heading_deg, .. }) => Some(heading_deg),
+        _ => None,
+    };
+    Shown { mode, heading_deg, thrust: None, difference: None }
 }
 
 pub(super) fn text(command: Command) -> String {
