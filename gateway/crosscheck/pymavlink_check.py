@@ -3,7 +3,8 @@
     pymavlink_check.py PATH/OF/squall
 
 First pymavlink drives the emulated boat over UDP and TCP as a ground station does; then it plays a minimal boat, which the gateway is to
-stop. Ends with an error at the first thing that is not as it should be.
+stop, and one that takes set-points as ArduPilot's Rover does, which is to go south. Ends with an error at the first thing that is not as
+it should be.
 """
 
 import math
@@ -12,6 +13,7 @@ import signal
 import socket
 import subprocess
 import sys
+import tempfile
 import time
 
 os.environ["MAVLINK20"] = "1"
@@ -19,8 +21,34 @@ from pymavlink import mavutil  # noqa: E402
 from pymavlink.dialects.v20 import common as mav  # noqa: E402
 
 LIMIT_S = 30.0
+CONFIG = os.path.abspath(os.path.join(os.path.dirname(__file__), "../../scenarios/gateways/blueboat.toml"))
 HOLD, LOITER, AUTO, RTL, GUIDED, MANUAL = 4, 5, 10, 11, 15, 0
 ARMED = mav.MAV_MODE_FLAG_SAFETY_ARMED
+# A velocity alone, and with the yaw that Rover then takes for a reason to look at the sign of the northward velocity.
+VELOCITY, VELOCITY_AND_YAW = 0b110111100111, 0b100111100111
+# A game on a field that lies south of where the boat starts.
+FIELD = """datum = { lat_deg = 41.35480, lon_deg = -74.0551 }
+corner = [0, 0]
+along_deg = 180
+width_m = 160
+depth_m = 80
+"""
+GAME = """base = "pav01_vs_pav01.toml"
+field = "../fields/south.toml"
+duration_s = 60
+[[vehicle]]
+name = "blue_one"
+team = "blue"
+source = "external"
+at = "PF"
+strategy = "strategy_4"
+[[vehicle]]
+name = "red_one"
+team = "red"
+strategy = "idle"
+"""
+START = (41.35453, -74.05462)
+M_PER_DEG = 111_200
 
 
 class Processes:
@@ -30,9 +58,9 @@ class Processes:
         self.squall = squall
         self.started = []
 
-    def start(self, *args):
+    def start(self, *args, folder=None):
         process = subprocess.Popen([self.squall, *args], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                                   stderr=subprocess.DEVNULL, text=True)
+                                   stderr=subprocess.DEVNULL, text=True, cwd=folder)
         self.started.append(process)
         return process
 
@@ -103,13 +131,19 @@ def drive_emulated_boat(link):
     before = wait_for(link, "where it is", "GLOBAL_POSITION_INT")
 
     def to_the_south():
-        link.mav.set_position_target_local_ned_send(0, 1, 1, mav.MAV_FRAME_LOCAL_NED, 0b100111100111, 0, 0, 0, -1.2, 0, 0, 0, 0, 0,
-                                                    math.pi, 0)
+        link.mav.set_position_target_local_ned_send(0, 1, 1, mav.MAV_FRAME_LOCAL_NED, VELOCITY, 0, 0, 0, -1.2, 0, 0, 0, 0, 0, 0, 0)
 
     after = drive(link, 12.0, to_the_south)
     moved_m = (before.lat - after.lat) * 1e-7 * 111_200
     check(moved_m > 4.0, f"it went {moved_m:.1f} m to the south")
     check(abs(after.hdg - 18_000) < 2000 and after.vx < -60, f"heading {after.hdg / 100} at {after.vx} cm/s")
+
+    def to_the_south_with_yaw():
+        link.mav.set_position_target_local_ned_send(0, 1, 1, mav.MAV_FRAME_LOCAL_NED, VELOCITY_AND_YAW, 0, 0, 0, -1.2, 0, 0, 0, 0, 0,
+                                                    math.pi, 0)
+
+    after = drive(link, 12.0, to_the_south_with_yaw)
+    check(after.vx > 40, f"with a yaw it goes astern, as Rover does: {after.vx} cm/s to the north")
 
     def turn_to_starboard():
         link.mav.set_attitude_target_send(0, 1, 1, 0b10000011, [1, 0, 0, 0], 0, 0, 0.4, 0.3)
@@ -168,6 +202,7 @@ class Boat:
                 base = mav.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED | (ARMED if self.armed else 0)
                 codec.heartbeat_send(mav.MAV_TYPE_SURFACE_BOAT, mav.MAV_AUTOPILOT_ARDUPILOTMEGA, base, self.mode,
                                      mav.MAV_STATE_ACTIVE)
+            self.tell(codec)
             try:
                 received = connection.recv(4096)
             except TimeoutError:
@@ -178,6 +213,9 @@ class Boat:
                 self.sent.append(message)
                 self.obey(message)
         return self.sent
+
+    def tell(self, codec):
+        """What it tells beside its heartbeat."""
 
     def obey(self, message):
         if message.get_type() != "COMMAND_LONG":
@@ -191,8 +229,7 @@ class Boat:
 
 def play_boat(processes):
     boat = Boat()
-    config = os.path.join(os.path.dirname(__file__), "../../scenarios/gateways/blueboat.toml")
-    gateway = processes.start("gateway", "surveyor", "--vehicle", "blue_one", "--no-record", "--game", "nobody", "--config", config,
+    gateway = processes.start("gateway", "surveyor", "--vehicle", "blue_one", "--no-record", "--game", "nobody", "--config", CONFIG,
                               "--link", f"tcp://127.0.0.1:{boat.port}")
     sent = boat.serve(LIMIT_S, lambda boat: (boat.mode, boat.armed) == (HOLD, False))
     check((boat.mode, boat.armed) == (HOLD, False), "a boat that is in GUIDED is put into HOLD and disarmed")
@@ -210,6 +247,66 @@ def play_boat(processes):
     check(len(zeros) >= 3 and all(zero(message) for message in zeros), "its last words are set-points of zero, and all others are")
 
 
+class Rover(Boat):
+    """A boat that takes velocities in GUIDED as Rover's handle_set_position_target_local_ned does."""
+
+    def __init__(self):
+        super().__init__()
+        self.mode, self.armed = HOLD, False
+        self.north_m = self.east_m = self.speed = 0.0
+        self.heading = math.pi
+        self.target, self.masks = None, []
+        self.began = self.moved = time.monotonic()
+        self.told = 0.0
+
+    def obey(self, message):
+        super().obey(message)
+        if message.get_type() != "SET_POSITION_TARGET_LOCAL_NED" or self.mode != GUIDED:
+            return
+        self.masks.append(message.type_mask)
+        has_yaw, has_rate = not message.type_mask & 1024, not message.type_mask & 2048
+        speed = min(math.hypot(message.vx, message.vy), 2.0)
+        sign = -1 if (has_yaw or has_rate) and message.vx < 0 else 1
+        self.target = (message.yaw if has_yaw else math.atan2(message.vy, message.vx), sign * speed)
+
+    def tell(self, codec):
+        """Moves on, and tells ten times a second where it is."""
+        now = time.monotonic()
+        step, self.moved = now - self.moved, now
+        heading, speed = self.target if self.armed and self.mode == GUIDED and self.target else (self.heading, 0.0)
+        turn = max(-1.0, min(1.0, 2 * math.remainder(heading - self.heading, 2 * math.pi)))
+        self.heading = (self.heading + turn * step) % (2 * math.pi)
+        self.speed += max(-step, min(step, speed - self.speed))
+        north, east = self.speed * math.cos(self.heading), self.speed * math.sin(self.heading)
+        self.north_m, self.east_m = self.north_m + north * step, self.east_m + east * step
+        if now - self.told < 0.1:
+            return
+        self.told, ms = now, int(1000 * (now - self.began)) + 1
+        lat, lon = START[0] + self.north_m / M_PER_DEG, START[1] + self.east_m / (M_PER_DEG * math.cos(math.radians(START[0])))
+        e7 = (int(1e7 * lat), int(1e7 * lon))
+        codec.gps_raw_int_send(ms * 1000, 3, *e7, 0, 80, 65535, 0, 0, 14)
+        codec.global_position_int_send(ms, *e7, 0, 0, int(100 * north), int(100 * east), 0, int(math.degrees(self.heading) * 100) % 36_000)
+        codec.attitude_send(ms, 0, 0, math.remainder(self.heading, 2 * math.pi), 0, 0, turn)
+        codec.sys_status_send(0, 0, 0, 100, 16_200, 500, 90, 0, 0, 0, 0, 0, 0)
+
+
+def play_rover(processes):
+    rover = Rover()
+    with tempfile.TemporaryDirectory() as folder:
+        for kind, text in (("fields", FIELD), ("games", GAME)):
+            os.makedirs(os.path.join(folder, "scenarios", kind))
+            with open(os.path.join(folder, "scenarios", kind, "south.toml"), "w", encoding="utf-8") as file:
+                file.write(text)
+        game = f"south{os.getpid()}"
+        processes.start("sim", "scenarios/games/south.toml", "--pace", "realtime", "--game", game, "--join-s", "30", folder=folder)
+        processes.start("agent", "--game", game, "--vehicle", "blue_one", "red_one")
+        processes.start("gateway", "surveyor", "--vehicle", "blue_one", "--no-record", "--game", game, "--config", CONFIG,
+                        "--link", f"tcp://127.0.0.1:{rover.port}", "--without-preflight", "Ada", "--arm")
+        rover.serve(LIMIT_S, lambda rover: rover.north_m < -10)
+    check(rover.north_m < -10, f"a boat with Rover's rule goes south as it is ordered: {rover.north_m:.0f} m to the north")
+    check(set(rover.masks) == {VELOCITY}, f"it is sent velocities alone: {sorted(set(rover.masks))}")
+
+
 def main(squall):
     processes = Processes(squall)
     station = mavutil.mavlink_connection("udpin:127.0.0.1:0", source_system=255, source_component=190)
@@ -223,6 +320,8 @@ def main(squall):
         drive_emulated_boat(station)
         print("pymavlink plays a boat to the gateway over TCP")
         play_boat(processes)
+        print("pymavlink plays a boat with Rover's rule, which is ordered to the south")
+        play_rover(processes)
     finally:
         processes.end()
     print("pymavlink: all ok")

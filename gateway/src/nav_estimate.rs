@@ -117,7 +117,7 @@ impl NavEstimator {
             self.known.thrust_at = Some(now);
         }
         if let Some((nav, _)) = self.nav(now) {
-            self.known.thrust.take(now, ordered, nav.psi_rad, nav.surge_m_s);
+            self.known.thrust.take(now, ordered, &nav);
         }
     }
 

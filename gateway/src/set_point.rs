@@ -103,15 +103,16 @@ impl SetPointMapper {
         self.within_limits(now, thrust, difference)
     }
 
-    /// What a set-point should do to a boat. How one turns that steers by itself is its own affair.
+    /// What the set-point of an order should do to a boat. How one turns that steers by itself is its own affair.
     #[must_use]
-    pub fn ordered(&self, set_point: SetPoint) -> Ordered {
+    pub fn ordered(&self, order: Order, set_point: SetPoint) -> Ordered {
+        let heading_rad = if let Order::Steer { heading_rad, .. } = order { Some(heading_rad) } else { None };
         match set_point {
             SetPoint::Thrust { thrust_pct, difference_pct } => {
                 let ahead_m_s = interpolate(self.loops.thrust_map.iter().copied(), thrust_pct);
-                Ordered { ahead_m_s, turn_pct: difference_pct }
+                Ordered { ahead_m_s, turn_pct: difference_pct, heading_rad }
             }
-            SetPoint::Speed { speed_m_s, .. } => Ordered { ahead_m_s: speed_m_s, turn_pct: 0.0 },
+            SetPoint::Speed { speed_m_s, .. } => Ordered { ahead_m_s: speed_m_s, turn_pct: 0.0, heading_rad },
         }
     }
 

@@ -1,7 +1,9 @@
-//! Checks a boat's motion against the thrust that it is sent: does it turn, and make way, as it is ordered?
+//! Checks a boat's motion against what it is sent: does it turn, make way, and go where it is ordered to?
 
 use game::SimTime;
 use game::angle::wrap_pi;
+use game::math;
+use game::picture::Nav;
 use thiserror::Error;
 
 /// What a set-point should do to a boat.
@@ -11,17 +13,24 @@ pub struct Ordered {
     pub ahead_m_s: f64,
     /// Thrust difference, per cent, positive to starboard; 0 where the boat steers by itself.
     pub turn_pct: f64,
+    /// The true heading that it should take, rad; none where a rate of turn or thrust is ordered.
+    pub heading_rad: Option<f64>,
 }
 
 /// What a boat does not do though it is ordered to.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum ThrustFault {
     /// Its heading does not follow the thrust difference: it turns by this many degrees a second under half of all.
-    #[error("its heading does not follow the thrust difference: {0:.0} degrees a second under half of it")]
+    #[error(
+        "the thrusters: its heading does not follow the thrust difference: {0:.0} degrees a second under half of it"
+    )]
     NoTurn(f64),
     /// It makes this little way ahead, m/s, under the thrust for 40 s.
-    #[error("it makes no way under thrust: {0:.1} m/s ahead in {WAY_S} s")]
+    #[error("the thrusters: it makes no way under thrust: {0:.1} m/s ahead in {WAY_S} s")]
     NoWay(f64),
+    /// It goes astern in place of ahead, or does not take its heading: its course is off by so much, degrees.
+    #[error("the boat moves against its orders: its course is off by {0:.0} degrees")]
+    Against(f64),
 }
 
 /// A boat that is ordered to go this fast, m/s, ...
@@ -30,6 +39,23 @@ const WAY_FROM_M_S: f64 = 1.2;
 const WAY_S: f64 = 40.0;
 /// ... goes ahead by this share of that at least, but against a current that is as fast.
 const WAY_SHARE_MIN: f64 = 0.1;
+/// A boat that is ordered to go this fast, m/s, ...
+const AGAINST_FROM_M_S: f64 = 0.8;
+/// ... moves against its orders when it has gone this far astern, m, beside what wind and current take it, m/s, ...
+const ASTERN_M: f64 = 6.0;
+const ASTERN_DRIFT_M_S: f64 = 0.4;
+/// ... or when it has been this far off a heading that is held, rad, for this time, s, at this speed or more, m/s. Time in which it turns
+/// to that heading, at this rate or faster, rad/s, does not count; time in which it is so far off, rad, that it goes away counts twice.
+const ASTRAY_RAD: f64 = 0.45;
+const ASTRAY_S: f64 = 10.0;
+const ASTRAY_FROM_M_S: f64 = 0.5;
+const ASTRAY_TURN_RAD_S: f64 = 0.05;
+const ASTRAY_AWAY_RAD: f64 = 1.4;
+/// Both take longer in waves, by the variance of the sway over about this time, s: m and s for each m²/s². A gale (0.1 to 0.3 m²/s²)
+/// holds a healthy boat for 40 s, or drives it 30 m away; in a simulated day (`tests/gale`) half of this is enough.
+const SWAY_MEMORY_S: f64 = 10.0;
+const ASTERN_UNREST_M: f64 = 40.0;
+const ASTRAY_UNREST_S: f64 = 1500.0;
 /// Rates of turn are means over this time, s, ...
 const PIECE_S: f64 = 0.5;
 /// ... and a boat takes them up with about this lag, s.
@@ -96,6 +122,23 @@ impl Turn {
     }
 }
 
+/// How unsteady the sway is: its mean and mean square lately, m/s and m²/s².
+#[derive(Clone, Copy, Debug, Default)]
+struct Sway {
+    mean: f64,
+    square: f64,
+}
+
+impl Sway {
+    /// Takes the sway after a step of this length; returns its variance, m²/s².
+    fn take(&mut self, step_s: f64, sway_m_s: f64) -> f64 {
+        let share = (step_s / SWAY_MEMORY_S).min(1.0);
+        self.mean += (sway_m_s - self.mean) * share;
+        self.square += (sway_m_s * sway_m_s - self.square) * share;
+        self.square - self.mean * self.mean
+    }
+}
+
 /// What was ordered lately, and what was seen of it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ThrustCheck {
@@ -103,12 +146,20 @@ pub(crate) struct ThrustCheck {
     last: Option<(SimTime, f64)>,
     turn: Turn,
     way: Option<Way>,
+    /// How far the boat has gone astern in place of ahead, m.
+    astern_m: f64,
+    /// The ordered heading, rad, and for how long the boat has not taken it, s.
+    astray: Option<(f64, f64)>,
+    sway: Sway,
+    /// Its rate of turn without the waves, rad/s.
+    turn_rad_s: f64,
     fault: Option<ThrustFault>,
 }
 
 impl ThrustCheck {
     /// The boat is sent this now, with what is known of its motion: heading, rad, and speed ahead over the ground, m/s.
-    pub(crate) fn take(&mut self, now: SimTime, ordered: Ordered, psi_rad: f64, ahead_m_s: f64) {
+    pub(crate) fn take(&mut self, now: SimTime, ordered: Ordered, nav: &Nav) {
+        let Nav { psi_rad, surge_m_s: ahead_m_s, .. } = *nav;
         let before = self.last.replace((now, psi_rad)).filter(|(at, _)| (now - *at).as_s() <= GAP_MAX_S);
         let Some((before, before_rad)) = before else {
             *self = ThrustCheck { last: self.last, ..ThrustCheck::default() };
@@ -122,6 +173,38 @@ impl ThrustCheck {
             self.fault = Some(ThrustFault::NoTurn((0.5 * slope).to_degrees()));
         }
         self.take_way(now, ordered.ahead_m_s, ahead_m_s);
+        self.take_against((now - before).as_s(), ordered, nav, turned_rad);
+    }
+
+    /// Looks for a boat that goes astern in place of ahead, or holds another heading than the one that is ordered.
+    fn take_against(&mut self, step_s: f64, ordered: Ordered, nav: &Nav, turned_rad: f64) {
+        let Nav { surge_m_s, sway_m_s, psi_rad, .. } = *nav;
+        self.turn_rad_s += (turned_rad - step_s * self.turn_rad_s) / step_s.max(TURN_LAG_S);
+        let unrest = self.sway.take(step_s, sway_m_s);
+        let heading_rad = ordered.heading_rad.filter(|_| ordered.ahead_m_s >= AGAINST_FROM_M_S);
+        let astern_m = self.astern_m - (surge_m_s + ASTERN_DRIFT_M_S) * step_s;
+        self.astern_m = if ordered.ahead_m_s < AGAINST_FROM_M_S { 0.0 } else { astern_m.max(0.0) };
+        let is_held =
+            |(held_rad, _): &(f64, f64)| heading_rad.is_some_and(|now| wrap_pi(now - held_rad).abs() < ASTRAY_RAD);
+        let before = self.astray.filter(is_held);
+        let off_rad = heading_rad.map_or(0.0, |heading_rad| wrap_pi(heading_rad - psi_rad));
+        let growth = match math::length(surge_m_s, sway_m_s) {
+            speed_m_s if off_rad.abs() < ASTRAY_RAD || speed_m_s < ASTRAY_FROM_M_S => -2.0,
+            _ if self.turn_rad_s * off_rad.signum() > ASTRAY_TURN_RAD_S => 0.0,
+            // Farther away from where it is to go with every second.
+            _ if off_rad.abs() > ASTRAY_AWAY_RAD => 2.0,
+            _ => 1.0,
+        };
+        self.astray = before.or(heading_rad.map(|heading_rad| (heading_rad, 0.0)));
+        let astray_s = self.astray.as_mut().map_or(0.0, |(_, astray_s)| {
+            *astray_s = (*astray_s + growth * step_s).max(0.0);
+            *astray_s
+        });
+        if self.astern_m > ASTERN_M + ASTERN_UNREST_M * unrest || astray_s > ASTRAY_S + ASTRAY_UNREST_S * unrest {
+            let course_rad = psi_rad + math::atan2(sway_m_s, surge_m_s);
+            let course_off_rad = wrap_pi(course_rad - ordered.heading_rad.unwrap_or(psi_rad)).abs();
+            self.fault = Some(ThrustFault::Against(course_off_rad.to_degrees()));
+        }
     }
 
     fn take_way(&mut self, now: SimTime, ordered_m_s: f64, ahead_m_s: f64) {
@@ -151,6 +234,10 @@ impl ThrustCheck {
 mod tests {
     use super::*;
 
+    fn nav(psi_rad: f64, surge_m_s: f64) -> Nav {
+        Nav { psi_rad, surge_m_s, ..Nav::default() }
+    }
+
     /// After how many seconds, and which, is there a fault when this is ordered and the boat turns and goes ahead like that.
     fn first_fault(
         ordered: impl Fn(f64) -> Ordered,
@@ -162,18 +249,18 @@ mod tests {
             let time_s = 0.1 * f64::from(i);
             psi_deg += 0.1 * turn_deg_s(time_s);
             let psi_rad = wrap_pi(f64::to_radians(psi_deg));
-            check.take(SimTime::from_s(time_s), ordered(time_s), psi_rad, ahead_m_s);
+            check.take(SimTime::from_s(time_s), ordered(time_s), &nav(psi_rad, ahead_m_s));
             check.fault(SimTime::from_s(time_s)).map(|fault| (time_s, fault))
         })
     }
 
     fn held(ahead_m_s: f64, turn_pct: f64) -> impl Fn(f64) -> Ordered {
-        move |_| Ordered { ahead_m_s, turn_pct }
+        move |_| Ordered { ahead_m_s, turn_pct, heading_rad: None }
     }
 
     /// To one side and the other, five seconds each.
     fn weaving(time_s: f64) -> Ordered {
-        Ordered { ahead_m_s: 0.5, turn_pct: if time_s % 10.0 < 5.0 { 40.0 } else { -40.0 } }
+        held(0.5, if time_s % 10.0 < 5.0 { 40.0 } else { -40.0 })(time_s)
     }
 
     #[test]
@@ -196,13 +283,52 @@ mod tests {
         assert_eq!(first_fault(held(0.8, 0.0), |_| 0.0, 0.0), None, "too little to tell");
     }
 
+    /// After how many seconds is there a fault when a boat that is ordered to this heading at 2 m/s points and goes like that, degrees and
+    /// m/s ahead.
+    fn against(heading_deg: f64, motion: impl Fn(f64) -> (f64, f64)) -> Option<f64> {
+        let mut check = ThrustCheck::default();
+        let heading_rad = Some(f64::to_radians(heading_deg));
+        (0..300).map(|i| 0.1 * f64::from(i)).find(|time_s| {
+            let (psi_deg, ahead_m_s) = motion(*time_s);
+            let nav = nav(wrap_pi(psi_deg.to_radians()), ahead_m_s);
+            check.take(SimTime::from_s(*time_s), Ordered { ahead_m_s: 2.0, turn_pct: 0.0, heading_rad }, &nav);
+            matches!(check.fault(SimTime::from_s(*time_s)), Some(ThrustFault::Against(_)))
+        })
+    }
+
+    #[test]
+    fn a_boat_that_moves_against_its_orders_is_found_in_its_time() {
+        let taken_up = |time_s: f64| (0.5 * time_s).min(2.0);
+        for (what, motion) in [
+            ("astern", &(|time_s| (180.0, -taken_up(time_s))) as &dyn Fn(f64) -> (f64, f64)),
+            ("the wrong way", &|time_s| (0.0, taken_up(time_s))),
+            ("the wrong way, and slow", &|_| (30.0, 0.6)),
+            ("astern, as it turns", &|time_s| (20.0 * f64::min(time_s, 9.0), -2.0)),
+        ] {
+            let after_s = against(180.0, motion);
+            assert!(after_s.is_some_and(|after_s| after_s < 10.0), "{what}: {after_s:?}");
+        }
+        let across_s = against(180.0, |_| (130.0, 1.5));
+        assert!(across_s.is_some_and(|after_s| after_s < 20.0), "50 degrees off: {across_s:?}");
+        for (what, motion) in [
+            ("a turn about, slow", &(|time_s| (10.0 * f64::min(time_s, 18.0), 2.0)) as &dyn Fn(f64) -> (f64, f64)),
+            ("it went astern before", &|time_s| (180.0, -2.0 + time_s.min(4.0))),
+            ("a current astern", &|_| (180.0, -0.4)),
+            ("waves", &|time_s| (180.0, 0.2 + 2.0 * math::sin_cos(time_s).0)),
+            ("some degrees off", &|_| (160.0, 2.0)),
+        ] {
+            assert_eq!(against(180.0, motion), None, "{what}");
+        }
+        assert!(first_fault(held(2.0, 0.0), |_| 10.0, -1.5).is_some_and(|(after_s, _)| after_s < 10.0), "by thrust");
+    }
+
     #[test]
     fn a_fault_is_over_when_the_boat_is_not_driven_and_begins_anew() {
         let mut check = ThrustCheck::default();
         let at = |tenths: i32| SimTime::from_s(0.1 * f64::from(tenths));
-        (0..410).for_each(|i| check.take(at(i), Ordered { ahead_m_s: 2.0, turn_pct: 0.0 }, 0.0, 0.0));
+        (0..410).for_each(|i| check.take(at(i), held(2.0, 0.0)(0.0), &nav(0.0, 0.0)));
         assert!(check.fault(at(410)).is_some() && check.fault(at(430)).is_none());
-        check.take(at(430), Ordered { ahead_m_s: 2.0, turn_pct: 0.0 }, 0.0, 0.0);
+        check.take(at(430), held(2.0, 0.0)(0.0), &nav(0.0, 0.0));
         assert_eq!(check.fault(at(430)), None);
     }
 }

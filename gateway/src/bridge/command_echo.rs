@@ -10,9 +10,9 @@ use game::angle::wrap_pi;
 use game::gateway::ControlWatch;
 use std::collections::VecDeque;
 
-/// In mode G speeds and headings are the same if they are as near as this, kn and degrees.
+/// In mode G speeds and headings are the same if they are as near as this, kn and degrees: ArduPilot leaves out all after the comma.
 const SAME_SPEED_KN: f64 = 0.1;
-const SAME_HEADING_DEG: f64 = 0.5;
+const SAME_HEADING_DEG: f64 = 1.1;
 /// A boat that leaves our commands for standby so often within this time, s, and comes back in between, is sent standby by another.
 const DEPARTURES: usize = 2;
 const DEPARTURES_S: f64 = 5.0;
@@ -86,13 +86,21 @@ impl CommandEcho {
         }
     }
 
+    /// Somebody else was heard to order the boat about.
+    pub(super) fn note_foreign(&mut self, now: SimTime) {
+        self.foreign_at = Some(now);
+    }
+
     /// The boat's report, while we command it.
-    pub(super) fn take(&mut self, now: SimTime, shown: Shown) {
+    pub(super) fn take(&mut self, now: SimTime, mut shown: Shown) {
+        // A boat that has never shown another heading of ours may show 0 for all of them.
+        shown.heading_deg = shown.heading_deg.filter(|deg| *deg != 0.0 || self.has_shown_set_point);
         let is_new = self.last.replace(shown).is_none_or(|last| !last.agrees(&shown, self.watch.echo_thrust_pct));
         let was_ours = std::mem::take(&mut self.is_ours);
         if self.sent.iter().any(|(_, sent)| sent.agrees(&shown, self.watch.echo_thrust_pct)) {
             (self.is_ours, self.has_shown, self.unlike_since) = (true, true, None);
-            self.has_shown_set_point |= shown.mode.is_set_point();
+            let tells = shown.heading_deg.is_some() || shown.thrust.is_some();
+            self.has_shown_set_point |= shown.mode.is_set_point() && tells;
             return;
         }
         let is_same_mode = self.sent.iter().any(|(_, sent)| sent.mode == shown.mode);

@@ -60,6 +60,11 @@ impl ControlLog {
         }
     }
 
+    /// Somebody else was heard to order the boat about.
+    pub(super) fn note_foreign(&mut self, now: SimTime) {
+        self.echo.note_foreign(now);
+    }
+
     /// The mode that the boat reports.
     pub(super) fn mode(&self) -> Option<Mode> {
         self.reported.map(|report| report.mode)

@@ -225,6 +225,8 @@ impl Bridge {
                 self.control.take(now, &control);
                 self.recovery_point.take(&control, self.protocol.is_uploading());
             }
+            Report::Station(text) => out.events.push(Event::Warning(text)),
+            Report::ForeignOrder => self.control.note_foreign(now),
             Report::Power(power) => {
                 self.battery.take(now, power.volts);
                 let command = self.last_sent.map(|(_, command)| command);
@@ -399,10 +401,11 @@ impl Bridge {
     fn follow(&mut self, now: SimTime) -> Option<SetPoint> {
         let site = self.on_site.as_mut()?;
         let (nav, _) = site.estimator.nav(now)?;
-        let set_point = site.set_points.map(now, self.order?.order, &nav);
+        let order = self.order?.order;
+        let set_point = site.set_points.map(now, order, &nav);
         // In a dry run the boat need not move as it is not told to.
         if !self.plan.dry_run {
-            site.estimator.note_order(now, site.set_points.ordered(set_point));
+            site.estimator.note_order(now, site.set_points.ordered(order, set_point));
         }
         Some(set_point)
     }

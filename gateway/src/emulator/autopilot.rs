@@ -12,6 +12,9 @@ const NEAR_M: f64 = 3.0;
 const KEEP_M_S: f64 = 1.0;
 /// How fast it approaches a position, m/s per m of distance.
 const APPROACH_PER_S: f64 = 0.2;
+/// How a boat that goes astern turns, per cent of thrust difference: per rad, and at most.
+const ASTERN_PCT_PER_RAD: f64 = 30.0;
+const ASTERN_DIFFERENCE_PCT: f64 = 20.0;
 /// Throttle of a mission that names none, per cent.
 const THROTTLE_PCT: f64 = 40.0;
 
@@ -56,10 +59,11 @@ pub(super) fn steer(heading_rad: Option<f64>, speed_m_s: Option<f64>) -> Order {
     }
 }
 
-/// The order that makes this speed, m/s, astern.
-pub(super) fn astern(speed_m_s: f64) -> Order {
+/// The order that makes this speed, m/s, astern, and turns the bow by this angle, rad.
+pub(super) fn astern(speed_m_s: f64, turn_rad: f64) -> Order {
     let map = SURVEYOR_THRUST_MAP.iter().map(|(thrust, speed)| (*speed, *thrust));
-    thrust(math::interpolate(map, speed_m_s), 0.0)
+    let difference_pct = (ASTERN_PCT_PER_RAD * turn_rad).clamp(-ASTERN_DIFFERENCE_PCT, ASTERN_DIFFERENCE_PCT);
+    thrust(math::interpolate(map, speed_m_s), difference_pct)
 }
 
 /// The speed ahead that a thrust gives, m/s.

@@ -12,8 +12,9 @@ use super::{Command, UploadStep, mission_check};
 use crate::mavlink::dialect::{
     ATTITUDE_DATA, AttitudeTargetTypemask, COMMAND_LONG_DATA, GLOBAL_POSITION_INT_DATA, GPS_RAW_INT_DATA,
     HEARTBEAT_DATA, HOME_POSITION_DATA, MISSION_ACK_DATA, MavAutopilot, MavCmd, MavFrame, MavMessage, MavMissionResult,
-    MavModeFlag, MavState, MavType, PositionTargetTypemask, SET_ATTITUDE_TARGET_DATA,
-    SET_POSITION_TARGET_LOCAL_NED_DATA, SYS_STATUS_DATA, SYSTEM_TIME_DATA,
+    MavModeFlag, MavState, MavType, NAV_CONTROLLER_OUTPUT_DATA, POSITION_TARGET_GLOBAL_INT_DATA,
+    PositionTargetTypemask, SET_ATTITUDE_TARGET_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA, SYS_STATUS_DATA,
+    SYSTEM_TIME_DATA,
 };
 use crate::mavlink::{AUTOPILOT, Framer, Received, RoverMode, Writer};
 use crate::nmea::Mode;
@@ -28,8 +29,10 @@ use game::{SimTime, math};
 const HEARTBEAT_S: f64 = 1.0;
 /// A mode or arming that the boat does not show is asked for again after this time, s.
 const AGAIN_S: f64 = 0.5;
+/// Below this speed, m/s, a velocity is not sent: its direction would be that of a rounding error.
+const VELOCITY_MIN_M_S: f64 = 0.01;
 /// What we need of the boat: the numbers of messages, and how often, 1/s.
-const STREAMS: [(u32, f64); 7] = [
+const STREAMS: [(u32, f64); 9] = [
     (HEARTBEAT_DATA::ID, 5.0),
     (GLOBAL_POSITION_INT_DATA::ID, 10.0),
     (ATTITUDE_DATA::ID, 10.0),
@@ -37,6 +40,9 @@ const STREAMS: [(u32, f64); 7] = [
     (SYS_STATUS_DATA::ID, 1.0),
     (SYSTEM_TIME_DATA::ID, 1.0),
     (HOME_POSITION_DATA::ID, 0.5),
+    // Which set-points it follows, to compare with our own.
+    (NAV_CONTROLLER_OUTPUT_DATA::ID, 5.0),
+    (POSITION_TARGET_GLOBAL_INT_DATA::ID, 5.0),
 ];
 /// They are asked for again after this time, s: the boat may have been started anew.
 const STREAMS_AGAIN_S: f64 = 10.0;
@@ -109,13 +115,16 @@ impl Mavlink {
     }
 
     fn take(&mut self, now: SimTime, received: &Received, take: &mut dyn FnMut(Report)) {
+        let ours = (self.settings.system, self.settings.component);
         if !self.boat.is_its(received) {
+            if (received.system, received.component) != ours {
+                self.boat.report_stranger(received, take);
+            }
             return;
         }
-        let ours = (self.settings.system, self.settings.component);
         match &received.message {
             MavMessage::HEARTBEAT(heartbeat) => {
-                let control = self.boat.take_heartbeat(heartbeat, &mut self.asked);
+                let control = self.boat.take_heartbeat(now, heartbeat, &mut self.asked);
                 take(Report::Control(control));
             }
             MavMessage::HOME_POSITION(home) => {
@@ -218,24 +227,36 @@ impl Mavlink {
     /// As "Rover commands in guided mode" of ArduPilot's documentation. A boat forgets a set-point after three seconds.
     fn write_set_point(&mut self, set_point: SetPoint, out: &mut Vec<u8>) {
         let Target { system: target_system, component: target_component } = self.target();
+        let no_roll_no_pitch = AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_BODY_ROLL_RATE_IGNORE
+            | AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_BODY_PITCH_RATE_IGNORE;
         let message = match set_point {
             // Thrust is a share of the boat's cruise speed, ahead positive, and the rate of turn is to starboard.
             SetPoint::Thrust { thrust_pct, difference_pct } => {
-                let type_mask = AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_BODY_ROLL_RATE_IGNORE
-                    | AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_BODY_PITCH_RATE_IGNORE
-                    | AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_ATTITUDE_IGNORE;
                 MavMessage::SET_ATTITUDE_TARGET(SET_ATTITUDE_TARGET_DATA {
                     body_yaw_rate: (0.01 * difference_pct * self.settings.turn_rate_max_rad_s) as f32,
                     thrust: (0.01 * thrust_pct) as f32,
                     target_system,
                     target_component,
-                    type_mask,
+                    type_mask: no_roll_no_pitch | AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_ATTITUDE_IGNORE,
+                    ..SET_ATTITUDE_TARGET_DATA::default()
+                })
+            }
+            // Velocity zero has no direction, and the boat would turn to the north: it is sent the heading, and no thrust.
+            SetPoint::Speed { heading_deg, speed_m_s } if speed_m_s < VELOCITY_MIN_M_S => {
+                let (z, w) = math::sin_cos(0.5 * heading_deg.to_radians());
+                MavMessage::SET_ATTITUDE_TARGET(SET_ATTITUDE_TARGET_DATA {
+                    q: [w as f32, 0.0, 0.0, z as f32],
+                    target_system,
+                    target_component,
+                    type_mask: no_roll_no_pitch | AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_BODY_YAW_RATE_IGNORE,
                     ..SET_ATTITUDE_TARGET_DATA::default()
                 })
             }
             SetPoint::Speed { heading_deg, speed_m_s } => {
-                let yaw_rad = heading_deg.to_radians();
-                let (east, north) = math::sin_cos(yaw_rad);
+                let (east, north) = math::sin_cos(heading_deg.to_radians());
+                // Without a yaw, which the velocity has anyhow. With a yaw or a yaw rate Rover takes the sign of `vx`, which
+                // is to the north, for the sign of the speed, in every frame: a boat that is ordered to the south goes astern
+                // (Rover/GCS_MAVLink_Rover.cpp, handle_set_position_target_local_ned; seen with ArduRover's SITL).
                 let type_mask = PositionTargetTypemask::POSITION_TARGET_TYPEMASK_X_IGNORE
                     | PositionTargetTypemask::POSITION_TARGET_TYPEMASK_Y_IGNORE
                     | PositionTargetTypemask::POSITION_TARGET_TYPEMASK_Z_IGNORE
@@ -243,11 +264,11 @@ impl Mavlink {
                     | PositionTargetTypemask::POSITION_TARGET_TYPEMASK_AX_IGNORE
                     | PositionTargetTypemask::POSITION_TARGET_TYPEMASK_AY_IGNORE
                     | PositionTargetTypemask::POSITION_TARGET_TYPEMASK_AZ_IGNORE
+                    | PositionTargetTypemask::POSITION_TARGET_TYPEMASK_YAW_IGNORE
                     | PositionTargetTypemask::POSITION_TARGET_TYPEMASK_YAW_RATE_IGNORE;
                 MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
                     vx: (speed_m_s * north) as f32,
                     vy: (speed_m_s * east) as f32,
-                    yaw: yaw_rad as f32,
                     type_mask,
                     target_system,
                     target_component,
@@ -399,7 +420,11 @@ pub(super) fn shown(command: Command) -> Shown {
         Command::Task(Task::GoToErp) => Mode::GoToErp,
         Command::Task(Task::Mission) => Mode::Waypoint,
     };
-    Shown { mode, heading_deg: None, thrust: None, difference: None }
+    let heading_deg = match command {
+        Command::SetPoint(SetPoint::Speed { heading_deg, .. }) => Some(heading_deg),
+        _ => None,
+    };
+    Shown { mode, heading_deg, thrust: None, difference: None }
 }
 
 pub(super) fn text(command: Command) -> String {
@@ -408,6 +433,9 @@ pub(super) fn text(command: Command) -> String {
         Command::Zero => "SET_ATTITUDE_TARGET thrust 0".to_owned(),
         Command::SetPoint(SetPoint::Thrust { thrust_pct, difference_pct }) => {
             format!("GUIDED, SET_ATTITUDE_TARGET thrust {thrust_pct:.0} %, turn {difference_pct:.0} %")
+        }
+        Command::SetPoint(SetPoint::Speed { heading_deg, speed_m_s }) if speed_m_s < VELOCITY_MIN_M_S => {
+            format!("GUIDED, SET_ATTITUDE_TARGET heading {heading_deg:.1}, thrust 0")
         }
         Command::SetPoint(SetPoint::Speed { heading_deg, speed_m_s }) => {
             format!("GUIDED, SET_POSITION_TARGET_LOCAL_NED heading {heading_deg:.1}, speed {speed_m_s:.2} m/s")

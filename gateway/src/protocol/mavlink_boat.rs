@@ -4,10 +4,11 @@ use super::mavlink::Asked;
 use super::report::{ControlReport, Fix, Heading, North, Power, Report, Shown};
 use crate::mavlink::dialect::{
     ATTITUDE_DATA, COMMAND_ACK_DATA, GLOBAL_POSITION_INT_DATA, GPS_RAW_INT_DATA, GpsFixType, HEARTBEAT_DATA,
-    MavAutopilot, MavCmd, MavMessage, MavModeFlag, MavResult, MavSeverity, MavType,
+    MavAutopilot, MavCmd, MavMessage, MavModeFlag, MavResult, MavSeverity, MavType, NAV_CONTROLLER_OUTPUT_DATA,
 };
 use crate::mavlink::{AUTOPILOT, Received, RoverMode};
 use crate::nmea::{Mode, Operator, date_and_time};
+use ::mavlink::Message;
 use game::frame::Ned;
 use game::{LatLon, SimTime};
 
@@ -15,6 +16,10 @@ use game::{LatLon, SimTime};
 const FIX_TYPE_AGE_MAX_S: f64 = 2.0;
 /// Without ATTITUDE for this long the heading is that of the position, s.
 const ATTITUDE_AGE_MAX_S: f64 = 1.0;
+/// What the boat shows of its set-point counts for this long, s: three of its reports.
+const TARGET_AGE_MAX_S: f64 = 0.6;
+/// The most ground stations that are remembered.
+const STATIONS_MAX: usize = 8;
 
 /// A mode, and whether the boat is armed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,6 +41,12 @@ pub(super) struct Boat {
     position_ms: Option<u32>,
     attitude_at: SimTime,
     has_volts: bool,
+    /// The heading that it shows as ordered in GUIDED, degrees, and when that came.
+    ordered: Option<(SimTime, f64)>,
+    /// When it last showed that it goes to a position in GUIDED.
+    position_target_at: SimTime,
+    /// Other ground stations that were heard: system and component.
+    stations: Vec<(u8, u8)>,
 }
 
 impl Boat {
@@ -49,6 +60,9 @@ impl Boat {
             position_ms: None,
             attitude_at: SimTime::LONG_AGO,
             has_volts: false,
+            ordered: None,
+            position_target_at: SimTime::LONG_AGO,
+            stations: vec![],
         }
     }
 
@@ -77,7 +91,37 @@ impl Boat {
         })
     }
 
-    pub(super) fn take_heartbeat(&mut self, heartbeat: &HEARTBEAT_DATA, asked: &mut Option<Asked>) -> ControlReport {
+    /// Set-points of others for the boat, and other ground stations, as far as the boat or a router passes them on to us.
+    pub(super) fn report_stranger(&mut self, received: &Received, take: &mut dyn FnMut(Report)) {
+        let Received { system, component, message } = received;
+        let is_for_it = message.target_system_id().is_some_and(|target| target == 0 || Some(target) == self.system);
+        match message {
+            MavMessage::SET_ATTITUDE_TARGET(_)
+            | MavMessage::SET_POSITION_TARGET_LOCAL_NED(_)
+            | MavMessage::SET_POSITION_TARGET_GLOBAL_INT(_)
+                if is_for_it =>
+            {
+                take(Report::ForeignOrder);
+            }
+            MavMessage::HEARTBEAT(heartbeat)
+                if heartbeat.mavtype == MavType::MAV_TYPE_GCS
+                    && self.stations.len() < STATIONS_MAX
+                    && !self.stations.contains(&(*system, *component)) =>
+            {
+                self.stations.push((*system, *component));
+                let text = format!("another ground station is on the link: system {system}, component {component}");
+                take(Report::Station(text));
+            }
+            _ => {}
+        }
+    }
+
+    pub(super) fn take_heartbeat(
+        &mut self,
+        now: SimTime,
+        heartbeat: &HEARTBEAT_DATA,
+        asked: &mut Option<Asked>,
+    ) -> ControlReport {
         let is_armed = heartbeat.base_mode.contains(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED);
         let shown = ShownMode { mode: RoverMode::from_number(heartbeat.custom_mode), is_armed };
         self.mode = Some(shown);
@@ -88,9 +132,12 @@ impl Boat {
         if let Some(asked) = asked {
             asked.is_shown |= (asked.mode, asked.is_armed) == (shown.mode, is_armed);
         }
+        let is_fresh = |at: SimTime| (now - at).as_s() <= TARGET_AGE_MAX_S;
         let mode = match shown.mode {
             _ if is_ours && !is_armed => Mode::Standby,
             RoverMode::Hold => Mode::Standby,
+            // We never send it a position.
+            RoverMode::Guided if is_fresh(self.position_target_at) => Mode::Waypoint,
             RoverMode::Guided => Mode::Speed,
             RoverMode::Loiter => Mode::StationKeep,
             RoverMode::Rtl | RoverMode::SmartRtl => Mode::GoToErp,
@@ -106,13 +153,34 @@ impl Boat {
             // A ground station, or a failsafe of its own.
             _ => Operator::Primary,
         };
-        let shown = Shown { mode, heading_deg: None, thrust: None, difference: None };
+        let heading_deg = self.ordered.filter(|(at, _)| is_fresh(*at)).map(|(_, heading_deg)| heading_deg);
+        let shown = Shown { mode, heading_deg, thrust: None, difference: None };
         ControlReport { shown, operator: Some(operator) }
+    }
+
+    /// What it shows of the set-point that it follows; nothing of that is ours before it shows that it is armed in GUIDED.
+    fn take_target(&mut self, now: SimTime, message: &MavMessage) {
+        if self.mode != Some(ShownMode { mode: RoverMode::Guided, is_armed: true }) {
+            (self.ordered, self.position_target_at) = (None, SimTime::LONG_AGO);
+            return;
+        }
+        match message {
+            // The ordered heading, from version 4.7 on; before that it is 0, but for the bearing of a position.
+            MavMessage::NAV_CONTROLLER_OUTPUT(NAV_CONTROLLER_OUTPUT_DATA { nav_bearing, .. }) => {
+                self.ordered = Some((now, f64::from(*nav_bearing)));
+            }
+            // Rover sends it for positions alone, and when it keeps its station for want of a set-point.
+            MavMessage::POSITION_TARGET_GLOBAL_INT(_) => self.position_target_at = now,
+            _ => {}
+        }
     }
 
     /// What a message reports.
     pub(super) fn report(&mut self, now: SimTime, message: &MavMessage, take: &mut dyn FnMut(Report)) {
         match message {
+            MavMessage::NAV_CONTROLLER_OUTPUT(_) | MavMessage::POSITION_TARGET_GLOBAL_INT(_) => {
+                self.take_target(now, message);
+            }
             MavMessage::GPS_RAW_INT(gps) => self.fix = Some((now, fix(gps))),
             MavMessage::GLOBAL_POSITION_INT(position) => self.take_position(now, position, take),
             MavMessage::ATTITUDE(ATTITUDE_DATA { yaw, yawspeed, .. }) => {

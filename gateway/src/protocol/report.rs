@@ -17,6 +17,10 @@ pub enum Report {
     Clock(TimeOfDay),
     /// What it does, and who commands it.
     Control(ControlReport),
+    /// Somebody else was heard to send it a set-point.
+    ForeignOrder,
+    /// A ground station that is not we was heard for the first time: this is told to people.
+    Station(String),
     /// Its battery, and who draws from it.
     Power(Power),
     /// The error that it is in; `None` is none.

@@ -17,8 +17,8 @@ pub enum Cause {
     /// The boat was outside of the geofence, or could not have stopped inside.
     #[error("outside of the geofence, or unable to stop inside")]
     Geofence,
-    /// It did not do what the thrust that it was sent should have done.
-    #[error("the thrusters: {0}")]
+    /// It did not do what the orders that it was sent should have done.
+    #[error("{0}")]
     Thrust(ThrustFault),
     /// The battery was low.
     #[error("the battery is low")]
@@ -125,7 +125,7 @@ impl Cause {
                 "secondary control: the boat does not report that we command it".to_owned()
             }
             Cause::Nav(fault) => format!("navigation: {fault}"),
-            Cause::Thrust(fault) => format!("thrusters that act: {fault}"),
+            Cause::Thrust(fault) => format!("a boat that does as it is ordered: {fault}"),
             Cause::Geofence => "a position inside of the geofence, and room to stop".to_owned(),
             Cause::BatteryLow => "a charged battery".to_owned(),
             Cause::OrderStale => "a fresh order".to_owned(),

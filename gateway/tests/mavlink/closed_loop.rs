@@ -9,7 +9,9 @@ use game::gateway::Drive;
 use gateway::bridge::{Event, Input};
 use gateway::emulator::ArduPilot;
 use gateway::geodesy::LocalFrame;
-use gateway::mavlink::dialect::{COMMAND_LONG_DATA, MavCmd, MavMessage};
+use gateway::mavlink::dialect::{
+    COMMAND_LONG_DATA, MavCmd, MavFrame, MavMessage, PositionTargetTypemask, SET_POSITION_TARGET_LOCAL_NED_DATA,
+};
 use gateway::mavlink::{Framer, RoverMode};
 
 const HOLD: (RoverMode, bool) = (RoverMode::Hold, false);
@@ -41,18 +43,122 @@ fn a_boat_is_armed_driven_on_a_true_heading_and_disarmed() {
         let mut plan = plan();
         plan.gateway.drive = drive;
         let mut rig = Rig::of(plan);
-        rig.order = Some(Order::Steer { heading_rad: 2.0, speed_m_s: 1.0 });
+        rig.order = Some(Order::Steer { heading_rad: 1.0, speed_m_s: 1.0 });
         rig.run(2.0);
         assert_eq!((rig.mode(), rig.sent.iter().any(|(_, sent)| is_driving(sent))), (HOLD, false));
         rig.operator(OperatorCommand::Arm);
         rig.run(30.0);
         assert_eq!((rig.state().as_str(), rig.mode()), ("armed", (RoverMode::Guided, true)), "{:?}", rig.events);
-        let off_rad = wrap_pi(rig.boat.psi_rad - 2.0).abs();
+        let off_rad = wrap_pi(rig.boat.psi_rad - 1.0).abs();
         assert!(off_rad < 0.1 && (rig.boat.speed_m_s - 1.0).abs() < 0.2, "{drive:?}: {:?}", rig.boat);
         rig.operator(OperatorCommand::Disarm);
         assert_eq!(rig.mode(), HOLD, "at once");
         rig.run(15.0);
         assert!(rig.boat.speed_m_s < 0.05 && rig.state() == "safed");
+    }
+}
+
+/// A boat that is armed with this order, 20 s on.
+fn ordered(drive: Drive, order: Order) -> Rig {
+    let mut plan = plan();
+    plan.gateway.drive = drive;
+    let mut rig = Rig::of(plan);
+    rig.order = Some(order);
+    rig.run(2.0);
+    rig.operator(OperatorCommand::Arm);
+    rig.run(20.0);
+    assert_eq!(rig.state(), "armed", "{order:?}: {:?}", rig.events);
+    rig
+}
+
+#[test]
+fn a_boat_goes_where_it_is_ordered_to_on_every_heading() {
+    for drive in [Drive::Speed, Drive::Thrust] {
+        for heading_deg in (0..360_i32).step_by(30).map(f64::from) {
+            let heading_rad = wrap_pi(heading_deg.to_radians());
+            let rig = ordered(drive, Order::Steer { heading_rad, speed_m_s: 1.0 });
+            let off_rad = wrap_pi(rig.boat.psi_rad - heading_rad).abs();
+            assert!(off_rad < 0.1 && (rig.boat.speed_m_s - 1.0).abs() < 0.2, "{drive:?} {heading_deg}: {:?}", rig.boat);
+        }
+    }
+}
+
+#[test]
+fn at_speed_zero_a_boat_takes_its_heading_and_makes_no_way() {
+    for heading_rad in [2.0, -2.5] {
+        let rig = ordered(Drive::Speed, Order::Steer { heading_rad, speed_m_s: 0.0 });
+        let moved_m = rig.boat.at.distance(Ned::from_xy(60.0, 40.0));
+        let off_rad = wrap_pi(rig.boat.psi_rad - heading_rad).abs();
+        assert!(off_rad < 0.1 && moved_m < 0.1, "{heading_rad}: {:?}", rig.boat);
+    }
+    let rig = ordered(Drive::Speed, Order::Hold);
+    assert!(rig.boat.psi_rad == 0.0 && rig.boat.speed_m_s == 0.0, "{:?}", rig.boat);
+}
+
+/// A set-point of velocity with the yaw that goes with it, as it was sent once.
+fn with_yaw(message: MavMessage) -> Option<MavMessage> {
+    let MavMessage::SET_POSITION_TARGET_LOCAL_NED(target) = message else { return Some(message) };
+    Some(MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
+        yaw: target.vy.atan2(target.vx),
+        type_mask: target.type_mask - PositionTargetTypemask::POSITION_TARGET_TYPEMASK_YAW_IGNORE,
+        ..target
+    }))
+}
+
+#[test]
+fn a_boat_that_goes_astern_against_its_orders_is_stopped() {
+    for (heading_deg, goes_astern) in [(60.0, false), (120.0, true), (180.0, true), (240.0, true), (300.0, false)] {
+        let mut rig = Rig::new();
+        rig.alter = with_yaw;
+        rig.boat.psi_rad = wrap_pi(f64::to_radians(heading_deg));
+        rig.order = Some(Order::Steer { heading_rad: rig.boat.psi_rad, speed_m_s: 1.5 });
+        rig.run(2.0);
+        rig.operator(OperatorCommand::Arm);
+        if goes_astern {
+            rig.run_until(10.0, |rig| rig.state().contains("moves against its orders"));
+            assert!(rig.boat.speed_m_s < -0.5, "{heading_deg}: {:?}", rig.boat);
+        } else {
+            rig.run(20.0);
+            assert_eq!(rig.state(), "armed", "{heading_deg}");
+        }
+    }
+}
+
+#[test]
+#[expect(deprecated, reason = "ground stations send the frames of the boat, and Rover takes them")]
+fn an_emulated_boat_takes_the_sign_of_its_speed_from_the_north_as_rover_does() {
+    use PositionTargetTypemask as Mask;
+    let (has_yaw, has_rate) = (Mask::from_bits_retain(2535), Mask::from_bits_retain(1511));
+    let velocity_alone = Mask::from_bits_retain(3559);
+    for (frame, type_mask, vx, is_ahead) in [
+        (MavFrame::MAV_FRAME_LOCAL_NED, has_yaw, -1.0, false),
+        (MavFrame::MAV_FRAME_LOCAL_NED, has_rate, -1.0, false),
+        (MavFrame::MAV_FRAME_LOCAL_OFFSET_NED, has_yaw, -1.0, false),
+        (MavFrame::MAV_FRAME_BODY_NED, has_yaw, -1.0, false),
+        (MavFrame::MAV_FRAME_BODY_OFFSET_NED, has_rate, -1.0, false),
+        (MavFrame::MAV_FRAME_LOCAL_NED, has_yaw, 1.0, true),
+        (MavFrame::MAV_FRAME_LOCAL_NED, velocity_alone, -1.0, true),
+        (MavFrame::MAV_FRAME_BODY_NED, velocity_alone, 1.0, true),
+    ] {
+        let mut rig = Rig::under_way();
+        rig.bridge = gateway::bridge::Bridge::new(plan());
+        let mut bytes = vec![];
+        let target = SET_POSITION_TARGET_LOCAL_NED_DATA {
+            vx,
+            type_mask,
+            target_system: 1,
+            target_component: 1,
+            coordinate_frame: frame,
+            ..SET_POSITION_TARGET_LOCAL_NED_DATA::default()
+        };
+        let message = MavMessage::SET_POSITION_TARGET_LOCAL_NED(target);
+        gateway::mavlink::Writer::new(250, 190).write(&message, &mut bytes);
+        for _ in 0..10 {
+            rig.ardupilot.take(rig.now, &bytes);
+            rig.run(1.0);
+        }
+        assert_eq!(rig.boat.speed_m_s > 0.8, is_ahead, "{frame:?} {type_mask:?} {vx}: {:?}", rig.boat);
+        assert_eq!(rig.boat.speed_m_s < -0.5, !is_ahead, "{frame:?} {type_mask:?} {vx}: {:?}", rig.boat);
     }
 }
 

@@ -4,6 +4,7 @@
 #[allow(dead_code, reason = "what only a Surveyor needs")]
 mod boat;
 mod closed_loop;
+mod foreign_order;
 mod framing;
 mod preflight;
 mod rig;

@@ -7,7 +7,7 @@ use game::{Order, SimTime};
 use gateway::bridge::{Bridge, Event, Input, Output, Plan, Preflight, Site};
 use gateway::emulator::ArduPilot;
 use gateway::mavlink::dialect::MavMessage;
-use gateway::mavlink::{Framer, RoverMode};
+use gateway::mavlink::{Framer, RoverMode, Writer};
 use std::path::Path;
 
 const TELEMETRY_STEPS: u64 = 10;
@@ -22,6 +22,10 @@ pub(crate) struct Rig {
     pub(crate) order: Option<Order>,
     /// Whether bytes go through: to the boat, and from it.
     pub(crate) open: (bool, bool),
+    /// What becomes of each message on its way, to the boat and from it.
+    pub(crate) alter: fn(MavMessage) -> Option<MavMessage>,
+    /// A second gateway at the same boat.
+    pub(crate) second: Option<Bridge>,
     pub(crate) events: Vec<Event>,
     /// What the boat was sent, without what is sent in any case.
     pub(crate) sent: Vec<(SimTime, MavMessage)>,
@@ -56,6 +60,8 @@ impl Rig {
             bridge: Bridge::new(plan),
             order: None,
             open: (true, true),
+            alter: Some,
+            second: None,
             events: vec![],
             sent: vec![],
             sent_framer: Framer::new(),
@@ -73,14 +79,17 @@ impl Rig {
 
     /// A boat that sails east at 1.5 m/s, ten seconds on.
     pub(crate) fn under_way() -> Rig {
-        let mut rig = Rig::new();
-        rig.order = Some(Order::Steer { heading_rad: std::f64::consts::FRAC_PI_2, speed_m_s: 1.5 });
-        rig.run(2.0);
-        rig.operator(OperatorCommand::Arm);
-        assert_eq!((rig.refused.take(), rig.state().as_str()), (None, "armed"));
-        rig.run(9.0);
-        assert!(rig.boat.speed_m_s > 1.2 && rig.state() == "armed", "{:?} {:?}", rig.boat, rig.events);
-        rig
+        Rig::new().gets_under_way()
+    }
+
+    pub(crate) fn gets_under_way(mut self) -> Rig {
+        self.order = Some(Order::Steer { heading_rad: std::f64::consts::FRAC_PI_2, speed_m_s: 1.5 });
+        self.run(2.0);
+        self.operator(OperatorCommand::Arm);
+        assert_eq!((self.refused.take(), self.state().as_str()), (None, "armed"));
+        self.run(9.0);
+        assert!(self.boat.speed_m_s > 1.2 && self.state() == "armed", "{:?} {:?}", self.boat, self.events);
+        self
     }
 
     pub(crate) fn state(&self) -> String {
@@ -103,13 +112,31 @@ impl Rig {
         let (now, sent) = (self.now, &mut self.sent);
         self.sent_framer.push(&out.bytes, &mut |received| sent.push((now, received.message)));
         if self.open.0 && !out.bytes.is_empty() {
-            self.ardupilot.take(self.now, &out.bytes);
+            self.ardupilot.take(self.now, &self.altered(&out.bytes));
             let mut answers = Vec::new();
             self.ardupilot.answers(&mut answers);
             if self.open.1 && !answers.is_empty() {
-                self.put(&Input::Bytes(answers));
+                self.put(&Input::Bytes(self.altered(&answers)));
             }
         }
+    }
+
+    /// The same to the second gateway, which the boat hears too.
+    pub(crate) fn put_second(&mut self, input: &Input) {
+        let Some(second) = &mut self.second else { return };
+        let mut out = Output::default();
+        second.take(self.now, input, &mut out);
+        assert_eq!(out.refused, None);
+        self.ardupilot.take(self.now, &out.bytes);
+    }
+
+    fn altered(&self, bytes: &[u8]) -> Vec<u8> {
+        let mut altered = Vec::new();
+        Framer::new().push(bytes, &mut |received| {
+            let mut writer = Writer::new(received.system, received.component);
+            (self.alter)(received.message).iter().for_each(|message| writer.write(message, &mut altered));
+        });
+        altered
     }
 
     pub(crate) fn run(&mut self, seconds: f64) {
@@ -137,6 +164,8 @@ impl Rig {
             let mut bytes = Vec::new();
             self.ardupilot.telemetry(self.now, &mut bytes);
             if self.open.1 && !bytes.is_empty() {
+                let bytes = self.altered(&bytes);
+                self.put_second(&Input::Bytes(bytes.clone()));
                 self.put(&Input::Bytes(bytes));
             }
             if let Some(order) = self.order {
@@ -144,6 +173,7 @@ impl Rig {
             }
         }
         self.put(&Input::Tick);
+        self.put_second(&Input::Tick);
         self.remarks.extend(self.ardupilot.take_remark());
     }
 }

@@ -77,8 +77,7 @@ impl ArduPilot {
 
     fn set_home(&mut self, home: (i32, i32)) {
         self.home = Some(home);
-        let at = game::LatLon { lat_deg: 1e-7 * f64::from(home.0), lon_deg: 1e-7 * f64::from(home.1) };
-        self.autopilot.set_home(self.frame.ned(at));
+        self.autopilot.set_home(self.place(home));
     }
 
     fn refuse(&mut self, text: &str) -> MavResult {

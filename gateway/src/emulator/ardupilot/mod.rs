@@ -16,7 +16,7 @@ use crate::geodesy::LocalFrame;
 use crate::mavlink::dialect::MavMessage;
 use crate::mavlink::{AUTOPILOT, Framer, Received, RoverMode, Writer};
 use ::mavlink::Message;
-use game::frame::LatLon;
+use game::frame::{LatLon, Ned};
 use game::picture::OwnBoat;
 use game::{Order, SimTime};
 use mission::MissionStore;
@@ -146,7 +146,8 @@ impl ArduPilot {
         let pose = own.nav.pose();
         match self.mode {
             RoverMode::Manual => self.set_points.manual(now),
-            RoverMode::Guided => self.set_points.guided(now, self.parameters.value("CRUISE_SPEED")),
+            RoverMode::Guided if self.set_points.destination().is_some() => self.autopilot.keep(pose),
+            RoverMode::Guided => self.set_points.guided(now, self.parameters.value("CRUISE_SPEED"), pose.psi_rad),
             RoverMode::Loiter => self.autopilot.keep(pose),
             RoverMode::Rtl | RoverMode::SmartRtl => self.autopilot.go_to_erp(pose),
             RoverMode::Auto => self.autopilot.sail(pose),
@@ -189,7 +190,14 @@ impl ArduPilot {
                 self.set_points.take_attitude(now, target);
             }
             MavMessage::SET_POSITION_TARGET_LOCAL_NED(target) if self.mode == RoverMode::Guided => {
-                self.set_points.take_position(now, target);
+                let psi_rad = self.sensed.own.map_or(0.0, |own| own.nav.psi_rad);
+                self.set_points.take_velocity(now, target, psi_rad);
+            }
+            MavMessage::SET_POSITION_TARGET_GLOBAL_INT(target) if self.mode == RoverMode::Guided => {
+                self.set_points.take_destination(target);
+                if let Some(e7) = self.set_points.destination() {
+                    self.autopilot.begin(self.place(e7));
+                }
             }
             MavMessage::MANUAL_CONTROL(control) if is_station && control.target == SYSTEM => {
                 self.set_points.take_manual(now, control);
@@ -223,6 +231,11 @@ impl ArduPilot {
         self.station_at = None;
         self.set_mode(if self.parameters.value("FS_ACTION") == 1.0 { RoverMode::Rtl } else { RoverMode::Hold });
         self.say("GCS failsafe");
+    }
+
+    /// Where this latitude and longitude, 1e-7 degrees, are on the field.
+    fn place(&self, (lat_e7, lon_e7): (i32, i32)) -> Ned {
+        self.frame.ned(LatLon { lat_deg: 1e-7 * f64::from(lat_e7), lon_deg: 1e-7 * f64::from(lon_e7) })
     }
 
     /// UTC by its receiver, µs since 1970.

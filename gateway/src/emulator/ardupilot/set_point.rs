@@ -3,8 +3,9 @@
 use crate::emulator::autopilot;
 use crate::mavlink::dialect::{
     AttitudeTargetTypemask, MANUAL_CONTROL_DATA, MavFrame, PositionTargetTypemask, RC_CHANNELS_OVERRIDE_DATA,
-    SET_ATTITUDE_TARGET_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
+    SET_ATTITUDE_TARGET_DATA, SET_POSITION_TARGET_GLOBAL_INT_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
 };
+use game::angle::wrap_pi;
 use game::{Order, SimTime, math};
 use std::f64::consts::PI;
 
@@ -35,6 +36,8 @@ enum Speed {
 #[derive(Clone, Debug, Default)]
 pub(super) struct SetPoints {
     guided: Option<(SimTime, Course, Speed)>,
+    /// The position to which it goes instead: latitude and longitude, 1e-7 degrees.
+    destination: Option<(i32, i32)>,
     /// Throttle and steering, -1 to 1.
     manual: Option<(SimTime, f64, f64)>,
 }
@@ -59,25 +62,60 @@ impl SetPoints {
         }
     }
 
-    /// Velocity with a heading, a rate of turn, or neither: then the boat turns to where the velocity points.
-    pub(super) fn take_position(&mut self, now: SimTime, target: &SET_POSITION_TARGET_LOCAL_NED_DATA) {
+    /// Velocity with a heading, a rate of turn, or neither: then the boat turns to where the velocity points. The boat's own heading
+    /// counts in frames that turn with it. As Rover's `handle_set_position_target_local_ned`, with its sign of the speed.
+    #[expect(deprecated, reason = "ground stations send the frames of the boat, and Rover takes them")]
+    pub(super) fn take_velocity(&mut self, now: SimTime, target: &SET_POSITION_TARGET_LOCAL_NED_DATA, psi_rad: f64) {
         let ignores = |flag: PositionTargetTypemask| target.type_mask.intersects(flag);
         let velocity = PositionTargetTypemask::POSITION_TARGET_TYPEMASK_VX_IGNORE
             | PositionTargetTypemask::POSITION_TARGET_TYPEMASK_VY_IGNORE;
-        // Positions, and axes of the boat, are for others.
-        if ignores(velocity) || target.coordinate_frame != MavFrame::MAV_FRAME_LOCAL_NED {
+        let position = PositionTargetTypemask::POSITION_TARGET_TYPEMASK_X_IGNORE
+            | PositionTargetTypemask::POSITION_TARGET_TYPEMASK_Y_IGNORE;
+        let turned_rad = match target.coordinate_frame {
+            MavFrame::MAV_FRAME_LOCAL_NED | MavFrame::MAV_FRAME_LOCAL_OFFSET_NED => 0.0,
+            MavFrame::MAV_FRAME_BODY_NED | MavFrame::MAV_FRAME_BODY_OFFSET_NED => psi_rad,
+            _ => return,
+        };
+        // Positions on the field are for others.
+        if ignores(velocity) || !ignores(position) {
             return;
         }
-        let (north_m_s, east_m_s) = (f64::from(target.vx), f64::from(target.vy));
-        let speed_m_s = math::length(north_m_s, east_m_s);
-        let course = if !ignores(PositionTargetTypemask::POSITION_TARGET_TYPEMASK_YAW_IGNORE) {
-            Course::Heading(f64::from(target.yaw))
-        } else if !ignores(PositionTargetTypemask::POSITION_TARGET_TYPEMASK_YAW_RATE_IGNORE) {
-            Course::Turn(f64::from(target.yaw_rate))
-        } else {
-            Course::Heading(math::atan2(east_m_s, north_m_s))
+        let has_yaw = !ignores(PositionTargetTypemask::POSITION_TARGET_TYPEMASK_YAW_IGNORE);
+        let has_rate = !ignores(PositionTargetTypemask::POSITION_TARGET_TYPEMASK_YAW_RATE_IGNORE);
+        let (x_m_s, y_m_s) = (f64::from(target.vx), f64::from(target.vy));
+        let course = match (has_yaw, has_rate) {
+            (true, true) => return,
+            (true, false) => Course::Heading(f64::from(target.yaw) + turned_rad),
+            (false, true) => Course::Turn(f64::from(target.yaw_rate)),
+            (false, false) => Course::Heading(math::atan2(y_m_s, x_m_s) + turned_rad),
         };
-        self.set(now, course, Speed::MetresPerSecond(speed_m_s));
+        // The sign of x is that of the speed, in frames where x is to the north too.
+        let sign = if (has_yaw || has_rate) && x_m_s < 0.0 { -1.0 } else { 1.0 };
+        self.set(now, course, Speed::MetresPerSecond(sign * math::length(x_m_s, y_m_s)));
+    }
+
+    /// A position to go to; velocities and headings that come with it are for others.
+    pub(super) fn take_destination(&mut self, target: &SET_POSITION_TARGET_GLOBAL_INT_DATA) {
+        let position = PositionTargetTypemask::POSITION_TARGET_TYPEMASK_X_IGNORE
+            | PositionTargetTypemask::POSITION_TARGET_TYPEMASK_Y_IGNORE;
+        if !target.type_mask.intersects(position) {
+            (self.guided, self.destination) = (None, Some((target.lat_int, target.lon_int)));
+        }
+    }
+
+    /// The position to which it goes in mode GUIDED, if it goes to one.
+    pub(super) fn destination(&self) -> Option<(i32, i32)> {
+        self.destination
+    }
+
+    /// The heading that is ordered in mode GUIDED, whole degrees, as version 4.7 shows it (earlier ones show 0); 0 without one.
+    pub(super) fn nav_bearing(&self, now: SimTime) -> i16 {
+        match self.guided {
+            Some((at, Course::Heading(heading_rad), _)) if (now - at).as_s() <= HELD_S => {
+                wrap_pi(heading_rad).to_degrees() as i16
+            }
+            _ => 0,
+        }
     }
 
     /// What is not finite is not followed.
@@ -85,7 +123,7 @@ impl SetPoints {
         let (Course::Heading(steered) | Course::Turn(steered)) = course;
         let (Speed::MetresPerSecond(driven) | Speed::Share(driven)) = speed;
         if steered.is_finite() && driven.is_finite() {
-            self.guided = Some((now, course, speed));
+            (self.guided, self.destination) = (Some((now, course, speed)), None);
         }
     }
 
@@ -111,7 +149,7 @@ impl SetPoints {
         }
     }
 
-    pub(super) fn guided(&self, now: SimTime, cruise_m_s: f64) -> Order {
+    pub(super) fn guided(&self, now: SimTime, cruise_m_s: f64, psi_rad: f64) -> Order {
         let Some((_, course, speed)) = self.guided.filter(|(at, ..)| (now - *at).as_s() <= HELD_S) else {
             return Order::Hold;
         };
@@ -120,7 +158,10 @@ impl SetPoints {
             Speed::Share(share) => share * cruise_m_s,
         };
         match course {
-            _ if speed_m_s < 0.0 => autopilot::astern(speed_m_s),
+            Course::Heading(heading_rad) if speed_m_s < 0.0 => {
+                autopilot::astern(speed_m_s, wrap_pi(heading_rad - psi_rad))
+            }
+            Course::Turn(rate_rad_s) if speed_m_s < 0.0 => autopilot::astern(speed_m_s, rate_rad_s * TURN_LEAD_S),
             Course::Heading(heading_rad) => autopilot::steer(Some(heading_rad), Some(speed_m_s)),
             Course::Turn(0.0) if speed_m_s == 0.0 => Order::Hold,
             Course::Turn(rate_rad_s) => {

@@ -7,8 +7,8 @@ use crate::mavlink::RoverMode;
 use crate::mavlink::dialect::{
     ATTITUDE_DATA, AUTOPILOT_VERSION_DATA, BATTERY_STATUS_DATA, GLOBAL_POSITION_INT_DATA, GPS_RAW_INT_DATA, GpsFixType,
     HEARTBEAT_DATA, HOME_POSITION_DATA, MavAutopilot, MavDataStream, MavMessage, MavModeFlag, MavProtocolCapability,
-    MavResult, MavState, MavSysStatusSensor, MavType, REQUEST_DATA_STREAM_DATA, SYS_STATUS_DATA, SYSTEM_TIME_DATA,
-    VFR_HUD_DATA,
+    MavResult, MavState, MavSysStatusSensor, MavType, NAV_CONTROLLER_OUTPUT_DATA, POSITION_TARGET_GLOBAL_INT_DATA,
+    REQUEST_DATA_STREAM_DATA, SYS_STATUS_DATA, SYSTEM_TIME_DATA, VFR_HUD_DATA,
 };
 use ::mavlink::MessageData;
 use game::angle::compass_deg_from_rad;
@@ -21,10 +21,12 @@ const INTERVAL_MIN_S: f64 = 0.02;
 const VERSION: u32 = 0x0405_07FF;
 
 /// Every message that it can send: its number, the stream that it is of, and how often it comes unasked, s, if it does.
-const MESSAGES: [(u32, MavDataStream, Option<f64>); 10] = [
+const MESSAGES: [(u32, MavDataStream, Option<f64>); 12] = [
     (HEARTBEAT_DATA::ID, MavDataStream::MAV_DATA_STREAM_ALL, Some(1.0)),
     (SYS_STATUS_DATA::ID, MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS, Some(1.0)),
     (GPS_RAW_INT_DATA::ID, MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS, Some(1.0)),
+    (NAV_CONTROLLER_OUTPUT_DATA::ID, MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS, Some(1.0)),
+    (POSITION_TARGET_GLOBAL_INT_DATA::ID, MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS, Some(1.0)),
     (GLOBAL_POSITION_INT_DATA::ID, MavDataStream::MAV_DATA_STREAM_POSITION, Some(1.0)),
     (ATTITUDE_DATA::ID, MavDataStream::MAV_DATA_STREAM_EXTRA1, Some(1.0)),
     (VFR_HUD_DATA::ID, MavDataStream::MAV_DATA_STREAM_EXTRA2, Some(1.0)),
@@ -115,6 +117,17 @@ impl ArduPilot {
             GPS_RAW_INT_DATA::ID => MavMessage::GPS_RAW_INT(self.gps_raw(now)?),
             GLOBAL_POSITION_INT_DATA::ID => MavMessage::GLOBAL_POSITION_INT(self.position(now)?),
             ATTITUDE_DATA::ID => MavMessage::ATTITUDE(self.attitude(now)?),
+            NAV_CONTROLLER_OUTPUT_DATA::ID if self.mode == RoverMode::Guided => {
+                let nav_bearing = self.set_points.nav_bearing(now);
+                MavMessage::NAV_CONTROLLER_OUTPUT(NAV_CONTROLLER_OUTPUT_DATA { nav_bearing, ..Default::default() })
+            }
+            // Of velocities there is none.
+            POSITION_TARGET_GLOBAL_INT_DATA::ID if self.mode == RoverMode::Guided => {
+                let (lat_int, lon_int) = self.set_points.destination()?;
+                let time_boot_ms = boot_ms(now);
+                let data = POSITION_TARGET_GLOBAL_INT_DATA { time_boot_ms, lat_int, lon_int, ..Default::default() };
+                MavMessage::POSITION_TARGET_GLOBAL_INT(data)
+            }
             VFR_HUD_DATA::ID => MavMessage::VFR_HUD(self.vfr_hud()?),
             SYSTEM_TIME_DATA::ID => MavMessage::SYSTEM_TIME(SYSTEM_TIME_DATA {
                 time_unix_usec: self.utc_us(now),
