@@ -40,7 +40,7 @@ class Rig:
         scenario.write_text(f'base = "{ROOT}/scenarios/games/mixed_2v2.toml"\nduration_s = 86400.0\n', encoding="utf-8")
         self.start_boats(scenario)
         self.sim = self.start_squall("sim", SIM, "sim", scenario, "--listen", self.endpoint, "--insecure",
-                                     "--pace", "realtime", "--game", GAME, "--join-s", "600", "--no-record")
+                                     "--pace", "realtime", "--game", GAME, "--join-s", "600")
         self.start_squall("agents", SIM, "agent", *self.place(), "--vehicle", "blue_one", "blue_two", "red_one",
                           "red_two")
         wires = [f"{boat}={8201 + i}=127.0.0.1:{8003 + i}={self.control[boat]}" for i, boat in enumerate(BOATS)]
@@ -59,7 +59,7 @@ class Rig:
         afloat = [word for boat in BOATS for word in ("--afloat", boat)]
         water = f"tcp/127.0.0.1:{PORT}"
         self.start_squall("water", BOAT, "sim", scenario, *afloat, "--listen", water, "--pace", "realtime",
-                          "--game", "water", "--no-record")
+                          "--game", "water")
         for i, boat in enumerate(BOATS):
             address = f"tcp://127.0.0.1:{8003 + i}"
             emulator = self.start_squall(f"boat_{boat}", BOAT, "gateway", "emulate", "--connect", water,
