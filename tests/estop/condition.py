@@ -49,12 +49,15 @@ class Loss(Condition):
 class Cut(Condition):
     def before(self, number):
         # Boat and fleet are stopped in turn: each of them meets both cuts.
+        self.cut_s = time.monotonic()
         self.machines.tell_link("cut", CONSOLE, (SIM, BOAT)[number // 2 % 2])
         is_long = number % LONG_CUT_EVERY == LONG_CUT_EVERY - 1
         time.sleep(LONG_CUT_S if is_long else self.random.uniform(0.0, 1.0))
 
     def after(self):
         self.machines.tell_link("restore")
+        # TCP sends a stop that was cut off again, after no longer than the cut lasted. It must not be taken for the next one.
+        time.sleep(time.monotonic() - self.cut_s + 0.5)
 
 
 class StoppedSim(Condition):
@@ -75,8 +78,10 @@ class Stranger(Condition):
     def begin(self):
         words = [self.rig.stranger_python, HERE / "stranger.py", self.what, self.rig.endpoint, GAME, *self.about]
         self.stranger = self.machines.start(f"stranger_{self.what}", SIM, words)
-        if self.stranger.find(lambda line: line.startswith("{"), 30.0) is None:
-            raise RuntimeError(f"the stranger does not begin: see {self.stranger.log.name}")
+        # The first report comes when it begins, the second when it has been at it for a second.
+        for mark in (0, 1):
+            if self.stranger.find(lambda line: line.startswith("{"), 30.0, mark) is None:
+                raise RuntimeError(f"the stranger does not begin: see {self.stranger.log.name}")
 
     def end(self):
         print(f"  the stranger: {self.stranger.lines[-1][1]}")

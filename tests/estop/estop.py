@@ -28,6 +28,7 @@ import os
 import signal
 import subprocess
 import sys
+import textwrap
 import time
 from collections import Counter
 from pathlib import Path
@@ -161,7 +162,7 @@ def measure_console(rig, name, times, limit_ms):
         tally.link_late_ms = rig.machines.link_statistics()["late_ms_p99"]
         condition.end()
     console.write("quit")
-    code = rig.machines.end(console)
+    code = rig.machines.end(console, None)
     if vain or code:
         print(f"  {name}: {vain} tries in vain, as the boats were not under way; the console ended with {code}")
     return tally
@@ -182,8 +183,8 @@ def measure_consoles(rig, args):
         print(f"{name}: {len(tally.stops)} stops in {time.monotonic() - began_s:.0f} s", flush=True)
         rows.append(tally.row(name))
         passed = passed and tally.passed() and len(tally.stops) == args.times
-    print(f"\nFrom a line to the console until the boats are sent standby, ms; one-way delay {args.delay_ms:g} ms, "
-          f"\nlimit {limit_ms:g} ms\n\n{table(HEADING, rows)}\n")
+    print(f"\nFrom a line to the console until the boats are sent standby, ms; one-way delay {args.delay_ms:g} ms,\n"
+          f"limit {limit_ms:g} ms\n\n{table(HEADING, rows)}\n")
     return passed
 
 
@@ -194,7 +195,7 @@ def tell_once(rig, words, boats):
     began_ns, done = rig.tell(CONSOLE, *words)
     took_ms = wire_ms(rig, boats, began_ns)
     rig.release(boats, lambda: rig.tell(SIM, "all", "release"))
-    said = (done.stdout + done.stderr).strip().partition("\n")[0]
+    said = (done.stdout if done.returncode == 0 else done.stderr).strip().partition("\n")[0]
     return took_ms, done.returncode, said
 
 
@@ -220,10 +221,11 @@ def measure_tells(rig, times):
                 words_said.update((code, said) for _, code, said in told)
                 passed = passed and (loss_pct > 0 or trips is None or trips <= TELL_TRIPS_MAX)
             print(f"tell: {delay_ms:g} ms, {loss_pct:g} % loss: measured", flush=True)
-    print(f"\nFrom the start of `squall gateway tell` until the boats are sent standby; delay one way, ms; loss, %\n\n"
-          f"{table(TELL_HEADING, rows)}\n\nWhat it said first:")
+    print(f"\nFrom the start of `squall gateway tell` until the boats are sent standby, ms; one-way delay,\nms; "
+          f"loss, %\n\n"
+          f"{table(TELL_HEADING, rows)}\n\nWhat it said, by exit code:")
     for (code, said), count in words_said.most_common(12):
-        print(f"{count} x {code}: {said}"[:WIDTH])
+        print(textwrap.fill(f"{count} x {code}: {said}", WIDTH, subsequent_indent="    "))
     rig.machines.tell_link("loss-pct", 0)
     return passed
 

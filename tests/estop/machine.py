@@ -81,10 +81,11 @@ class Program:
             self.child.send_signal(number)
 
     def end(self, number=signal.SIGINT):
-        """Asks it to end, and kills it if it does not; returns its exit code."""
-        # A suspended program hears nothing.
-        self.send_signal(signal.SIGCONT)
-        self.send_signal(number)
+        """Asks it to end, and kills it if it does not; returns its exit code. Without a signal it has been asked already."""
+        if number is not None:
+            # A suspended program hears nothing.
+            self.send_signal(signal.SIGCONT)
+            self.send_signal(number)
         try:
             self.child.stdin.close()
         except OSError:
@@ -157,10 +158,10 @@ class Machines:
         self.programs.append(program)
         return program
 
-    def end(self, program):
+    def end(self, program, number=signal.SIGINT):
         """Ends a program; returns its exit code."""
         self.programs.remove(program)
-        return program.end()
+        return program.end(number)
 
     def tell_link(self, *words):
         """Gives the link a command, which must be obeyed."""

@@ -153,9 +153,12 @@ class Rig:
         for command in ("arm", "station_keep"):
             until = time.monotonic() + (ARM_S if command == "arm" else 1.0)
             while time.monotonic() < until:
-                if not self.is_standing(boat) and self.state(boat).startswith(("armed", "delegated")):
-                    return True
-                self.ask(boat, command)
+                state = self.state(boat)
+                if state.startswith(("armed", "delegated")):
+                    if not self.is_standing(boat):
+                        return True
+                else:
+                    self.ask(boat, "release" if state.startswith("e-stopped") else command)
                 time.sleep(0.05)
         return False
 
