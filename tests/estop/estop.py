@@ -230,27 +230,39 @@ def measure_tells(rig, times):
     return passed
 
 
+def measure(args, out):
+    """Measures what was asked for; whether all of it passed."""
+    passed = True
+    with Machines(MACHINES, out, args.seed) as machines:
+        machines.tell_link("delay-ms", args.delay_ms)
+        check_link(machines, args.delay_ms)
+        machines.tell_link("delay-ms", 1)
+        rig = Rig(machines, args.squall, args.stranger_python)
+        rig.start()
+        if args.tell_times:
+            passed = measure_tells(rig, args.tell_times)
+        if args.under:
+            passed = measure_consoles(rig, args) and passed
+    return passed
+
+
 def main():
     args = arguments()
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     out = args.out.resolve() / f"{time.strftime('%Y%m%dT%H%M%SZ', time.gmtime())}-{os.getpid()}"
-    out.mkdir(parents=True)
-    passed = True
     try:
         must_be_possible()
-        with Machines(MACHINES, out, args.seed) as machines:
-            machines.tell_link("delay-ms", args.delay_ms)
-            check_link(machines, args.delay_ms)
-            machines.tell_link("delay-ms", 1)
-            rig = Rig(machines, args.squall, args.stranger_python)
-            rig.start()
-            if args.tell_times:
-                passed = measure_tells(rig, args.tell_times)
-            if args.under:
-                passed = measure_consoles(rig, args) and passed
+        out.mkdir(parents=True)
+        passed = measure(args, out)
     except Unavailable as why:
         print(f"SKIPPED: {why}")
         return 0
+    except RuntimeError as error:
+        print(f"FAILED: {error}")
+        return 1
+    except KeyboardInterrupt:
+        print("interrupted: nothing is judged")
+        return 130
     print("every stop was in time" if passed else f"stops were late, or shown wrongly: see {out}")
     return 0 if passed else 1
 
