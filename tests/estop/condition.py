@@ -20,7 +20,9 @@ class Skipped(Exception):
 class Condition:
     """What is wrong: all the while, and around each stop."""
 
-    def __init__(self, rig):
+    def __init__(self, rig, name, delay_ms):
+        self.name = name
+        self.delay_ms = delay_ms
         self.rig = rig
         self.machines = rig.machines
         self.random = random.Random(rig.machines.seed)
