@@ -193,12 +193,13 @@ def measure_consoles(rig, args):
     return passed
 
 
-def tell_once(rig, words, boats):
+def tell_once(rig, words, boats, delay_ms):
     """One E-stop by `tell`: until it is on the wire, its exit code, and its words."""
     for boat in boats:
         rig.wait_until(f"{boat} is under way", lambda boat=boat: rig.get_under_way(boat), 60.0)
     began_ns, done = rig.tell(CONSOLE, *words)
     took_ms = wire_ms(rig, boats, began_ns)
+    time.sleep(SETTLE_S + 4 * delay_ms / 1e3)
     rig.release(boats, lambda: rig.tell(SIM, "all", "release"))
     said = (done.stdout if done.returncode == 0 else done.stderr).strip().partition("\n")[0]
     return took_ms, done.returncode, said
@@ -215,7 +216,7 @@ def measure_tells(rig, times):
             rig.machines.tell_link("delay-ms", delay_ms)
             for name, words in commands.items():
                 boats = BOATS if words[0] == "all" else (first,)
-                told = [tell_once(rig, words, boats) for _ in range(times)]
+                told = [tell_once(rig, words, boats, delay_ms) for _ in range(times)]
                 took_ms = [took for took, _, _ in told]
                 median_ms = quantile(took_ms, 0.5)
                 trips = round_trips(median_ms, start_ms.setdefault(name, median_ms), delay_ms)
