@@ -1,0 +1,85 @@
+"""What was measured of many stops: counts, quantiles, tables of at most 80 columns."""
+
+import math
+from dataclasses import dataclass, field
+
+WIDTH = 80
+
+
+def quantile(values, share):
+    """The smallest value that at least this share of all values do not exceed (nearest rank); None of no values."""
+    if not values:
+        return None
+    rank = max(1, math.ceil(share * len(values)))
+    return sorted(values)[rank - 1]
+
+
+@dataclass
+class Stop:
+    """One E-stop."""
+
+    # From the operator's request until the last of the boats meant was sent standby; infinite if one never was.
+    wire_ms: float
+    # Until the operator was shown the last of them as stopped; infinite if that never happened.
+    shown_ms: float = math.inf
+
+    def is_false(self):
+        """Whether the operator was shown a boat as stopped that had not been stopped."""
+        return self.shown_ms < self.wire_ms
+
+
+@dataclass
+class Tally:
+    """The E-stops under one condition."""
+
+    limit_ms: float
+    stops: list = field(default_factory=list)
+    # How late the emulated link itself delivered packets: what of the figures is the measurement's own.
+    link_late_ms: float = 0.0
+
+    def in_time(self):
+        return sum(stop.wire_ms <= self.limit_ms for stop in self.stops)
+
+    def shown(self):
+        return sum(math.isfinite(stop.shown_ms) for stop in self.stops)
+
+    def false(self):
+        return sum(stop.is_false() for stop in self.stops)
+
+    def passed(self):
+        return bool(self.stops) and self.in_time() == len(self.stops) == self.shown() and self.false() == 0
+
+    def row(self, name):
+        wire = [stop.wire_ms for stop in self.stops]
+        cells = [milliseconds(quantile(wire, share)) for share in (0.5, 0.99, 1.0)]
+        return [name, f"{self.in_time()}/{len(self.stops)}", *cells, str(self.shown()), str(self.false()),
+                milliseconds(self.link_late_ms), "" if self.passed() else "MISSED"]
+
+
+HEADING = ["under", "in time", "median", "p99", "max", "shown", "false", "link late"]
+
+
+def milliseconds(value):
+    if value is None:
+        return "-"
+    return "never" if math.isinf(value) else f"{value:.1f}"
+
+
+def table(heading, rows):
+    """Rows below a heading: the first column to the left, all others to the right.
+
+    A table that is wider than a terminal is an error of ours.
+    """
+    rows = [[*row, *[""] * (len(heading) - len(row))] for row in [heading, *rows]]
+    columns = max(map(len, rows))
+    rows = [[*row, *[""] * (columns - len(row))] for row in rows]
+    widths = [max(len(row[column]) for row in rows) for column in range(columns)]
+    lines = ["  ".join(cell.ljust(width) if column == 0 else cell.rjust(width)
+                       for column, (cell, width) in enumerate(zip(row, widths))).rstrip() for row in rows]
+    assert max(map(len, lines)) <= WIDTH, f"{max(map(len, lines))} columns"
+    return "\n".join(lines)
+
+
+def round_trips(took_ms, start_ms, delay_ms):
+    """How many round trips a command took, without the time that it takes on a network without delay."""
+    return None if delay_ms == 0 else (took_ms - start_ms) / (2 * delay_ms)
