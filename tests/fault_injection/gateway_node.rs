@@ -78,7 +78,7 @@ impl MemoryLink {
         let (wire, on_event) = (Arc::clone(wire), Arc::new(on_event));
         let (read_from, tell) = (Arc::clone(&wire), Arc::clone(&on_event));
         let reader = NodeThread::start(move || read(&read_from, link, &**tell));
-        MemoryLink { wire, on_event, _reader: reader }
+        MemoryLink { wire, on_event, _reader: reader.expect("a thread of the simulation") }
     }
 }
 
