@@ -149,7 +149,7 @@ fn a_sim_that_is_suspended_or_killed_keeps_no_stop_from_the_boats_nor_from_its_r
 
 #[test]
 fn a_boat_that_does_not_report_its_stop_fails_the_console_and_tell() {
-    let mut fleet = Fleet::start();
+    let fleet = Fleet::start();
     let mut console = fleet.console();
     fleet.gateways[1].signal("STOP");
     console.wait_for(&["red_one  silent"]);

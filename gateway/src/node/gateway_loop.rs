@@ -7,7 +7,7 @@ use super::join::Join;
 use super::latency::Latency;
 use super::loop_input::{Call, LoopInput, LoopOutput, Stop};
 use super::{NodeError, NodeEvent, Settings, subscribe};
-use crate::bridge::{Bridge, Event, Input, NavOut, Output};
+use crate::bridge::{Bridge, Event, Input, Output};
 use crate::game_clock::{GameClock, OrderTime};
 use crate::link::{BoatLink, LinkEvent};
 use crate::record::StepEncoder;
@@ -15,13 +15,11 @@ use crate::supervisor::Scope;
 use bus::token::{self, Checked, Guard};
 use bus::{Bus, CurrentToken, Declaration, Priority, Publisher, Query, clock};
 use game::codec;
-use game::external::{
-    FleetCommand, GatewayCommand, GatewayStatus, LinkBytes, NavReport, OperatorCommand, OperatorReply, Reported,
-};
+use game::external::{FleetCommand, GatewayCommand, OperatorCommand, OperatorReply, Reported};
 use game::frame::Ned;
-use game::message::{Frame, Message, Stamp};
+use game::message::Frame;
 use game::{Order, SimTime, VehicleId, topic};
-use recording::{Entry, Recorder};
+use recording::Recorder;
 use std::collections::VecDeque;
 use std::net::SocketAddr;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -68,11 +66,11 @@ pub(super) struct GatewayLoop<'a> {
 /// What a gateway has of the game that it is in.
 pub(super) struct InGame {
     bus: Bus,
-    nav: Publisher,
-    status: Publisher,
+    pub(super) nav: Publisher,
+    pub(super) status: Publisher,
     /// Every byte of the link, for recorders and observers.
-    link_bytes: Publisher,
-    vehicle: VehicleId,
+    pub(super) link_bytes: Publisher,
+    pub(super) vehicle: VehicleId,
     /// The other real boats.
     others: Vec<VehicleId>,
     _join: Join,
@@ -81,18 +79,18 @@ pub(super) struct InGame {
 
 /// What the loop keeps track of.
 pub(super) struct Counters {
-    ticket: Option<u64>,
+    pub(super) ticket: Option<u64>,
     /// Time of the game, as last received.
-    game_now: SimTime,
-    reports: u64,
-    link: String,
+    pub(super) game_now: SimTime,
+    pub(super) reports: u64,
+    pub(super) link: String,
     tag: u64,
     /// Sentences with orders on their way: tag, and when the order came.
     writing: VecDeque<(u64, Instant)>,
     /// When the order that is not sent yet came.
     order_came: Option<Instant>,
-    sentence_to_topic: Latency,
-    order_to_sentence: Latency,
+    pub(super) sentence_to_topic: Latency,
+    pub(super) order_to_sentence: Latency,
     status_at: Instant,
     /// When the machine last came back from a suspension, or the gateway began.
     awake_since: Instant,
@@ -143,15 +141,6 @@ impl GatewayLoop<'_> {
                 self.report_status(&status)?;
                 (self.notify)(NodeEvent::Status(&status));
             }
-        }
-        Ok(())
-    }
-
-    /// Reports the status to the sim, which passes it on.
-    fn report_status(&self, status: &GatewayStatus) -> Result<(), NodeError> {
-        if let (Some(ticket), Some(in_game)) = (self.counters.ticket, &self.in_game) {
-            let json = serde_json::to_vec(status).expect("a status is JSON");
-            in_game.status.send_raw(Reported::with_ticket(ticket, &json))?;
         }
         Ok(())
     }
@@ -265,27 +254,6 @@ impl GatewayLoop<'_> {
 
     fn vehicle(&self) -> Option<VehicleId> {
         self.in_game.as_ref().map(|in_game| in_game.vehicle)
-    }
-
-    /// The status of core and shell.
-    pub(super) fn full_status(&self) -> GatewayStatus {
-        let mut status = self.bridge.status(self.clock.now());
-        status.control = self.port.as_ref().map(|(address, _)| address.to_string());
-        if status.link != "up" {
-            status.link.clone_from(&self.counters.link);
-        }
-        status.latency_us =
-            [self.counters.sentence_to_topic.summary_us(), self.counters.order_to_sentence.summary_us()];
-        let lost =
-            self.recorder.as_ref().map_or([0; 2], |recorder| [recorder.state().dropped, recorder.bulk_dropped()]);
-        let more = [("nav reports", self.counters.reports), ("displaced writes", self.link.displaced())];
-        let rest = [
-            ("calls dropped", self.input.calls.dropped()),
-            ("messages not recorded", lost[0]),
-            ("messages of payloads not recorded", lost[1]),
-        ];
-        status.counts.extend(more.into_iter().chain(rest).map(|(name, count)| (name.to_owned(), count)));
-        status
     }
 
     fn take(&mut self, call: Call) -> Result<(), NodeError> {
@@ -459,35 +427,6 @@ impl GatewayLoop<'_> {
         }
         self.record_step(now, &input, &out)?;
         Ok(out.refused)
-    }
-
-    /// Publishes the bytes that went over the link, and records the whole step.
-    fn record_step(&mut self, now: SimTime, input: &Input, out: &Output) -> Result<(), NodeError> {
-        let link_bytes = self.in_game.as_ref().map(|in_game| &in_game.link_bytes);
-        let ticket = self.counters.ticket.filter(|_| link_bytes.is_some_and(Publisher::is_heard));
-        if ticket.is_none() && self.recorder.is_none() {
-            return Ok(());
-        }
-        for entry in self.encoder.step(now, self.counters.game_now, input, out) {
-            if let (Some(ticket), Some(link_bytes), Entry::Message { schema: Some(LinkBytes::SCHEMA), bytes, .. }) =
-                (ticket, link_bytes, &entry)
-            {
-                link_bytes.send_raw(Reported::with_ticket(ticket, bytes))?;
-            }
-            if let Some(recorder) = &self.recorder {
-                recorder.record(entry);
-            }
-        }
-        Ok(())
-    }
-
-    fn report(&mut self, out: &NavOut) -> Result<(), NodeError> {
-        let (Some(ticket), Some(in_game)) = (self.counters.ticket, &self.in_game) else { return Ok(()) };
-        self.counters.reports += 1;
-        let stamp = Stamp { valid_ns: self.counters.game_now, seq: self.counters.reports, version: NavReport::VERSION };
-        let age_ns = SimTime::from_s(out.age_s).0;
-        let report = NavReport { stamp, ticket, vehicle: in_game.vehicle, valid: out.valid, age_ns, nav: out.nav };
-        Ok(in_game.nav.send(&report)?)
     }
 
     /// Logs a message, unless it was logged just now.

@@ -14,6 +14,7 @@ mod latency;
 mod loop_input;
 mod machine_check;
 mod payload;
+mod report;
 mod tcp_port;
 mod terminal_key;
 
