@@ -334,7 +334,7 @@ impl Shared {
             for (vehicle, state) in states {
                 orders.expect(vehicle);
                 if !state.is_empty() {
-                    orders.report(clock::now(), vehicle, state, Source::Published);
+                    orders.report(clock::now(), vehicle, state, Source::Relayed);
                 }
             }
             orders.complete();

@@ -17,6 +17,8 @@ const TO_EVERYBODY: Duration = Duration::from_secs(2);
 const LATE: Duration = Duration::from_secs(2);
 /// A boat of which nothing was heard for so long is silent.
 const SILENCE: Duration = Duration::from_secs(3);
+/// What is told again counts for a boat that was not heard itself for so long.
+const RELAYED_AFTER: Duration = Duration::from_secs(1);
 /// News that nobody has read; the oldest go first.
 const NEWS_MAX: usize = 1024;
 
@@ -27,6 +29,8 @@ pub struct KnownBoat {
     pub state: Option<String>,
     /// When it was heard last.
     pub heard: Option<Instant>,
+    /// When it was heard other than by what is told again.
+    heard_itself: Option<Instant>,
     is_silent: bool,
 }
 
@@ -82,6 +86,8 @@ pub(super) enum Source {
     Answer(u64),
     /// It may be older than any stop.
     Published,
+    /// It was published some time ago, and is told again.
+    Relayed,
 }
 
 /// A stop that was asked for.
@@ -169,7 +175,7 @@ impl StopOrders {
 
     /// A boat has to be stopped with all the others, whether it is heard or not.
     pub(super) fn expect(&mut self, vehicle: &str) {
-        let unheard = KnownBoat { state: None, heard: None, is_silent: false };
+        let unheard = KnownBoat { state: None, heard: None, heard_itself: None, is_silent: false };
         self.boats.entry(vehicle.to_owned()).or_insert(unheard);
     }
 
@@ -235,6 +241,13 @@ impl StopOrders {
     pub(super) fn report(&mut self, now: Instant, vehicle: &str, state: &str, source: Source) {
         self.expect(vehicle);
         let Some(boat) = self.boats.get_mut(vehicle) else { return };
+        // Whoever is heard itself says more.
+        if source == Source::Relayed && boat.heard_itself.is_some_and(|heard| now < heard + RELAYED_AFTER) {
+            return;
+        }
+        if source != Source::Relayed {
+            boat.heard_itself = Some(now);
+        }
         let is_change = boat.state.as_deref() != Some(state) || boat.is_silent;
         (boat.state, boat.heard, boat.is_silent) = (Some(state.to_owned()), Some(now), false);
         let mut news = Vec::new();
@@ -439,6 +452,21 @@ mod tests {
         let times = said(&mut orders, start, &[(5, "safed", Source::Published)]);
         assert_eq!(times, [0, 10, 20, 40, 80, 160, 360, 560, 760, 960]);
         assert!(orders.unfinished().is_empty());
+    }
+
+    #[test]
+    fn what_is_told_again_counts_only_for_a_boat_that_is_not_heard_itself() {
+        let (mut orders, start) = orders(&["blue_one"]);
+        let state = |orders: &StopOrders| orders.boats().next().and_then(|(_, boat)| boat.state.clone());
+        for (at, told, source, want) in [
+            (0, "safed", Source::Relayed, "safed"),
+            (10, "e-stopped", Source::Published, "e-stopped"),
+            (900, "safed", Source::Relayed, "e-stopped"),
+            (1100, "safed", Source::Relayed, "safed"),
+        ] {
+            orders.report(start + MS(at), "blue_one", told, source);
+            assert_eq!(state(&orders).as_deref(), Some(want), "{at} ms");
+        }
     }
 
     #[test]

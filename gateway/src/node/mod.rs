@@ -348,7 +348,9 @@ fn subscribe(
             queries.query(query);
         })?,
         bus.subscribe(topic::stop(game, name), move |bytes| {
-            stop_in(bytes).into_iter().for_each(|s| drop(stops.stop(s)))
+            if let Some(stop) = stop_in(bytes) {
+                stops.stop(stop);
+            }
         })?,
         bus.subscribe(topic::control(game), move |bytes| {
             // Everything else reaches the boat as an order, if at all.
