@@ -2,14 +2,15 @@
 //! No socket and no clock in here.
 
 use super::StopCommand;
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::time::{Duration, Instant};
 
 /// When a stop is said again, ms after it was asked for: one that is lost costs little, and repeats let TCP find out at once.
 const SOON_MS: [u64; 6] = [0, 10, 20, 40, 80, 160];
 /// From then on it is said this often.
 const AGAIN: Duration = Duration::from_millis(200);
-/// A status that was published may be older than the stop: although one shows it, the stop is said for so long.
+/// A status that was published may be older than the stop. For so long the stop is said although one shows it, and one of a boat that
+/// is not known to have been in another state does not count.
 const DOUBTED: Duration = Duration::from_secs(1);
 /// A stop of all boats is said to everybody for so long; after that only to those that do not show it.
 const TO_EVERYBODY: Duration = Duration::from_secs(2);
@@ -86,8 +87,8 @@ pub(super) enum Source {
     Answer(u64),
     /// It may be older than any stop.
     Published,
-    /// It was published some time ago, and is told again.
-    Relayed,
+    /// It was published some time ago, which the sim heard at this moment, and is told again.
+    Relayed(Instant),
 }
 
 /// A stop that was asked for.
@@ -102,6 +103,8 @@ struct Stop {
     said: usize,
     /// Boats that show it: whether that was an answer to it.
     shown: BTreeMap<String, bool>,
+    /// Boats that were in another state then, or since.
+    others: BTreeSet<String>,
     /// What the sim says to a stop of all.
     sim: Option<Result<(), String>>,
     is_late: bool,
@@ -155,11 +158,12 @@ impl StopOrders {
         self.boats.iter()
     }
 
-    /// Whether every stop is done; a stop of all cannot be before a game has named its boats.
+    /// Whether every stop is done, without doubt; a stop of all cannot be before a game has named its boats.
     #[must_use]
-    pub fn is_done(&self) -> bool {
+    pub fn is_done(&self, now: Instant) -> bool {
         let is_for_all = self.stops.iter().any(|stop| stop.target.is_none());
-        (self.is_complete || !is_for_all) && self.unfinished().is_empty()
+        let is_sure = |stop: &Stop| now >= stop.asked + DOUBTED || stop.shown.values().all(|is_sure| *is_sure);
+        (self.is_complete || !is_for_all) && self.unfinished().is_empty() && self.stops.iter().all(is_sure)
     }
 
     /// Whether there are news.
@@ -193,6 +197,8 @@ impl StopOrders {
     pub(super) fn ask(&mut self, now: Instant, target: Option<String>, command: StopCommand) -> u64 {
         self.stops.retain(|stop| (&stop.target, stop.command) != (&target, command));
         self.count += 1;
+        let is_other = |boat: &KnownBoat| boat.state.as_ref().is_some_and(|state| !command.is_shown_by(state));
+        let others = self.boats.iter().filter(|(_, boat)| is_other(boat)).map(|(name, _)| name.clone()).collect();
         self.stops.push(Stop {
             number: self.count,
             target,
@@ -200,6 +206,7 @@ impl StopOrders {
             asked: now,
             said: 0,
             shown: BTreeMap::new(),
+            others,
             sim: None,
             is_late: false,
             is_hurried: false,
@@ -241,18 +248,27 @@ impl StopOrders {
     pub(super) fn report(&mut self, now: Instant, vehicle: &str, state: &str, source: Source) {
         self.expect(vehicle);
         let Some(boat) = self.boats.get_mut(vehicle) else { return };
-        // Whoever is heard itself says more.
-        if source == Source::Relayed && boat.heard_itself.is_some_and(|heard| now < heard + RELAYED_AFTER) {
-            return;
-        }
-        if source != Source::Relayed {
+        let relayed = if let Source::Relayed(as_of) = source { Some(as_of) } else { None };
+        if relayed.is_none() {
             boat.heard_itself = Some(now);
         }
-        let is_change = boat.state.as_deref() != Some(state) || boat.is_silent;
-        (boat.state, boat.heard, boat.is_silent) = (Some(state.to_owned()), Some(now), false);
+        // Whoever is heard itself says more.
+        let is_news = relayed.is_none() || boat.heard_itself.is_none_or(|heard| now >= heard + RELAYED_AFTER);
+        let is_change = is_news && (boat.state.as_deref() != Some(state) || boat.is_silent);
+        if is_news {
+            (boat.state, boat.heard, boat.is_silent) = (Some(state.to_owned()), Some(now), false);
+        }
         let mut news = Vec::new();
         for stop in self.stops.iter_mut().filter(|stop| stop.target.as_deref().is_none_or(|target| target == vehicle)) {
-            let is_sure = source == Source::Answer(stop.number);
+            let is_sure = source == Source::Answer(stop.number) || relayed.is_some_and(|as_of| as_of > stop.asked);
+            if relayed.is_some() && !(is_sure && stop.command.is_shown_by(state)) {
+                continue;
+            }
+            if !stop.command.is_shown_by(state) {
+                stop.others.insert(vehicle.to_owned());
+            } else if !is_sure && now < stop.asked + DOUBTED && !stop.others.contains(vehicle) {
+                continue;
+            }
             match stop.shown.get(vehicle).copied() {
                 None if stop.command.is_shown_by(state) => {
                     let (vehicle, state, after) = (vehicle.to_owned(), state.to_owned(), now - stop.asked);
@@ -457,14 +473,16 @@ mod tests {
     #[test]
     fn what_is_told_again_counts_only_for_a_boat_that_is_not_heard_itself() {
         let (mut orders, start) = orders(&["blue_one"]);
+        orders.ask(start, Some("blue_one".to_owned()), StopCommand::Disarm);
+        // The sim heard it before the stop was asked for.
+        orders.report(start + MS(40), "blue_one", "safed", Source::Relayed(start));
+        assert_eq!(orders.unfinished(), ["blue_one does not report that it has stopped: safed"]);
+        orders.report(start + MS(50), "blue_one", "safed", Source::Relayed(start + MS(1)));
+        assert!(orders.is_done(start + MS(50)));
         let state = |orders: &StopOrders| orders.boats().next().and_then(|(_, boat)| boat.state.clone());
-        for (at, told, source, want) in [
-            (0, "safed", Source::Relayed, "safed"),
-            (10, "e-stopped", Source::Published, "e-stopped"),
-            (900, "safed", Source::Relayed, "e-stopped"),
-            (1100, "safed", Source::Relayed, "safed"),
-        ] {
-            orders.report(start + MS(at), "blue_one", told, source);
+        orders.report(start + MS(100), "blue_one", "armed", Source::Published);
+        for (at, want) in [(900, "armed"), (1200, "safed")] {
+            orders.report(start + MS(at), "blue_one", "safed", Source::Relayed(start + MS(at)));
             assert_eq!(state(&orders).as_deref(), Some(want), "{at} ms");
         }
     }
