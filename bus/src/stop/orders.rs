@@ -493,7 +493,7 @@ mod tests {
         let number = orders.ask(start, None, StopCommand::EStop);
         let stopped = (3, "e-stopped", Source::Answer(number));
         assert_eq!(said(&mut orders, start, &[stopped]).len(), 6 + 14);
-        let later = orders.due(start + MS(3100));
+        let later = orders.due(start + MS(3200));
         assert!(!later[0].to_everybody && later[0].boats == ["red_one"], "{later:?}");
         let late = StopNews::Late { vehicle: "red_one".to_owned(), command: StopCommand::EStop };
         assert!(orders.take_news().contains(&late));
