@@ -291,7 +291,7 @@ fn show(news: &StopNews) {
         }
         StopNews::Sim(Ok(after)) => format!("sim  obeys  after {} ms\n", after.as_millis()),
         StopNews::Sim(Err(reason)) => format!("sim  {reason}\n"),
-        StopNews::State { vehicle, state } => format!("{vehicle}  {}\n", brief(state)),
+        StopNews::State { vehicle, state } => format!("{vehicle}  {state}\n"),
         StopNews::Silent { vehicle } => format!("{vehicle}  silent\n"),
     });
 }

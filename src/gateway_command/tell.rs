@@ -11,7 +11,7 @@ use crate::screen;
 use crate::water_args::within;
 use anyhow::{Context, Error, Result, anyhow, bail};
 use bus::stop::{StopClient, StopCommand, StopNews, StopOrders};
-use bus::{Bus, BusError, Token, ask_gateway};
+use bus::{Bus, BusError, Token, ask_gateway, clock};
 use clap::ValueEnum;
 use game::external::{BoatMode, FleetCommand, GatewayCommand, OperatorCommand, OperatorReply};
 use game::message::Control;
@@ -274,7 +274,7 @@ fn tell_stop(args: &Args, command: StopCommand) -> Result<ExitCode> {
         });
     }
     // Where there is nothing but a game, and that is not there, nothing is waited for.
-    client.wait(STOP_MAX, |orders| orders.is_done() || no_game.get().is_some());
+    client.wait(STOP_MAX, |orders| orders.is_done(clock::now()) || no_game.get().is_some());
     let is_alone = ports.is_empty() && no_game.get().is_some();
     let left = client.finish(if is_alone { Duration::ZERO } else { STOP_MAX });
     for news in client.visit(StopOrders::take_news) {
@@ -283,7 +283,7 @@ fn tell_stop(args: &Args, command: StopCommand) -> Result<ExitCode> {
         }
     }
     match (left.is_empty(), no_game.get()) {
-        (true, None) if client.visit(|orders| orders.is_done()) => {}
+        (true, None) if client.visit(|orders| orders.is_done(clock::now())) => {}
         (true, None) => screen::remark("the game does not answer: only the gateways that are known were told"),
         (true, Some(reason)) => screen::remark(&format!("only gateways were told, and no game: {reason}")),
         (false, None) => return Err(anyhow!(left.join("; "))),

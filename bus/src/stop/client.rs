@@ -1,6 +1,7 @@
 //! The client of operators: sends stops on every path that there is, and hears how boats are.
 
-use super::gateway_link::{DatagramPath, GatewayPath, OnNews, PathNews};
+use super::datagram::States;
+use super::gateway_link::{Asked, DatagramPath, GatewayPath, OnNews, PathNews};
 use super::orders::{Saying, Source, StopOrders};
 use super::{StopCommand, StopNews};
 use crate::net::address;
@@ -85,8 +86,8 @@ impl StopClient {
             let Some(at) = found else { continue };
             let shared = Arc::downgrade(&self.0);
             let on_news: OnNews = Arc::new(move |news| {
-                if let (Some(shared), PathNews::States(states, _)) = (shared.upgrade(), news) {
-                    shared.hub_answered(&states);
+                if let (Some(shared), PathNews::States(states, asked)) = (shared.upgrade(), news) {
+                    shared.hub_answered(&states, asked.at);
                 }
             });
             let game = game.map(|game| game.as_str().to_owned());
@@ -160,7 +161,7 @@ impl StopClient {
     #[must_use]
     pub fn finish(&self, limit: Duration) -> Vec<String> {
         let start = clock::now();
-        self.wait(limit.min(GAME_MAX), StopOrders::is_done);
+        self.wait(limit.min(GAME_MAX), |orders| orders.is_done(clock::now()));
         self.wait(limit.saturating_sub(clock::since(start)), |orders| orders.unfinished().is_empty());
         self.visit(|orders| orders.unfinished())
     }
@@ -329,12 +330,14 @@ impl Shared {
         }
     }
 
-    fn hub_answered(&self, states: &BTreeMap<String, String>) {
+    fn hub_answered(&self, states: &States, asked: Instant) {
         self.orders.visit(|orders| {
-            for (vehicle, state) in states {
+            for (vehicle, (state, age_ms)) in states {
                 orders.expect(vehicle);
                 if !state.is_empty() {
-                    orders.report(clock::now(), vehicle, state, Source::Published);
+                    // Had the request come at once, the sim would have heard it then.
+                    let as_of = asked.checked_sub(Duration::from_millis(*age_ms)).unwrap_or(asked);
+                    orders.report(clock::now(), vehicle, state, Source::Relayed(as_of));
                 }
             }
             orders.complete();
@@ -347,10 +350,10 @@ fn gateway_said(shared: &Weak<Shared>, unnamed: Option<&str>, news: PathNews) {
     let Some(shared) = shared.upgrade() else { return };
     shared.orders.visit(|orders| match news {
         PathNews::Connected => orders.hurry(),
-        PathNews::States(states, stop) => {
+        PathNews::States(states, Asked { stop, .. }) => {
             unnamed.iter().for_each(|name| orders.forget(name));
             let source = if stop == 0 { Source::Published } else { Source::Answer(stop) };
-            for (vehicle, state) in &states {
+            for (vehicle, (state, _)) in &states {
                 orders.report(clock::now(), vehicle, state, source);
             }
         }

@@ -41,8 +41,8 @@ struct RequestDatagram {
     game: Option<String>,
 }
 
-/// How boats are, by name: their state in words.
-pub(super) type States = BTreeMap<String, String>;
+/// How boats are, by name: their state in words, and how long ago whoever answers heard it, ms. Of one that is silent it is empty.
+pub type States = BTreeMap<String, (String, u64)>;
 
 /// As it travels.
 #[derive(Serialize, Deserialize)]
@@ -85,7 +85,7 @@ impl StopRequest {
     /// # Panics
     /// Never: an answer is JSON.
     #[must_use]
-    pub fn answer(&self, room: usize, token: Option<&Token>, boats: &BTreeMap<String, String>) -> Option<Vec<u8>> {
+    pub fn answer(&self, room: usize, token: Option<&Token>, boats: &States) -> Option<Vec<u8>> {
         let boats = to_raw_value(boats).expect("states are JSON");
         let mac = token.map(|token| token.prove(self.challenge(), ANSWER_KEY, boats.get().as_bytes()).mac);
         let answer = AnswerDatagram { session: self.session, number: self.number, boats, mac };
@@ -130,7 +130,7 @@ mod tests {
     }
 
     fn states(count: usize) -> States {
-        (0..count).map(|i| (format!("boat_{i:03}"), "e-stopped (by an E-stop of the fleet)".to_owned())).collect()
+        (0..count).map(|i| (format!("boat_{i:03}"), ("e-stopped (by an E-stop of the fleet)".to_owned(), 3))).collect()
     }
 
     #[test]

@@ -11,7 +11,7 @@ use std::io::{self, BufRead, BufReader, Read, Write};
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, Shutdown, SocketAddr, TcpStream, UdpSocket};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// The requests whose answers are awaited; the oldest go first.
 const AWAITED_MAX: usize = 128;
@@ -29,8 +29,17 @@ const WRITE_MAX: Duration = Duration::from_millis(20);
 pub(super) enum PathNews {
     /// It is open.
     Connected,
-    /// How boats are, in answer to this stop; 0 is none.
-    States(States, u64),
+    /// How boats are, in answer to a request.
+    States(States, Asked),
+}
+
+/// A request that is answered.
+#[derive(Clone, Copy)]
+pub(super) struct Asked {
+    /// The stop that it is; 0 is none.
+    pub(super) stop: u64,
+    /// When it was sent.
+    pub(super) at: Instant,
 }
 
 /// Where it goes.
@@ -45,11 +54,11 @@ pub(super) struct DatagramPath {
     port: DatagramPort,
 }
 
-/// Requests whose answers are awaited, and the stop that each is about.
+/// Requests whose answers are awaited.
 #[derive(Default)]
 struct Sent {
     number: u64,
-    awaited: VecDeque<(StopRequest, u64)>,
+    awaited: VecDeque<(StopRequest, Asked)>,
 }
 
 impl DatagramPath {
@@ -68,9 +77,9 @@ impl DatagramPath {
         let port = DatagramPort::open(socket.try_clone()?, "stop-answers", move |bytes| {
             let number = answered_number(bytes)?;
             let awaited = answered.lock().awaited.iter().find(|(request, _)| request.number == number).cloned();
-            let (request, stop) = awaited?;
+            let (request, asked) = awaited?;
             let states = request.read_answer(bytes, token.get().as_ref())?;
-            on_news(PathNews::States(states, stop));
+            on_news(PathNews::States(states, asked));
             None
         })?;
         Ok(DatagramPath { socket, session: random_number(), game, sent, port })
@@ -88,7 +97,7 @@ impl DatagramPath {
         let (number, game, command) = (sent.number, self.game.clone(), command.clone());
         let request = StopRequest { session: self.session, number, game, command };
         let bytes = request.encode();
-        sent.awaited.push_back((request, stop));
+        sent.awaited.push_back((request, Asked { stop, at: clock::now() }));
         let surplus = sent.awaited.len().saturating_sub(AWAITED_MAX);
         sent.awaited.drain(..surplus);
         drop(sent);
@@ -116,8 +125,8 @@ struct Connection {
 
 struct Open {
     stream: TcpStream,
-    /// The commands whose answers are awaited, and the stops that they are.
-    awaited: VecDeque<(GatewayCommand, u64)>,
+    /// The commands whose answers are awaited.
+    awaited: VecDeque<(GatewayCommand, Asked)>,
 }
 
 impl GatewayPath {
@@ -189,10 +198,10 @@ impl Connection {
             let mut line = Vec::new();
             reader.by_ref().take(ANSWER_BYTES_MAX).read_until(b'\n', &mut line)?;
             let awaited = self.open.lock().as_mut().and_then(|open| open.awaited.pop_front());
-            let Some((command, stop)) = awaited.filter(|_| line.ends_with(b"\n")) else { return Ok(()) };
+            let Some((command, asked)) = awaited.filter(|_| line.ends_with(b"\n")) else { return Ok(()) };
             match read(None, GATEWAY_PORT_KEY, &command, &line) {
                 Ok(Answered::Answer(OperatorReply { refused: None, status })) => {
-                    (self.on_news)(PathNews::States(States::from([(status.vehicle, status.state)]), stop));
+                    (self.on_news)(PathNews::States(States::from([(status.vehicle, (status.state, 0))]), asked));
                 }
                 // It is another boat's, or its gateway does not run yet.
                 Ok(_) => {}
@@ -206,7 +215,7 @@ impl Connection {
         line.push(b'\n');
         let mut open = self.open.lock();
         let Some(Open { stream, awaited }) = &mut *open else { return };
-        awaited.push_back((command.clone(), stop));
+        awaited.push_back((command.clone(), Asked { stop, at: clock::now() }));
         if awaited.len() > AWAITED_MAX || (&*stream).write_all(&line).is_err() {
             // It takes nothing any more, and part of a line is none.
             drop(stream.shutdown(Shutdown::Both));

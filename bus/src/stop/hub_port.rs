@@ -99,8 +99,9 @@ impl Server {
         }
         let now = clock::now();
         let state = |heard: &Option<(String, Instant)>| {
-            let fresh = heard.as_ref().filter(|(_, at)| now.saturating_duration_since(*at) < FRESH);
-            fresh.map(|(state, _)| state.clone()).unwrap_or_default()
+            let fresh = heard.as_ref().map(|(state, at)| (state, now.saturating_duration_since(*at)));
+            let fresh = fresh.filter(|(_, age)| *age < FRESH);
+            fresh.map(|(state, age)| (state.clone(), age.as_millis() as u64)).unwrap_or_default()
         };
         // Of all boats, which tells the operator that there are no others.
         let states: States =

@@ -12,7 +12,7 @@ mod hub_port;
 mod orders;
 
 pub use client::StopClient;
-pub use datagram::{DATAGRAM_MAX, StopRequest};
+pub use datagram::{DATAGRAM_MAX, States, StopRequest};
 pub use datagram_port::DatagramPort;
 pub use hub_port::HubStopPort;
 pub use orders::{KnownBoat, StopNews, StopOrders};

@@ -2,14 +2,15 @@
 //! No socket and no clock in here.
 
 use super::StopCommand;
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::time::{Duration, Instant};
 
 /// When a stop is said again, ms after it was asked for: one that is lost costs little, and repeats let TCP find out at once.
 const SOON_MS: [u64; 6] = [0, 10, 20, 40, 80, 160];
 /// From then on it is said this often.
 const AGAIN: Duration = Duration::from_millis(200);
-/// A status that was published may be older than the stop: although one shows it, the stop is said for so long.
+/// A status that was published may be older than the stop. For so long the stop is said although one shows it, and one of a boat that
+/// is not known to have been in another state does not count.
 const DOUBTED: Duration = Duration::from_secs(1);
 /// A stop of all boats is said to everybody for so long; after that only to those that do not show it.
 const TO_EVERYBODY: Duration = Duration::from_secs(2);
@@ -17,6 +18,8 @@ const TO_EVERYBODY: Duration = Duration::from_secs(2);
 const LATE: Duration = Duration::from_secs(2);
 /// A boat of which nothing was heard for so long is silent.
 const SILENCE: Duration = Duration::from_secs(3);
+/// What is told again counts for a boat that was not heard itself for so long.
+const RELAYED_AFTER: Duration = Duration::from_secs(1);
 /// News that nobody has read; the oldest go first.
 const NEWS_MAX: usize = 1024;
 
@@ -27,6 +30,8 @@ pub struct KnownBoat {
     pub state: Option<String>,
     /// When it was heard last.
     pub heard: Option<Instant>,
+    /// When it was heard other than by what is told again.
+    heard_itself: Option<Instant>,
     is_silent: bool,
 }
 
@@ -82,6 +87,8 @@ pub(super) enum Source {
     Answer(u64),
     /// It may be older than any stop.
     Published,
+    /// It was published some time ago, which the sim heard at this moment, and is told again.
+    Relayed(Instant),
 }
 
 /// A stop that was asked for.
@@ -96,6 +103,8 @@ struct Stop {
     said: usize,
     /// Boats that show it: whether that was an answer to it.
     shown: BTreeMap<String, bool>,
+    /// Boats that were in another state then, or since.
+    others: BTreeSet<String>,
     /// What the sim says to a stop of all.
     sim: Option<Result<(), String>>,
     is_late: bool,
@@ -149,11 +158,12 @@ impl StopOrders {
         self.boats.iter()
     }
 
-    /// Whether every stop is done; a stop of all cannot be before a game has named its boats.
+    /// Whether every stop is done, without doubt; a stop of all cannot be before a game has named its boats.
     #[must_use]
-    pub fn is_done(&self) -> bool {
+    pub fn is_done(&self, now: Instant) -> bool {
         let is_for_all = self.stops.iter().any(|stop| stop.target.is_none());
-        (self.is_complete || !is_for_all) && self.unfinished().is_empty()
+        let is_sure = |stop: &Stop| now >= stop.asked + DOUBTED || stop.shown.values().all(|is_sure| *is_sure);
+        (self.is_complete || !is_for_all) && self.unfinished().is_empty() && self.stops.iter().all(is_sure)
     }
 
     /// Whether there are news.
@@ -169,7 +179,7 @@ impl StopOrders {
 
     /// A boat has to be stopped with all the others, whether it is heard or not.
     pub(super) fn expect(&mut self, vehicle: &str) {
-        let unheard = KnownBoat { state: None, heard: None, is_silent: false };
+        let unheard = KnownBoat { state: None, heard: None, heard_itself: None, is_silent: false };
         self.boats.entry(vehicle.to_owned()).or_insert(unheard);
     }
 
@@ -187,6 +197,8 @@ impl StopOrders {
     pub(super) fn ask(&mut self, now: Instant, target: Option<String>, command: StopCommand) -> u64 {
         self.stops.retain(|stop| (&stop.target, stop.command) != (&target, command));
         self.count += 1;
+        let is_other = |boat: &KnownBoat| boat.state.as_ref().is_some_and(|state| !command.is_shown_by(state));
+        let others = self.boats.iter().filter(|(_, boat)| is_other(boat)).map(|(name, _)| name.clone()).collect();
         self.stops.push(Stop {
             number: self.count,
             target,
@@ -194,6 +206,7 @@ impl StopOrders {
             asked: now,
             said: 0,
             shown: BTreeMap::new(),
+            others,
             sim: None,
             is_late: false,
             is_hurried: false,
@@ -235,11 +248,27 @@ impl StopOrders {
     pub(super) fn report(&mut self, now: Instant, vehicle: &str, state: &str, source: Source) {
         self.expect(vehicle);
         let Some(boat) = self.boats.get_mut(vehicle) else { return };
-        let is_change = boat.state.as_deref() != Some(state) || boat.is_silent;
-        (boat.state, boat.heard, boat.is_silent) = (Some(state.to_owned()), Some(now), false);
+        let relayed = if let Source::Relayed(as_of) = source { Some(as_of) } else { None };
+        if relayed.is_none() {
+            boat.heard_itself = Some(now);
+        }
+        // Whoever is heard itself says more.
+        let is_news = relayed.is_none() || boat.heard_itself.is_none_or(|heard| now >= heard + RELAYED_AFTER);
+        let is_change = is_news && (boat.state.as_deref() != Some(state) || boat.is_silent);
+        if is_news {
+            (boat.state, boat.heard, boat.is_silent) = (Some(state.to_owned()), Some(now), false);
+        }
         let mut news = Vec::new();
         for stop in self.stops.iter_mut().filter(|stop| stop.target.as_deref().is_none_or(|target| target == vehicle)) {
-            let is_sure = source == Source::Answer(stop.number);
+            let is_sure = source == Source::Answer(stop.number) || relayed.is_some_and(|as_of| as_of > stop.asked);
+            if relayed.is_some() && !(is_sure && stop.command.is_shown_by(state)) {
+                continue;
+            }
+            if !stop.command.is_shown_by(state) {
+                stop.others.insert(vehicle.to_owned());
+            } else if !is_sure && now < stop.asked + DOUBTED && !stop.others.contains(vehicle) {
+                continue;
+            }
             match stop.shown.get(vehicle).copied() {
                 None if stop.command.is_shown_by(state) => {
                     let (vehicle, state, after) = (vehicle.to_owned(), state.to_owned(), now - stop.asked);
@@ -442,12 +471,29 @@ mod tests {
     }
 
     #[test]
+    fn what_is_told_again_counts_only_for_a_boat_that_is_not_heard_itself() {
+        let (mut orders, start) = orders(&["blue_one"]);
+        orders.ask(start, Some("blue_one".to_owned()), StopCommand::Disarm);
+        // The sim heard it before the stop was asked for.
+        orders.report(start + MS(40), "blue_one", "safed", Source::Relayed(start));
+        assert_eq!(orders.unfinished(), ["blue_one does not report that it has stopped: safed"]);
+        orders.report(start + MS(50), "blue_one", "safed", Source::Relayed(start + MS(1)));
+        assert!(orders.is_done(start + MS(50)));
+        let state = |orders: &StopOrders| orders.boats().next().and_then(|(_, boat)| boat.state.clone());
+        orders.report(start + MS(100), "blue_one", "armed", Source::Published);
+        for (at, want) in [(900, "armed"), (1200, "safed")] {
+            orders.report(start + MS(at), "blue_one", "safed", Source::Relayed(start + MS(at)));
+            assert_eq!(state(&orders).as_deref(), Some(want), "{at} ms");
+        }
+    }
+
+    #[test]
     fn a_boat_that_says_nothing_is_told_and_stopped_until_something_else_is_asked_of_it() {
         let (mut orders, start) = orders(&["blue_one", "red_one"]);
         let number = orders.ask(start, None, StopCommand::EStop);
         let stopped = (3, "e-stopped", Source::Answer(number));
         assert_eq!(said(&mut orders, start, &[stopped]).len(), 6 + 14);
-        let later = orders.due(start + MS(3100));
+        let later = orders.due(start + MS(3200));
         assert!(!later[0].to_everybody && later[0].boats == ["red_one"], "{later:?}");
         let late = StopNews::Late { vehicle: "red_one".to_owned(), command: StopCommand::EStop };
         assert!(orders.take_news().contains(&late));

@@ -8,11 +8,10 @@ use super::NodeError;
 use super::loop_input::{LoopInput, Stop};
 use super::tcp_port::TcpPort;
 use crate::supervisor::Scope;
-use bus::stop::{DatagramPort, StopRequest};
+use bus::stop::{DatagramPort, States, StopRequest};
 use bus::token::{self, Checked, Guard};
 use bus::{CurrentToken, GATEWAY_PORT_KEY, Slot};
 use game::external::{FleetCommand, GatewayCommand, GatewayStatus, OperatorCommand, OperatorReply};
-use std::collections::BTreeMap;
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::net::{SocketAddr, TcpStream, UdpSocket};
 use std::sync::Arc;
@@ -175,7 +174,7 @@ impl Server {
             return None;
         }
         let state = self.input.state_after(count, STATE_MAX).filter(|state| !state.is_empty())?;
-        request.answer(bytes.len(), self.token.get().as_ref(), &BTreeMap::from([(self.vehicle.clone(), state)]))
+        request.answer(bytes.len(), self.token.get().as_ref(), &States::from([(self.vehicle.clone(), (state, 0))]))
     }
 
     fn refusal(&self, reason: &str) -> OperatorReply {

@@ -375,7 +375,9 @@ fn subscribe(
             queries.query(query);
         })?,
         bus.subscribe(topic::stop(game, name), move |bytes| {
-            stop_in(bytes).into_iter().for_each(|stop| _ = stops.stop(stop))
+            if let Some(stop) = stop_in(bytes) {
+                stops.stop(stop);
+            }
         })?,
         bus.subscribe(topic::control(game), move |bytes| {
             // Everything else reaches the boat as an order, if at all.
