@@ -98,14 +98,13 @@ def milliseconds_between(from_ns, to_ns):
     return math.inf if to_ns is None else (to_ns - from_ns) / 1e6
 
 
-def wire_ms(rig, boats, from_ns):
-    """Until the last of the boats was sent standby, by an E-stop and nothing else."""
+def wire_ms_each(rig, boats, from_ns):
+    """Until each boat was sent standby, by an E-stop and nothing else."""
     until = time.monotonic() + NEVER_S
     took_ms = [milliseconds_between(from_ns, rig.standby_after(boat, from_ns, until - time.monotonic()))
                for boat in boats]
     # A failsafe that happened just then is no E-stop.
-    is_stopped = all(rig.state(boat).startswith("e-stopped") for boat in boats)
-    return max(took_ms) if is_stopped else math.inf
+    return [took if rig.state(boat).startswith("e-stopped") else math.inf for boat, took in zip(boats, took_ms)]
 
 
 def stop_once(rig, console, condition, number):
@@ -121,11 +120,11 @@ def stop_once(rig, console, condition, number):
             return None
         mark = console.mark()
         began_ns = console.write(f"{target} estop")
-        stop = Stop(wire_ms(rig, boats, began_ns))
+        wire = wire_ms_each(rig, boats, began_ns)
         until = time.monotonic() + SHOWN_S
         shown = [console.find(stopped_line(boat), until - time.monotonic(), mark) for boat in boats]
-        stop.shown_ms = max(milliseconds_between(began_ns, line and line[0]) for line in shown)
-        if stop.wire_ms < condition.delay_ms:
+        stop = Stop(wire, [milliseconds_between(began_ns, line and line[0]) for line in shown])
+        if min(wire) < condition.delay_ms:
             # Nothing is faster than the network: a late copy of the stop before.
             return None
         keep_evidence(rig, console, condition, number, stop, began_ns, mark)
@@ -139,12 +138,13 @@ def stop_once(rig, console, condition, number):
 
 def keep_evidence(rig, console, condition, number, stop, began_ns, mark):
     """Writes what the link and the console saw of a stop that was late, not shown, or shown too early."""
-    if stop.wire_ms <= condition.delay_ms + ALLOWANCE_MS and not stop.is_false() and math.isfinite(stop.shown_ms):
+    if stop.is_good(condition.delay_ms + ALLOWANCE_MS):
         return
     name = f"{condition.name}-{number}.txt"
     packets = rig.machines.trace(began_ns - 200_000_000)
     said = [f"{at_ns} console: {line}" for at_ns, line in console.lines[mark:]]
-    heading = f"requested at {began_ns} ns; on the wire after {stop.wire_ms:.1f} ms, shown after {stop.shown_ms:.1f} ms"
+    wire, shown = (", ".join(map(milliseconds, each)) for each in (stop.wire_ms_each, stop.shown_ms_each))
+    heading = f"requested at {began_ns} ns; on the wire after {wire} ms, shown after {shown} ms"
     (rig.machines.out / name).write_text("\n".join([heading, *said, *packets]) + "\n", encoding="utf-8")
     print(f"  {condition.name}, stop {number}: {heading.partition('; ')[2]}; see {name}")
 
@@ -198,7 +198,7 @@ def tell_once(rig, words, boats, delay_ms):
     for boat in boats:
         rig.wait_until(f"{boat} is under way", lambda boat=boat: rig.get_under_way(boat), 60.0)
     began_ns, done = rig.tell(CONSOLE, *words)
-    took_ms = wire_ms(rig, boats, began_ns)
+    took_ms = max(wire_ms_each(rig, boats, began_ns))
     time.sleep(SETTLE_S + 4 * delay_ms / 1e3)
     rig.release(boats, lambda: rig.tell(SIM, "all", "release"))
     said = (done.stdout if done.returncode == 0 else done.stderr).strip().partition("\n")[0]

@@ -79,23 +79,25 @@ class FigureTest(unittest.TestCase):
         self.assertEqual(quantile([1.0, math.inf], 1.0), math.inf)
 
     def test_one_late_unseen_or_wrongly_shown_stop_fails_a_condition(self):
-        good = Stop(60.0, 110.0)
+        good = Stop([60.0, 50.0], [110.0, 100.0])
         for stops, passed in (
             ([good], True),
-            ([good, Stop(250.0, 300.0)], True),
-            ([good, Stop(250.1, 300.0)], False),
-            ([good, Stop(math.inf, 100.0)], False),
-            ([good, Stop(60.0)], False),
-            ([good, Stop(60.0, 59.0)], False),
+            ([good, Stop([250.0], [300.0])], True),
+            ([good, Stop([60.0, 250.1], [300.0, 300.0])], False),
+            ([good, Stop([math.inf], [math.inf])], False),
+            ([good, Stop([60.0, 60.0], [110.0, math.inf])], False),
+            # The second boat is shown before it has stopped, though the first comes later.
+            ([good, Stop([60.0, 60.0], [110.0, 59.0])], False),
             ([], False),
         ):
             self.assertEqual(Tally(250.0, stops).passed(), passed, stops)
-        tally = Tally(250.0, [good, Stop(60.0, 59.0), Stop(math.inf, math.inf)])
+        tally = Tally(250.0, [good, Stop([60.0], [59.0]), Stop([math.inf], [math.inf])])
         self.assertEqual((tally.in_time(), tally.shown(), tally.false()), (2, 2, 1))
 
     def test_the_widest_table_is_as_wide_as_a_terminal(self):
-        tally = Tally(250.0, [Stop(12345.6, 1.0)] * 1000, 12345.6)
-        text = table(HEADING, [tally.row("stopped-sim"), Tally(250.0, [Stop(1.0, 2.0)]).row("clean"), Tally(1.0).row("x")])
+        tally = Tally(250.0, [Stop([12345.6], [1.0])] * 1000, 12345.6)
+        rows = [tally.row("stopped-sim"), Tally(250.0, [Stop([1.0], [2.0])]).row("clean"), Tally(1.0).row("x")]
+        text = table(HEADING, rows)
         self.assertLessEqual(max(map(len, text.splitlines())), WIDTH)
         self.assertEqual(text.splitlines()[2].split(), ["clean", "1/1", "1.0", "1.0", "1.0", "1", "0", "0.0"])
 

@@ -16,16 +16,26 @@ def quantile(values, share):
 
 @dataclass
 class Stop:
-    """One E-stop."""
+    """One E-stop of one boat or several; times are ms from the operator's request."""
 
-    # From the operator's request until the last of the boats meant was sent standby; infinite if one never was.
-    wire_ms: float
-    # Until the operator was shown the last of them as stopped; infinite if that never happened.
-    shown_ms: float = math.inf
+    # Until each boat was sent standby; infinite if it never was.
+    wire_ms_each: list
+    # Until the operator was shown each boat as stopped; infinite if that never happened.
+    shown_ms_each: list
+
+    def wire_ms(self):
+        """Until the last of the boats was sent standby."""
+        return max(self.wire_ms_each)
+
+    def is_shown(self):
+        return all(map(math.isfinite, self.shown_ms_each))
 
     def is_false(self):
-        """Whether the operator was shown a boat as stopped that had not been stopped."""
-        return self.shown_ms < self.wire_ms
+        """Whether the operator was shown a boat as stopped before it was."""
+        return any(shown < wire for shown, wire in zip(self.shown_ms_each, self.wire_ms_each))
+
+    def is_good(self, limit_ms):
+        return self.wire_ms() <= limit_ms and self.is_shown() and not self.is_false()
 
 
 @dataclass
@@ -38,19 +48,19 @@ class Tally:
     link_late_ms: float = 0.0
 
     def in_time(self):
-        return sum(stop.wire_ms <= self.limit_ms for stop in self.stops)
+        return sum(stop.wire_ms() <= self.limit_ms for stop in self.stops)
 
     def shown(self):
-        return sum(math.isfinite(stop.shown_ms) for stop in self.stops)
+        return sum(stop.is_shown() for stop in self.stops)
 
     def false(self):
         return sum(stop.is_false() for stop in self.stops)
 
     def passed(self):
-        return bool(self.stops) and self.in_time() == len(self.stops) == self.shown() and self.false() == 0
+        return bool(self.stops) and all(stop.is_good(self.limit_ms) for stop in self.stops)
 
     def row(self, name):
-        wire = [stop.wire_ms for stop in self.stops]
+        wire = [stop.wire_ms() for stop in self.stops]
         cells = [milliseconds(quantile(wire, share)) for share in (0.5, 0.99, 1.0)]
         return [name, f"{self.in_time()}/{len(self.stops)}", *cells, str(self.shown()), str(self.false()),
                 milliseconds(self.link_late_ms), "" if self.passed() else "MISSED"]

@@ -34,6 +34,8 @@ class Rig:
         self.seen = 0
         self.last_mode = dict.fromkeys(BOATS, STANDBY)
         self.standbys = {boat: [] for boat in BOATS}
+        # How often the game was told that an E-stop of the fleet is over.
+        self.fleet_releases = 0
 
     def start(self):
         scenario = self.machines.out / "estop.toml"
@@ -168,11 +170,14 @@ class Rig:
             self.ask(boat, "release")
             return not self.state(boat).startswith("e-stopped")
 
-        if len(boats) > 1:
-            release_fleet()
-            self.wait_until("the fleet is released", lambda: all(map(is_released, boats)), START_S)
-        for boat in boats:
-            self.wait_until(f"{boat} is released", lambda boat=boat: is_released(boat), START_S)
+        until = time.monotonic() + START_S
+        while not all(map(is_released, boats)):
+            if time.monotonic() >= until:
+                raise RuntimeError(f"not within {START_S:.0f} s: {', '.join(boats)} released; see {self.machines.out}")
+            if len(boats) > 1:
+                # A copy of the stop that comes after the release is in force again.
+                release_fleet()
+                self.fleet_releases += 1
 
     def tell(self, machine, *words):
         """Runs `squall gateway tell` to its end: the time before, ns, and what came of it."""
