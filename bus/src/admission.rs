@@ -52,8 +52,8 @@ pub(crate) fn begin(session: &Session, numbers: Vec<u16>, files: OpenFiles, wait
     session.info().link_events_listener().history(true).callback(note).background().wait()?;
     let waiting = Connections::new(waiting_max);
     let listeners = listeners(&numbers);
-    // What the system has accepted already is to find room among the files that are kept.
-    let queue_max = i32::try_from(files.kept() / 2).unwrap_or(i32::MAX);
+    // What the system has accepted already is to find room among the files that are kept, beside those that are lent still.
+    let queue_max = i32::try_from(files.kept() / 4).unwrap_or(i32::MAX);
     for listener in &listeners {
         descriptor::with_socket(*listener, |socket| socket.listen(queue_max))?;
     }
@@ -73,14 +73,14 @@ pub(crate) fn begin(session: &Session, numbers: Vec<u16>, files: OpenFiles, wait
 impl Port {
     /// Finds who waits, ends those that are too many, and says when to look again.
     fn look(&mut self, links: &Links) -> Duration {
-        let descriptors = descriptor::all().or_else(|_| {
+        let listed = descriptor::all().or_else(|_| {
             self.close(true);
             descriptor::all()
         });
-        let descriptors = descriptors.unwrap_or_default();
-        let is_usual = |descriptor: &RawFd| u64::try_from(*descriptor).is_ok_and(|number| number < self.files.usual);
-        let used = descriptors.iter().filter(|descriptor| is_usual(descriptor)).count() as u64;
-        self.close(self.files.usual - used < self.files.kept() / 2);
+        let Ok(descriptors) = listed else { return LOOK_OFTEN };
+        let OpenFiles { usual, .. } = self.files;
+        let is_lent = |descriptor: RawFd| u64::try_from(descriptor).is_ok_and(|number| number >= usual);
+        let free = usual - descriptors.iter().filter(|descriptor| !is_lent(**descriptor)).count() as u64;
         let mut found = BTreeMap::new();
         for descriptor in descriptors {
             if let Kind::Connection(ends) = descriptor::kind(descriptor)
@@ -90,9 +90,14 @@ impl Port {
             }
         }
         // What became a link meanwhile is known by now.
-        let links = links.lock();
+        let links = links.lock().clone();
+        let lent: Vec<(Ends, RawFd)> = found.iter().map(|(ends, it)| (*ends, *it)).filter(|it| is_lent(it.1)).collect();
+        // Lent files come back before the port opens; the next flood needs them. A node whose link has one connects again.
+        let are_too_many = lent.len() as u64 > self.files.kept() / 4;
+        self.close(free < self.files.kept() / 2 || are_too_many);
+        let goes = |ends: &Ends| self.is_closed && (are_too_many || !links.contains(ends));
+        lent.iter().filter(|(ends, _)| goes(ends)).for_each(|(ends, it)| descriptor::end(*it, *ends));
         found.retain(|ends, _| !links.contains(ends));
-        drop(links);
         self.slots.retain(|ends, _| found.contains_key(ends));
         for (ends, descriptor) in found {
             let admit = || self.waiting.admit(ends.1.ip().to_canonical(), move || descriptor::end(descriptor, ends));

@@ -24,8 +24,7 @@ pub(crate) enum Kind {
 /// # Errors
 /// If the system lists none, or there is no descriptor left to read the list with.
 pub(crate) fn all() -> io::Result<Vec<RawFd>> {
-    let open = FOLDERS.iter().map(std::fs::read_dir).reduce(|first, second| first.or(second));
-    let folder = open.unwrap_or_else(|| Err(io::ErrorKind::NotFound.into()))?;
+    let folder = std::fs::read_dir(FOLDERS[0]).or_else(|_| std::fs::read_dir(FOLDERS[1]))?;
     Ok(folder.flatten().filter_map(|entry| entry.file_name().to_str()?.parse().ok()).collect())
 }
 

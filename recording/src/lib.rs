@@ -108,7 +108,7 @@ pub enum RecordError {
     #[error("the recording cannot be written: {0}")]
     Mcap(mcap::McapError),
     /// There is no such file, it must not be written, or there is no room for it.
-    #[error("the recording cannot be written: {0}")]
+    #[error(transparent)]
     File(#[from] std::io::Error),
 }
 

@@ -35,7 +35,7 @@ const CROWDS: [Crowd; 4] = [
     ("new ones all the time", |target, count| Box::new(Stream::start(target, count))),
 ];
 
-/// Some hundred new connections a second.
+/// New connections, as fast as the port takes them.
 struct Stream {
     is_over: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
@@ -52,7 +52,6 @@ impl Stream {
                 if newest.len() > count {
                     newest.pop_front();
                 }
-                std::thread::sleep(Duration::from_millis(2));
             }
         });
         let stream = Stream { is_over, thread: Some(thread) };
