@@ -221,6 +221,7 @@ impl Console {
                     let boats: Vec<String> = boats.collect();
                     said.clear();
                     match self.stay(&bus, &game, &boats) {
+                        Ok(()) if self.is_over.load(Ordering::Relaxed) => {}
                         Ok(()) => screen::remark(&format!("the game {} is gone: looking for it", game.as_str())),
                         Err(e) => screen::remark(&e.to_string()),
                     }
