@@ -355,7 +355,7 @@ mod tests {
 
     #[test]
     fn what_is_told_of_the_selected_boat_waits_until_there_is_room() {
-        let shared = Arc::new(SharedState::new(inbox(1).0, Box::new(|_| ()), |_| Err(String::new())));
+        let shared = Arc::new(SharedState::new(inbox(1).0, Box::new(|_| ()), |_| Err(String::new())).unwrap());
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/pav01_vs_pav01.toml");
         let (scenario, now) = (game::scenario::load(&file).unwrap(), clock::now());
         let info = GameInfo { version: String::new(), pace: "lockstep".to_owned(), scenario };
