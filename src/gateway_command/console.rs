@@ -42,8 +42,8 @@ const HELP: &str = "\
 /// Which game, and which gateways.
 #[derive(clap::Args)]
 #[command(after_help = concat!(
-    "It reads a command a line from standard input, and prints what boats report, with\n",
-    "the time since it was asked for:\n",
+    "It reads commands from standard input, one a line, and prints what boats\n",
+    "report, with the time since it was asked for:\n",
     "  blue_one  e-stopped  after 63 ms\n",
     "Type help for the commands. An empty line is an E-stop of all boats.\n\n",
     "It ends with 0 if every boat has reported the stops that were asked for.\n\n",
@@ -221,6 +221,7 @@ impl Console {
                     let boats: Vec<String> = boats.collect();
                     said.clear();
                     match self.stay(&bus, &game, &boats) {
+                        Ok(()) if self.is_over.load(Ordering::Relaxed) => {}
                         Ok(()) => screen::remark(&format!("the game {} is gone: looking for it", game.as_str())),
                         Err(e) => screen::remark(&e.to_string()),
                     }
