@@ -180,7 +180,7 @@ class Rig:
             return [self.state(boat) for boat in boats]
 
         until, releases = time.monotonic() + START_S, 0
-        while any(state.startswith("e-stopped") for state in (left := states())):
+        while left := [state for state in states() if state.startswith("e-stopped")]:
             if time.monotonic() >= until:
                 raise RuntimeError(f"not released within {START_S:.0f} s: {', '.join(boats)}; see {self.machines.out}")
             if any("fleet" in state for state in left):
