@@ -17,6 +17,8 @@ GAME, PORT = "estop", 7447
 STANDBY = "L"
 # How long programs may take to come up, and boats to be armed, s.
 START_S, ARM_S = 60.0, 15.0
+# How long the release of the fleet may take, s.
+RELEASE_S = 1.0
 # A boat that has not been sent standby by then never was, s.
 NEVER_S = 5.0
 
@@ -179,13 +181,15 @@ class Rig:
                 self.ask(boat, "release")
             return [self.state(boat) for boat in boats]
 
-        until, releases = time.monotonic() + START_S, 0
+        until, releases, release_at_s = time.monotonic() + START_S, 0, 0.0
         while left := [state for state in states() if state.startswith("e-stopped")]:
             if time.monotonic() >= until:
                 raise RuntimeError(f"not released within {START_S:.0f} s: {', '.join(boats)}; see {self.machines.out}")
-            if any("fleet" in state for state in left):
+            # A release may take its time to reach the gateways.
+            if any("fleet" in state for state in left) and time.monotonic() >= release_at_s:
                 release_fleet()
                 releases += 1
+                release_at_s = time.monotonic() + RELEASE_S
         # A copy of a stop of the fleet that comes after the release is in force again.
         self.stops_after_release += releases > (len(boats) > 1)
 
