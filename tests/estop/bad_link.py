@@ -32,6 +32,8 @@ import time
 from collections import Counter, deque
 from dataclasses import dataclass
 
+from priority import run_at_once
+
 MTU_BYTES = 1500
 # Of <linux/if_tun.h>.
 TUNSETIFF, IFF_TUN, IFF_NO_PI = 0x400454CA, 0x0001, 0x1000
@@ -268,11 +270,8 @@ def main():
         link = Link(hosts_of(args.host), Scheduler(quality, args.seed))
     except (OSError, ValueError, subprocess.CalledProcessError) as error:
         sys.exit(f"the link cannot be made: {error}")
-    try:
-        # Programs that keep every core busy must not delay packets beyond what was asked for.
-        os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(1))
-    except OSError:
-        print("no real-time priority: packets may be late", file=sys.stderr)
+    # Programs that keep every core busy must not delay packets beyond what was asked for.
+    run_at_once()
     print("ready", flush=True)
     link.carry(sys.stdin.fileno())
 

@@ -17,6 +17,8 @@ import sys
 import threading
 import time
 
+from priority import run_at_once
+
 KEY = b"gateway control port"
 # How long a control port may take to answer, s.
 ANSWER_S = 5.0
@@ -77,6 +79,7 @@ def copy(source, target, see):
 
 def serve(boat, port, address):
     """The wire of one boat, as often as its gateway connects."""
+    run_at_once()
     host, _, boat_port = address.rpartition(":")
     for near in accepted(port):
         far = socket.create_connection((host, int(boat_port)))

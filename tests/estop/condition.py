@@ -75,7 +75,7 @@ class StoppedSim(Condition):
 class Stranger(Condition):
     """A stranger on the simulation's machine: nearer than any other."""
 
-    what, about = "forge", BOATS
+    what, about, stranger = "forge", BOATS, None
 
     def begin(self):
         words = [self.rig.stranger_python, HERE / "stranger.py", self.what, self.rig.endpoint, GAME, *self.about]
@@ -86,8 +86,9 @@ class Stranger(Condition):
                 raise RuntimeError(f"the stranger does not begin: see {self.stranger.log.name}")
 
     def end(self):
-        print(f"  the stranger: {self.stranger.lines[-1][1]}")
-        self.machines.end(self.stranger)
+        if self.stranger is not None:
+            print(f"  the stranger: {self.stranger.lines[-1][1]}")
+            self.machines.end(self.stranger)
 
 
 class Forger(Stranger):

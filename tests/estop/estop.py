@@ -43,6 +43,8 @@ ALLOWANCE_MS = 200.0
 # How long the operator's view may take to follow, s.
 SHOWN_S = 3.0
 TARGETS = ("blue_one", "all", "red_one", "all")
+# The emulated link may deliver a packet so late without a word, ms.
+LINK_LATE_MS = 5.0
 # How much longer than the network copies of a stop may take, s.
 SETTLE_S = 0.1
 # Tries in vain, because the boats do not stay under way, for each that counts.
@@ -107,7 +109,7 @@ def wire_ms_each(rig, boats, from_ns):
     return [took if rig.state(boat).startswith("e-stopped") else math.inf for boat, took in zip(boats, took_ms)]
 
 
-def stop_once(rig, console, condition, number):
+def stop_once(rig, console, condition, number, tally):
     """One E-stop; None if the boats were not under way when it was due."""
     target = TARGETS[number % len(TARGETS)]
     boats = BOATS if target == "all" else (target,)
@@ -127,7 +129,9 @@ def stop_once(rig, console, condition, number):
         if min(wire) < condition.delay_ms:
             # Nothing is faster than the network: a late copy of the stop before.
             return None
-        keep_evidence(rig, console, condition, number, stop, began_ns, mark)
+        stalls_ms = rig.stalls_ms(began_ns, time.monotonic_ns())
+        tally.stall_ms = max([tally.stall_ms, *stalls_ms])
+        keep_evidence(rig, console, condition, number, stop, began_ns, mark, stalls_ms)
     finally:
         condition.after()
         # Copies of the stop that went by other paths arrive before the release.
@@ -136,7 +140,7 @@ def stop_once(rig, console, condition, number):
     return stop
 
 
-def keep_evidence(rig, console, condition, number, stop, began_ns, mark):
+def keep_evidence(rig, console, condition, number, stop, began_ns, mark, stalls_ms):
     """Writes what the link and the console saw of a stop that was late, not shown, or shown too early."""
     if stop.is_good(condition.delay_ms + ALLOWANCE_MS):
         return
@@ -145,33 +149,36 @@ def keep_evidence(rig, console, condition, number, stop, began_ns, mark):
     said = [f"{at_ns} console: {line}" for at_ns, line in console.lines[mark:]]
     wire, shown = (", ".join(map(milliseconds, each)) for each in (stop.wire_ms_each, stop.shown_ms_each))
     heading = f"requested at {began_ns} ns; on the wire after {wire} ms, shown after {shown} ms"
+    if stalls_ms:
+        heading += f"; the machine stalled for {', '.join(map(milliseconds, stalls_ms))} ms"
     (rig.machines.out / name).write_text("\n".join([heading, *said, *packets]) + "\n", encoding="utf-8")
     print(f"  {condition.name}, stop {number}: {heading.partition('; ')[2]}; see {name}")
 
 
-def measure_console(rig, name, times, delay_ms):
+def measure_console(rig, condition, times, tally):
     """Stops boats from a console, many times, under one condition."""
-    condition = CONDITIONS[name](rig, name, delay_ms)
-    tally = Tally(delay_ms + ALLOWANCE_MS)
-    console = rig.console(f"console_{name}")
-    condition.begin()
-    rig.machines.link_statistics()
-    vain = 0
+    console = rig.console(f"console_{condition.name}")
+    vain, rig.stops_after_release = 0, 0
     try:
+        condition.begin()
+        rig.machines.link_statistics()
         while len(tally.stops) < times and vain < VAIN_MAX * times:
-            stop = stop_once(rig, console, condition, len(tally.stops))
+            stop = stop_once(rig, console, condition, len(tally.stops), tally)
             if stop is None:
                 vain += 1
             else:
                 tally.stops.append(stop)
+        late_ms = rig.machines.link_statistics()["late_ms_max"]
+        if late_ms > LINK_LATE_MS:
+            print(f"  {condition.name}: the emulated link itself was late by up to {late_ms:.1f} ms")
     finally:
-        tally.link_late_ms = rig.machines.link_statistics()["late_ms_p99"]
         condition.end()
-    console.write("quit")
-    code = rig.machines.end(console, None)
-    if vain or code:
-        print(f"  {name}: {vain} tries in vain, as the boats were not under way; the console ended with {code}")
-    return tally
+        console.write("quit")
+        code = rig.machines.end(console, None)
+    for count, what in ((vain, "tries in vain: the boats were not under way"), (code, "is the console's exit code"),
+                        (rig.stops_after_release, "releases of the fleet that a late copy of its stop undid")):
+        if count:
+            print(f"  {condition.name}: {count} {what}")
 
 
 def measure_consoles(rig, args):
@@ -180,11 +187,14 @@ def measure_consoles(rig, args):
     rows, passed = [], True
     for name in args.under:
         began_s = time.monotonic()
+        tally = Tally(args.delay_ms + ALLOWANCE_MS)
         try:
-            tally = measure_console(rig, name, args.times, args.delay_ms)
+            measure_console(rig, CONDITIONS[name](rig, name, args.delay_ms), args.times, tally)
         except Skipped as why:
             print(f"SKIPPED: {name}: {why}")
             continue
+        except (RuntimeError, OSError) as error:
+            print(f"FAILED: {name}: {error}")
         print(f"{name}: {len(tally.stops)} stops in {time.monotonic() - began_s:.0f} s", flush=True)
         rows.append(tally.row(name))
         passed = passed and tally.passed() and len(tally.stops) == args.times

@@ -8,6 +8,7 @@ from bad_link import Quality, Scheduler, hosts_of, summary
 from boat_side import modes_in, proof_of
 from figures import HEADING, WIDTH, Stop, Tally, quantile, round_trips, table
 from link_check import checksum, echo_request, problem_of
+from priority import stall_in
 from rig import stopped_line
 
 
@@ -124,6 +125,11 @@ class WireTest(unittest.TestCase):
         self.assertTrue(shows("blue_one  e-stopped  after 63 ms"))
         for line in ("red_one  e-stopped  after 63 ms", "blue_one  silent", "blue_one estop", "blue_one_2  e-stopped after 1 ms"):
             self.assertFalse(shows(line), line)
+
+
+class StallTest(unittest.TestCase):
+    def test_a_stall_is_read(self):
+        self.assertEqual(stall_in("stall 5288992229580 164.5"), (5288992229580, 164.5))
 
 
 class LinkCheckTest(unittest.TestCase):

@@ -44,8 +44,8 @@ class Tally:
 
     limit_ms: float
     stops: list = field(default_factory=list)
-    # How late the emulated link itself delivered packets: what of the figures is the measurement's own.
-    link_late_ms: float = 0.0
+    # The longest time during a stop for which the machine let ordinary programs wait.
+    stall_ms: float = 0.0
 
     def in_time(self):
         return sum(stop.wire_ms() <= self.limit_ms for stop in self.stops)
@@ -63,10 +63,10 @@ class Tally:
         wire = [stop.wire_ms() for stop in self.stops]
         cells = [milliseconds(quantile(wire, share)) for share in (0.5, 0.99, 1.0)]
         return [name, f"{self.in_time()}/{len(self.stops)}", *cells, str(self.shown()), str(self.false()),
-                milliseconds(self.link_late_ms), "" if self.passed() else "MISSED"]
+                milliseconds(self.stall_ms), "" if self.passed() else "MISSED"]
 
 
-HEADING = ["under", "in time", "median", "p99", "max", "shown", "false", "link late"]
+HEADING = ["under", "in time", "median", "p99", "max", "shown", "false", "stall"]
 
 
 def milliseconds(value):

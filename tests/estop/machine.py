@@ -10,6 +10,8 @@ import threading
 import time
 from pathlib import Path
 
+from priority import run_at_once
+
 HERE = Path(__file__).resolve().parent
 # How long a program may take to end when it is asked to, s.
 END_S = 10.0
@@ -35,6 +37,7 @@ class Program:
         self.reader.start()
 
     def read(self):
+        run_at_once()
         for line in self.child.stdout:
             at_ns = time.monotonic_ns()
             self.log.write(line)

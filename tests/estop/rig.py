@@ -8,6 +8,7 @@ import sys
 import time
 
 from machine import HERE
+from priority import stall_in
 
 ROOT = HERE.parents[1]
 BOATS = ("blue_one", "red_one")
@@ -16,6 +17,8 @@ GAME, PORT = "estop", 7447
 STANDBY = "L"
 # How long programs may take to come up, and boats to be armed, s.
 START_S, ARM_S = 60.0, 15.0
+# How long the release of the fleet may take, s.
+RELEASE_S = 1.0
 # A boat that has not been sent standby by then never was, s.
 NEVER_S = 5.0
 
@@ -34,10 +37,11 @@ class Rig:
         self.seen = 0
         self.last_mode = dict.fromkeys(BOATS, STANDBY)
         self.standbys = {boat: [] for boat in BOATS}
-        # How often the game was told that an E-stop of the fleet is over.
-        self.fleet_releases = 0
+        # How often the fleet had to be released again.
+        self.stops_after_release = 0
 
     def start(self):
+        self.stall_watch = self.machines.start("stalls", SIM, [sys.executable, HERE / "priority.py"])
         scenario = self.machines.out / "estop.toml"
         scenario.write_text(f'base = "{ROOT}/scenarios/games/mixed_2v2.toml"\nduration_s = 86400.0\n', encoding="utf-8")
         self.start_boats(scenario)
@@ -150,6 +154,12 @@ class Rig:
                 return None
             time.sleep(0.005)
 
+    def stalls_ms(self, from_ns, to_ns):
+        """How long this machine let ordinary programs wait in the meantime, ms, for each time that it did."""
+        with self.stall_watch.news:
+            stalls = [stall_in(line) for _, line in self.stall_watch.lines]
+        return [late_ms for at_ns, late_ms in stalls if at_ns >= from_ns and at_ns - 1e6 * late_ms <= to_ns]
+
     def get_under_way(self, boat):
         """Arms a boat, or has it keep its station where it cannot be armed; False if neither is possible now."""
         for command in ("arm", "station_keep"):
@@ -166,18 +176,22 @@ class Rig:
 
     def release(self, boats, release_fleet):
         """Ends the E-stops of boats, on their own machine; `release_fleet` ends that of the game."""
-        def is_released(boat):
-            self.ask(boat, "release")
-            return not self.state(boat).startswith("e-stopped")
+        def states():
+            for boat in boats:
+                self.ask(boat, "release")
+            return [self.state(boat) for boat in boats]
 
-        until = time.monotonic() + START_S
-        while not all(map(is_released, boats)):
+        until, releases, release_at_s = time.monotonic() + START_S, 0, 0.0
+        while left := [state for state in states() if state.startswith("e-stopped")]:
             if time.monotonic() >= until:
-                raise RuntimeError(f"not within {START_S:.0f} s: {', '.join(boats)} released; see {self.machines.out}")
-            if len(boats) > 1:
-                # A copy of the stop that comes after the release is in force again.
+                raise RuntimeError(f"not released within {START_S:.0f} s: {', '.join(boats)}; see {self.machines.out}")
+            # A release may take its time to reach the gateways.
+            if any("fleet" in state for state in left) and time.monotonic() >= release_at_s:
                 release_fleet()
-                self.fleet_releases += 1
+                releases += 1
+                release_at_s = time.monotonic() + RELEASE_S
+        # A copy of a stop of the fleet that comes after the release is in force again.
+        self.stops_after_release += releases > (len(boats) > 1)
 
     def tell(self, machine, *words):
         """Runs `squall gateway tell` to its end: the time before, ns, and what came of it."""

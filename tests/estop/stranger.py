@@ -16,6 +16,8 @@ import threading
 import time
 from collections import Counter
 
+from priority import run_when_idle
+
 try:
     import zenoh
 except ImportError:
@@ -136,8 +138,8 @@ def status_of(stranger, boat):
 
 def main():
     what, endpoint, game, *others = sys.argv[1:]
-    # The programs under test do not share the machine of a real stranger.
-    os.nice(10)
+    # A real stranger does not take the processors of the programs under test.
+    run_when_idle()
     stranger = Stranger(endpoint, game)
     # A declaration is withdrawn when it is dropped.
     _declared = {"flood": flood, "forge": forge}[what](stranger, others)
