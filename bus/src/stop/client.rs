@@ -32,7 +32,7 @@ pub struct StopClient(Arc<Shared>);
 /// What its threads share.
 struct Shared {
     orders: Watched<StopOrders>,
-    game: Mutex<Option<GamePath>>,
+    game: Mutex<Option<Arc<GamePath>>>,
     gateways: Mutex<BTreeMap<SocketAddr, GatewayPath>>,
     /// Control ports that statuses have named, to be opened.
     named: Mutex<BTreeMap<SocketAddr, String>>,
@@ -117,7 +117,7 @@ impl StopClient {
         }
         let control = bus.publisher(topic::control(game), Priority::Urgent)?;
         let path = GamePath { bus: bus.clone(), name: game.clone(), control, stops, _statuses: statuses };
-        let before = self.0.game.lock().replace(path);
+        let before = self.0.game.lock().replace(Arc::new(path));
         // A callback of a subscription that is dropped may be under way: nothing is locked meanwhile.
         drop(before);
         let unanswered = self.0.orders.visit(|orders| {
@@ -140,7 +140,7 @@ impl StopClient {
     pub fn stop(&self, target: Option<&str>, command: StopCommand) {
         let now = clock::now();
         let number = self.0.orders.visit(|orders| orders.ask(now, target.map(str::to_owned), command));
-        self.0.say(now);
+        // The thread sends it: whoever asks may hold a lock, and sending takes its time.
         if target.is_none() && command == StopCommand::EStop {
             self.0.ask_sim(number);
         }
@@ -284,8 +284,8 @@ impl Shared {
     }
 
     fn say_to_game(&self, saying: &Saying) {
-        let game = self.game.lock();
-        let Some(game) = &*game else { return };
+        // Nothing is locked while messages go out.
+        let Some(game) = self.game.lock().clone() else { return };
         let send = |publisher: &Publisher, json: Vec<u8>| drop(publisher.send_json(json));
         if saying.to_everybody && saying.command == StopCommand::EStop {
             send(&game.control, serde_json::to_vec(&Control::EStop).unwrap_or_default());
