@@ -169,6 +169,11 @@ class Rig:
                 if state.startswith(("armed", "delegated")):
                     if not self.is_standing(boat):
                         return True
+                elif "fleet" in state:
+                    # A copy of a stop of the fleet came after the release.
+                    self.stops_after_release += 1
+                    self.tell(SIM, "all", "release")
+                    time.sleep(RELEASE_S)
                 else:
                     self.ask(boat, "release" if state.startswith("e-stopped") else command)
                 time.sleep(0.05)
