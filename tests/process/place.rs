@@ -109,7 +109,9 @@ fn a_gateway_that_outlives_its_sim_joins_the_next_and_asks_for_its_token() {
             LIMIT,
         )
     };
-    wait_until("the session of before is connected again", || matches!(release(&before), Err(BusError::Unsealed { .. })));
+    wait_until("the session of before is connected again", || {
+        matches!(release(&before), Err(BusError::Unsealed { .. }))
+    });
     let reply = release(&user.bus(&next)).expect("the token is known").expect("an answer");
     assert_eq!(reply.status.vehicle, "blue_one");
     // At its control port, and by a command that is told neither the token nor the place.
