@@ -198,7 +198,7 @@ const HEARD: [(&str, &str); 9] = [
     ("released", "team-blue team-red gateway gateway-red_one observer operator"),
 ];
 /// What others publish, and whom the sim hears.
-const PUBLISHED: [(&str, &str); 13] = [
+const PUBLISHED: [(&str, &str); 17] = [
     ("order/blue/x", "team-blue"),
     ("order/red/x", "team-red"),
     ("order/x", ""),
@@ -206,7 +206,11 @@ const PUBLISHED: [(&str, &str); 13] = [
     ("policy/blue_two", "team-blue operator"),
     ("nav/blue_one", "gateway"),
     ("nav/red_one", "gateway gateway-red_one"),
-    ("status/red_one", "gateway gateway-red_one"),
+    ("report/status/red_one", "gateway gateway-red_one"),
+    ("report/link/blue_one", "gateway"),
+    ("stop/red_one", "team-red gateway gateway-red_one observer operator"),
+    ("status/red_one", ""),
+    ("link/red_one", ""),
     ("frame", ""),
     ("picture/blue", ""),
     ("external/red_one", ""),

@@ -74,7 +74,7 @@ pub(crate) fn squall_with_files(files: usize) -> Command {
     let mut shell = Command::new("sh");
     shell.args(["-c", &format!("ulimit -n {files}; exec \"$0\" \"$@\"")]).arg(program.get_program());
     shell.current_dir(env!("CARGO_MANIFEST_DIR"));
-    program.get_envs().for_each(|(name, value)| drop(value.map(|value| shell.env(name, value))));
+    shell.envs(program.get_envs().filter_map(|(name, value)| Some((name, value?))));
     shell
 }
 

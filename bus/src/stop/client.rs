@@ -319,7 +319,9 @@ impl Shared {
     /// A status that was published; `is_here` if the game is on this machine.
     fn hear(&self, status: &GatewayStatus, is_here: bool) {
         self.orders.visit(|orders| {
-            orders.report(clock::now(), &status.vehicle, &status.state, Source::Published);
+            let now = clock::now();
+            let as_of = orders.as_of(now, &status.vehicle, status.at_s);
+            orders.report(now, &status.vehicle, &status.state, Source::Published(as_of));
         });
         let control = status.control.as_ref().and_then(|control| control.parse::<SocketAddr>().ok());
         // One of loopback may be of another machine.
@@ -350,9 +352,9 @@ fn gateway_said(shared: &Weak<Shared>, unnamed: Option<&str>, news: PathNews) {
     let Some(shared) = shared.upgrade() else { return };
     shared.orders.visit(|orders| match news {
         PathNews::Connected => orders.hurry(),
-        PathNews::States(states, Asked { stop, .. }) => {
+        PathNews::States(states, Asked { stop, at }) => {
             unnamed.iter().for_each(|name| orders.forget(name));
-            let source = if stop == 0 { Source::Published } else { Source::Answer(stop) };
+            let source = if stop == 0 { Source::Published(at) } else { Source::Answer(stop) };
             for (vehicle, (state, _)) in &states {
                 orders.report(clock::now(), vehicle, state, source);
             }

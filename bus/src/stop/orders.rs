@@ -15,6 +15,10 @@ const AGAIN: Duration = Duration::from_millis(200);
 /// A status that was published may be older than the stop. For so long the stop is said although one shows it, and one of a boat that
 /// is not known to have been in another state does not count.
 const DOUBTED: Duration = Duration::from_secs(1);
+/// How far the clock of a gateway may fall behind from one status to the next.
+const DRIFT: Duration = Duration::from_micros(100);
+/// A gateway that seems to have begun so much later was started again.
+const RESTARTED: Duration = Duration::from_secs(10);
 /// A stop of all boats is said to everybody for so long; after that only to those that do not show it.
 const TO_EVERYBODY: Duration = Duration::from_secs(2);
 /// That a boat does not show a stop is told after so long.
@@ -35,6 +39,8 @@ pub struct KnownBoat {
     pub heard: Option<Instant>,
     /// When it was heard other than by what is told again.
     heard_itself: Option<Instant>,
+    /// When its gateway began, by the status that took the least time to come.
+    began: Option<Instant>,
     is_silent: bool,
 }
 
@@ -88,8 +94,8 @@ pub enum StopNews {
 pub(super) enum Source {
     /// It is the answer to this stop.
     Answer(u64),
-    /// It may be older than any stop.
-    Published,
+    /// It says how the boat was, not before this moment: it may be older than a stop that was asked for meanwhile.
+    Published(Instant),
     /// It was published some time ago, which the sim heard at this moment, and is told again.
     Relayed(Instant),
 }
@@ -182,7 +188,7 @@ impl StopOrders {
 
     /// A boat has to be stopped with all the others, whether it is heard or not.
     pub(super) fn expect(&mut self, vehicle: &str) {
-        let unheard = KnownBoat { state: None, heard: None, heard_itself: None, is_silent: false };
+        let unheard = KnownBoat { state: None, heard: None, heard_itself: None, began: None, is_silent: false };
         self.boats.entry(vehicle.to_owned()).or_insert(unheard);
     }
 
@@ -247,6 +253,18 @@ impl StopOrders {
         self.stops.iter_mut().filter(|stop| is_meant(stop)).for_each(|stop| stop.is_cancelled = true);
     }
 
+    /// Not before when a status was true that comes now; `at_s` is its time since the gateway began, s.
+    pub(super) fn as_of(&mut self, now: Instant, vehicle: &str, at_s: f64) -> Instant {
+        let at = Duration::try_from_secs_f64(at_s).ok();
+        let (Some(boat), Some(at)) = (self.boats.get_mut(vehicle), at) else { return now };
+        let Some(began) = now.checked_sub(at) else { return now };
+        // The clocks may drift apart; a gateway that was started again began later.
+        let known = boat.began.map(|known| known + DRIFT).filter(|known| began < *known + RESTARTED);
+        let began = known.map_or(began, |known| known.min(began));
+        boat.began = Some(began);
+        began + at
+    }
+
     /// A boat reports its state.
     pub(super) fn report(&mut self, now: Instant, vehicle: &str, state: &str, source: Source) {
         self.expect(vehicle);
@@ -264,6 +282,10 @@ impl StopOrders {
         let mut news = Vec::new();
         for stop in self.stops.iter_mut().filter(|stop| stop.target.as_deref().is_none_or(|target| target == vehicle)) {
             let is_sure = source == Source::Answer(stop.number) || relayed.is_some_and(|as_of| as_of > stop.asked);
+            // A packet that was lost holds up statuses for longer than a stop takes.
+            if matches!(source, Source::Published(as_of) if as_of < stop.asked) && now < stop.asked + DOUBTED {
+                continue;
+            }
             if relayed.is_some() && !(is_sure && stop.command.is_shown_by(state)) {
                 continue;
             }

@@ -84,7 +84,7 @@ impl Sim {
     }
 
     fn paced(port: u16, name: &str, scenario: Scenario, pace: &str) -> Sim {
-        let net = Net { listen: vec![format!("tcp/127.0.0.1:{port}")], ..Net::default() };
+        let net = Net { listen: vec![format!("tcp/127.0.0.1:{port}")], token: token(), ..Net::default() };
         let game = GameName::new(name).expect("a good name");
         let bus = Bus::hub(&net, &game, &scenario).expect("the port is free");
         let publisher = |key: String| bus.publisher(key, Priority::Normal).expect("it publishes");
@@ -165,13 +165,18 @@ fn port() -> u16 {
 }
 
 fn live(port: u16, game: Option<&str>) -> Arc<dyn View> {
-    let net = Net { connect: vec![format!("tcp/127.0.0.1:{port}")], ..Net::default() };
+    let net = Net { connect: vec![format!("tcp/127.0.0.1:{port}")], token: token(), ..Net::default() };
     let game = game.map(|name| GameName::new(name).expect("a good name"));
     let show = LiveView::open(net.into(), game, Box::new(|_| ()), |_| Err("no missions here".to_owned()));
     Arc::new(show.expect("a thread"))
 }
 
 /// A game, a server, and a page in it that has been greeted.
+/// The token of the game.
+pub(crate) fn token() -> Option<Token> {
+    Some("5c".repeat(32).parse().expect("64 digits"))
+}
+
 pub(crate) fn meet(file: &str) -> (Sim, Page, Client) {
     let port = port();
     let sim = Sim::open(port, "pond", steered(file));

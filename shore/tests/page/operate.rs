@@ -94,7 +94,7 @@ fn only_who_shows_the_operators_token_arms_and_everybody_who_may_stop_disarms() 
 fn no_flood_of_commands_keeps_a_stop_waiting() {
     let (sim, page, mut control) = meet("mixed_2v2.toml");
     // A process of its own has a link of its own. It takes longer than anybody waits for an answer.
-    let net = Net { connect: vec![format!("tcp/127.0.0.1:{}", sim.port)], ..Net::default() };
+    let net = Net { connect: vec![format!("tcp/127.0.0.1:{}", sim.port)], token: token(), ..Net::default() };
     let other = Bus::leaf(&net).expect("the sim is there");
     let (_, standing) = gateway(&other, Duration::from_secs(4));
     let mut operator = operator(&page);

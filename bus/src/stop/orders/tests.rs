@@ -43,13 +43,34 @@ fn a_stop_is_said_again_until_the_boat_answers_and_told_once() {
 fn what_was_published_may_be_older_than_the_stop() {
     let (mut orders, start) = orders(&["blue_one"]);
     orders.ask(start, Some("blue_one".to_owned()), StopCommand::Disarm);
-    let times = said(&mut orders, start, &[(5, "safed", Source::Published), (30, "armed", Source::Published)]);
+    let published = Source::Published(start + MS(1));
+    let times = said(&mut orders, start, &[(5, "safed", published), (30, "armed", published)]);
     assert_eq!(times.len(), 6 + 14, "{times:?}");
     assert_eq!(orders.unfinished(), ["blue_one does not report that it has stopped: armed"]);
     orders.ask(start, Some("blue_one".to_owned()), StopCommand::Disarm);
-    let times = said(&mut orders, start, &[(5, "safed", Source::Published)]);
+    let times = said(&mut orders, start, &[(5, "safed", Source::Published(start + MS(1)))]);
     assert_eq!(times, [0, 10, 20, 40, 80, 160, 360, 560, 760, 960]);
     assert!(orders.unfinished().is_empty());
+}
+
+#[test]
+fn a_status_that_a_lost_packet_held_up_shows_no_later_stop() {
+    let (mut orders, start) = orders(&["blue_one"]);
+    // One way takes 50 ms; the gateway began 10 s ago.
+    let as_of = |orders: &mut StopOrders, came: u64, at_s| orders.as_of(start + MS(came), "blue_one", at_s);
+    assert_eq!(as_of(&mut orders, 10_050, 10.0), start + MS(10_050));
+    let held_up = as_of(&mut orders, 10_800, 10.5);
+    assert!(held_up < start + MS(10_551), "as if it had come in time");
+    let asked = start + MS(10_600);
+    orders.ask(asked, Some("blue_one".to_owned()), StopCommand::EStop);
+    orders.report(start + MS(10_700), "blue_one", "armed", Source::Published(asked));
+    orders.report(start + MS(10_800), "blue_one", "e-stopped", Source::Published(held_up));
+    assert_eq!(orders.unfinished().len(), 1, "it is of an earlier stop");
+    let now = as_of(&mut orders, 10_720, 10.67);
+    orders.report(start + MS(10_720), "blue_one", "e-stopped", Source::Published(now));
+    assert!(orders.unfinished().is_empty());
+    // A gateway that was started again begins anew.
+    assert_eq!(as_of(&mut orders, 60_000, 1.0), start + MS(60_000));
 }
 
 #[test]
@@ -62,7 +83,7 @@ fn what_is_told_again_counts_only_for_a_boat_that_is_not_heard_itself() {
     orders.report(start + MS(50), "blue_one", "safed", Source::Relayed(start + MS(1)));
     assert!(orders.is_done(start + MS(50)));
     let state = |orders: &StopOrders| orders.boats().next().and_then(|(_, boat)| boat.state.clone());
-    orders.report(start + MS(100), "blue_one", "armed", Source::Published);
+    orders.report(start + MS(100), "blue_one", "armed", Source::Published(start + MS(100)));
     for (at, want) in [(900, "armed"), (1200, "safed")] {
         orders.report(start + MS(at), "blue_one", "safed", Source::Relayed(start + MS(at)));
         assert_eq!(state(&orders).as_deref(), Some(want), "{at} ms");

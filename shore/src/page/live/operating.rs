@@ -86,6 +86,10 @@ pub(super) fn operate(
     let (at_work, named) = (Arc::clone(shared), name.to_owned());
     let thread = start_thread("page-operate", move || {
         let reply = ask(&bus, &game, vehicle, &command);
+        if let (Err(_), Some(stop)) = (&reply, stop) {
+            // Without the token no answer counts, but the boat's status does.
+            at_work.stops.wait(ANSWER, |orders| orders.is_shown(&named, stop));
+        }
         let mut state = at_work.state.lock();
         // Of a game that is gone nobody waits for it.
         if state.generation == generation {
