@@ -4,7 +4,7 @@ use super::client::{Client, get};
 use super::source::{frame, own_boat, report, scenario, seq_of};
 use super::{open_viewer, visit};
 use bus::token::{self, Checked, Guard};
-use bus::{Bus, Declaration, Net, Priority, Publisher, Watched};
+use bus::{Bus, Declaration, Net, Priority, Publisher, Token, Watched};
 use game::codec;
 use game::event::{Event, Logged};
 use game::external::{GatewayStatus, OperatorReply};
@@ -171,12 +171,12 @@ fn live(port: u16, game: Option<&str>) -> Arc<dyn View> {
     Arc::new(show.expect("a thread"))
 }
 
-/// A game, a server, and a page in it that has been greeted.
 /// The token of the game.
 pub(crate) fn token() -> Option<Token> {
     Some("5c".repeat(32).parse().expect("64 digits"))
 }
 
+/// A game, a server, and a page in it that has been greeted.
 pub(crate) fn meet(file: &str) -> (Sim, Page, Client) {
     let port = port();
     let sim = Sim::open(port, "pond", steered(file));

@@ -1,7 +1,7 @@
 //! Operators of real boats: who may command one from a page, and that nothing keeps a stop waiting.
 
 use super::client::{Client, get};
-use super::live::{meet, wait_until};
+use super::live::{meet, token, wait_until};
 use super::settings;
 use bus::token::{self, Checked, Guard};
 use bus::{Bus, Declaration, Net, Watched};
