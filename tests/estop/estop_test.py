@@ -92,6 +92,10 @@ class FigureTest(unittest.TestCase):
             ([], False),
         ):
             self.assertEqual(Tally(250.0, stops).passed(), passed, stops)
+        early = Stop([60.0], [59.0])
+        for false_share, passed in ((0.0, False), (0.01, True)):
+            self.assertEqual(Tally(250.0, [good, early], false_share=false_share).passed(), passed, false_share)
+        self.assertFalse(Tally(250.0, [early, early], false_share=0.01).passed())
         tally = Tally(250.0, [good, Stop([60.0], [59.0]), Stop([math.inf], [math.inf])])
         self.assertEqual((tally.in_time(), tally.shown(), tally.false()), (2, 2, 1))
 
