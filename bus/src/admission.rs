@@ -1,4 +1,4 @@
-//! Keeps room at the port of a hub for nodes that want to connect, whoever else does.
+//! Keeps room at a hub's port for new nodes, however many other connections there are.
 //!
 //! A connection waits until zenoh has made a link of it. Of those that wait there are so many at most: for one more, another is
 //! ended, by the rule of [`Connections`]. zenoh's TLS listener (1.10, `tls-listener` 0.11) needs more than that: while the process
@@ -111,7 +111,7 @@ impl Port {
     fn close(&mut self, is_closed: bool) {
         if self.is_closed != is_closed {
             self.is_closed = is_closed;
-            // In this order: whoever still came through would take them.
+            // In this order, since new connections would take the files that are lent.
             self.listeners.iter().for_each(|listener| filter(*listener, is_closed));
             self.files.lend(is_closed);
         }
@@ -124,7 +124,7 @@ fn listeners(ports: &[u16]) -> Vec<RawFd> {
     descriptor::all().unwrap_or_default().into_iter().filter(is_one).collect()
 }
 
-/// Has the system drop what comes for a listener, or not any more. Whoever connects tries again after a second, by itself.
+/// Makes the system drop packets for a listener, or stops that. A client's TCP retries after a second.
 #[cfg(target_os = "linux")]
 fn filter(listener: RawFd, is_closed: bool) {
     /// `BPF_RET | BPF_K` of classic BPF (`linux/bpf_common.h`), with zero: nothing of the packet is taken.

@@ -3,7 +3,7 @@
 use socket2::{SockRef, Type};
 use std::io;
 use std::net::{Shutdown, SocketAddr};
-use std::os::fd::{BorrowedFd, RawFd};
+use std::os::fd::{AsRawFd, BorrowedFd, RawFd};
 
 /// Where the system lists the descriptors of the process that asks: Linux has both, macOS and the BSDs the second.
 const FOLDERS: [&str; 2] = ["/proc/self/fd", "/dev/fd"];
@@ -32,8 +32,8 @@ pub(crate) fn all() -> io::Result<Vec<RawFd>> {
 #[expect(unsafe_code, reason = "zenoh does not give its sockets away: only their numbers can be known")]
 fn borrow<'a>(descriptor: RawFd) -> BorrowedFd<'a> {
     // SAFETY: the number comes from the system, so it is not -1, and the descriptor is not closed through this. If another thread
-    // closes it meanwhile, calls fail. If its number is used anew, it has other addresses: whoever changes something looks at these,
-    // and while the socket is sure to stay open, or at a duplicate of it.
+    // closes it meanwhile, calls fail. If its number is used anew, it has other addresses: a caller that changes the socket compares
+    // them first, on a duplicate or while zenoh keeps the socket open.
     unsafe { BorrowedFd::borrow_raw(descriptor) }
 }
 
@@ -59,11 +59,8 @@ pub(crate) fn with_socket<T>(descriptor: RawFd, change: impl FnOnce(&SockRef<'_>
 pub(crate) fn end(descriptor: RawFd, ends: Ends) {
     // A duplicate stays what it is, though its owner may close the descriptor at any time.
     let Ok(duplicate) = borrow(descriptor).try_clone_to_owned() else { return };
-    let socket = SockRef::from(&duplicate);
-    let is_at =
-        |address: io::Result<socket2::SockAddr>, wanted| address.ok().and_then(|at| at.as_socket()) == Some(wanted);
-    if is_at(socket.local_addr(), ends.0) && is_at(socket.peer_addr(), ends.1) {
+    if matches!(kind(duplicate.as_raw_fd()), Kind::Connection(found) if found == ends) {
         // It may have ended by itself.
-        drop(socket.shutdown(Shutdown::Both));
+        drop(SockRef::from(&duplicate).shutdown(Shutdown::Both));
     }
 }

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 /// The key of requests at control ports, in proofs.
 pub const GATEWAY_PORT_KEY: &str = "gateway control port";
 /// The longest answer, bytes.
-const ANSWER_BYTES_MAX: u64 = 1 << 20;
+pub(crate) const ANSWER_BYTES_MAX: u64 = 1 << 20;
 /// How often to try: a port under attack may drop a connection before it has read from it.
 const ATTEMPTS: usize = 3;
 

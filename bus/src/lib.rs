@@ -31,6 +31,7 @@ mod seal;
 mod session;
 mod sim_liveness;
 pub mod simulated;
+mod status;
 pub mod stop;
 mod thread;
 pub mod token;

@@ -106,13 +106,9 @@ impl StopClient {
         let (mut stops, mut statuses, is_here) = (BTreeMap::new(), Vec::new(), bus.is_on_this_machine());
         for boat in boats {
             stops.insert(boat.clone(), bus.publisher(topic::stop(game, boat), Priority::Urgent)?);
-            let (shared, name) = (Arc::downgrade(&self.0), boat.clone());
-            statuses.push(bus.subscribe(topic::status(game, boat), move |bytes| {
-                let status = serde_json::from_slice::<GatewayStatus>(bytes).ok();
-                if let (Some(shared), Some(status)) = (shared.upgrade(), status.filter(|status| status.vehicle == name))
-                {
-                    shared.hear(&status, is_here);
-                }
+            let shared = Arc::downgrade(&self.0);
+            statuses.push(bus.subscribe_status(game, boat, move |status| {
+                shared.upgrade().iter().for_each(|shared| shared.hear(&status, is_here));
             })?);
         }
         let control = bus.publisher(topic::control(game), Priority::Urgent)?;
@@ -140,7 +136,7 @@ impl StopClient {
     pub fn stop(&self, target: Option<&str>, command: StopCommand) {
         let now = clock::now();
         let number = self.0.orders.visit(|orders| orders.ask(now, target.map(str::to_owned), command));
-        // The thread sends it: whoever asks may hold a lock, and sending takes its time.
+        // The thread sends it: the caller may hold a lock, and sending takes time.
         if target.is_none() && command == StopCommand::EStop {
             self.0.ask_sim(number);
         }

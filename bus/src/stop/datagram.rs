@@ -19,7 +19,7 @@ const ANSWER_KEY: &str = "stop datagram";
 /// A request in a datagram: a stop, or for the status.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StopRequest {
-    /// A random number of whoever asks.
+    /// A random number that identifies the sender.
     pub session: u64,
     /// Counts its requests.
     pub number: u64,
@@ -41,7 +41,7 @@ struct RequestDatagram {
     game: Option<String>,
 }
 
-/// How boats are, by name: their state in words, and how long ago whoever answers heard it, ms. Of one that is silent it is empty.
+/// How boats are, by name: their state in words, and its age where the answer was made, ms. The state of a silent boat is empty.
 pub type States = BTreeMap<String, (String, u64)>;
 
 /// As it travels.
@@ -50,7 +50,7 @@ struct AnswerDatagram {
     session: u64,
     number: u64,
     boats: Box<RawValue>,
-    /// That whoever answers knows the token, if it has one.
+    /// Proof that the answer's sender knows the token, if it has one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     mac: Option<String>,
 }

@@ -2,6 +2,7 @@
 
 use super::datagram::{States, StopRequest, answered_number};
 use super::datagram_port::DatagramPort;
+use crate::gateway_port::ANSWER_BYTES_MAX;
 use crate::token::{Answered, first, read};
 use crate::{CurrentToken, GATEWAY_PORT_KEY, clock, random_number, start_thread};
 use game::external::{GatewayCommand, OperatorReply};
@@ -15,8 +16,6 @@ use std::time::{Duration, Instant};
 
 /// The requests whose answers are awaited; the oldest go first.
 const AWAITED_MAX: usize = 128;
-/// The longest answer, bytes.
-const ANSWER_BYTES_MAX: u64 = 1 << 20;
 /// How long connecting may take, and how soon it is tried again.
 const CONNECT_MAX: Duration = Duration::from_secs(3);
 const CONNECT_AGAIN: Duration = Duration::from_millis(300);
@@ -125,8 +124,8 @@ struct Connection {
 
 struct Open {
     stream: TcpStream,
-    /// The commands whose answers are awaited.
-    awaited: VecDeque<(GatewayCommand, Asked)>,
+    /// The requests whose answers are awaited, in their order.
+    awaited: VecDeque<Asked>,
 }
 
 impl GatewayPath {
@@ -198,8 +197,9 @@ impl Connection {
             let mut line = Vec::new();
             reader.by_ref().take(ANSWER_BYTES_MAX).read_until(b'\n', &mut line)?;
             let awaited = self.open.lock().as_mut().and_then(|open| open.awaited.pop_front());
-            let Some((command, asked)) = awaited.filter(|_| line.ends_with(b"\n")) else { return Ok(()) };
-            match read(None, GATEWAY_PORT_KEY, &command, &line) {
+            let Some(asked) = awaited.filter(|_| line.ends_with(b"\n")) else { return Ok(()) };
+            // Nothing is proven here: what needs the token is asked over a connection of its own.
+            match read(None, GATEWAY_PORT_KEY, &(), &line) {
                 Ok(Answered::Answer(OperatorReply { refused: None, status })) => {
                     (self.on_news)(PathNews::States(States::from([(status.vehicle, (status.state, 0))]), asked));
                 }
@@ -215,7 +215,7 @@ impl Connection {
         line.push(b'\n');
         let mut open = self.open.lock();
         let Some(Open { stream, awaited }) = &mut *open else { return };
-        awaited.push_back((command.clone(), Asked { stop, at: clock::now() }));
+        awaited.push_back(Asked { stop, at: clock::now() });
         if awaited.len() > AWAITED_MAX || (&*stream).write_all(&line).is_err() {
             // It takes nothing any more, and part of a line is none.
             drop(stream.shutdown(Shutdown::Both));

@@ -4,7 +4,7 @@ use super::datagram::{States, StopRequest};
 use super::datagram_port::DatagramPort;
 use crate::net::address;
 use crate::{Bus, BusError, Declaration, Net, Priority, Publisher, Watched, clock, simulated};
-use game::external::{FleetCommand, GatewayCommand, GatewayStatus, OperatorCommand};
+use game::external::{FleetCommand, GatewayCommand, OperatorCommand};
 use game::message::Control;
 use game::topic::{self, GameName};
 use std::collections::BTreeMap;
@@ -47,12 +47,9 @@ impl HubStopPort {
         }
         for boat in boats {
             stops.insert(boat.clone(), bus.publisher(topic::stop(game, boat), Priority::Urgent)?);
-            let (heard, boat) = (Arc::clone(&heard), boat.clone());
-            statuses.push(bus.subscribe(topic::status(game, &boat), move |bytes| {
-                let status = serde_json::from_slice::<GatewayStatus>(bytes).ok();
-                if let Some(status) = status.filter(|status| status.vehicle == boat) {
-                    heard.visit(|heard| heard.insert(boat.clone(), Some((status.state, clock::now()))));
-                }
+            let heard = Arc::clone(&heard);
+            statuses.push(bus.subscribe_status(game, boat, move |status| {
+                heard.visit(|heard| heard.insert(status.vehicle, Some((status.state, clock::now()))));
             })?);
         }
         let control = bus.publisher(topic::control(game), Priority::Urgent)?;

@@ -21,11 +21,11 @@ const DRIFT: Duration = Duration::from_micros(100);
 const RESTARTED: Duration = Duration::from_secs(10);
 /// A stop of all boats is said to everybody for so long; after that only to those that do not show it.
 const TO_EVERYBODY: Duration = Duration::from_secs(2);
-/// That a boat does not show a stop is told after so long.
+/// A boat that does not show a stop is reported as late after this long.
 const LATE: Duration = Duration::from_secs(2);
 /// A boat of which nothing was heard for so long is silent.
 const SILENCE: Duration = Duration::from_secs(3);
-/// What is told again counts for a boat that was not heard itself for so long.
+/// The sim's copies count for a boat that has not been heard directly for this long.
 const RELAYED_AFTER: Duration = Duration::from_secs(1);
 /// News that nobody has read; the oldest go first.
 const NEWS_MAX: usize = 1024;
@@ -37,7 +37,7 @@ pub struct KnownBoat {
     pub state: Option<String>,
     /// When it was heard last.
     pub heard: Option<Instant>,
-    /// When it was heard other than by what is told again.
+    /// When it was last heard directly, not by a copy from the sim.
     heard_itself: Option<Instant>,
     /// When its gateway began, by the status that took the least time to come.
     began: Option<Instant>,
@@ -96,7 +96,7 @@ pub(super) enum Source {
     Answer(u64),
     /// It says how the boat was, not before this moment: it may be older than a stop that was asked for meanwhile.
     Published(Instant),
-    /// It was published some time ago, which the sim heard at this moment, and is told again.
+    /// A copy from the sim, which received the original no earlier than this.
     Relayed(Instant),
 }
 
@@ -273,7 +273,7 @@ impl StopOrders {
         if relayed.is_none() {
             boat.heard_itself = Some(now);
         }
-        // Whoever is heard itself says more.
+        // The boat's own report is newer than the sim's copy.
         let is_news = relayed.is_none() || boat.heard_itself.is_none_or(|heard| now >= heard + RELAYED_AFTER);
         let is_change = is_news && (boat.state.as_deref() != Some(state) || boat.is_silent);
         if is_news {

@@ -10,7 +10,6 @@ use bus::{
     SimState, SimWatch, Watched, inbox,
 };
 use game::codec;
-use game::external::GatewayStatus;
 use game::message::{Control, Frame, Message, PolicyProposal, Stamp};
 use game::picture::Picture;
 use game::run_state::RunState;
@@ -253,12 +252,8 @@ impl Subscriptions {
     }
 
     fn status(self, bus: &Bus, game: &LiveGame, vehicle: VehicleId) -> Result<Declaration, BusError> {
-        let name = game.name_of(vehicle).to_owned();
-        bus.subscribe(topic::status(&game.name, &name), move |bytes| {
-            let status = serde_json::from_slice::<GatewayStatus>(bytes).ok();
-            if let Some(status) = status.filter(|status| status.vehicle == name) {
-                self.update(|state| drop(state.statuses.insert(vehicle, Arc::new(status))));
-            }
+        bus.subscribe_status(&game.name, game.name_of(vehicle), move |status| {
+            self.update(|state| drop(state.statuses.insert(vehicle, Arc::new(status))));
         })
     }
 
