@@ -2,7 +2,7 @@
 
 use crate::boat_alone::Wire;
 use crate::support::{LIMIT, Process, Sim, stderr, stdout, temporary};
-use std::io::Write;
+use std::io::{BufRead, BufReader, Write};
 use std::net::SocketAddr;
 use std::process::{ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, channel};
@@ -48,10 +48,13 @@ impl Fleet {
             self.sim.squall(&["gateway", "console", "--gateway", &controls[0], "--gateway", &controls[1]]);
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut process = Process::start(command);
-        let (sender, lines) = channel();
-        let said = process.lines();
+        let ((sender, lines), (complainer, complaints)) = (channel(), channel());
+        let (said, stderr) = (process.lines(), BufReader::new(process.0.stderr.take().expect("piped")));
         std::thread::spawn(move || said.map_while(|line| sender.send(line).ok()).for_each(drop));
-        let console = Console { process, lines };
+        std::thread::spawn(move || {
+            stderr.lines().map_while(|line| complainer.send(line.ok()?).ok()).for_each(drop);
+        });
+        let console = Console { process, lines, complaints, complained: String::new() };
         console.wait_for(beginnings);
         console
     }
@@ -60,6 +63,9 @@ impl Fleet {
 struct Console {
     process: Process,
     lines: Receiver<String>,
+    complaints: Receiver<String>,
+    /// What of them was read.
+    complained: String,
 }
 
 impl Console {
@@ -93,12 +99,21 @@ impl Console {
         assert!(times.len() == reports.len() && times.iter().all(|ms| *ms < PROMPT_MS), "{line}: {times:?} ms");
     }
 
+    /// Waits until it complains of this.
+    fn wait_for_complaint(&mut self, words: &str) {
+        let start = Instant::now();
+        while !self.complained.contains(words) {
+            let line = self.complaints.recv_timeout(LIMIT.saturating_sub(start.elapsed()));
+            self.complained += &line.unwrap_or_else(|_| panic!("no {words:?}: {}", self.complained));
+            self.complained.push('\n');
+        }
+    }
+
     fn end(mut self) -> (ExitStatus, String) {
         drop(self.process.0.stdin.take());
         let status = self.process.wait();
-        let mut said = String::new();
-        std::io::Read::read_to_string(&mut self.process.0.stderr.take().expect("piped"), &mut said).expect("text");
-        (status, said)
+        self.complained.extend(self.complaints.iter().flat_map(|line| [line, "\n".to_owned()]));
+        (status, self.complained)
     }
 }
 
@@ -117,14 +132,15 @@ fn a_console_stops_one_boat_or_all_and_releases_them() {
     // The stop of one boat alone outlasts the release of all.
     console.say("all release");
     console.wait_for(&["red_one  safed"]);
+    console.say("blue_one arm");
+    console.wait_for_complaint("blue_one refuses: an E-stop of this boat");
     console.ask("blue_one release", &["blue_one  safed  after "]);
     console.ask("red_one disarm", &ALL_SAFED[1..]);
     console.ask("all disarm", &ALL_SAFED);
     console.say("blue_one dance");
-    console.say("blue_one arm");
     let (status, said) = console.end();
     assert!(status.success(), "{said}");
-    assert!(said.contains("dance") && said.contains("blue_one refuses: missing: "), "{said}");
+    assert!(said.contains("dance") && said.contains("blue_one refuses: an E-stop of this boat"), "{said}");
 }
 
 #[test]
