@@ -19,7 +19,6 @@ cd "$folder"
 
 fail() {
     exec >&2
-    exec >&2
     printf 'FAILED: %s\n' "$1"
     tail -n 20 ./*.txt || true
     exit 1
@@ -49,7 +48,7 @@ blue_boat=$(address blue | head -n 1)
 red_boat=$(address red | head -n 1)
 
 # The lines of the section.
-mapfile -t lines < <(sed -n '/^## A day on the water/,/^## The supervisor/p' "$page" | sed -n '/^```sh$/,/^```$/{/^```/d;p}')
+mapfile -t lines < <(awk '/^## /{here = /A day on the water/} here' "$page" | sed -n '/^```sh$/,/^```$/{/^```/d;p}')
 ((${#lines[@]} >= 15)) || fail "docs/gateway.md has ${#lines[@]} lines to type"
 terminals=0
 for line in "${lines[@]}"; do
