@@ -4,25 +4,8 @@ use std::path::Path;
 use std::process::Command;
 
 /// What the program is made of.
-const SOURCES: [&str; 17] = [
-    "Cargo.toml",
-    "Cargo.lock",
-    "build.rs",
-    "src",
-    "scenarios",
-    "onnx",
-    "game",
-    "bus",
-    "recording",
-    "sim",
-    "agent",
-    "gateway",
-    "arena",
-    "analysis",
-    "learn",
-    "sweep",
-    "shore",
-];
+const SOURCES: [&str; 9] =
+    ["Cargo.toml", "Cargo.lock", "build.rs", "src", "scenarios", "crates", "sim", "agent", "gateway"];
 
 fn main() {
     let commit = commit();

@@ -3,7 +3,7 @@
 use plotters::style::RGBColor;
 
 /// Declares them as custom properties; of two of a name the first, which is for light ground, counts.
-const STYLE_SHEET: &str = include_str!("../../shore/web/style.css");
+const STYLE_SHEET: &str = include_str!("../../crates/shore/web/style.css");
 /// How many colours the page has for teams, and how many stops its heat map has.
 const TEAMS: usize = 4;
 const HEAT_STOPS: usize = 9;

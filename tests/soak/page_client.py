@@ -1,4 +1,4 @@
-"""A browser's part of shore/PROTOCOL.md: opens the websocket of a page, acknowledges its frames, counts them."""
+"""A browser's part of crates/shore/PROTOCOL.md: opens the websocket of a page, acknowledges its frames, counts them."""
 
 import base64
 import json

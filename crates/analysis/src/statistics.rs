@@ -1,0 +1,300 @@
+//! What a boat did in a game, in statistics.
+
+use crate::quantile::Quantile;
+use crate::step::{Sample, Step};
+use game::angle::wrap_pi;
+use game::count::{Counts, Tally};
+use game::scenario::{Source, Vehicle};
+use game::{Ned, Scenario};
+use serde::{Deserialize, Serialize};
+
+/// A boat's game in statistics.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BoatStatistics {
+    /// The boat.
+    pub boat: String,
+    /// Its team.
+    pub team: String,
+    /// Whether it is a real one. Its truth is then what its gateway reported.
+    pub is_real: bool,
+    /// The length of its track, m: straight from decision to decision.
+    pub distance_m: f64,
+    /// Mean speed over the ground, m/s.
+    pub speed_mean_m_s: f64,
+    /// Highest speed over the ground, m/s.
+    pub speed_max_m_s: f64,
+    /// How long it was tagged, s.
+    pub tagged_s: f64,
+    /// How long it was outside of the field, s.
+    pub outside_s: f64,
+    /// How long it carried a flag, s.
+    pub carrying_s: f64,
+    /// How long it had no mind, s.
+    pub agent_lost_s: f64,
+    /// How long nobody knew where it was, s.
+    pub nav_lost_s: f64,
+    /// What it did, how often.
+    pub counts: Counts,
+    /// How far its own navigation was from the truth.
+    pub navigation: Option<NavigationError>,
+    /// How well it kept to what it was ordered.
+    pub steering: Option<SteeringError>,
+}
+
+/// How far a boat's own navigation, as its mind was shown it, was from the truth of that sample.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NavigationError {
+    /// Root mean square, m.
+    pub rms_m: f64,
+    /// Nineteen of twenty were not more, m; up to one part in 128 too much.
+    pub p95_m: f64,
+}
+
+/// How far a boat was from the heading and the speed it was ordered, while it was free to follow.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SteeringError {
+    /// Of the heading, root mean square, degrees.
+    pub heading_rms_deg: f64,
+    /// Of the speed ahead, root mean square, m/s.
+    pub speed_rms_m_s: f64,
+    /// For how much of the game this could be told, s.
+    pub steered_s: f64,
+}
+
+/// The statistics of all boats, made decision by decision: of no decision more is kept than its part in the sums.
+pub struct StatisticsBuilder<'a> {
+    scenario: &'a Scenario,
+    /// The time of the decision before, s.
+    before_s: Option<f64>,
+    span_s: f64,
+    tally: Tally,
+    boats: Vec<BoatSums>,
+}
+
+/// What is added up of a boat.
+#[derive(Clone, Debug, Default)]
+struct BoatSums {
+    before: Option<Ned>,
+    distance_m: f64,
+    travelled_m: f64,
+    speed_max_m_s: f64,
+    tagged_s: f64,
+    outside_s: f64,
+    carrying_s: f64,
+    agent_lost_s: f64,
+    nav_lost_s: f64,
+    nav_error: MeanSquare,
+    nav_errors_m: Quantile,
+    heading_error: MeanSquare,
+    speed_error: MeanSquare,
+    steered_s: f64,
+}
+
+impl<'a> StatisticsBuilder<'a> {
+    /// Of no decision of this game yet.
+    #[must_use]
+    pub fn new(scenario: &'a Scenario) -> StatisticsBuilder<'a> {
+        let count = scenario.vehicles.len();
+        let (tally, boats) = (Tally::new(count), vec![BoatSums::default(); count]);
+        StatisticsBuilder { scenario, before_s: None, span_s: 0.0, tally, boats }
+    }
+
+    /// Adds a decision.
+    pub fn add(&mut self, step: &Step) {
+        step.events.iter().for_each(|logged| self.tally.add(logged.event));
+        // A decision stands for the time since the one before, and the first for nothing.
+        let step_s = step.time_s - self.before_s.replace(step.time_s).unwrap_or(step.time_s);
+        self.span_s += step_s;
+        self.boats.iter_mut().zip(&step.samples).for_each(|(boat, sample)| boat.add(sample, step_s));
+    }
+
+    /// The statistics, by vehicle.
+    #[must_use]
+    pub fn end(self) -> Vec<BoatStatistics> {
+        let boats = self.scenario.vehicles.iter().zip(self.boats).zip(self.tally.vehicles);
+        boats.map(|((vehicle, sums), counts)| sums.end(vehicle, counts, self.scenario, self.span_s)).collect()
+    }
+}
+
+impl BoatSums {
+    fn add(&mut self, sample: &Sample, step_s: f64) {
+        let at = sample.truth.at();
+        self.distance_m += self.before.replace(at).map_or(0.0, |before| before.distance(at));
+        self.travelled_m += sample.truth.speed_m_s() * step_s;
+        self.speed_max_m_s = self.speed_max_m_s.max(sample.truth.speed_m_s());
+        for (is, lasted_s) in [
+            (sample.tagged, &mut self.tagged_s),
+            (sample.outside, &mut self.outside_s),
+            (sample.carrying, &mut self.carrying_s),
+            (sample.agent_lost, &mut self.agent_lost_s),
+            (sample.nav_lost, &mut self.nav_lost_s),
+        ] {
+            *lasted_s += if is { step_s } else { 0.0 };
+        }
+        if let Some(error_m) = sample.nav_error_m() {
+            self.nav_error.add(error_m);
+            self.nav_errors_m.add(error_m);
+        }
+        if let Some((heading_rad, speed_m_s)) = sample.steered() {
+            self.heading_error.add(wrap_pi(sample.truth.psi_rad - heading_rad));
+            self.speed_error.add(sample.truth.surge_m_s - speed_m_s);
+            self.steered_s += step_s;
+        }
+    }
+
+    fn end(self, vehicle: &Vehicle, counts: Counts, scenario: &Scenario, span_s: f64) -> BoatStatistics {
+        let navigation = self.nav_error.root().zip(self.nav_errors_m.at(0.95));
+        let steering = self.heading_error.root().zip(self.speed_error.root());
+        let steered_s = self.steered_s;
+        BoatStatistics {
+            boat: vehicle.name.clone(),
+            team: scenario.teams.get(vehicle.team.index()).map(|team| team.name.clone()).unwrap_or_default(),
+            is_real: vehicle.source == Source::External,
+            distance_m: self.distance_m,
+            speed_mean_m_s: if span_s > 0.0 { self.travelled_m / span_s } else { 0.0 },
+            speed_max_m_s: self.speed_max_m_s,
+            tagged_s: self.tagged_s,
+            outside_s: self.outside_s,
+            carrying_s: self.carrying_s,
+            agent_lost_s: self.agent_lost_s,
+            nav_lost_s: self.nav_lost_s,
+            counts,
+            navigation: navigation.map(|(rms_m, p95_m)| NavigationError { rms_m, p95_m }),
+            steering: steering.map(|(heading_rad, speed_rms_m_s)| SteeringError {
+                heading_rms_deg: heading_rad.to_degrees(),
+                speed_rms_m_s,
+                steered_s,
+            }),
+        }
+    }
+}
+
+/// A mean of squares, number by number.
+#[derive(Clone, Copy, Debug, Default)]
+struct MeanSquare {
+    sum: f64,
+    count: u64,
+}
+
+impl MeanSquare {
+    fn add(&mut self, number: f64) {
+        (self.sum, self.count) = (self.sum + number * number, self.count + 1);
+    }
+
+    /// Its root; none of nothing.
+    fn root(self) -> Option<f64> {
+        (self.count > 0).then(|| (self.sum / self.count as f64).sqrt())
+    }
+}
+
+/// The root of the mean square; none of nothing.
+pub(crate) fn rms(numbers: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut mean = MeanSquare::default();
+    numbers.for_each(|number| mean.add(number));
+    mean.root()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::made_up;
+    use crate::series::GameSeries;
+    use game::Order;
+    use game::event::{Event, Logged, TagCause};
+    use game::picture::Nav;
+    use game::{FlagId, SimTime, VehicleId};
+    use std::path::Path;
+
+    /// The statistics of a made-up game, whose events happen at its beginning.
+    fn statistics(series: &GameSeries) -> Vec<BoatStatistics> {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
+        let scenario = game::scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
+        let mut builder = StatisticsBuilder::new(&scenario);
+        for (i, time_s) in series.times_s.iter().copied().enumerate() {
+            let samples = series.boats.iter().map(|boat| boat.samples[i]).collect();
+            let events = if i == 0 { series.events.clone() } else { vec![] };
+            builder.add(&Step { time_s, samples, events, ..Step::default() });
+        }
+        builder.end()
+    }
+
+    #[test]
+    fn a_boat_on_a_circle_sails_its_circumference_at_its_speed() {
+        // Once round in 100 s: chords of a tenth of a second are a millionth short.
+        let statistics = &statistics(&made_up::circle(20.0, 100.0))[0];
+        let round_m = std::f64::consts::TAU * 20.0;
+        assert!((statistics.distance_m / round_m - 1.0).abs() < 1e-5, "{} m", statistics.distance_m);
+        for speed_m_s in [statistics.speed_mean_m_s, statistics.speed_max_m_s] {
+            assert!((speed_m_s - round_m / 100.0).abs() < 1e-9, "{speed_m_s} m/s");
+        }
+        assert_eq!((statistics.navigation, statistics.steering), (None, None));
+    }
+
+    #[test]
+    fn an_estimate_off_by_3_and_4_is_off_by_5() {
+        let mut series = made_up::circle(20.0, 10.0);
+        for sample in &mut series.boats[0].samples {
+            let Nav { north_m, east_m, .. } = sample.truth;
+            sample.estimated = Some(Nav { north_m: north_m + 3.0, east_m: east_m - 4.0, ..sample.truth });
+        }
+        let error = statistics(&series)[0].navigation.expect("it was shown");
+        assert!((error.rms_m - 5.0).abs() < 1e-9 && (error.p95_m - 5.0).abs() < 1e-9, "{error:?}");
+    }
+
+    #[test]
+    fn the_worst_of_twenty_is_beyond_the_percentile() {
+        let mut series = made_up::circle(20.0, 1.9);
+        assert_eq!(series.times_s.len(), 20);
+        for (i, sample) in series.boats[0].samples.iter_mut().enumerate() {
+            let off_m = if i == 7 { 100.0 } else { 1.0 };
+            sample.estimated = Some(Nav { north_m: sample.truth.north_m + off_m, ..sample.truth });
+        }
+        let error = statistics(&series)[0].navigation.expect("it was shown");
+        assert!((error.p95_m - 1.0).abs() < 1e-9, "{error:?}");
+        assert!((error.rms_m - (10_019.0_f64 / 20.0).sqrt()).abs() < 1e-9, "{error:?}");
+    }
+
+    #[test]
+    fn steering_counts_only_while_a_boat_is_free_to() {
+        let mut series = made_up::circle(20.0, 10.0);
+        for (i, sample) in series.boats[0].samples.iter_mut().enumerate() {
+            let heading_rad = sample.truth.psi_rad + 0.1 + std::f64::consts::TAU;
+            sample.order = Order::Steer { heading_rad, speed_m_s: sample.truth.surge_m_s + 0.5 };
+            sample.is_free = i > 50;
+            sample.tagged = i <= 50;
+            sample.carrying = i > 90;
+        }
+        let statistics = &statistics(&series)[0];
+        let error = statistics.steering.expect("it was ordered");
+        assert!((error.heading_rms_deg - 0.1_f64.to_degrees()).abs() < 1e-9, "{error:?}");
+        assert!((error.speed_rms_m_s - 0.5).abs() < 1e-9 && (error.steered_s - 5.0).abs() < 1e-9, "{error:?}");
+        assert!((statistics.tagged_s - 5.0).abs() < 1e-9 && (statistics.carrying_s - 1.0).abs() < 1e-9);
+        for none_s in [statistics.outside_s, statistics.agent_lost_s, statistics.nav_lost_s] {
+            assert_eq!(format!("{none_s:.1}"), "0.0");
+        }
+    }
+
+    #[test]
+    fn what_happened_is_counted() {
+        let mut series = made_up::circle(20.0, 1.0);
+        let vehicle = VehicleId(0);
+        let flag = FlagId(1);
+        let tagged = Event::Tagged { vehicle, cause: TagCause::Boundary };
+        for event in [Event::Grabbed { vehicle, flag }, tagged, Event::Grabbed { vehicle, flag }] {
+            series.events.push(Logged { tick: 1, at: SimTime::ZERO, event });
+        }
+        let counts = statistics(&series)[0].counts;
+        assert_eq!((counts.grabs, counts.tagged, counts.tags), (2, 1, 0));
+    }
+
+    #[test]
+    fn an_empty_game_has_no_bad_numbers() {
+        let mut series = made_up::circle(20.0, 0.0);
+        for boat in &mut series.boats {
+            boat.samples.clear();
+        }
+        series.times_s.clear();
+        let statistics = &statistics(&series)[0];
+        assert_eq!((statistics.distance_m, statistics.speed_mean_m_s, statistics.speed_max_m_s), (0.0, 0.0, 0.0));
+    }
+}

@@ -1,0 +1,42 @@
+//! What a whole decision asks of the heap: pictures, minds, ticks and the referee.
+//!
+//! `stats_alloc` counts for us, see `sim/tests/allocation.rs`; one test, since it counts the whole process.
+
+use game::Scenario;
+use sim::Contest;
+use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
+use std::alloc::System;
+use std::path::Path;
+
+#[global_allocator]
+static HEAP: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
+
+/// Decisions in which everything has happened once, up to a capture: every list has grown.
+const WARM_UP: u64 = 3_000;
+
+#[test]
+fn a_decision_takes_nothing_from_the_heap_unless_hulls_are_close_or_something_happens() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
+    let scenario: Scenario = game::scenario::load(&path).unwrap_or_else(|e| panic!("{e}"));
+    let mut runner = arena::runner_of(agent::minds_of(&scenario));
+    let mut contest = Contest::new(&scenario, 1).unwrap_or_else(|e| panic!("{e}"));
+    let (mut free, mut busy) = (0, 0);
+    while !contest.is_over() {
+        let boats = &contest.world().state().boats;
+        let near = |i: usize| boats[..i].iter().any(|other| other.pose.at.distance(boats[i].pose.at) < 1.83 + 1.0);
+        let crowded = (0..boats.len()).any(near);
+        let (events, decision) = (contest.events().len(), contest.decision());
+        let heap = Region::new(HEAP);
+        arena::decide(&mut contest, &mut runner);
+        contest.advance();
+        let used = heap.change();
+        // The log of events grows, now and then; it is the one thing that does.
+        if crowded || contest.events().len() > events || decision < WARM_UP {
+            busy += 1;
+        } else {
+            free += 1;
+            assert_eq!(used.allocations + used.reallocations, 0, "decision {decision}: {used:?}");
+        }
+    }
+    assert!(free > 2_000, "{free} decisions without, {busy} with");
+}

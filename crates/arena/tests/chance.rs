@@ -1,0 +1,92 @@
+//! A scenario knows whether its seed matters: games of two seeds differ exactly where it says so.
+
+use game::Scenario;
+use game::reseed::Reseed;
+use game::scenario::{Overrides, load_with};
+use game::time::SimTime;
+use sim::Contest;
+use std::path::Path;
+
+/// What is left of the first minute of a game: it may depend on the seed nowhere else.
+fn digest(scenario: &Scenario, seed: u64) -> String {
+    let mut game = scenario.of_seed(seed).unwrap_or_else(|problems| panic!("{problems}"));
+    game.rules.time_limit = SimTime::from_s(60.0);
+    arena::play(&game, agent::minds_of(&game), seed).unwrap_or_else(|why| panic!("{why}")).digest
+}
+
+/// The shipped games of few boats: larger ones are random by what these have too, and take long.
+fn small_games() -> Vec<Scenario> {
+    let games = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games");
+    let scenario = |entry: std::io::Result<std::fs::DirEntry>| {
+        let path = entry.expect("it can be read").path();
+        let rehearsal = Overrides { simulate_all: true, ..Overrides::default() };
+        load_with(&path, &rehearsal).unwrap_or_else(|problems| panic!("{problems}"))
+    };
+    let all = std::fs::read_dir(games).expect("the folder is there").map(scenario);
+    all.filter(|scenario| scenario.vehicles.len() <= 8).collect()
+}
+
+#[test]
+fn another_seed_in_the_midst_leaves_what_was_before_and_changes_what_is_drawn_after() {
+    const AFTER_S: f64 = 20.0;
+    let mut changed = vec![];
+    for scenario in small_games() {
+        let with = |reseed: Vec<Reseed>| {
+            let drawn = scenario.of_seed(3).unwrap_or_else(|problems| panic!("{problems}"));
+            let mut game = Scenario { reseed, ..drawn };
+            game.rules.time_limit = SimTime::from_s(40.0);
+            let mut digests = vec![];
+            let played = arena::play_observed(&game, agent::minds_of(&game), 3, |contest, _| {
+                digests.push((contest.now(), contest.digest()));
+                true
+            });
+            played.unwrap_or_else(|why| panic!("{}: {why}", game.name));
+            digests
+        };
+        let (first, again) = (with(vec![]), with(vec![Reseed { after_s: AFTER_S, seed: 77 }]));
+        let before = |all: &[(SimTime, u128)]| all.iter().filter(|(now, _)| now.as_s() <= AFTER_S).count();
+        assert_eq!(first[..before(&first)], again[..before(&again)], "{}", scenario.name);
+        if first.last() != again.last() {
+            assert!(scenario.is_random(), "{}", scenario.name);
+            let same = first.iter().zip(&again).take_while(|(one, other)| one == other).count();
+            assert!(same < before(&first) + 20, "{} changes late: from decision {same} on", scenario.name);
+            changed.push(scenario.name);
+        }
+    }
+    assert!(changed.len() > 4, "{changed:?}");
+}
+
+#[test]
+fn a_snapshot_from_either_side_of_another_seed_goes_on_as_the_game_did() {
+    for scenario in small_games().into_iter().filter(Scenario::is_random) {
+        let reseed = [(10.0, 5), (14.0, 6)].map(|(after_s, seed)| Reseed { after_s, seed }).to_vec();
+        let drawn = scenario.of_seed(3).unwrap_or_else(|problems| panic!("{problems}"));
+        let game = Scenario { reseed, ..drawn };
+        let begin = || Contest::new(&game, 3).unwrap_or_else(|why| panic!("{why}"));
+        let mut contest = begin();
+        let mut snapshots = vec![];
+        while contest.now() < SimTime::from_s(20.0) && !contest.is_over() {
+            snapshots.push(contest.snapshot());
+            contest.advance();
+        }
+        // Back from the end into each part, without having been there.
+        for snapshot in snapshots.iter().rev().step_by(45) {
+            let mut other = begin();
+            other.restore(snapshot).unwrap_or_else(|why| panic!("{why}"));
+            while other.now() < contest.now() {
+                other.advance();
+            }
+            assert_eq!(other.digest(), contest.digest(), "{}", game.name);
+        }
+    }
+}
+
+#[test]
+fn two_seeds_are_two_games_where_a_scenario_is_random_and_one_where_it_is_not() {
+    let (mut random, mut fixed) = (0, 0);
+    for scenario in small_games() {
+        assert_eq!(digest(&scenario, 1) != digest(&scenario, 2), scenario.is_random(), "{}", scenario.name);
+        *if scenario.is_random() { &mut random } else { &mut fixed } += 1;
+    }
+    assert!(random > 4 && fixed > 4, "{random} random games, {fixed} others");
+}

@@ -1,0 +1,113 @@
+//! Shipped strategies: what they are said to do.
+
+use agent::Mind;
+use game::count::Counts;
+use game::helm::HelmReport;
+use game::scenario::{Overrides, load_with};
+use game::{Outcome, Scenario, VehicleId};
+use std::path::{Path, PathBuf};
+
+fn shipped(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(path)
+}
+
+/// The game that a seed chooses, with so many boats on each side.
+fn game(boats: u32, blue: &str, red: &str, seed: u64) -> Scenario {
+    let folder = tempfile::tempdir().expect("a folder for the game");
+    let path = folder.path().join("game.toml");
+    let base = shipped("games/surveyor_2v2.toml").canonicalize().expect("the shipped game");
+    let spawn = "spawn = { along_m = [10, 70], across_m = [10, 70], gap_m = 10 }";
+    let fleet = |team: &str| format!("[[fleet]]\nteam = \"{team}\"\ncount = {boats}\n{spawn}\n");
+    std::fs::write(&path, format!("base = {base:?}\n{}{}", fleet("blue"), fleet("red"))).expect("the game's file");
+    let strategy = |name: &str| shipped(&format!("strategies/{name}.toml"));
+    let strategies = [("blue".to_owned(), strategy(blue)), ("red".to_owned(), strategy(red))].into();
+    let overrides = Overrides { strategies, ..Overrides::default() };
+    load_with(&path, &overrides).and_then(|game| game.of_seed(seed)).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn played(scenario: &Scenario) -> Outcome {
+    arena::play(scenario, agent::minds_of(scenario), scenario.seed).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// What the first boat thinks at the end, and the modes that it was in.
+fn watched(scenario: &Scenario) -> (HelmReport, Vec<String>) {
+    let (mut last, mut modes) = (None, vec![]);
+    arena::play_observed(scenario, agent::minds_of(scenario), scenario.seed, |_, runner| {
+        let report = runner.mind(VehicleId(0)).and_then(Mind::report).expect("a helm");
+        if modes.last() != Some(&report.mode) {
+            modes.push(report.mode.clone());
+        }
+        last = Some(report);
+        true
+    })
+    .unwrap_or_else(|e| panic!("{e}"));
+    (last.expect("there were decisions"), modes)
+}
+
+#[test]
+fn each_of_the_four_kinds_of_opponent_is_known_and_gets_its_own_response() {
+    const GAMES: usize = 8;
+    for (red, offensive, aggressive, response) in [
+        ("easy_attacker", true, true, ["pursuing", "punishing:awaiting", "punishing:raiding"].as_slice()),
+        ("medium_attacker", true, false, &["pursuing", "driving_out:slipping_in"]),
+        ("medium_defender", false, true, &["luring:feinting"]),
+        ("easy_defender", false, false, &["stealing:grabbing"]),
+    ] {
+        let games: Vec<_> = (1..=GAMES as u64).map(|seed| watched(&game(1, "observer", red, seed))).collect();
+        let is = |report: &HelmReport, name: &str, want: bool| {
+            report.variables.iter().any(|variable| variable.name == name && variable.value == want.to_string())
+        };
+        let is_offensive = |(report, _): &&(HelmReport, Vec<String>)| is(report, "offensive", offensive);
+        assert_eq!(
+            games.iter().filter(is_offensive).count(),
+            GAMES,
+            "{red}: whether it crosses midfield is easily seen"
+        );
+        let right: Vec<_> = games
+            .iter()
+            .filter(|(report, _)| is(report, "classified", true) && is(report, "aggressive", aggressive))
+            .collect();
+        assert!(4 * right.len() >= 3 * GAMES, "{red}: right in {} of {GAMES} games", right.len());
+        for (_, modes) in right {
+            assert!(response.iter().all(|mode| modes.iter().any(|was| was == mode)), "{red}: {modes:?}");
+        }
+    }
+}
+
+#[test]
+fn two_teams_that_watch_each_other_play_a_game() {
+    for seed in 1..=4 {
+        let outcome = played(&game(2, "observer", "observer", seed));
+        for team in ["blue", "red"] {
+            assert!(outcome.counts.teams[team].grabs > 0, "seed {seed}: {team} grabs nothing: {:?}", outcome.counts);
+        }
+    }
+}
+
+#[test]
+fn strategy_5_beats_strategy_4_from_either_side() {
+    const SEEDS: u64 = 12;
+    let points = |outcome: &Outcome, team: &str| outcome.score.teams[team];
+    let (mut won, mut lost) = (0, 0);
+    for (blue, red, own, other) in
+        [("strategy_5", "strategy_4", "blue", "red"), ("strategy_4", "strategy_5", "red", "blue")]
+    {
+        for seed in 1..=SEEDS {
+            let outcome = played(&game(2, blue, red, seed));
+            won += u64::from(points(&outcome, own) > points(&outcome, other));
+            lost += u64::from(points(&outcome, own) < points(&outcome, other));
+        }
+    }
+    // In hundreds of games it wins about three of four that are decided.
+    assert!(won > lost && 2 * won > SEEDS, "{won} won, {lost} lost");
+}
+
+#[test]
+fn twenty_boats_a_side_grab_and_capture() {
+    let scenario = load_with(&shipped("games/fleet_20v20.toml"), &Overrides::default())
+        .and_then(|game| game.of_seed(1))
+        .unwrap_or_else(|e| panic!("{e}"));
+    let counts = played(&scenario).counts;
+    let all = |count: fn(&Counts) -> u32| counts.teams.values().map(count).sum::<u32>();
+    assert!(counts.teams.values().all(|team| team.grabs > 0) && all(|team| team.captures) > 0, "{counts:?}");
+}

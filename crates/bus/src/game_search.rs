@@ -1,0 +1,274 @@
+//! Finding a game and joining it: what agents, gateways and observers do alike.
+
+use crate::keys::Identity;
+use crate::{Bus, BusError, Place, PlacedSession, clock};
+use game::message::{GameInfo, JoinReply, JoinRequest, Role};
+use game::topic::{self, GameName};
+use game::{Scenario, SimTime, VehicleId};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+use thiserror::Error;
+
+/// How often to look again for what is not there.
+const LOOK_AGAIN: Duration = Duration::from_millis(100);
+/// How long to wait for an answer.
+pub const ANSWER: Duration = Duration::from_secs(2);
+
+/// Why something is not there.
+#[derive(Debug, Error)]
+pub enum Missing {
+    /// It may come.
+    #[error("{0}")]
+    Yet(String),
+    /// It will not.
+    #[error(transparent)]
+    Forever(#[from] Refusal),
+}
+
+/// Why a game cannot be joined, and asking again will not help.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum Refusal {
+    /// The sim says no.
+    #[error("{0}")]
+    Refused(String),
+    /// It speaks another version of Squall; this is what is known of it.
+    #[error("not of one version: this program is {ours}, {0}", ours = game::VERSION)]
+    Version(String),
+}
+
+/// Why a search ended without success.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum NotFound {
+    /// The time is up; this was missing last.
+    #[error("no game to join after {0:.0?}: {1}")]
+    InTime(Duration, String),
+    /// It will never be there.
+    #[error(transparent)]
+    Refused(#[from] Refusal),
+}
+
+impl From<BusError> for Missing {
+    fn from(error: BusError) -> Missing {
+        match error {
+            BusError::NeedsToken
+            | BusError::WrongToken
+            | BusError::Keys(_)
+            | BusError::NeedsKeys(_)
+            | BusError::NotAllowed { .. } => Missing::Forever(Refusal::Refused(error.to_string())),
+            BusError::Request { .. } => Missing::Forever(Refusal::Version(error.to_string())),
+            other => Missing::Yet(other.to_string()),
+        }
+    }
+}
+
+/// A search with a limit.
+pub struct GameSearch<'a> {
+    wait: Duration,
+    stop: &'a AtomicBool,
+    start: Instant,
+    last: String,
+}
+
+impl<'a> GameSearch<'a> {
+    /// A search that ends after this time, or when `stop` is set.
+    #[must_use]
+    pub fn new(wait: Duration, stop: &'a AtomicBool) -> GameSearch<'a> {
+        GameSearch { wait, stop, start: clock::now(), last: String::new() }
+    }
+
+    /// Tries again until it works, the time is up, or it never will; reports what is missing whenever that changes.
+    ///
+    /// # Errors
+    /// [`NotFound`] says what was missing to the end.
+    pub fn until<T>(
+        &mut self,
+        tell: &mut dyn FnMut(&str),
+        mut attempt: impl FnMut() -> Result<T, Missing>,
+    ) -> Result<T, NotFound> {
+        loop {
+            let reason = match attempt() {
+                Ok(found) => return Ok(found),
+                Err(Missing::Forever(refusal)) => return Err(refusal.into()),
+                Err(Missing::Yet(reason)) => reason,
+            };
+            if reason != self.last {
+                tell(&reason);
+                self.last.clone_from(&reason);
+            }
+            let passed = clock::since(self.start);
+            if self.stop.load(Ordering::Relaxed) || passed >= self.wait {
+                return Err(NotFound::InTime(passed, reason));
+            }
+            clock::rest(LOOK_AGAIN);
+        }
+    }
+
+    /// A session at the place of the game (this one, or the only one there is), and the game with what it is.
+    ///
+    /// # Errors
+    /// [`NotFound`] says what was missing to the end.
+    pub fn game(
+        &mut self,
+        tell: &mut dyn FnMut(&str),
+        place: &Place,
+        game: Option<&GameName>,
+    ) -> Result<(Bus, GameName, GameInfo), NotFound> {
+        let mut session = None;
+        self.until(tell, || find_game(place, game, &mut session))
+    }
+}
+
+/// One attempt at what [`GameSearch::game`] does; the next one gets the same `session`.
+///
+/// # Errors
+/// As [`choose_game`], or if nobody listens there now.
+pub fn find_game(
+    place: &Place,
+    named: Option<&GameName>,
+    session: &mut PlacedSession,
+) -> Result<(Bus, GameName, GameInfo), Missing> {
+    let bus = place.session(named, session)?;
+    let (game, info) = choose_game(&bus, named)?;
+    // Its sim may have come after the session was opened.
+    let token = place.net(Some(&game))?.token;
+    Ok((bus.with_token(token), game, info))
+}
+
+/// The game of this name, or the only one on the network, with what it is.
+///
+/// # Errors
+/// [`Missing`] if it is not there yet, if there are several to choose from, or if its sim is of another version.
+pub fn choose_game(bus: &Bus, named: Option<&GameName>) -> Result<(GameName, GameInfo), Missing> {
+    let game = named.map_or_else(|| only_game(bus), |game| Ok(game.clone()))?;
+    let info = game_info(bus, &game)?;
+    Ok((game, info))
+}
+
+/// The only game on the network.
+fn only_game(bus: &Bus) -> Result<GameName, Missing> {
+    let games = games(bus)?;
+    match games.as_slice() {
+        [game] => Ok(game.clone()),
+        [] => Err(Missing::Yet("no sim is on the network".to_owned())),
+        several => {
+            let message = format!("choose with --game among {}", listed(several));
+            Err(Missing::Forever(Refusal::Refused(message)))
+        }
+    }
+}
+
+/// The games on the network.
+fn games(bus: &Bus) -> Result<Vec<GameName>, BusError> {
+    let keys = bus.who_is_alive(&topic::everyone_alive(), ANSWER)?;
+    Ok(keys.iter().filter_map(|key| topic::parse_alive(key)).map(|(game, _)| game).collect())
+}
+
+fn listed(games: &[GameName]) -> String {
+    games.iter().map(GameName::as_str).collect::<Vec<_>>().join(", ")
+}
+
+/// What the game is, from the sim.
+fn game_info(bus: &Bus, game: &GameName) -> Result<GameInfo, Missing> {
+    let answer = bus.ask(&topic::scenario(game), Vec::new(), ANSWER)?;
+    let Some(bytes) = answer else {
+        let others = games(bus)?;
+        let others = if others.is_empty() { String::new() } else { format!("; there is {}", listed(&others)) };
+        return Err(Missing::Yet(format!("no sim answers for game {:?}{others}", game.as_str())));
+    };
+    Ok(understood(&bytes)?)
+}
+
+/// What a sim says its game is, once this program can believe it.
+fn understood(answer: &[u8]) -> Result<GameInfo, Refusal> {
+    // The version first: of another version we may not understand the rest.
+    let value: serde_json::Value = serde_json::from_slice(answer).unwrap_or_default();
+    let version = value.get("version").and_then(serde_json::Value::as_str).unwrap_or("unknown");
+    if version != game::VERSION {
+        return Err(Refusal::Version(format!("the sim is {version}")));
+    }
+    let not_understood = |e: String| Refusal::Version(format!("the sim's scenario is not understood: {e}"));
+    let info: GameInfo = serde_json::from_slice(answer).map_err(|e| not_understood(e.to_string()))?;
+    info.scenario.check_references().map_err(not_understood)?;
+    Ok(info)
+}
+
+/// What comes of joining.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Joined {
+    /// To be shown with every message.
+    pub ticket: u64,
+    /// The vehicles, in the order asked for.
+    pub vehicles: Vec<VehicleId>,
+    /// Time of the game when it was answered.
+    pub now: SimTime,
+    /// When it was asked.
+    pub asked: Instant,
+}
+
+/// Joins with these vehicles in this role, by the token that `place` says.
+///
+/// # Errors
+/// [`Missing`] if the sim does not answer, if somebody else has a vehicle, or if it says no.
+pub fn join(
+    bus: &Bus,
+    place: &Place,
+    (game, scenario): (&GameName, &Scenario),
+    role: Role,
+    vehicles: &[String],
+) -> Result<Joined, Missing> {
+    check_keys(bus, scenario, role, vehicles)?;
+    let bus = bus.clone().with_token(place.net(Some(game))?.token);
+    let (version, node, asked) = (game::VERSION.to_owned(), bus.id(), clock::now());
+    let request = JoinRequest { version, role, node, vehicles: vehicles.to_vec() };
+    match bus.request(&topic::join(game, scenario, role, vehicles), &request, ANSWER)? {
+        None => Err(Missing::Yet("the sim does not answer the join request".to_owned())),
+        Some(JoinReply::Granted { ticket, vehicles, now_ns }) => Ok(Joined { ticket, vehicles, now: now_ns, asked }),
+        Some(JoinReply::Busy { vehicle }) => Err(Missing::Yet(format!("{vehicle} has another {role}"))),
+        Some(JoinReply::Refused { reason }) => Err(Missing::Forever(Refusal::Refused(reason))),
+    }
+}
+
+/// Checks that the keys, if there are any, are those of whoever may join so: the hub does not let others ask.
+fn check_keys(bus: &Bus, scenario: &Scenario, role: Role, vehicles: &[String]) -> Result<(), Refusal> {
+    let Some(keys) = bus.keys() else { return Ok(()) };
+    let is_own = |name: &String| match (keys.identity(), role) {
+        (Identity::Team(team), Role::Agent) => {
+            // A name that is unknown the sim will refuse.
+            scenario.vehicle_by_name(name).is_none_or(|v| scenario.teams[scenario.team_of(v).index()].name == *team)
+        }
+        (Identity::Gateway(boat), Role::Gateway) => boat.as_ref().is_none_or(|boat| boat == name),
+        _ => false,
+    };
+    match vehicles.iter().find(|name| !is_own(name)) {
+        None => Ok(()),
+        Some(name) => {
+            let (folder, identity) = (keys.folder().display(), keys.identity());
+            Err(Refusal::Refused(format!("{folder}: the keys of {identity} are not for the {role} of {name}")))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_game_is_believed_if_it_is_of_this_version_and_everything_that_it_names_is_in_it() {
+        let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
+        let scenario = game::scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
+        let info = GameInfo { version: game::VERSION.to_owned(), pace: "lockstep".to_owned(), scenario };
+        let told = |change: &dyn Fn(&mut GameInfo)| {
+            let mut info = info.clone();
+            change(&mut info);
+            understood(&serde_json::to_vec(&info).expect("JSON")).map_err(|e| e.to_string())
+        };
+        assert_eq!(told(&|_| ()), Ok(info.clone()));
+        let refused = |change: &dyn Fn(&mut GameInfo)| told(change).expect_err("it is refused");
+        assert!(refused(&|info| info.version = "0.0.1".to_owned()).contains("the sim is 0.0.1"));
+        let other_team = refused(&|info| info.scenario.vehicles[0].team = game::TeamId(9));
+        assert!(other_team.contains("the team of blue_one is 9, expected less than 2"), "{other_team}");
+        let other_strategy = refused(&|info| info.scenario.vehicles[1].strategy = 77);
+        assert!(other_strategy.contains("the strategy of blue_two is 77"), "{other_strategy}");
+        assert!(understood(b"{").is_err());
+    }
+}

@@ -1,0 +1,116 @@
+//! Real inputs: scenario files of the tree, and a short game with everything that was sent in it.
+
+use game::event::EventCursor;
+use game::message::{Frame, GameInfo, Message, Orders, PolicyProposal, Say, Stamp, VehicleOrder, Word};
+use game::water::{PlaneWave, Water};
+use game::{Picture, Scenario, VehicleId};
+use recording::{Decision, Ending, Entry, Header, Writer};
+use std::io::Cursor;
+use std::path::PathBuf;
+
+/// Where the scenario files are.
+#[must_use]
+pub fn scenarios() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../scenarios")
+}
+
+/// A game of the tree.
+///
+/// # Panics
+/// If there is none of this name.
+#[must_use]
+pub fn scenario(name: &str) -> Scenario {
+    let file = scenarios().join("games").join(name).with_extension("toml");
+    game::scenario::load(&file).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// A game with two teams of two, of which a boat of each is real.
+#[must_use]
+pub fn mixed() -> Scenario {
+    scenario("mixed_2v2")
+}
+
+/// A played second.
+pub struct Played {
+    /// What was played.
+    pub scenario: Scenario,
+    /// What observers and minds saw.
+    pub decisions: Vec<Decision>,
+    /// What the minds ordered, as one agent sends it.
+    pub orders: Vec<Orders>,
+    /// What they said.
+    pub says: Vec<Say>,
+    /// How it ended.
+    pub ending: Ending,
+}
+
+/// Plays the first decisions of a game without real boats.
+///
+/// # Panics
+/// If the game cannot be played.
+#[must_use]
+pub fn played(scenario: Scenario, decisions: u64) -> Played {
+    let mut contest = sim::Contest::new(&scenario, scenario.seed).expect("it starts");
+    let mut runner = arena::runner_of(agent::minds_of(&scenario));
+    let (mut cursor, mut kept) = (EventCursor::default(), Vec::new());
+    let (mut orders, mut says) = (Vec::new(), Vec::new());
+    contest.keep_inputs();
+    for _ in 0..decisions {
+        arena::decide(&mut contest, &mut runner);
+        let pictures: Vec<Picture> = contest.last_pictures().to_vec();
+        orders.extend(runner.answer(7));
+        let stamp = Stamp { version: Say::VERSION, ..pictures[0].stamp };
+        let word = Word { vehicle: VehicleId(0), key: 5, value: 0.5 };
+        says.push(Say { stamp, words: [&[word], runner.sent()].concat() });
+        contest.advance();
+        let frame: Frame = contest.frame(&mut cursor);
+        kept.push(Decision { frame: frame.into(), pictures, inputs: contest.take_inputs() });
+    }
+    let ending = Ending { outcome: contest.outcome(), ..Ending::default() };
+    Played { scenario, decisions: kept, orders, says, ending }
+}
+
+impl Played {
+    /// What a sim says of the game.
+    #[must_use]
+    pub fn info(&self) -> GameInfo {
+        GameInfo { version: game::VERSION.to_owned(), pace: "lockstep".to_owned(), scenario: self.scenario.clone() }
+    }
+
+    /// Its recording.
+    ///
+    /// # Panics
+    /// If it cannot be written.
+    #[must_use]
+    pub fn recording(&self, others: &[Entry]) -> Vec<u8> {
+        let wave = PlaneWave { amplitude_m: 0.1, wavenumber_rad_m: 1.0, omega_rad_s: 3.1, ..PlaneWave::default() };
+        let header = Header {
+            commit: "c0ffee".to_owned(),
+            game: "fuzz-1".to_owned(),
+            began_utc_ns: 1_700_000_000_000_000_000,
+            info: self.info(),
+            water: Water { waves: vec![wave] },
+        };
+        let mut writer = Writer::begin(Cursor::new(Vec::new()), &header.opening()).expect("memory");
+        let decisions = self.decisions.iter().map(|decision| Entry::Decision(Box::new(decision.clone())));
+        for entry in decisions.chain(others.iter().cloned()) {
+            writer.write(&entry, 1_700_000_000_000_000_000).expect("memory");
+        }
+        writer.end(self.ending.facts()).expect("memory").into_inner()
+    }
+}
+
+/// A proposal for a boat.
+#[must_use]
+pub fn proposal() -> PolicyProposal {
+    let stamp = Stamp { version: PolicyProposal::VERSION, ..Stamp::default() };
+    PolicyProposal { stamp, vehicle: VehicleId(0), course_rad: 1.0, speed_m_s: 1.5 }
+}
+
+/// An order of each kind for a boat.
+#[must_use]
+pub fn orders() -> [VehicleOrder; 3] {
+    let thrust = game::Order::Thrust { port: 0.5, starboard: -0.5 };
+    let steer = game::Order::Steer { heading_rad: 1.0, speed_m_s: 1.0 };
+    [game::Order::Hold, steer, thrust].map(|order| VehicleOrder::new(VehicleId(0), order))
+}

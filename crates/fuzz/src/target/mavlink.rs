@@ -1,0 +1,64 @@
+//! What boats and ground stations send (MAVLink frames).
+
+use super::{Target, binaries};
+use game::SimTime;
+use game::gateway::{BoatProtocol, Gateway};
+use gateway::emulator::ArduPilot;
+use gateway::mavlink::{Counts, FRAME_MAX, Framer, Received, Writer};
+use gateway::protocol::Protocol;
+
+pub(super) const TARGET: Target =
+    Target { name: "mavlink", seeds, change: binaries, check, allocated_max: (1 << 24, 20_000) };
+
+/// Frames of another program, one by one and all in a row.
+fn seeds() -> Vec<Vec<u8>> {
+    let list = include_str!("../../../../gateway/tests/mavlink/golden.txt");
+    let lines = list.lines().filter_map(|line| line.split_once(' ')).filter(|(name, _)| *name != "#");
+    let bytes = |hex: &str| {
+        let digits = hex.as_bytes().chunks(2).filter_map(|two| std::str::from_utf8(two).ok());
+        digits.filter_map(|two| u8::from_str_radix(two, 16).ok()).collect::<Vec<u8>>()
+    };
+    let one_by_one: Vec<Vec<u8>> = lines.map(|(_, hex)| bytes(hex)).collect();
+    [one_by_one.concat()].into_iter().chain(one_by_one).collect()
+}
+
+fn check(bytes: &[u8]) {
+    let (whole, counts) = framed([bytes]);
+    let step = 1 + usize::from(bytes.first().copied().unwrap_or_default()) % 97;
+    for size in [1, step] {
+        assert_eq!(framed(bytes.chunks(size)), (whole.clone(), counts.clone()), "in pieces of {size}");
+    }
+    assert_eq!(counts.messages, whole.len() as u64);
+    assert!(counts.garbage <= bytes.len() as u64);
+    repaired(bytes);
+}
+
+fn framed<'a>(pieces: impl IntoIterator<Item = &'a [u8]>) -> (Vec<String>, Counts) {
+    let (mut framer, mut received) = (Framer::new(), Vec::new());
+    // Numbers that are none are not equal to themselves.
+    pieces.into_iter().for_each(|piece| framer.push(piece, &mut |message| received.push(format!("{message:?}"))));
+    (received, framer.counts().clone())
+}
+
+/// Arbitrary payloads of every message that is read, in frames that are right: boat and ground station take them all.
+fn repaired(bytes: &[u8]) {
+    let gateway = Gateway { protocol: BoatProtocol::Mavlink, ..game::scenario::default_gateway() };
+    let (mut protocol, mut boat) =
+        (Protocol::new(&gateway), ArduPilot::new(game::LatLon { lat_deg: 42.0, lon_deg: -71.0 }, None));
+    let (mut messages, mut framer, now) = (Vec::new(), Framer::new(), SimTime::from_s(1.0));
+    framer.push(bytes, &mut |Received { message, .. }| messages.push(message));
+    let (mut out, mut to_boat, mut to_us) = (Vec::new(), Writer::new(255, 190), Writer::new(1, 1));
+    for message in &messages {
+        out.clear();
+        to_boat.write(message, &mut out);
+        assert!(out.len() <= FRAME_MAX);
+        boat.take(now, &out);
+        out.clear();
+        to_us.write(message, &mut out);
+        protocol.read(now, &out, &mut |_| {});
+    }
+    out.clear();
+    boat.order(now).check().expect("a sound order, whatever it was sent");
+    boat.telemetry(now, &mut out);
+    protocol.keep_up(now, &mut out);
+}

@@ -1,0 +1,145 @@
+//! What boats send (NMEA sentences).
+
+use super::{Target, texts};
+use game::LatLon;
+use gateway::nmea::{
+    ACCEPTED_MAX, Battery, Command, Counts, EMITTED_MAX, Framer, Gga, Hdg, Mode, Sentence, Talker, TimeOfDay, Waypoint,
+    checksum,
+};
+
+/// Addresses that the codec reads: arbitrary fields would seldom find one.
+const ADDRESSES: [&str; 16] = [
+    "PSEAC", "PSEAA", "PSEAB", "PSEAD", "PSEAG", "PSEAR", "OIWPL", "GPGGA", "GPRMC", "GPVTG", "GPHDT", "HCHDG",
+    "GPZDA", "VCGLL", "WIMWV", "VWVHW",
+];
+
+pub(super) const TARGET: Target = Target { name: "nmea", seeds, change: texts, check, allocated_max: (1 << 20, 2000) };
+
+/// Sentences of real programs and manuals, one by one and some in a row.
+fn seeds() -> Vec<Vec<u8>> {
+    let list = include_str!("../../../../gateway/tests/nmea/golden.txt");
+    let sentences = list.lines().filter(|line| line.starts_with(|c: char| c == '$' || c.is_ascii_uppercase()));
+    let wire =
+        |sentence: &str| if sentence.starts_with('$') { format!("{sentence}\r\n") } else { framed_body(sentence) };
+    let one_by_one: Vec<String> = sentences.map(wire).collect();
+    let in_a_row = one_by_one.chunks(3).map(<[String]>::concat);
+    let probe = "?WATCH={\"enable\":true,\"nmea\":true}\n".to_owned();
+    in_a_row.chain(one_by_one.clone()).chain([probe]).map(String::into_bytes).collect()
+}
+
+fn framed_body(body: &str) -> String {
+    format!("${body}*{:02X}\r\n", checksum(body.as_bytes()))
+}
+
+fn check(bytes: &[u8]) {
+    stream(bytes);
+    for line in bytes.split(|byte| b"\r\n".contains(byte)) {
+        repaired(line);
+    }
+    let text = String::from_utf8_lossy(bytes);
+    read(&text);
+    let address = ADDRESSES[usize::from(bytes.first().copied().unwrap_or_default()) % ADDRESSES.len()];
+    read(&format!("{address},{text}"));
+    numbers(bytes);
+}
+
+/// Bytes as they come: however cut, the same sentences, and every `$` accounted for.
+fn stream(bytes: &[u8]) {
+    let (whole, counts) = framed([bytes]);
+    let step = 1 + usize::from(bytes.first().copied().unwrap_or_default()) % 97;
+    for size in [1, step] {
+        assert_eq!(framed(bytes.chunks(size)), (whole.clone(), counts), "in pieces of {size}");
+    }
+    let begun = bytes.iter().filter(|byte| **byte == b'$').count() as u64;
+    let ended = counts.sentences + counts.bad_checksum + counts.overlong + counts.broken;
+    assert!(begun == ended || begun == ended + 1, "{begun} begun, {counts:?}");
+    assert!(counts.garbage <= bytes.len() as u64 - begun);
+    assert_eq!(counts.sentences, whole.len() as u64);
+    for body in whole {
+        assert!(body.is_ascii() && !body.contains(['$', '*', '\r', '\n']) && body.len() + 6 <= ACCEPTED_MAX);
+        read(&body);
+    }
+}
+
+/// A line given the checksum that it lacks must come through.
+fn repaired(line: &[u8]) {
+    let plain = |byte: &&u8| (b' '..=b'~').contains(*byte) && !b"$*".contains(*byte);
+    let body: Vec<u8> = line.iter().filter(plain).take(ACCEPTED_MAX - 6).copied().collect();
+    let body = String::from_utf8_lossy(&body).into_owned();
+    let wire = format!("${body}*{:02X}\r\n", checksum(body.as_bytes()));
+    let (found, counts) = framed([b"noise".as_slice(), wire.as_bytes()]);
+    assert_eq!(counts, Counts { sentences: 1, garbage: 5, ..Counts::default() });
+    assert_eq!(found, [body]);
+    read(&found[0]);
+}
+
+/// What can be read can be written and read again, and then it stays.
+fn read(body: &str) {
+    let Ok(sentence) = Sentence::parse(body) else { return };
+    let Some(again) = reread(&sentence) else { return };
+    let settled = reread(&again).expect("what was written once is short");
+    assert_eq!(written(&settled), written(&again), "{body}");
+}
+
+/// The bytes taken for numbers, finite or not.
+fn numbers(bytes: &[u8]) {
+    let mut eights =
+        bytes.chunks_exact(8).map(|eight| f64::from_bits(eight.iter().fold(0, |n, b| n << 8 | u64::from(*b))));
+    let mut number = || eights.next();
+    let mode = Mode::all()[bytes.len() % Mode::all().len()];
+    let words = String::from_utf8_lossy(bytes).into_owned();
+    let (heading_deg, thrust, difference) = (number(), number(), number());
+    reread(&Sentence::Command(Command { mode, heading_deg, thrust, difference, words: words.clone() }));
+    let at = LatLon { lat_deg: heading_deg.unwrap_or_default(), lon_deg: thrust.unwrap_or_default() };
+    reread(&Sentence::Waypoint(Waypoint { at, index: 7 }));
+    let time = difference.map(|number| TimeOfDay(number as u32));
+    reread(&Sentence::Gga(Gga {
+        talker: Talker::GP,
+        time,
+        at: Some(at),
+        quality: bytes.len() as u8,
+        satellites: bytes.first().copied(),
+        hdop: number(),
+        altitude_m: number(),
+        geoid_m: number(),
+    }));
+    let hdg = Hdg { talker: Talker::HC, heading_deg: number(), deviation_deg: number(), variation_deg: number() };
+    reread(&Sentence::Hdg(hdg));
+    reread(&Sentence::Battery(Battery {
+        volts: heading_deg,
+        charge: thrust,
+        amps: difference,
+        reset_time: words,
+        port_volts: number(),
+        hours: number(),
+        ..Battery::default()
+    }));
+}
+
+/// The sentence after a trip over the wire; nothing where a field that it needs had to be left empty.
+fn reread(sentence: &Sentence) -> Option<Sentence> {
+    let wire = written(sentence);
+    assert!(wire.len() <= EMITTED_MAX, "{} bytes: {wire}", wire.len());
+    let (found, counts) = framed([wire.as_bytes()]);
+    assert_eq!(counts, Counts { sentences: 1, ..Counts::default() }, "{wire}");
+    match Sentence::parse(&found[0]) {
+        Ok(back) => Some(back),
+        Err(_) if matches!(sentence, Sentence::MissionSettings(_) | Sentence::Waypoint(_)) => None,
+        Err(error) => panic!("{wire} from {sentence:?}: {error}"),
+    }
+}
+
+fn written(sentence: &Sentence) -> String {
+    let mut out = Vec::new();
+    sentence.write(&mut out);
+    String::from_utf8(out).expect("a sentence is ASCII")
+}
+
+fn framed<'a>(pieces: impl IntoIterator<Item = &'a [u8]>) -> (Vec<String>, Counts) {
+    let mut framer = Framer::new();
+    let mut found = Vec::new();
+    for piece in pieces {
+        framer.push(piece, &mut |body| found.push(body.to_owned()));
+    }
+    (found, framer.counts())
+}

@@ -1,0 +1,70 @@
+//! Steps of the games of an environment on one core, with random actions; agent steps a second are four times as many, or twice where
+//! helms play the other team. And a new game within a batch.
+
+use agent::{Action, ActionSpace, ObservationSpace, Spaces};
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use game::rewards::Rewards;
+use game::stream::Stream;
+use game::training::CriticInput;
+use learn::environment::{Control, Player, Setup, VectorEnvironment};
+use std::path::Path;
+
+const GAMES: usize = 64;
+
+fn setup(game: &str, opponent: Player) -> Setup {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../scenarios/games/{game}.toml"));
+    Setup {
+        scenario: game::scenario::load(&path).unwrap_or_else(|problems| panic!("{problems}")),
+        spaces: Spaces { observation: ObservationSpace::Pyquaticus, action: ActionSpace::Pyquaticus },
+        control: Control::Direct,
+        teacher: None,
+        critic: CriticInput::Observation,
+        decisions_per_step: 1,
+        steps_max: None,
+        starts: None,
+        learner: None,
+        mates: None,
+        opponents: vec![(1.0, opponent)],
+        rewards: Rewards::default(),
+        discount: 0.99,
+    }
+}
+
+fn steps(c: &mut Criterion) {
+    let mut group = c.benchmark_group("environment");
+    let strategy = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/strategies/strategy_4.toml");
+    let strategy = game::scenario::load_strategy(&strategy).unwrap_or_else(|problems| panic!("{problems}"));
+    let games = [
+        ("calm", "pyquaticus_2v2", Player::Policy),
+        ("sea and sensors", "surveyor_2v2", Player::Policy),
+        ("sea and sensors against strategy 4", "surveyor_2v2", Player::Strategy(Box::new(strategy))),
+    ];
+    for (name, game, opponent) in games {
+        let mut environment =
+            VectorEnvironment::new(setup(game, opponent), GAMES, 1, 1).unwrap_or_else(|e| panic!("{e}"));
+        let (mut stream, rows) = (Stream::new(1, "actions"), environment.rows().0);
+        group.throughput(Throughput::Elements(GAMES as u64)).sample_size(20);
+        group.bench_function(name, |b| {
+            b.iter(|| {
+                let actions: Vec<Action> = (0..rows).map(|_| Action::Discrete(stream.below(17) as usize)).collect();
+                environment.step(&actions).unwrap_or_else(|e| panic!("{e}"));
+            });
+        });
+    }
+    // One step of one decision, then a new game.
+    for (name, game, starts) in [
+        ("new game, calm", "pyquaticus_2v2", None),
+        ("new game, sea and sensors", "surveyor_2v2", None),
+        ("new game, sea and sensors, one of 100 starts", "surveyor_2v2", Some(100)),
+    ] {
+        let setup = Setup { steps_max: Some(1), starts, ..setup(game, Player::Policy) };
+        let mut environment = VectorEnvironment::new(setup, 1, 1, 1).unwrap_or_else(|e| panic!("{e}"));
+        let actions = vec![Action::Discrete(0); environment.rows().0];
+        group.throughput(Throughput::Elements(1));
+        group.bench_function(name, |b| b.iter(|| environment.step(&actions).unwrap_or_else(|e| panic!("{e}"))));
+    }
+    group.finish();
+}
+
+criterion_group!(benches, steps);
+criterion_main!(benches);

@@ -1,0 +1,257 @@
+//! Environments: the same games as everywhere else, whatever the number of threads.
+
+use agent::{Action, ActionSpace, Mind, ObservationSpace, Pilot, Spaces};
+use game::rewards::{Potential, Rewards, Worth};
+use game::stream::Stream;
+use game::training::CriticInput;
+use game::{Order, Picture, TeamId, VehicleId};
+use learn::environment::{Control, Player, Setup, Teacher, VectorEnvironment};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+fn scenarios() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios")
+}
+
+fn strategy(name: &str) -> Box<game::strategy::Strategy> {
+    let path = scenarios().join(format!("strategies/{name}.toml"));
+    Box::new(game::scenario::load_strategy(&path).unwrap_or_else(|problems| panic!("{problems}")))
+}
+
+const SPACES: Spaces = Spaces {
+    observation: ObservationSpace::Squall { mates: 1, enemies: 2, frames: 2 },
+    action: ActionSpace::Pyquaticus,
+};
+
+fn setup(game: &str, opponents: Vec<(f64, Player)>) -> Setup {
+    let scenario = game::scenario::load(&scenarios().join(format!("games/{game}.toml")));
+    let worth = Worth { grab: 1.0, capture: 2.0, tag: 0.5, left_field: -1.0, ..Worth::default() };
+    Setup {
+        scenario: scenario.unwrap_or_else(|problems| panic!("{problems}")),
+        spaces: SPACES,
+        control: Control::Direct,
+        teacher: None,
+        critic: CriticInput::Observation,
+        decisions_per_step: 5,
+        steps_max: None,
+        starts: None,
+        learner: None,
+        mates: None,
+        opponents,
+        rewards: Rewards { boat: worth, potential: Potential { attack: 1.0, untag: 0.5 }, ..Rewards::default() },
+        discount: 0.99,
+    }
+}
+
+/// An action that depends on what is seen.
+fn chosen(observation: &[f32]) -> Action {
+    let sum: u32 = observation.iter().fold(7, |sum, number| sum.wrapping_mul(31).wrapping_add(number.to_bits()));
+    Action::Discrete(sum as usize % 17)
+}
+
+/// What 300 steps of 6 games show.
+fn played(threads: usize) -> (Vec<u32>, Vec<learn::environment::Finished>) {
+    let opponents = vec![(1.0, Player::Policy), (1.0, Player::Strategy(strategy("pav01")))];
+    let setup = Setup { steps_max: Some(120), ..setup("surveyor_2v2", opponents) };
+    let mut environment = VectorEnvironment::new(setup, 6, threads, 11).unwrap_or_else(|error| panic!("{error}"));
+    let size = environment.setup().observation_size();
+    let (mut numbers, mut finished) = (vec![], vec![]);
+    for _ in 0..300 {
+        let actions: Vec<Action> = environment.observations().chunks_exact(size).map(chosen).collect();
+        environment.step(&actions).unwrap_or_else(|error| panic!("{error}"));
+        let shown =
+            environment.observations().iter().chain(environment.rewards()).chain(environment.final_observations());
+        numbers.extend(shown.map(|number| number.to_bits()));
+        numbers.extend(environment.counts().iter().map(|counts| u32::from(*counts)));
+        finished.extend_from_slice(environment.finished());
+    }
+    (numbers, finished)
+}
+
+#[test]
+fn a_critic_is_given_the_truth_that_sensors_do_not_tell() {
+    let opponents = vec![(1.0, Player::Policy)];
+    let setup = Setup { critic: CriticInput::Truth, ..setup("surveyor_2v2", opponents) };
+    let mut environment = VectorEnvironment::new(setup, 2, 1, 3).unwrap_or_else(|error| panic!("{error}"));
+    let (observation, state) = (environment.setup().observation_size(), environment.setup().state_size());
+    for _ in 0..40 {
+        environment.step(&[Action::Discrete(3); 8]).unwrap_or_else(|error| panic!("{error}"));
+    }
+    let mut off_m = 0.0_f64;
+    for (row, (state, observed)) in
+        environment.states().chunks_exact(state).zip(environment.observations().chunks_exact(observation)).enumerate()
+    {
+        assert_eq!(&state[..observation], observed);
+        let contest = environment.contest(row / 4);
+        // The boats of the team that learns come first: that is the second team in every second game, by the seed.
+        let me = VehicleId::at((row + if row / 4 == 0 { 2 } else { 0 }) % 4);
+        let scenario = contest.scenario();
+        let field = &scenario.field;
+        let sign = if scenario.team_of(me).index() == 0 { 1.0 } else { -1.0 };
+        let truth = contest.frame(&mut game::event::EventCursor::default()).vehicles[me.index()].nav;
+        let ahead = sign * (truth.at() - field.middle()).dot(field.along) / (0.5 * field.plan.width_m);
+        assert!((f64::from(state[observation]) - ahead).abs() < 1e-6, "row {row}: {}, not {ahead}", state[observation]);
+        off_m = off_m.max((f64::from(observed[0]) - ahead).abs() * 0.5 * field.plan.width_m);
+    }
+    assert!(off_m > 0.05, "sensors that are off by {off_m} m at most tell the truth");
+}
+
+#[test]
+fn games_are_the_same_bytes_on_any_number_of_threads() {
+    let (numbers, finished) = played(1);
+    assert!(finished.len() >= 12 && finished.iter().all(|one| one.cut_off), "{finished:?}");
+    let sides = |team| finished.iter().any(|one| one.standing.side.learner == TeamId(team));
+    assert!(sides(0) && sides(1) && finished.iter().any(|one| one.standing.side.opponent == 0), "{finished:?}");
+    assert!(finished.iter().any(|one| one.standing.side.opponent == 1));
+    for threads in [2, 3] {
+        assert!(played(threads) == (numbers.clone(), finished.clone()), "{threads} threads");
+    }
+}
+
+/// A mind that does what the test of the environment does.
+struct Scripted {
+    pilot: Pilot,
+    decisions: u32,
+}
+
+impl Mind for Scripted {
+    fn decide(&mut self, picture: &Picture) -> Order {
+        if self.decisions.is_multiple_of(5) {
+            let action = chosen(self.pilot.observe(picture));
+            self.pilot.act(action);
+        }
+        self.decisions += 1;
+        self.pilot.decide(picture)
+    }
+}
+
+#[test]
+fn a_game_is_the_one_that_the_arena_plays() {
+    for control in [Control::Direct, Control::Helm(strategy("teleop"))] {
+        let setup = Setup { control, ..setup("surveyor_2v2", vec![(1.0, Player::Strategy(strategy("strategy_2")))]) };
+        let seed = 4;
+        let mut environment = VectorEnvironment::new(setup.clone(), 1, 1, seed).unwrap();
+        let size = environment.setup().observation_size();
+        for _ in 0..200 {
+            let actions: Vec<Action> = environment.observations().chunks_exact(size).map(chosen).collect();
+            environment.step(&actions).unwrap();
+        }
+        let learner = environment.side(0).learner;
+        let scenario = setup.scenario.of_seed(seed).unwrap();
+        let mind = |vehicle: VehicleId| -> Box<dyn Mind> {
+            if scenario.team_of(vehicle) != learner {
+                return agent::mind_by(&scenario, vehicle, &strategy("strategy_2"));
+            }
+            let pilot = match &setup.control {
+                Control::Direct => Pilot::direct(&scenario, vehicle, SPACES),
+                Control::Helm(strategy) => {
+                    Pilot::helm(&scenario, vehicle, agent::roles::role_in(&scenario, vehicle, strategy), SPACES)
+                }
+            };
+            Box::new(Scripted { pilot, decisions: 0 })
+        };
+        let minds = (0..4).map(|i| mind(VehicleId::at(i))).collect();
+        let watch = |contest: &mut sim::Contest| {
+            // As the environment has been shown the boats after its last step.
+            contest.pictures();
+            contest.decision() < 1000
+        };
+        let outcome = arena::play_watched(&setup.scenario, minds, seed, watch).unwrap();
+        assert_eq!(environment.contest(0).outcome().digest, outcome.digest);
+    }
+}
+
+#[test]
+fn a_teacher_plays_as_its_strategy_does_and_shows_actions_that_ask_for_it() {
+    let teacher = Teacher { strategy: strategy("strategy_2"), options: BTreeMap::new() };
+    let base = setup("surveyor_2v2", vec![(1.0, Player::Policy)]);
+    let setup = Setup { teacher: Some(teacher), ..base };
+    let mut environment = VectorEnvironment::new(setup.clone(), 1, 1, 4).unwrap();
+    let mut taught = vec![];
+    for _ in 0..200 {
+        environment.step(&[Action::Discrete(16); 4]).unwrap();
+        taught.extend(environment.taught(0).iter().flatten().copied());
+    }
+    let scenario = setup.scenario.of_seed(4).unwrap();
+    let mind = |i| agent::mind_by(&scenario, VehicleId::at(i), &strategy("strategy_2"));
+    let watch = |contest: &mut sim::Contest| {
+        // As the environment has been shown the boats after its last step.
+        contest.pictures();
+        contest.decision() < 1000
+    };
+    let outcome = arena::play_watched(&setup.scenario, (0..4).map(mind).collect(), 4, watch).unwrap();
+    assert_eq!(environment.contest(0).outcome().digest, outcome.digest);
+    // Nearly always something is asked for: straight on at full speed more than by chance, and turns of every kind.
+    let times = |action| taught.iter().filter(|one| **one == Action::Discrete(action)).count();
+    let kinds = (0..17).filter(|action| times(*action) > 0).count();
+    assert!(taught.len() > 700 && times(4) > 100 && kinds > 10, "{} of {}, {kinds} kinds", times(4), taught.len());
+}
+
+#[test]
+fn rewards_are_what_events_say_and_potentials_cancel_out() {
+    let opponents = vec![(1.0, Player::Strategy(strategy("pav01")))];
+    let base = Setup { discount: 1.0, ..setup("surveyor_2v2", opponents) };
+    let total = |rewards: Rewards| {
+        let mut environment = VectorEnvironment::new(Setup { rewards, ..base.clone() }, 1, 1, 5).unwrap();
+        let (size, mut stream) = (environment.setup().observation_size(), Stream::new(3, "actions"));
+        let mut sum = [0.0_f64; 2];
+        while environment.finished().is_empty() {
+            let rows = environment.observations().len() / size;
+            let actions: Vec<Action> = (0..rows).map(|_| Action::Discrete(stream.below(17) as usize)).collect();
+            environment.step(&actions).unwrap();
+            sum.iter_mut().zip(environment.rewards()).for_each(|(sum, reward)| *sum += f64::from(*reward));
+        }
+        (sum, environment.finished()[0].standing.score)
+    };
+    // Points of both teams, as the rules of the game count them.
+    let points = Worth { grab: 1.0, capture: 2.0, ..Worth::default() };
+    let minus = Worth { grab: -1.0, capture: -2.0, ..Worth::default() };
+    let (sum, score) = total(Rewards { team: points, enemy: minus, ..Rewards::default() });
+    let ahead = f64::from(score[0]) - f64::from(score[1]);
+    assert!(score[1] > 0 && sum.iter().all(|sum| (sum - ahead).abs() < 1e-4), "{sum:?}, {score:?}");
+    // Undiscounted, a potential adds up to less what it was at first: the same whatever is done.
+    let potential = Potential { attack: 1.0, untag: 0.5 };
+    let (sum, _) = total(Rewards { potential, ..Rewards::default() });
+    let first: Vec<f64> = {
+        let environment = VectorEnvironment::new(base.clone(), 1, 1, 5).unwrap();
+        let contest = environment.contest(0);
+        let team = environment.side(0).learner;
+        let flag = contest.scenario().field.flags[1 - team.index()].home;
+        let boats = contest.last_pictures()[team.index()].own.iter();
+        boats.map(|boat| boat.nav.at().distance(flag) / contest.scenario().field.plan.width_m - 1.0).collect()
+    };
+    for (sum, first) in sum.iter().zip(first) {
+        assert!((sum - first).abs() < 1e-3, "{sum}, {first}");
+    }
+}
+
+#[test]
+fn starts_come_round_again_and_are_those_of_their_seeds() {
+    let of = |starts| {
+        let opponents = vec![(1.0, Player::Policy)];
+        let setup = Setup { starts, steps_max: Some(20), ..setup("surveyor_2v2", opponents) };
+        VectorEnvironment::new(setup, 2, 2, 30).unwrap_or_else(|error| panic!("{error}"))
+    };
+    let (mut new, mut again) = (of(None), of(Some(3)));
+    let size = new.setup().observation_size();
+    let mut seeds = vec![];
+    for step in 0..100 {
+        let same_start = |environment: &VectorEnvironment, game: usize| environment.contest(game).scenario().seed;
+        for game in 0..2 {
+            if same_start(&new, game) == same_start(&again, game) {
+                let of_game = 4 * game * size..4 * (game + 1) * size;
+                assert_eq!(
+                    new.observations()[of_game.clone()],
+                    again.observations()[of_game],
+                    "step {step}, game {game}"
+                );
+            }
+        }
+        for environment in [&mut new, &mut again] {
+            let actions: Vec<Action> = environment.observations().chunks_exact(size).map(chosen).collect();
+            environment.step(&actions).unwrap_or_else(|error| panic!("{error}"));
+        }
+        seeds.extend(again.finished().iter().map(|one| one.standing.seed));
+    }
+    assert_eq!(seeds, [30, 31, 32, 30, 31, 32, 30, 31, 32, 30]);
+}

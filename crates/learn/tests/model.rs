@@ -1,0 +1,139 @@
+//! A trained policy in a strategy is the one that was trained.
+
+use agent::{Action, ActionSpace, HelmMind, Mind, ObservationSpace, Pilot, Spaces};
+use game::policy::{PartialSpec, PolicyModel, PolicySpec};
+use game::scenario::{self, Scenario};
+use game::strategy::{Program, Strategy, Task};
+use game::{Order, Picture, VehicleId};
+use learn::nn::Perceptron;
+use onnx::Network;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+const SPEC: PolicySpec = PolicySpec {
+    observation: ObservationSpace::Squall { mates: 1, enemies: 2, frames: 2 },
+    action: ActionSpace::Pyquaticus,
+    period_s: 0.7,
+};
+
+fn file(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(path)
+}
+
+/// A policy with random weights, large enough that it does not always do the same.
+fn model(spec: PolicySpec) -> PolicyModel {
+    let mut stream = game::stream::Stream::new(8, "test/model");
+    let (inputs, outputs) = (spec.observation.size(1, 2), spec.action.outputs());
+    let network = Perceptron::new(&[inputs, 32, outputs], 3.0, &mut stream);
+    let bytes = network.onnx("logits", BTreeMap::from(spec.metadata())).unwrap_or_else(|error| panic!("{error}"));
+    PolicyModel::read("random.onnx", &bytes, PartialSpec::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn strategy() -> Strategy {
+    scenario::load_strategy(&file("strategies/policy.toml")).unwrap_or_else(|problems| panic!("{problems}"))
+}
+
+fn with_model(mut strategy: Strategy, model: &PolicyModel) -> Strategy {
+    let behaviours = strategy.roles.iter_mut().flat_map(|role| &mut role.behaviours);
+    for behaviour in behaviours {
+        if let Task::Policy(policy) = &mut behaviour.task {
+            policy.model = Some(model.clone());
+        }
+    }
+    strategy
+}
+
+fn program(scenario: &Scenario, strategy: &Strategy, vehicle: VehicleId) -> Program {
+    agent::roles::role_in(scenario, vehicle, strategy).clone()
+}
+
+/// A mind that a trainer would drive with the same network.
+struct Driven {
+    pilot: Pilot,
+    network: Network,
+    decisions: u32,
+}
+
+impl Mind for Driven {
+    fn decide(&mut self, picture: &Picture) -> Order {
+        // Each 0.7 s.
+        if self.decisions.is_multiple_of(7) {
+            self.network.evaluate(self.pilot.observe(picture));
+            self.pilot.act(Action::likeliest(self.network.output(0)));
+        }
+        self.decisions += 1;
+        self.pilot.decide(picture)
+    }
+}
+
+#[test]
+fn a_model_in_a_strategy_plays_the_game_that_it_was_trained_in() {
+    let scenario = scenario::load(&file("games/surveyor_2v2.toml")).unwrap_or_else(|problems| panic!("{problems}"));
+    let (model, strategy) = (model(SPEC), strategy());
+    let loaded = with_model(strategy.clone(), &model);
+    let played = |is_loaded: bool| {
+        let mind = |vehicle: VehicleId| -> Box<dyn Mind> {
+            if is_loaded {
+                return Box::new(HelmMind::new(&scenario, vehicle, &program(&scenario, &loaded, vehicle)));
+            }
+            let spaces = Spaces { observation: SPEC.observation, action: SPEC.action };
+            let pilot = Pilot::helm(&scenario, vehicle, &program(&scenario, &strategy, vehicle), spaces);
+            Box::new(Driven { pilot, network: model.network(), decisions: 0 })
+        };
+        let minds = (0..4).map(|i| mind(VehicleId::at(i))).collect();
+        arena::play_watched(&scenario, minds, 3, |contest| contest.decision() < 2000).unwrap()
+    };
+    let (boat, training) = (played(true), played(false));
+    assert_eq!(boat.digest, training.digest);
+    let still = with_model(strategy.clone(), &model_of_nan());
+    let minds = (0..4).map(|i| agent::mind_by(&scenario, VehicleId::at(i), &still)).collect();
+    let held = arena::play_watched(&scenario, minds, 3, |contest| contest.decision() < 2000).unwrap();
+    assert_ne!(held.digest, boat.digest);
+}
+
+/// A network that gives what is no number: its weights add up beyond single precision.
+fn model_of_nan() -> PolicyModel {
+    let mut stream = game::stream::Stream::new(8, "test/model");
+    let mut network = Perceptron::new(&[SPEC.observation.size(1, 2), 4, 17], 1.0, &mut stream);
+    network.parameters_mut().iter_mut().for_each(|number| *number = 3e38);
+    let bytes = network.onnx("logits", BTreeMap::from(SPEC.metadata())).unwrap_or_else(|error| panic!("{error}"));
+    PolicyModel::read("nan.onnx", &bytes, PartialSpec::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[test]
+fn what_a_policy_cannot_do_its_helm_says_and_safety_is_left() {
+    let scenario = scenario::load(&file("games/surveyor_2v2.toml")).unwrap_or_else(|problems| panic!("{problems}"));
+    let for_one = model(PolicySpec { observation: ObservationSpace::Pyquaticus, ..SPEC });
+    let large = scenario::load(&file("games/fleet_20v20.toml")).unwrap_or_else(|problems| panic!("{problems}"));
+    for (scenario, model, want) in [
+        (&scenario, model_of_nan(), "the model gave a number that is NaN or infinite"),
+        (
+            &large,
+            for_one,
+            "the model takes 45 numbers, and a boat of this game has 333: it is for teams of another size",
+        ),
+    ] {
+        let vehicle = VehicleId::at(0);
+        let (without, with) = (strategy(), with_model(strategy(), &model));
+        let mut mind = agent::mind_by(scenario, vehicle, &with);
+        let mut contest = sim::Contest::new(scenario, 1).unwrap_or_else(|error| panic!("{error}"));
+        contest.pictures();
+        let order = mind.decide(contest.picture_of(vehicle));
+        let safety_alone = agent::mind_by(scenario, vehicle, &without).decide(contest.picture_of(vehicle));
+        assert_eq!(order, safety_alone);
+        let report = mind.report().expect("it has a helm");
+        assert_eq!(report.policies[0].fault.as_deref(), Some(want));
+        assert_eq!(report.policies[0].course_deg, None);
+    }
+}
+
+#[test]
+fn a_model_goes_to_agents_with_the_scenario() {
+    let strategy = with_model(strategy(), &model(SPEC));
+    let text = serde_json::to_string(&strategy).unwrap();
+    let back: Strategy = serde_json::from_str(&text).unwrap();
+    assert_eq!(back, strategy);
+    let damaged = text.replacen("\"onnx\":\"", "\"onnx\":\"AAAA", 1);
+    let error = serde_json::from_str::<Strategy>(&damaged).unwrap_err().to_string();
+    assert!(error.contains("not an ONNX file"), "{error}");
+}

@@ -1,0 +1,172 @@
+//! Environments begun again: games of seeds, one boat of a team, a setup as a person gives it.
+
+use agent::{Action, ActionSpace};
+use game::TeamId;
+use learn::environment::{CriticInput, Games, RawObservation, RawSetup, Rows, SetupError};
+use std::path::{Path, PathBuf};
+
+fn scenario(file: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(file)
+}
+
+fn raw() -> RawSetup {
+    RawSetup {
+        game: scenario("games/pyquaticus_2v2.toml"),
+        observation: RawObservation::Squall { mates: None, enemies: None, frames: 2 },
+        action: ActionSpace::Pyquaticus,
+        helm: None,
+        decision_s: Some(0.5),
+        episode_max_s: Some(5.0),
+        starts: None,
+        team: None,
+        mates: None,
+        opponents: vec![(1.0, Some(scenario("strategies/pav01.toml")))],
+        rewards: Some(scenario("rewards/bold.toml")),
+        discount: 0.99,
+        critic: CriticInput::Observation,
+    }
+}
+
+fn games(raw: &RawSetup, count: usize, seed: u64) -> Games {
+    let setup = raw.check().unwrap_or_else(|error| panic!("{error}"));
+    Games::new(setup, count, 1, seed).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn step(games: &mut Games, action: usize) {
+    let (rows, numbers) = (games.rows().0, games.rows().0 * games.setup().observation_size());
+    let (mut observations, mut final_observations) = (vec![0.0; numbers], vec![0.0; numbers]);
+    let (mut rewards, mut counts) = (vec![0.0; rows], vec![false; rows]);
+    let rows_shown = Rows {
+        observations: &mut observations,
+        final_observations: &mut final_observations,
+        rewards: &mut rewards,
+        counts: &mut counts,
+    };
+    games.step(&vec![Action::Discrete(action); rows], rows_shown).expect("games go on");
+}
+
+/// The observations as they stand, where only games that were not shown yet are written.
+fn shown(games: &mut Games) -> Vec<f32> {
+    let (rows, numbers) = (games.rows().0, games.rows().0 * games.setup().observation_size());
+    let (mut observations, mut rewards, mut counts) = (vec![9.0; numbers], vec![0.0; rows], vec![false; rows]);
+    let final_observations = &mut vec![0.0; numbers];
+    games.show(Rows {
+        observations: &mut observations,
+        final_observations,
+        rewards: &mut rewards,
+        counts: &mut counts,
+    });
+    observations
+}
+
+fn seeds(games: &Games) -> Vec<u64> {
+    (0..games.rows().0 / games.rows().1).map(|game| games.standing(game).seed).collect()
+}
+
+#[test]
+fn seeds_count_up_and_can_be_chosen_anew() {
+    let mut games = games(&raw(), 3, 10);
+    assert_eq!(seeds(&games), [10, 11, 12]);
+    games.restart(None).unwrap();
+    assert_eq!(seeds(&games), [13, 14, 15]);
+    games.restart(Some(4)).unwrap();
+    assert_eq!(seeds(&games), [4, 5, 6]);
+    games.restart_game(1, Some(2)).unwrap();
+    games.restart_game(2, None).unwrap();
+    assert_eq!(seeds(&games), [4, 2, 9]);
+    (0..10).for_each(|_| step(&mut games, 3));
+    assert_eq!(games.finished().iter().map(|one| one.standing.seed).collect::<Vec<_>>(), [4, 2, 9]);
+    assert_eq!(seeds(&games), [7, 5, 12]);
+}
+
+#[test]
+fn a_game_restarted_by_its_seed_is_the_same_again() {
+    let mut played = games(&raw(), 2, 20);
+    (0..14).for_each(|_| step(&mut played, 3));
+    // The second one's second episode, four steps on.
+    let mut again = games(&raw(), 1, 1);
+    again.restart_game(0, Some(23)).unwrap();
+    (0..4).for_each(|_| step(&mut again, 3));
+    assert_eq!(played.standing(1), again.standing(0));
+    assert_eq!(played.contest(1).digest(), again.contest(0).digest());
+}
+
+#[test]
+fn a_game_that_goes_on_is_not_observed_again() {
+    let mut games = games(&raw(), 2, 20);
+    let first = shown(&mut games);
+    games.restart_game(1, Some(21)).unwrap();
+    let again = shown(&mut games);
+    let half = first.len() / 2;
+    assert!(first[half..] == again[half..] && again[..half].iter().all(|number| *number == 9.0));
+}
+
+#[test]
+fn a_seed_beyond_the_starts_is_refused() {
+    let mut games = games(&RawSetup { starts: Some(3), ..raw() }, 1, 5);
+    games.restart_game(0, Some(7)).unwrap();
+    let error = games.restart_game(0, Some(8)).unwrap_err().to_string();
+    assert!(error.starts_with("seed is 8, expected 5 to 7"), "{error}");
+}
+
+#[test]
+fn a_policy_of_one_boat_has_each_boat_by_turns() {
+    let raw = RawSetup { mates: Some(scenario("strategies/strategy_2.toml")), ..raw() };
+    let one = games(&raw, 8, 0);
+    assert_eq!(one.rows(), (8, 1));
+    let boats: Vec<usize> = (0..8).map(|game| one.boats(game)[0].index()).collect();
+    assert_eq!(boats, [0, 2, 1, 3, 0, 2, 1, 3]);
+    let both = games(&RawSetup { opponents: vec![(1.0, None)], ..raw }, 2, 0);
+    assert_eq!((both.rows(), both.boats(1).len()), ((4, 2), 2));
+}
+
+#[test]
+fn a_side_that_is_named_learns() {
+    let games = games(&RawSetup { team: Some("red".to_owned()), ..raw() }, 4, 0);
+    assert!((0..4).all(|game| games.standing(game).side.learner == TeamId(1)));
+}
+
+#[test]
+fn standings_are_what_the_outcome_says() {
+    let mut games = games(&RawSetup { episode_max_s: None, opponents: vec![(1.0, None)], ..raw() }, 1, 3);
+    // Full ahead until all have left the field.
+    (0..300).for_each(|_| step(&mut games, 4));
+    let (standing, outcome) = (games.standing(0), games.contest(0).outcome());
+    assert_eq!(standing.steps, 300);
+    for (place, team) in [standing.side.learner.index(), 1 - standing.side.learner.index()].into_iter().enumerate() {
+        let name = &games.setup().scenario.teams[team].name;
+        assert_eq!(standing.counts[place], outcome.counts.teams[name]);
+        assert_eq!(standing.score[place], outcome.score.teams[name]);
+        assert!(standing.counts[place].out_of_bounds > 0);
+    }
+}
+
+#[test]
+fn what_is_wrong_with_a_setup_is_said() {
+    let nowhere = || Some(scenario("strategies/nowhere.toml"));
+    for (raw, message) in [
+        (RawSetup { decision_s: Some(0.25), ..raw() }, "decision_s is 0.25, expected a multiple of the 0.1 s"),
+        (RawSetup { decision_s: Some(-0.5), ..raw() }, "decision_s is -0.5"),
+        (RawSetup { episode_max_s: Some(f64::NAN), ..raw() }, "episode_max_s is NaN, expected more than 0"),
+        (RawSetup { starts: Some(0), ..raw() }, "starts is 0"),
+        (RawSetup { discount: 1.5, ..raw() }, "discount is 1.5, expected 0 to 1"),
+        (RawSetup { team: Some("green".to_owned()), ..raw() }, "team is \"green\", expected \"blue\" or \"red\""),
+        (RawSetup { opponents: vec![(-1.0, None)], ..raw() }, "an opponent's weight is -1"),
+        (RawSetup { opponents: vec![(1.0, nowhere())], ..raw() }, "nowhere.toml"),
+        (RawSetup { mates: nowhere(), ..raw() }, "nowhere.toml"),
+        (RawSetup { helm: Some(scenario("strategies/pav01.toml")), ..raw() }, "has no behaviour of the kind"),
+        (RawSetup { game: scenario("games/uneven_3v2.toml"), ..raw() }, "the teams have 3 and 2 boats"),
+    ] {
+        let error = raw.check().map(|_| ()).map_err(|error: SetupError| error.to_string());
+        assert!(error.as_ref().is_err_and(|error| error.contains(message)), "{message}: {error:?}");
+    }
+    let observation = RawObservation::Squall { mates: None, enemies: None, frames: 0 };
+    assert!(RawSetup { observation, ..raw() }.check().is_err());
+}
+
+#[test]
+fn room_for_other_boats_is_that_of_the_game() {
+    let setup = raw().check().unwrap();
+    assert_eq!(setup.observation_names().len(), setup.observation_size());
+    assert_eq!((setup.observation_size(), setup.decisions_per_step, setup.steps_max), (2 * 92, 5, Some(10)));
+}

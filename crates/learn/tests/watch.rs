@@ -1,0 +1,137 @@
+//! Games that are seen as they are played: from what they were given they can be played again, to the last bit.
+
+use agent::{Action, ActionSpace};
+use game::event::EventCursor;
+use game::input::Input;
+use game::message::Frame;
+use game::{Outcome, Scenario};
+use learn::environment::{CriticInput, Games, Moment, RawObservation, RawSetup, Rows, Watch};
+use sim::Contest;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
+
+/// A game as it was seen: every frame, with what the game was given before it.
+#[derive(Default)]
+struct Seen {
+    number: u64,
+    scenario: Option<Scenario>,
+    cursor: EventCursor,
+    decisions: Vec<(Vec<Input>, Frame)>,
+    outcome: Option<Outcome>,
+}
+
+impl Seen {
+    fn see(&mut self, contest: &mut Contest, moment: Moment) {
+        contest.keep_inputs();
+        match moment {
+            Moment::Decision => {
+                self.scenario.get_or_insert_with(|| contest.scenario().clone());
+                self.decisions.push((contest.take_inputs(), contest.frame(&mut self.cursor)));
+            }
+            Moment::End => self.outcome = Some(contest.outcome()),
+        }
+    }
+
+    /// Plays it again, and compares.
+    fn check(&self) {
+        let scenario = self.scenario.as_ref().expect("it has begun");
+        let seed = scenario.seed;
+        let mut contest = Contest::new(scenario, seed).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
+        let mut cursor = EventCursor::default();
+        for (inputs, frame) in &self.decisions {
+            inputs.iter().for_each(|input| contest.give(*input));
+            assert_eq!(*frame, contest.frame(&mut cursor), "seed {seed}");
+        }
+        if let Some(outcome) = &self.outcome {
+            assert_eq!(*outcome, contest.outcome(), "seed {seed}");
+        }
+    }
+}
+
+/// Plays so many steps of games of 2 s in wind and waves, and gives the chosen ones as they were seen.
+fn seen(starts: Option<u32>, steps: usize, every: u64, play: impl Fn(&mut Games, usize)) -> Vec<Arc<Mutex<Seen>>> {
+    let scenario = |file: &str| -> PathBuf { Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(file) };
+    let raw = RawSetup {
+        game: scenario("games/surveyor_2v2.toml"),
+        observation: RawObservation::Pyquaticus,
+        action: ActionSpace::Pyquaticus,
+        helm: None,
+        decision_s: Some(0.5),
+        episode_max_s: Some(2.0),
+        starts,
+        team: None,
+        mates: None,
+        opponents: vec![(1.0, Some(scenario("strategies/pav01.toml")))],
+        rewards: None,
+        discount: 0.99,
+        critic: CriticInput::Observation,
+    };
+    let all: Arc<Mutex<Vec<Arc<Mutex<Seen>>>>> = Arc::default();
+    let kept = Arc::clone(&all);
+    let watches = move |number: u64| {
+        number.is_multiple_of(every).then(|| -> Watch {
+            let seen = Arc::new(Mutex::new(Seen { number, ..Seen::default() }));
+            kept.lock().expect("nobody panics").push(Arc::clone(&seen));
+            Box::new(move |contest, moment| seen.lock().expect("nobody panics").see(contest, moment))
+        })
+    };
+    let setup = raw.check().unwrap_or_else(|error| panic!("{error}"));
+    let mut games = Games::watched(setup, 2, 2, 5, Some(Arc::new(watches))).unwrap_or_else(|error| panic!("{error}"));
+    (0..steps).for_each(|step| play(&mut games, step));
+    drop(games);
+    std::mem::take(&mut *all.lock().expect("nobody panics"))
+}
+
+fn step(games: &mut Games, step: usize) {
+    let (rows, numbers) = (games.rows().0, games.rows().0 * games.setup().observation_size());
+    let (mut observations, mut final_observations) = (vec![0.0; numbers], vec![0.0; numbers]);
+    let (mut rewards, mut counts) = (vec![0.0; rows], vec![false; rows]);
+    let shown = Rows {
+        observations: &mut observations,
+        final_observations: &mut final_observations,
+        rewards: &mut rewards,
+        counts: &mut counts,
+    };
+    let actions: Vec<Action> = (0..rows).map(|row| Action::Discrete((3 * step + row) % 17)).collect();
+    games.step(&actions, shown).expect("games go on");
+}
+
+#[test]
+fn games_are_seen_from_their_first_moment_to_their_end() {
+    for starts in [None, Some(3)] {
+        let games = seen(starts, 9, 1, step);
+        assert_eq!(games.len(), 6, "two whole games after each other in two places, and two that have begun");
+        for game in &games {
+            let game = game.lock().expect("nobody panics");
+            game.check();
+            let is_whole = game.number < 4;
+            assert_eq!((game.outcome.is_some(), game.decisions.len()), (is_whole, if is_whole { 21 } else { 6 }));
+        }
+    }
+}
+
+#[test]
+fn only_the_chosen_games_are_seen() {
+    let numbers = |games: &[Arc<Mutex<Seen>>]| -> Vec<u64> {
+        games.iter().map(|game| game.lock().expect("nobody panics").number).collect()
+    };
+    assert_eq!(numbers(&seen(None, 12, 4, step)), [0, 4]);
+}
+
+#[test]
+fn a_game_that_is_given_up_is_seen_up_to_there_and_nothing_after_the_watches_end() {
+    let games = seen(None, 6, 1, |games, i| {
+        step(games, i);
+        match i {
+            1 => games.restart(Some(40)).expect("games begin"),
+            3 => games.end_watches(),
+            _ => {}
+        }
+    });
+    assert_eq!(games.len(), 4);
+    for game in &games {
+        let game = game.lock().expect("nobody panics");
+        game.check();
+        assert_eq!((game.outcome.is_none(), game.decisions.len()), (true, 11), "two steps of five decisions");
+    }
+}

@@ -1,0 +1,376 @@
+//! One page's view of a running game.
+
+use super::live_state::{HelmMessage, Latest, LiveGame, LiveState};
+use super::operating::Operated;
+use super::{Command, SharedState, operating, stopping};
+use crate::page::message::{EventMessage, Mode, PageMessage, seconds};
+use crate::page::request::PageRequest;
+use crate::page::view::{Access, Budget, ESTIMATE_INTERVAL, MODES_INTERVAL, Outgoing, SEND_INTERVAL, Viewer};
+use axum::body::Bytes;
+use game::external::{GatewayStatus, OperatorCommand};
+use game::message::Control;
+use game::picture::OwnBoat;
+use game::{SimTime, VehicleId};
+use std::collections::{BTreeMap, VecDeque};
+use std::sync::Arc;
+use std::time::Instant;
+
+/// One page's view of a running game.
+pub(super) struct PageViewer {
+    shared: Arc<SharedState>,
+    access: Access,
+    page: u64,
+    /// The selected boat, and whether utilities are wanted: also in the next game, if it has that boat.
+    selection: Option<(String, bool)>,
+    /// Whether the modes of all boats are wanted.
+    wants_modes: bool,
+    sent: Sent,
+}
+
+/// What was sent to a page about one game.
+#[derive(Default)]
+struct Sent {
+    /// Which game it is.
+    generation: u64,
+    events: super::event_log::EventCursor,
+    /// Changes of the run, and when.
+    run: Option<(u64, Instant)>,
+    /// Which page steers which boat.
+    steering_locks: BTreeMap<VehicleId, &'static str>,
+    statuses: Latest<GatewayStatus>,
+    helm: Option<Arc<HelmMessage>>,
+    estimate: Option<(Arc<(OwnBoat, SimTime)>, Instant)>,
+    /// Which news of modes, and when.
+    modes: Option<(u64, Instant)>,
+    /// The newest frame; 0 is none.
+    frame: u64,
+    /// The frames of the past that find before it, once there is one.
+    past: Option<VecDeque<Bytes>>,
+}
+
+impl PageViewer {
+    pub(super) fn new(shared: Arc<SharedState>, access: Access, page: u64) -> PageViewer {
+        PageViewer { shared, access, page, selection: None, wants_modes: false, sent: Sent::default() }
+    }
+
+    /// Passes on a command to this game. The state stays locked meanwhile, so that the next game does not get it.
+    fn control(&self, state: &LiveState, control: Control) -> Result<(), String> {
+        if control.stops() {
+            return stopping::stop(&self.shared, state, control);
+        }
+        let game = state.on()?;
+        if control == Control::Release && game.has_real_boats() && self.access < Access::Operate {
+            return Err("real boats are released by who opens the page with the operator's token".to_owned());
+        }
+        if control == Control::Release {
+            self.shared.stops.cancel(None);
+        }
+        self.send(Command::Control(control))
+    }
+
+    fn send(&self, command: Command) -> Result<(), String> {
+        if self.shared.commands.offer(command) {
+            return Ok(());
+        }
+        Err("the network does not keep up: ask again".to_owned())
+    }
+
+    fn select(&mut self, vehicle: Option<&str>, functions: bool) -> Result<(), String> {
+        self.selection = vehicle.map(|name| (name.to_owned(), functions));
+        (self.sent.helm, self.sent.estimate) = (None, None);
+        let mut state = self.shared.state.lock();
+        state.selected.remove(&self.page);
+        state.select(self.page, self.selection.as_ref())
+    }
+
+    fn list(&mut self, wanted: bool) {
+        (self.wants_modes, self.sent.modes) = (wanted, None);
+        let mut state = self.shared.state.lock();
+        if wanted {
+            state.listed.insert(self.page)
+        } else {
+            state.listed.remove(&self.page)
+        };
+    }
+
+    fn set_speed(&self, factor: Option<f64>) -> Result<(), String> {
+        let state = self.shared.state.lock();
+        let game = state.on()?;
+        if game.has_real_boats() {
+            return Err("a game with real boats keeps its pace".to_owned());
+        }
+        match factor {
+            None if !game.is_lockstep() => {
+                Err("only a game in lockstep goes as fast as can be: this one goes by the clock".to_owned())
+            }
+            Some(factor) if !Control::SPEEDS.contains(&factor) => {
+                let (min, max) = (Control::SPEEDS.start(), Control::SPEEDS.end());
+                Err(format!("the speed is {factor}, expected {min} to {max}"))
+            }
+            _ => self.control(&state, Control::Speed(factor)),
+        }
+    }
+
+    fn drive(&self, name: &str, course_deg: f64, speed_m_s: f64, now: Instant) -> Result<(), String> {
+        let mut state = self.shared.state.lock();
+        let game = state.on()?;
+        let scenario = game.scenario();
+        let vehicle = scenario.vehicle_named(name).map_err(|e| e.to_string())?;
+        if !scenario.strategy_of(vehicle).is_steered() {
+            return Err(format!("the strategy of {name} heeds no policy: it cannot be steered from here"));
+        }
+        if !course_deg.is_finite() || !speed_m_s.is_finite() {
+            return Err("course and speed must be numbers".to_owned());
+        }
+        let speed_m_s = speed_m_s.clamp(0.0, scenario.boat_of(vehicle).speed_max_m_s());
+        let course_rad = course_deg.rem_euclid(360.0).to_radians();
+        let had = state.steering_locks.holder(vehicle);
+        if !state.steering_locks.acquire(vehicle, self.page, now) {
+            return Err(format!("somebody else steers {name}"));
+        }
+        let is_news = state.steering_locks.holder(vehicle) != had;
+        let is_on_its_way = !state.steering.is_empty();
+        state.steering.insert(vehicle, (course_rad, speed_m_s));
+        drop(state);
+        if is_news {
+            self.shared.news.send_replace(());
+        }
+        if is_on_its_way { Ok(()) } else { self.send(Command::Steer) }
+    }
+
+    fn operate(&self, name: &str, command: OperatorCommand) -> Result<(), String> {
+        operating::operate(&self.shared, &mut self.shared.state.lock(), self.page, name, command)
+    }
+
+    fn release(&self, name: &str) -> Result<(), String> {
+        let mut state = self.shared.state.lock();
+        let vehicle = state.on()?.scenario().vehicle_named(name).map_err(|e| e.to_string())?;
+        let had = state.steering_locks.release(vehicle, self.page);
+        drop(state);
+        if had {
+            self.shared.news.send_replace(());
+        }
+        Ok(())
+    }
+}
+
+impl Viewer for PageViewer {
+    fn mode(&self) -> Mode {
+        Mode::Live
+    }
+
+    fn ask(&mut self, ask: &PageRequest, now: Instant) -> Result<(), String> {
+        match ask {
+            PageRequest::Ack => Ok(()),
+            PageRequest::Select { vehicle, functions } => self.select(vehicle.as_deref(), *functions),
+            PageRequest::Modes { wanted } => {
+                self.list(*wanted);
+                Ok(())
+            }
+            PageRequest::Speed { factor } | PageRequest::Control { what: Control::Speed(factor) } => {
+                self.set_speed(*factor)
+            }
+            PageRequest::Control { what } => self.control(&self.shared.state.lock(), *what),
+            PageRequest::Drive { vehicle, course_deg, speed_m_s } => self.drive(vehicle, *course_deg, *speed_m_s, now),
+            PageRequest::LetGo { vehicle } => self.release(vehicle),
+            PageRequest::Operate { vehicle, command } => self.operate(vehicle, command.clone()),
+            PageRequest::Mission { vehicle, lines } => {
+                let mission = (self.shared.read_mission)(lines)?;
+                self.operate(vehicle, OperatorCommand::Mission(mission))
+            }
+            PageRequest::Step { .. } | PageRequest::Seek { .. } => {
+                Err("a game that is being played cannot be wound".to_owned())
+            }
+            PageRequest::Curves { .. } => Err("curves are of recordings: this game is still being played".to_owned()),
+        }
+    }
+
+    fn next_message(&mut self, now: Instant, budget: Budget) -> Option<Outgoing> {
+        let mut state = self.shared.state.lock();
+        let game = state.game.clone()?;
+        if self.sent.generation != state.generation {
+            self.sent = Sent { generation: state.generation, ..Sent::default() };
+            // The boat may not be in this game; then the page selects another.
+            drop(state.select(self.page, self.selection.as_ref()));
+            if self.wants_modes {
+                state.listed.insert(self.page);
+            }
+            let hello = PageMessage::hello(
+                &game.info.version,
+                Mode::Live,
+                self.access,
+                (game.name.as_str(), None),
+                &game.chart,
+            );
+            return Some(Outgoing::Text(hello.json()));
+        }
+        let reply = state.operating.reply(self.page);
+        let sent = &mut self.sent;
+        let text = reply
+            .map(|Operated { vehicle, command, refused }| {
+                let (vehicle, refused) = (game.name_of(vehicle), refused.as_deref());
+                PageMessage::Operated { vehicle, command, refused }.json()
+            })
+            .or_else(|| sent.next_events(&state))
+            .or_else(|| sent.next_run(&state, &game, now))
+            .or_else(|| sent.next_steering(&state, &game, self.page))
+            .or_else(|| sent.next_status(&state, &game))
+            .or_else(|| if budget == Budget::All { sent.next_selected(&state, &game, self.page, now) } else { None })
+            .or_else(|| if budget == Budget::All && self.wants_modes { sent.next_modes(&state, now) } else { None });
+        match text {
+            Some(text) => Some(Outgoing::Text(text)),
+            None if budget >= Budget::Frames => sent.next_frame(&state),
+            None => None,
+        }
+    }
+
+    fn due(&self, now: Instant) -> Option<Instant> {
+        let run = self.sent.run.map(|(_, at)| at + SEND_INTERVAL);
+        let estimate = self.sent.estimate.as_ref().map(|(_, at)| *at + ESTIMATE_INTERVAL).filter(|at| *at > now);
+        let modes =
+            self.sent.modes.filter(|_| self.wants_modes).map(|(_, at)| at + MODES_INTERVAL).filter(|at| *at > now);
+        run.into_iter().chain(estimate).chain(modes).min()
+    }
+}
+
+impl Drop for PageViewer {
+    fn drop(&mut self) {
+        let mut state = self.shared.state.lock();
+        state.selected.remove(&self.page);
+        state.listed.remove(&self.page);
+        state.steering_locks.release_all(self.page);
+        state.operating.forget(self.page);
+        drop(state);
+        self.shared.news.send_replace(());
+    }
+}
+
+impl Sent {
+    fn next_events(&mut self, state: &LiveState) -> Option<String> {
+        let (reset, unread, cursor) = state.event_log.unread(self.events)?;
+        self.events = cursor;
+        Some(PageMessage::Events { reset, events: unread.map(EventMessage::new).collect() }.json())
+    }
+
+    fn next_run(&mut self, state: &LiveState, game: &LiveGame, now: Instant) -> Option<String> {
+        let is_sent =
+            |(news, at): (u64, Instant)| news == state.run_news && now.saturating_duration_since(at) < SEND_INTERVAL;
+        if self.run.is_some_and(is_sent) {
+            return None;
+        }
+        self.run = Some((state.run_news, now));
+        let run = state.run.clone().unwrap_or_default();
+        let is_sent = state.run.is_some();
+        let tell = PageMessage::State {
+            phase: state.phase(now),
+            now_s: if is_sent { run.now_s } else { seconds(state.frames.stamp.valid_ns) },
+            pace: if is_sent { &run.pace } else { &game.info.pace },
+            speed: run.speed,
+            rate: run.rate,
+            minds: &run.minds,
+            gateways: &run.gateways,
+            refused: run.refused,
+            overruns: run.overruns,
+            recording: run.recording.as_ref(),
+            frames_hz: state.frames.rate_hz(now),
+            can_speed: !game.has_real_boats(),
+        };
+        Some(tell.json())
+    }
+
+    fn next_steering(&mut self, state: &LiveState, game: &LiveGame, page: u64) -> Option<String> {
+        let by =
+            |vehicle| state.steering_locks.holder(vehicle).map(|holder| if holder == page { "you" } else { "other" });
+        let mut known = self.steering_locks.keys().copied().chain(state.steering_locks.held());
+        let vehicle = known.find(|vehicle| self.steering_locks.get(vehicle).copied() != by(*vehicle))?;
+        match by(vehicle) {
+            Some(who) => self.steering_locks.insert(vehicle, who),
+            None => self.steering_locks.remove(&vehicle),
+        };
+        Some(PageMessage::Drive { vehicle: game.name_of(vehicle), by: by(vehicle) }.json())
+    }
+
+    fn next_status(&mut self, state: &LiveState, game: &LiveGame) -> Option<String> {
+        let is_sent = |vehicle, status| self.statuses.get(vehicle).is_some_and(|sent| Arc::ptr_eq(sent, status));
+        let (vehicle, status) = state.statuses.iter().find(|(vehicle, status)| !is_sent(vehicle, status))?;
+        self.statuses.insert(*vehicle, Arc::clone(status));
+        Some(PageMessage::Status { vehicle: game.name_of(*vehicle), status }.json())
+    }
+
+    /// What is known of the boat that the page has selected.
+    fn next_selected(&mut self, state: &LiveState, game: &LiveGame, page: u64, now: Instant) -> Option<String> {
+        let (vehicle, functions) = *state.selected.get(&page)?;
+        let is_sent = |helm: &Arc<HelmMessage>| self.helm.as_ref().is_some_and(|sent| Arc::ptr_eq(sent, helm));
+        if let Some(helm) = state.helms.get(&vehicle).filter(|helm| !is_sent(helm)) {
+            let text = if functions { helm.full.as_ref() } else { Some(&helm.light) };
+            if let Some(text) = text {
+                self.helm = Some(Arc::clone(helm));
+                return Some(text.clone());
+            }
+        }
+        let estimate = state.estimates.get(&vehicle)?;
+        let is_sent = |(sent, at): &(Arc<_>, Instant)| {
+            Arc::ptr_eq(sent, estimate) || now.saturating_duration_since(*at) < ESTIMATE_INTERVAL
+        };
+        if self.estimate.as_ref().is_some_and(is_sent) {
+            return None;
+        }
+        self.estimate = Some((Arc::clone(estimate), now));
+        let (boat, at) = &**estimate;
+        Some(PageMessage::estimate(game.name_of(vehicle), boat, *at).json())
+    }
+
+    /// The modes of all boats, if any has changed.
+    fn next_modes(&mut self, state: &LiveState, now: Instant) -> Option<String> {
+        let is_sent =
+            |(news, at): (u64, Instant)| news == state.modes_news || now.saturating_duration_since(at) < MODES_INTERVAL;
+        if state.modes.is_empty() || self.modes.is_some_and(is_sent) {
+            return None;
+        }
+        self.modes = Some((state.modes_news, now));
+        Some(PageMessage::Modes { at_s: state.modes_at_s, modes: &state.modes }.json())
+    }
+
+    /// The newest frame, before the first of all those of the past.
+    fn next_frame(&mut self, state: &LiveState) -> Option<Outgoing> {
+        if state.frames.count == self.frame {
+            return None;
+        }
+        if let Some(past) = self.past.get_or_insert_with(|| state.frames.past()).pop_front() {
+            return Some(Outgoing::Past(past));
+        }
+        self.frame = state.frames.count;
+        Some(Outgoing::Now(state.frames.newest()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bus::{clock, inbox};
+    use game::message::{Frame, GameInfo};
+    use game::topic::GameName;
+    use game::water::Water;
+    use std::path::Path;
+
+    #[test]
+    fn what_is_told_of_the_selected_boat_waits_until_there_is_room() {
+        let shared = Arc::new(SharedState::new(inbox(1).0, Box::new(|_| ()), |_| Err(String::new())).unwrap());
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
+        let (scenario, now) = (game::scenario::load(&file).unwrap(), clock::now());
+        let info = GameInfo { version: String::new(), pace: "lockstep".to_owned(), scenario };
+        let name = GameName::new("pond").unwrap();
+        shared.state.lock().begin(Arc::new(LiveGame::new(name, info, &Water::default())));
+        let mut viewer = PageViewer::new(Arc::clone(&shared), Access::Watch, 1);
+        let mut say = |budget| std::iter::from_fn(|| viewer.next_message(now, budget)).collect::<Vec<Outgoing>>();
+        say(Budget::None);
+        shared.state.lock().select(1, Some(&("red_one".to_owned(), false))).unwrap();
+        let light = "what it thinks".to_owned();
+        let helm = HelmMessage { light: light.clone(), full: None };
+        shared.state.lock().helms.insert(VehicleId(2), Arc::new(helm));
+        shared.state.lock().frames.take(&Frame::default(), &[], now);
+        assert_eq!(say(Budget::None), []);
+        assert_eq!(say(Budget::Frames), [Outgoing::now(&[])]);
+        assert_eq!(say(Budget::All), [Outgoing::Text(light)]);
+    }
+}

@@ -1,0 +1,218 @@
+//! A thread that works out for replays what is not in a frame: helm reports, modes, curves. That may take a while.
+
+use super::curves::Plotter;
+use crate::page::message::{PageMessage, seconds};
+use crate::page::rose::{HelmAnswer, helm_text};
+use crate::page::view::Changes;
+use bus::Watched;
+use game::{Scenario, SimTime, VehicleId};
+use std::collections::BTreeMap;
+use std::ops::Bound;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// Recomputes helm reports of a recorded game. That may take a while.
+pub trait Helms: Send {
+    /// What a boat's helm thought at a decision, with utilities or without.
+    fn report(&mut self, vehicle: VehicleId, decision: u64, functions: bool) -> HelmAnswer;
+
+    /// By vehicle, the mode its helm was in at a decision; none where there is no helm or no mode.
+    fn modes(&mut self, decision: u64) -> Vec<Option<String>>;
+}
+
+/// What is asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Query {
+    /// The report of a helm.
+    Helm(HelmRequest),
+    /// The modes of all boats at a decision, which was at this time.
+    Modes(u64, SimTime),
+    /// Curves of a boat, and its range to another.
+    Curves(Option<VehicleId>, Option<VehicleId>),
+}
+
+/// Whose helm is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct HelmRequest {
+    /// Whose helm.
+    pub(super) vehicle: VehicleId,
+    /// At which decision.
+    pub(super) decision: u64,
+    /// Whether with utilities.
+    pub(super) functions: bool,
+}
+
+/// A viewer, and which kind of query: of each kind it has one at most.
+type Asker = (u64, u8);
+
+impl Query {
+    fn kind(&self) -> u8 {
+        match self {
+            Query::Helm(_) => 0,
+            Query::Modes(..) => 1,
+            Query::Curves(..) => 2,
+        }
+    }
+}
+
+/// Those who wait.
+#[derive(Default)]
+struct Queue {
+    requests: BTreeMap<Asker, Query>,
+    answers: BTreeMap<Asker, (Query, String)>,
+    /// Whose answer is worked on, unless they have left.
+    current: Option<Asker>,
+    /// Who was served last: all get their turn.
+    last: Asker,
+    is_closed: bool,
+}
+
+/// What answers.
+pub(super) struct Sources {
+    pub(super) scenario: Scenario,
+    /// Without helms nobody knows what they thought.
+    pub(super) helms: Option<Box<dyn Helms>>,
+    pub(super) plotter: Plotter,
+}
+
+/// The thread.
+pub(super) struct QueryThread(Arc<Watched<Queue>>);
+
+impl QueryThread {
+    /// Opens it.
+    pub(super) fn open(sources: Sources, news: Changes) -> QueryThread {
+        let counter = Arc::new(Watched::<Queue>::default());
+        let server = Arc::clone(&counter);
+        let serve = move || serve(&server, sources, &news);
+        // Without a thread nobody answers; pages see that.
+        drop(std::thread::Builder::new().name("page-queries".to_owned()).spawn(serve));
+        QueryThread(counter)
+    }
+
+    /// A viewer asks this now, and nothing else of this kind any more.
+    pub(super) fn request(&self, viewer: u64, query: Query) {
+        self.0.visit(|queue| queue.requests.insert((viewer, query.kind()), query));
+    }
+
+    /// The newest report of a helm for a viewer, as it goes to the page.
+    pub(super) fn take_helm(&self, viewer: u64) -> Option<(HelmRequest, String)> {
+        match self.0.visit(|queue| queue.answers.remove(&(viewer, 0)))? {
+            (Query::Helm(request), text) => Some((request, text)),
+            _ => None,
+        }
+    }
+
+    /// Another answer to a viewer, as it goes to the page.
+    pub(super) fn take_other(&self, viewer: u64) -> Option<String> {
+        self.0.visit(|queue| (1..=2).find_map(|kind| queue.answers.remove(&(viewer, kind)))).map(|(_, text)| text)
+    }
+
+    /// A viewer goes.
+    pub(super) fn remove(&self, viewer: u64) {
+        self.0.visit(|queue| {
+            queue.requests.retain(|(of, _), _| *of != viewer);
+            queue.answers.retain(|(of, _), _| *of != viewer);
+            queue.current.take_if(|(of, _)| *of == viewer);
+        });
+    }
+}
+
+impl Drop for QueryThread {
+    fn drop(&mut self) {
+        // The thread may be at work for a while; it ends by itself.
+        self.0.visit(|queue| queue.is_closed = true);
+    }
+}
+
+/// Answers one query after the other until the view is closed.
+fn serve(shared: &Watched<Queue>, mut sources: Sources, news: &Changes) {
+    const ROUND: Duration = Duration::from_secs(60);
+    loop {
+        shared.wait(ROUND, |queue| queue.is_closed || !queue.requests.is_empty());
+        if shared.visit(|queue| queue.is_closed) {
+            return;
+        }
+        let Some(query) = shared.visit(Queue::next) else { continue };
+        let text = sources.answer(query);
+        // Nobody takes it if they have left meanwhile.
+        shared.visit(|queue| queue.current.take().map(|asker| queue.answers.insert(asker, (query, text))));
+        news.send_replace(());
+    }
+}
+
+impl Sources {
+    fn answer(&mut self, query: Query) -> String {
+        match query {
+            Query::Helm(HelmRequest { vehicle, decision, functions }) => {
+                let answer = match &mut self.helms {
+                    Some(helms) => helms.report(vehicle, decision, functions),
+                    None => {
+                        HelmAnswer { reason: Some("the recording does not tell".to_owned()), ..HelmAnswer::default() }
+                    }
+                };
+                helm_text(&self.scenario, vehicle, functions, answer)
+            }
+            Query::Modes(decision, at) => {
+                let modes = self.helms.as_mut().map(|helms| helms.modes(decision)).unwrap_or_default();
+                PageMessage::Modes { at_s: seconds(at), modes: &modes }.json()
+            }
+            Query::Curves(vehicle, other) => self.plotter.curves(vehicle, other),
+        }
+    }
+}
+
+impl Queue {
+    /// The next request in turn.
+    fn next(&mut self) -> Option<Query> {
+        let later = (Bound::Excluded(self.last), Bound::Unbounded);
+        let after = self.requests.range(later).next().or_else(|| self.requests.iter().next());
+        let asker = *after?.0;
+        (self.last, self.current) = (asker, Some(asker));
+        self.requests.remove(&asker)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+    use std::sync::mpsc::{Receiver, Sender, channel};
+
+    /// Helms that signal when they begin, and work until they may go on.
+    struct SlowHelms(Sender<()>, Receiver<()>);
+
+    impl Helms for SlowHelms {
+        fn report(&mut self, _: VehicleId, _: u64, _: bool) -> HelmAnswer {
+            self.0.send(()).expect("the test listens");
+            self.1.recv().expect("the test goes on");
+            HelmAnswer::default()
+        }
+
+        fn modes(&mut self, _: u64) -> Vec<Option<String>> {
+            vec![]
+        }
+    }
+
+    #[test]
+    fn nothing_is_kept_for_a_reader_who_left_while_the_answer_was_worked_on() {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
+        let scenario = game::scenario::load(&file).unwrap();
+        let ((began, begins), (go, goes)) = (channel(), channel());
+        let helms: Option<Box<dyn Helms>> = Some(Box::new(SlowHelms(began, goes)));
+        let thread = QueryThread::open(Sources { scenario, helms, plotter: Plotter::default() }, Changes::default());
+        let request = HelmRequest { vehicle: VehicleId::at(0), decision: 1, functions: false };
+        for (viewer, leaves) in [(1, true), (2, false), (3, false)] {
+            thread.request(viewer, Query::Helm(request));
+            begins.recv().unwrap();
+            if leaves {
+                thread.remove(viewer);
+            }
+            go.send(()).unwrap();
+        }
+        // The third is at work only after the second was handed out.
+        let kept: Vec<u64> = thread
+            .0
+            .visit(|queue| queue.answers.keys().map(|(viewer, _)| *viewer).filter(|viewer| *viewer < 3).collect());
+        assert_eq!(kept, [2]);
+    }
+}
