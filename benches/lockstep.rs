@@ -123,18 +123,18 @@ fn squall(case: &Case, options: &[&str]) -> f64 {
 
 /// The bytes of one picture and of one process's orders in such a game.
 fn sizes(case: &Case) -> (usize, usize) {
-    use game::codec::encode;
-    use game::message::{Orders, VehicleOrder};
-    use game::{Order, VehicleId};
+    use messages::{Order, Orders, VehicleOrder};
+    use primitives::VehicleId;
+    use primitives::codec::encode;
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
-    let mut scenario = game::scenario::load(&root.join("games/swarm_20v20.toml")).expect("a game");
+    let mut scenario = scenario::load(&root.join("games/swarm_20v20.toml")).expect("a game");
     let spare = scenario.vehicles.clone();
     let own = spare.iter().filter(|v| v.team.0 == 0).cycle().take(case.vehicles / 2).cloned();
     let others = spare.iter().filter(|v| v.team.0 == 1).cycle().take(case.vehicles / 2).cloned();
     scenario.vehicles = own.chain(others).collect();
     for (i, vehicle) in scenario.vehicles.iter_mut().enumerate() {
-        let at = game::Ned { north: i as f64 * 8.0, east: 0.0 };
-        vehicle.start_position = game::scenario::StartPosition::At(game::Pose { at, psi_rad: 0.0 });
+        let at = primitives::Ned { north: i as f64 * 8.0, east: 0.0 };
+        vehicle.start_position = scenario::StartPosition::At(primitives::Pose { at, psi_rad: 0.0 });
     }
     let mut contest = sim::Contest::new(&scenario, 1).expect("start_positions were given");
     let picture = encode(&contest.pictures()[0]).len();

@@ -1,8 +1,8 @@
 //! A game from both sides: played as it is and with the teams' strategies exchanged, and added up.
 
 use anyhow::{Result, bail};
-use game::Scenario;
-use game::id::TeamId;
+use primitives::id::TeamId;
+use scenario::Scenario;
 use sim::Report;
 
 /// The teams of a game that is played from both sides.

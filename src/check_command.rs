@@ -2,7 +2,7 @@
 
 use crate::{explain, screen, style};
 use anyhow::{Result, anyhow, bail};
-use game::scenario::{Kind, check_file, load, schema};
+use scenario::{Kind, check_file, load, schema};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 

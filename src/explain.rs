@@ -3,8 +3,8 @@
 use crate::style;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use anyhow::Error;
-use game::printable;
-use game::scenario::{Problem, Problems};
+use primitives::printable;
+use scenario::{Problem, Problems};
 
 /// Columns of a line that is shown.
 const COLUMNS: usize = 100;

@@ -3,8 +3,7 @@
 use crate::output_file;
 use crate::scenario_files;
 use anyhow::{Context, Result, bail};
-use game::Scenario;
-use game::scenario::{Files, Kind, Overrides, Setting};
+use scenario::{Files, Kind, Overrides, Scenario, Setting};
 use sim::Report;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -62,7 +61,7 @@ impl GameArgs {
 
     /// The same, read from these files.
     pub(crate) fn load_from(&self, files: &Arc<Files>) -> Result<Scenario> {
-        game::scenario::load_with_files(&self.scenario, &self.overrides()?, files)
+        scenario::load_with_files(&self.scenario, &self.overrides()?, files)
             .with_context(|| format!("cannot play {}", self.scenario.display()))
     }
 

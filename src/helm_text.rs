@@ -1,7 +1,7 @@
 //! A helm report as text: a page, or one line.
 
-use game::Scenario;
-use game::helm::{FunctionReport, HelmReport, PolicyReport, RunState};
+use messages::helm::{FunctionReport, HelmReport, PolicyReport, RunState};
+use scenario::Scenario;
 
 /// So many actions of a policy are listed, the likeliest ones.
 const ACTIONS: usize = 4;

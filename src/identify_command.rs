@@ -6,7 +6,7 @@ use crate::water_args::{self, WaterArgs, within};
 use crate::{output_file, screen};
 use anyhow::{Context, Result, bail};
 use arena::identify::{self, Fit, Log, Setting, Step};
-use game::SimTime;
+use primitives::SimTime;
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -70,7 +70,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     screen::print(&table(&boat.name, &named, &fit));
     let text = identify::written(&fit, &base_of(&out, &path), &named);
     output_file::write(&out, "the boat", text)?;
-    game::scenario::load_boat(&out).with_context(|| format!("{} is written, but no sound boat", out.display()))?;
+    scenario::load_boat(&out).with_context(|| format!("{} is written, but no sound boat", out.display()))?;
     screen::print(&format!("boat in {}\n", out.display()));
     Ok(ExitCode::SUCCESS)
 }

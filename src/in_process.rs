@@ -2,8 +2,8 @@
 
 use crate::clock;
 use anyhow::{Context, Result};
-use game::Scenario;
-use game::event::EventCursor;
+use rules::event::EventCursor;
+use scenario::Scenario;
 use sim::{Contest, GameRecorder, Report, Run};
 use std::path::Path;
 use std::sync::Arc;

@@ -6,8 +6,8 @@ use crate::water_args::within;
 use crate::{output_file, recording_file, screen};
 use analysis::{Comparison, GameSeries, Summary};
 use anyhow::{Context, Result};
-use game::Scenario;
 use recording::{Bag, Damaged, Kind, Recording};
+use scenario::Scenario;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 

@@ -1,12 +1,13 @@
 //! Helm reports of a recorded game: minds are shown the recorded pictures again, and decide the same.
 
 use agent::{Mind, MindRunner, mind_of};
-use game::helm::HelmReport;
-use game::input::{Input, Inputs};
-use game::message::PolicyProposal;
-use game::picture::Picture;
-use game::{Order, Scenario, SimTime, TeamId, VehicleId};
+use messages::helm::HelmReport;
+use messages::input::{Input, Inputs};
+use messages::picture::Picture;
+use messages::{Order, PolicyProposal};
+use primitives::{SimTime, TeamId, VehicleId};
 use recording::{INPUTS, Recording, picture};
+use scenario::Scenario;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 

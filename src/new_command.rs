@@ -2,7 +2,7 @@
 
 use crate::{output_file, scenario_files, screen};
 use anyhow::{Result, anyhow, bail};
-use game::scenario::{Kind, did_you_mean};
+use scenario::{Kind, did_you_mean};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -103,7 +103,7 @@ pub(crate) fn files() -> ExitCode {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use game::scenario::check_file;
+    use scenario::check_file;
 
     #[test]
     fn every_template_is_a_good_file_with_nothing_else_on_the_disk() {

@@ -3,11 +3,11 @@
 use crate::minds::Minds;
 use crate::{helm_text, recording_file, screen};
 use anyhow::{Context, Result, bail};
-use game::action::{self, ActionSpace};
-use game::input_file;
-use game::observation::ObservationSpace;
-use game::policy::{self, PartialSpec, PolicyModel, PolicySpec};
 use onnx::Network;
+use primitives::input_file;
+use scenario::action::{self, ActionSpace};
+use scenario::observation::ObservationSpace;
+use scenario::policy::{self, PartialSpec, PolicyModel, PolicySpec};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;

@@ -2,7 +2,7 @@
 
 use crate::output_file;
 use anyhow::{Context, Result};
-use game::Scenario;
+use scenario::Scenario;
 use std::path::PathBuf;
 
 /// Whether and where `run` records.

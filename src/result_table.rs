@@ -1,6 +1,6 @@
 //! The result of a game as a table.
 
-use game::count::Counts;
+use rules::count::Counts;
 use sim::Report;
 
 /// The table with what stands below it.

@@ -8,7 +8,7 @@ use crate::style::Names;
 use crate::watch_files::WatchedFiles;
 use crate::{clock, explain, in_process, network, stop};
 use anyhow::{Result, bail};
-use game::Scenario;
+use scenario::Scenario;
 use sim::{ProgressMessage, Report, Reporter};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;

@@ -1,8 +1,8 @@
 //! The scenario files that the program has inside of itself, and what a word of the command line names: a path, or the name of one.
 
 use anyhow::{Result, anyhow, bail};
-use game::scenario::{Kind, built_in, did_you_mean, other_kind, set_built_in};
 use include_dir::{Dir, include_dir};
+use scenario::{Kind, built_in, did_you_mean, other_kind, set_built_in};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 

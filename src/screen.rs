@@ -3,7 +3,7 @@
 use crate::result_table;
 use crate::style::{self, Names};
 use anstream::AutoStream;
-use game::printable;
+use primitives::printable;
 use sim::{Progress, ProgressMessage};
 use std::io::{IsTerminal, Write};
 

@@ -2,8 +2,8 @@
 
 use crate::screen;
 use anyhow::{Result, anyhow, bail};
-use game::scenario;
-use game::strategy::{Behaviour, Program, Strategy};
+
+use scenario::strategy::{Behaviour, Program, Strategy};
 use std::fmt::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -1,6 +1,6 @@
 //! Colours on the terminal: teams, and how bad something is. What writes leaves them out where nobody can see them.
 
-use game::Scenario;
+use scenario::Scenario;
 use std::collections::BTreeMap;
 
 /// The first and the second team.

@@ -3,7 +3,7 @@
 use crate::progress::Progress;
 use crate::{output_file, screen, stop};
 use anyhow::{Context, Result};
-use game::scenario::{Sweep, load_sweep};
+use scenario::{Sweep, load_sweep};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;

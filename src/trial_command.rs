@@ -6,8 +6,8 @@ use crate::water_args::{self, WaterArgs, degrees, within};
 use anyhow::{Context, Result, anyhow, bail};
 use arena::trial::{self, Engine, Manoeuvre, Orders, Plan, Sample, Sheet, Start, TrialBoat};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use game::boat::{Boat, Drive};
-use game::{SimTime, angle};
+use primitives::{SimTime, angle};
+use scenario::boat::{Boat, Drive};
 use sim::hull::Planar;
 use std::fs::File;
 use std::io::BufWriter;
@@ -202,7 +202,7 @@ fn replay(args: &Args, path: &Path, boat: &Boat, trial_boat: &mut TrialBoat) -> 
 
 /// A CSV file with named columns.
 pub(crate) fn read_sheet(path: &Path) -> Result<Sheet> {
-    let file = game::input_file::open(path).with_context(|| format!("cannot read {}", path.display()))?;
+    let file = primitives::input_file::open(path).with_context(|| format!("cannot read {}", path.display()))?;
     Ok(Sheet::read(&path.display().to_string(), file)?)
 }
 

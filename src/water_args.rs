@@ -2,9 +2,8 @@
 
 use crate::{scenario_files, screen};
 use anyhow::{Context, Result};
-use game::Boat;
-use game::scenario::{Drawn, Kind};
-use game::sea::Sea;
+use scenario::sea::Sea;
+use scenario::{Boat, Drawn, Kind};
 use std::path::{Path, PathBuf};
 
 /// The water, from the command line.
@@ -40,7 +39,7 @@ impl WaterArgs {
 
 /// The sea in a file; what was drawn of it is told.
 pub(crate) fn sea(path: &Path, seed: u64) -> Result<Sea> {
-    let drawn = game::scenario::draw_sea(path, seed);
+    let drawn = scenario::draw_sea(path, seed);
     let (sea, drawn) = drawn.with_context(|| format!("no sea in {}", path.display()))?;
     tell_drawn(seed, &drawn);
     Ok(sea)
@@ -49,7 +48,7 @@ pub(crate) fn sea(path: &Path, seed: u64) -> Result<Sea> {
 /// The boat in a file, or of a name in `scenarios/boats`, the file, and what was drawn of it.
 pub(crate) fn boat(named: &str, seed: u64) -> Result<(Boat, PathBuf, Vec<Drawn>)> {
     let path = scenario_files::find(named, Kind::Boat)?;
-    let drawn = game::scenario::draw_boat(&path, seed);
+    let drawn = scenario::draw_boat(&path, seed);
     let (boat, drawn) = drawn.with_context(|| format!("no boat in {}", path.display()))?;
     Ok((boat, path, drawn))
 }

@@ -2,12 +2,12 @@
 
 use analysis::table::TableError;
 use analysis::{Comparison, GameSeries, Summary, alog, table};
-use game::external::{FailsafeReport, GatewayStatus, LinkBytes};
-use game::input::Input;
-use game::message::{EventRecord, Frame, GameInfo, Message, Stamp, VehicleTruth};
-use game::picture::{FlagView, Nav, OwnBoat};
-use game::water::Water;
-use game::{Order, Picture, SimTime, VehicleId};
+use messages::external::{FailsafeReport, GatewayStatus, LinkBytes};
+use messages::input::Input;
+use messages::picture::{FlagView, Nav, OwnBoat};
+use messages::water::Water;
+use messages::{EventRecord, Frame, GameInfo, Message, Order, Picture, Stamp, VehicleTruth};
+use primitives::{SimTime, VehicleId};
 use proptest::prelude::*;
 use recording::{Decision, Ending, Entry, Header, Recording, Writer};
 use shore::page::replay::Recorded;
@@ -18,12 +18,12 @@ use std::sync::Arc;
 /// A recording of these decisions, then a line over a link and the status of its gateway.
 fn bytes_of(decisions: Vec<Decision>) -> Vec<u8> {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/games/pav01_vs_pav01.toml");
-    let scenario = game::scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
+    let scenario = scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
     let header = Header {
         commit: "c0ffee".to_owned(),
         game: "pav01-1".to_owned(),
         began_utc_ns: 1_700_000_000_000_000_000,
-        info: GameInfo { version: game::VERSION.to_owned(), pace: "lockstep".to_owned(), scenario },
+        info: GameInfo { version: primitives::VERSION.to_owned(), pace: "lockstep".to_owned(), scenario },
         water: Water { waves: vec![] },
     };
     let message =
@@ -33,7 +33,7 @@ fn bytes_of(decisions: Vec<Decision>) -> Vec<u8> {
     let failsafes = vec![FailsafeReport { at_s: 1.0, cause: "link down".to_owned() }];
     let status = GatewayStatus { failsafes, ..GatewayStatus::default() };
     let entries = decisions.into_iter().map(|decision| Entry::Decision(Box::new(decision))).chain([
-        message("link/blue_one", Some(LinkBytes::SCHEMA), game::codec::encode(&link)),
+        message("link/blue_one", Some(LinkBytes::SCHEMA), primitives::codec::encode(&link)),
         message("status/blue_one", None, serde_json::to_vec(&status).expect("JSON")),
     ]);
     let mut writer = Writer::begin(Cursor::new(Vec::new()), &header.opening()).expect("it begins");

@@ -2,8 +2,8 @@
 
 use agent::ivp::{Approach, Closest, Grid, Objective, Peak, Preference, Problem};
 use criterion::{Criterion, criterion_group, criterion_main};
-use game::Ned;
-use game::stream::Stream;
+use primitives::Ned;
+use primitives::stream::Stream;
 use std::f64::consts::{PI, TAU};
 use std::hint::black_box;
 

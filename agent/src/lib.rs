@@ -1,4 +1,4 @@
-//! Squall minds: what decides for a boat. One mind a boat; it sees a [`game::Picture`] and gives an [`game::Order`].
+//! Squall minds: what decides for a boat. One mind a boat; it sees a [`messages::Picture`] and gives an [`messages::Order`].
 //!
 //! A mind cannot tell the sea from simulation: this crate never imports `sim`. Open [`Mind`] first, then [`MindRunner`],
 //! which runs minds, then [`HelmMind`], which follows a strategy, then the behaviours, then [`ivp`], which weighs them.
@@ -19,17 +19,17 @@ mod runner;
 mod situation;
 mod turning_circle;
 
-pub use game::action::{Action, ActionSpace, SetPoint};
-pub use game::observation::ObservationSpace;
 pub use helm::HelmMind;
 pub use mind::{Mind, Proposal};
 pub use pilot::{Pilot, Spaces};
 pub use runner::MindRunner;
+pub use scenario::action::{Action, ActionSpace, SetPoint};
+pub use scenario::observation::ObservationSpace;
 pub use turning_circle::warnings;
 
-use game::VehicleId;
-use game::scenario::Scenario;
-use game::strategy::Strategy;
+use primitives::VehicleId;
+use scenario::Scenario;
+use scenario::strategy::Strategy;
 
 /// The mind that the scenario's strategy gives this vehicle in the game that the scenario's seed chooses.
 #[must_use]

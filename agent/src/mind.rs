@@ -1,15 +1,15 @@
 //! A mind: what decides for one boat.
 
 use crate::pilot::Pilot;
-use game::helm::HelmReport;
-use game::message::Word;
-use game::strategy::Proposer;
-use game::{Order, Picture, SimTime};
+use messages::helm::HelmReport;
+use messages::{Order, Picture, Word};
+use primitives::SimTime;
+use scenario::strategy::Proposer;
 
 /// What decides for one boat.
 ///
 /// The same pictures, words and proposals, from the first on, must give the same orders on every machine: a mind reads no
-/// clock and takes randomness only from its own [`game::stream::Stream`].
+/// clock and takes randomness only from its own [`primitives::stream::Stream`].
 pub trait Mind: Send {
     /// Decides on the newest picture.
     fn decide(&mut self, picture: &Picture) -> Order;

@@ -8,14 +8,14 @@ use crate::own_motion::OwnMotion;
 use crate::policy::{BoardPolicy, Chosen};
 use crate::roles::role_of;
 use crate::situation::{GameModel, Situation, TeamMessages};
-use game::action::{Action, ActionSpace, SetPoint};
-use game::helm::HelmReport;
-use game::message::Word;
-use game::observation::ObservationSpace;
-use game::policy::PolicyModel;
-use game::scenario::Scenario;
-use game::strategy::{Fact, Mark, Place, Program, Proposer, Values};
-use game::{Order, Picture, VehicleId};
+use messages::helm::HelmReport;
+use messages::{Order, Picture, Word};
+use primitives::VehicleId;
+use scenario::Scenario;
+use scenario::action::{Action, ActionSpace, SetPoint};
+use scenario::observation::ObservationSpace;
+use scenario::policy::PolicyModel;
+use scenario::strategy::{Fact, Mark, Place, Program, Proposer, Values};
 use std::collections::BTreeMap;
 
 /// How actions reach the boat.

@@ -2,10 +2,10 @@
 
 use crate::observation::Observer;
 use crate::situation::Situation;
-use game::SimTime;
-use game::action::{self, Action, ActionSpace, SetPoint};
-use game::policy::PolicyModel;
 use onnx::Network;
+use primitives::SimTime;
+use scenario::action::{self, Action, ActionSpace, SetPoint};
+use scenario::policy::PolicyModel;
 use thiserror::Error;
 
 /// Why a policy proposes nothing.

@@ -2,18 +2,19 @@
 
 use crate::helm::HelmMind;
 use crate::mind::{Mind, Proposal};
-use game::event::EventRecord;
-use game::fault::FaultKind;
-use game::helm::HelmReport;
-use game::message::Word;
-use game::scenario::Scenario;
-use game::strategy::{Program, Proposer};
-use game::{Event, Order, Picture, VehicleId};
+use messages::helm::HelmReport;
+use messages::{Order, Picture, Word};
+use primitives::VehicleId;
+use rules::Event;
+use rules::event::EventRecord;
+use scenario::Scenario;
+use scenario::fault::FaultKind;
+use scenario::strategy::{Program, Proposer};
 
 /// The mind of a vehicle that follows `program`; where the scenario has faults that kill its agent, one that forgets everything with each.
 pub(crate) fn helm_of(scenario: &Scenario, vehicle: VehicleId, program: &Program) -> Box<dyn Mind> {
     let is_killed =
-        |fault: &game::fault::Fault| fault.kind == FaultKind::AgentLost && fault.vehicles.contains(&vehicle);
+        |fault: &scenario::fault::Fault| fault.kind == FaultKind::AgentLost && fault.vehicles.contains(&vehicle);
     let helm = HelmMind::new(scenario, vehicle, program);
     if !scenario.faults.iter().any(is_killed) {
         return Box::new(helm);

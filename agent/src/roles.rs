@@ -1,9 +1,9 @@
 //! Who plays which role: a strategy's roles dealt to the boats of a team.
 
-use game::VehicleId;
-use game::scenario::Scenario;
-use game::strategy::{Assignment, Program, Strategy};
-use game::stream::Stream;
+use primitives::VehicleId;
+use primitives::stream::Stream;
+use scenario::Scenario;
+use scenario::strategy::{Assignment, Program, Strategy};
 
 /// The role of a vehicle in the game that the scenario's seed chooses.
 ///

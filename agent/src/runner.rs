@@ -5,8 +5,8 @@
 //! game is the same bytes in each of them.
 
 use crate::mind::{Mind, Proposal};
-use game::message::{Message, Orders, PolicyProposal, Stamp, VehicleOrder, Word};
-use game::{Order, Picture, VehicleId};
+use messages::{Message, Order, Orders, Picture, PolicyProposal, Stamp, VehicleOrder, Word};
+use primitives::VehicleId;
 
 /// A boat, the mind that decides for it, and what that ordered last.
 struct Boat<M: ?Sized> {
@@ -113,7 +113,7 @@ impl<M: Mind + ?Sized> MindRunner<M> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use game::SimTime;
+    use primitives::SimTime;
 
     /// Orders the speed that is proposed plus what it has received, and sends how often it has decided.
     struct Adder {

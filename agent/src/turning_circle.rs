@@ -4,9 +4,9 @@ use crate::behaviour::corners_of;
 use crate::own_motion::OwnMotion;
 use crate::roles::role_of;
 use crate::situation::{GameModel, Situation, TeamMessages};
-use game::scenario::Scenario;
-use game::strategy::{Behaviour, Mark, Parameter, Place, Shape, Task};
-use game::{Ned, VehicleId};
+use primitives::{Ned, VehicleId};
+use scenario::Scenario;
+use scenario::strategy::{Behaviour, Mark, Parameter, Place, Shape, Task};
 use std::collections::BTreeSet;
 
 /// Warnings of a game: what each boat's role asks for that the boat cannot do, though the game is a good one.
@@ -95,7 +95,7 @@ fn beyond_reach(points: &[Ned], again: bool, circle_m: f64, capture_m: f64) -> V
         // The circle touches the way at `at`, on the side of `to`.
         let ahead_m = came.dot(goes) / came_m;
         let aside_m = (came.north * goes.east - came.east * goes.north).abs() / came_m;
-        let to_centre_m = game::math::length(ahead_m, circle_m - aside_m);
+        let to_centre_m = primitives::math::length(ahead_m, circle_m - aside_m);
         circle_m - to_centre_m > capture_m
     };
     if count < 3 { Vec::new() } else { (if again { 0 } else { 2 }..count).filter(is_missed).collect() }
@@ -104,7 +104,7 @@ fn beyond_reach(points: &[Ned], again: bool, circle_m: f64, capture_m: f64) -> V
 #[cfg(test)]
 mod tests {
     use super::beyond_reach;
-    use game::Ned;
+    use primitives::Ned;
 
     #[test]
     fn a_point_within_the_circle_is_beyond_reach() {

@@ -3,7 +3,7 @@
 //! `stats_alloc` counts for us, see `sim/tests/allocation.rs`; one test, since it counts the whole process.
 
 use agent::ivp::{Approach, Closest, Grid, Objective, Peak, Preference, Problem, SpeedLimit, Table};
-use game::Ned;
+use primitives::Ned;
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use std::alloc::System;
 

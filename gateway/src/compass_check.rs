@@ -5,10 +5,9 @@
 //! through the water m that the orders should give, V = k m exp(i psi) + c, where the drift c (current, leeway) is the same on all
 //! headings, |k| is how much of the speed the boat makes, and the angle of k is how far the compass is off: complex linear least squares.
 
-use game::SimTime;
-use game::angle::wrap_pi;
-use game::frame::{Ned, Rotation};
-use game::math;
+use primitives::angle::wrap_pi;
+use primitives::frame::{Ned, Rotation};
+use primitives::{SimTime, math};
 use std::collections::VecDeque;
 
 /// A straight run is made of this many pieces of this length, s; the first is left for the boat to settle.

@@ -4,7 +4,7 @@
 //! the compass of a boat has its own faults.
 
 use crate::nmea::Date;
-use game::LatLon;
+use primitives::LatLon;
 use thiserror::Error;
 use world_magnetic_model::GeomagneticField;
 use world_magnetic_model::time::{self, Month};

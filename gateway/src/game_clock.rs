@@ -1,7 +1,7 @@
 //! The game's time as a gateway knows it: from the sim's answer when it joins, from the stamps of orders, and its own clock.
 
-use game::SimTime;
-use game::external::ExternalOrder;
+use messages::external::ExternalOrder;
+use primitives::SimTime;
 
 /// Tells orders that come from a time the game cannot have come to, and from before the boat joined it.
 ///
@@ -70,8 +70,8 @@ impl GameClock {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use game::message::{Stamp, VehicleOrder};
-    use game::{Order, VehicleId};
+    use messages::{Order, Stamp, VehicleOrder};
+    use primitives::VehicleId;
 
     fn order(stamp_s: f64, given_s: f64) -> ExternalOrder {
         let stamp = Stamp { valid_ns: SimTime::from_s(stamp_s), ..Stamp::default() };

@@ -8,8 +8,8 @@
 //! - MOOS's `LatLong2LocalGrid` uses a sphere with the ellipsoid's radius at that latitude, and is not this map:
 //!   200 m from a datum at 42 degrees north it is 0.4 m off. Boats that share a field must share the map.
 
-use game::{LatLon, Ned, math};
 use geographiclib_rs::{DirectGeodesic, Geodesic, InverseGeodesic};
+use primitives::{LatLon, Ned, math};
 
 /// The map of one field.
 #[derive(Clone, Debug)]

@@ -4,10 +4,9 @@
 //! positions that go away faster than the speed that is reported with them. Leeway and current cause neither.
 
 use crate::supervisor::NavFault;
-use game::SimTime;
-use game::angle::wrap_pi;
-use game::frame::Ned;
-use game::math;
+use primitives::angle::wrap_pi;
+use primitives::frame::Ned;
+use primitives::{SimTime, math};
 use std::collections::VecDeque;
 
 /// Positions of this long make a speed, s; with less than that there is none.

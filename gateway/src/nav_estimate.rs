@@ -11,11 +11,11 @@ use crate::nmea::TimeOfDay;
 use crate::protocol::{self, North, Report};
 use crate::supervisor::NavFault;
 use crate::thrust_check::{Ordered, ThrustCheck, ThrustFault};
-use game::SimTime;
-use game::angle::{rad_from_compass_deg, wrap_pi};
-use game::frame::{Body, LatLon, Ned, Rotation, body_from_ned};
-use game::gateway::NavWatch;
-use game::picture::Nav;
+use messages::picture::Nav;
+use primitives::SimTime;
+use primitives::angle::{rad_from_compass_deg, wrap_pi};
+use primitives::frame::{Body, LatLon, Ned, Rotation, body_from_ned};
+use scenario::gateway::NavWatch;
 
 /// After a jump the position must be consistent for this long before it is believed again, s.
 const JUMP_MEMORY_S: f64 = 2.0;

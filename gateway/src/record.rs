@@ -3,9 +3,9 @@
 //! The topics are listed in the crate [`recording`]. A step of the core is what came in, then what it led to.
 
 use crate::bridge::{Event, Input, Output, Plan};
-use game::external::LinkBytes;
-use game::message::{Message, Stamp};
-use game::{SimTime, VehicleId, codec};
+use messages::external::LinkBytes;
+use messages::{Message, Stamp};
+use primitives::{SimTime, VehicleId, codec};
 use recording::{Entry, Facts, Kind, Opening};
 use serde::{Deserialize, Serialize};
 

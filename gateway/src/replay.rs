@@ -2,10 +2,10 @@
 
 use crate::bridge::{Bridge, Event, Input, Output, Plan};
 use crate::record::{EVENT, INPUT, RecordedEvent, RecordedInput, link_topic};
-use game::SimTime;
-use game::external::{GatewayStatus, LinkBytes};
-use game::scenario::default_gateway;
+use messages::external::{GatewayStatus, LinkBytes};
+use primitives::SimTime;
 use recording::{Bag, Kind, RecordedMessage, RecordingError};
+use scenario::default_gateway;
 use serde_json::Value;
 
 /// What came of a replay.

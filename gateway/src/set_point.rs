@@ -4,11 +4,12 @@
 //! per cent, its difference positive to starboard: port = thrust + difference, starboard = thrust − difference.
 
 use crate::thrust_check::Ordered;
-use game::angle::{compass_deg_from_rad, wrap_pi};
-use game::gateway::{Drive, Gateway, Limits, Loops};
-use game::math::interpolate;
-use game::picture::Nav;
-use game::{Order, SimTime};
+use messages::Order;
+use messages::picture::Nav;
+use primitives::SimTime;
+use primitives::angle::{compass_deg_from_rad, wrap_pi};
+use primitives::math::interpolate;
+use scenario::gateway::{Drive, Gateway, Limits, Loops};
 
 /// A set-point for the boat's controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -169,12 +170,12 @@ fn slewed(from: f64, to: f64, growth: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use game::gateway::SURVEYOR_THRUST_MAP;
+    use scenario::gateway::SURVEYOR_THRUST_MAP;
 
     fn gateway(drive: &str) -> Gateway {
         let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/gateways");
         let name = if drive == "speed" { "surveyor_speed.toml" } else { "surveyor.toml" };
-        game::scenario::load_gateway(&folder.join(name)).unwrap_or_else(|problems| panic!("{problems}"))
+        scenario::load_gateway(&folder.join(name)).unwrap_or_else(|problems| panic!("{problems}"))
     }
 
     fn steer(heading_deg: f64, speed_m_s: f64) -> Order {

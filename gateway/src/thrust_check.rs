@@ -1,9 +1,8 @@
 //! Checks a boat's motion against what it is sent: does it turn, make way, and go where it is ordered to?
 
-use game::SimTime;
-use game::angle::wrap_pi;
-use game::math;
-use game::picture::Nav;
+use messages::picture::Nav;
+use primitives::angle::wrap_pi;
+use primitives::{SimTime, math};
 use thiserror::Error;
 
 /// What a set-point should do to a boat.

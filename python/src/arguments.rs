@@ -1,6 +1,6 @@
 //! What Python says is to be played.
 
-use game::scenario::Packed;
+use scenario::Packed;
 use learn::environment::{ActionSpace, CriticInput, RawObservation, RawSetup};
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;

@@ -2,7 +2,7 @@
 
 use crate::arguments::{PackedParts, games_and_seed, packed_of, parts_of, refused, stretch};
 use crate::signals;
-use game::scenario::{Sweep, load_sweep};
+use scenario::{Sweep, load_sweep};
 use pyo3::exceptions::{PyIndexError, PyOSError};
 use pyo3::prelude::*;
 use std::convert::Infallible;

@@ -3,7 +3,7 @@
 use crate::arguments::{PackedParts, games_and_seed, packed_of, parts_of, refused, stretch};
 use crate::signals;
 use arena::tournament::{Plan, Record, Report, WIDTH, csv, play_some, text};
-use game::scenario::{Tournament, load_tournament};
+use scenario::{Tournament, load_tournament};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use std::num::NonZeroUsize;

@@ -3,13 +3,14 @@
 #![allow(clippy::print_stdout, clippy::disallowed_methods, reason = "a benchmark reads the clock and prints")]
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use game::{Order, Scenario};
+use messages::Order;
+use scenario::Scenario;
 use sim::{State, World};
 use std::path::Path;
 
 fn shipped(game: &str) -> Scenario {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games").join(game);
-    game::scenario::load(&path).unwrap_or_else(|e| panic!("{e}"))
+    scenario::load(&path).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// All boats go round in circles at speed, each its own way: every part of the step has work.
@@ -66,7 +67,7 @@ fn rough(c: &mut Criterion) {
     ] {
         let mut scenario = shipped(game);
         scenario.sea = afloat.sea.clone();
-        scenario.sea.current.mean_m_s = game::Ned { north: 0.1, east: 0.2 };
+        scenario.sea.current.mean_m_s = primitives::Ned { north: 0.1, east: 0.2 };
         scenario.boats[0].sensors = afloat.boats[0].sensors.clone();
         if flawed {
             scenario.boats[0] = afloat.boats[0].clone();

@@ -2,9 +2,9 @@
 //! two by instructions of the processor.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use game::frame::{Ned, Pose};
-use game::instructions::Instructions;
-use game::sea::{Spreading, Waves};
+use primitives::frame::{Ned, Pose};
+use primitives::instructions::Instructions;
+use scenario::sea::{Spreading, Waves};
 use sim::sea::{HullWaves, WaveField, WaveResponse};
 use std::hint::black_box;
 use std::path::Path;
@@ -25,7 +25,7 @@ fn poses() -> Vec<Pose> {
 
 fn one_boat(c: &mut Criterion) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/pav01_vs_pav01.toml");
-    let scenario = game::scenario::load(&path).unwrap_or_else(|e| panic!("{e}"));
+    let scenario = scenario::load(&path).unwrap_or_else(|e| panic!("{e}"));
     let boat = &scenario.boats[0];
     let poses = poses();
     let mut group = c.benchmark_group("wave");

@@ -4,10 +4,9 @@
 //! their sensors are those of the game; there are no tags, no flags that matter, no limits of sharing and no radio.
 
 use crate::spawn::{self, NoStart};
-use game::SimTime;
-use game::link::Sharing;
-use game::rules::{Rules, TaggedBoat};
-use game::scenario::{Scenario, Source, StartPosition, UnknownVehicle};
+use primitives::SimTime;
+use rules::{Rules, Sharing, TaggedBoat};
+use scenario::{Scenario, Source, StartPosition, UnknownVehicle};
 use thiserror::Error;
 
 /// As long as a file may make a game.
@@ -67,12 +66,12 @@ fn without_consequences(rules: &Rules) -> Rules {
 mod tests {
     use super::*;
     use crate::Contest;
-    use game::Order;
+    use messages::Order;
     use std::path::Path;
 
     fn game(name: &str) -> Scenario {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../scenarios/games/{name}.toml"));
-        game::scenario::load(&path).unwrap_or_else(|problems| panic!("{problems}"))
+        scenario::load(&path).unwrap_or_else(|problems| panic!("{problems}"))
     }
 
     #[test]

@@ -6,7 +6,7 @@
 
 use crate::hull::{HullModel, Planar};
 use crate::thruster::ThrusterModel;
-use game::boat::Autopilot;
+use scenario::boat::Autopilot;
 
 /// The loops of one kind of boat.
 #[derive(Clone, Debug)]

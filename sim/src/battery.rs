@@ -4,7 +4,7 @@
 //! goes with |n|³, that is with |T|^1.5 (Fossen 2021, ch. 9, at advance number 0). Two thrusters at the
 //! shares s of full thrust then draw P = P_hotel + P_full (s_port^1.5 + s_starboard^1.5) / 2.
 
-use game::boat::Battery;
+use scenario::boat::Battery;
 
 /// A battery ready for computing, for one tick length.
 #[derive(Clone, Copy, Debug)]

@@ -9,16 +9,16 @@
 //! whether it was asked about others or not.
 
 use crate::hull::{HullModel, Planar};
-use game::angle::wrap_pi;
-use game::field::{Field, Obstacle, Walls};
-use game::frame::{self, Ned, Rotation};
-use game::math;
-use game::near::Pair;
+use primitives::angle::wrap_pi;
+use primitives::frame::{self, Ned, Rotation};
+use primitives::math;
+use primitives::near::Pair;
 use rapier2d_f64::parry::query;
 use rapier2d_f64::prelude::{
     ColliderBuilder, Group, InteractionGroups, InteractionTestMode, MassProperties, PhysicsWorld, Pose,
     RigidBodyBuilder, RigidBodyHandle, Rot2, SharedShape, Vector,
 };
+use rules::field::{Field, Obstacle, Walls};
 
 /// Two hulls close with at most this speed, m/s. What they close in a tick is how far ahead rapier looks for
 /// contacts: hulls farther apart cannot touch before it is asked again.
@@ -79,9 +79,9 @@ pub struct Displacement {
     /// Kind of boat.
     pub kind: usize,
     /// Where it was at the beginning.
-    pub from: game::Pose,
+    pub from: primitives::Pose,
     /// Where it is at the end.
-    pub to: game::Pose,
+    pub to: primitives::Pose,
     /// The rotation of the heading at the beginning.
     pub rotation: Rotation,
     /// The rotation of the heading at the end.

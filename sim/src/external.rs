@@ -4,10 +4,11 @@
 //! tick by tick, until the next report sets it right.
 
 use crate::hull::Planar;
-use game::angle::wrap_pi;
-use game::frame::Rotation;
-use game::picture::{Nav, OwnBoat};
-use game::{Event, Pose, SimTime, VehicleId, math};
+use messages::picture::{Nav, OwnBoat};
+use primitives::angle::wrap_pi;
+use primitives::frame::Rotation;
+use primitives::{Pose, SimTime, VehicleId, math};
+use rules::Event;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -124,7 +125,7 @@ pub(crate) fn sound(nav: Nav) -> Result<Nav, BadReport> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use game::Ned;
+    use primitives::Ned;
 
     #[test]
     fn a_boat_that_goes_on_turning_sails_round_a_circle() {

@@ -3,7 +3,7 @@
 //! The front seat knows nothing of them: it reckons with the thrusters as they are sold.
 
 use crate::battery::BatteryModel;
-use game::boat::{Flaws, Ventilation};
+use scenario::boat::{Flaws, Ventilation};
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 

@@ -13,8 +13,8 @@
 //! Added mass stands in `M`: put on the right as a force from the last acceleration it diverges as
 //! soon as it reaches the mass, and in sway it does.
 
-use game::boat::Hull;
-use game::frame::{Body, Ned, Rotation, ned_from_body};
+use primitives::frame::{Body, Ned, Rotation, ned_from_body};
+use scenario::boat::Hull;
 
 /// Surge, sway and yaw: velocities (m/s, m/s, rad/s), accelerations, or forces (N, N, N m).
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]

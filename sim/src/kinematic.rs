@@ -15,8 +15,9 @@
 //! The loops act once a step, not once a second: behaviour depends on `dt`, and the reference numbers are for 0.1 s.
 
 use crate::piecewise_linear::PiecewiseLinear;
-use game::boat::{Kinematic, Pid};
-use game::{Ned, Order, Rotation, math};
+use messages::Order;
+use primitives::{Ned, Rotation, math};
+use scenario::boat::{Kinematic, Pid};
 use serde::{Deserialize, Serialize};
 
 /// Less thrust than this, per cent, is none.
@@ -323,7 +324,7 @@ mod tests {
         for _ in 0..10 {
             step(&boat, &mut state, Order::Hold);
         }
-        let turned = game::angle::wrap_pi(state.psi_rad() - 3.135);
+        let turned = primitives::angle::wrap_pi(state.psi_rad() - 3.135);
         assert!((turned - 0.02).abs() < 1e-12 && state.psi_rad() < 0.0, "{turned}");
     }
 

@@ -12,12 +12,13 @@ use crate::sensor::{Reading, SensorModel, SensorState, Truth};
 use crate::state::BoatState;
 use crate::thruster::ThrusterModel;
 use crate::world::WorldPlan;
-use game::angle::wrap_pi;
-use game::boat;
-use game::fault::{FaultKind, FaultSpan};
-use game::frame::{self, Ned, Rotation};
-use game::sensor::Sensors;
-use game::{Order, Pose, SimTime};
+use messages::Order;
+use primitives::angle::wrap_pi;
+use primitives::frame::{self, Ned, Rotation};
+use primitives::{Pose, SimTime};
+use scenario::boat;
+use scenario::fault::{FaultKind, FaultSpan};
+use scenario::sensor::Sensors;
 
 /// A world's constants.
 #[derive(Clone)]
@@ -63,7 +64,7 @@ enum Drive {
 }
 
 impl Drive {
-    fn new(boat: &game::Boat, hull: &HullModel, dt_s: f64) -> Drive {
+    fn new(boat: &scenario::Boat, hull: &HullModel, dt_s: f64) -> Drive {
         match &boat.drive {
             boat::Drive::Thrusters { thruster, autopilot } => {
                 Drive::Thrusters(ThrusterModel::new(thruster, dt_s), AutopilotModel::new(autopilot, hull, dt_s))

@@ -6,7 +6,7 @@
 
 use crate::hull::{HullModel, Planar};
 use crate::lanes::{Lanes, where_at_most};
-use game::instructions::{Instructions, Kernel};
+use primitives::instructions::{Instructions, Kernel};
 
 /// Boats side by side; and of those that are left, if they are no more.
 const MANY: usize = 8;
@@ -346,7 +346,7 @@ mod tests {
     /// The shipped Otter in salt water.
     fn model() -> HullModel {
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/boats/otter.toml");
-        let boat = game::scenario::load_boat(&file).unwrap_or_else(|e| panic!("{e}"));
+        let boat = scenario::load_boat(&file).unwrap_or_else(|e| panic!("{e}"));
         HullModel::new(&boat.hull, 1025.0)
     }
 

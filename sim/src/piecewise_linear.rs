@@ -68,7 +68,7 @@ impl PiecewiseLinear {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use game::math::interpolate;
+    use primitives::math::interpolate;
     use proptest::prelude::*;
 
     #[test]

@@ -2,9 +2,9 @@
 
 use crate::contest::Contest;
 use crate::report::Report;
-use game::Outcome;
-use game::event::EventCursor;
-use game::outcome::EventOutcome;
+use rules::event::EventCursor;
+use scenario::Outcome;
+use scenario::outcome::EventOutcome;
 use serde::{Deserialize, Serialize};
 
 /// One message.

@@ -4,14 +4,16 @@
 //! process and over a network, whatever else is sent. What the real network does comes on top.
 
 use crate::two_state::TwoStateChain;
-use game::link::Link;
-use game::picture::OwnBoat;
-use game::reseed::TimedNoise;
-use game::{Ned, Order, Scenario, SimTime};
+use messages::Order;
+use messages::picture::OwnBoat;
+use primitives::reseed::TimedNoise;
+use primitives::{Ned, SimTime};
+use scenario::Scenario;
+use scenario::link::Link;
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
-/// The largest number that [`game::stream::Noise::exponential`] gives, 53 ln 2, rounded up.
+/// The largest number that [`primitives::stream::Noise::exponential`] gives, 53 ln 2, rounded up.
 const MOST_JITTERS: f64 = 37.0;
 /// Uniform numbers that a decision takes: the link's turn, and loss and jitter of either direction.
 const DRAWS: u64 = 5;
@@ -195,10 +197,10 @@ fn bursts(link: &Link, decision: SimTime) -> TwoStateChain {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use game::link::Loss;
-    use game::picture::Nav;
-    use game::reseed::Seeds;
-    use game::{VehicleId, math};
+    use messages::picture::Nav;
+    use primitives::reseed::Seeds;
+    use primitives::{VehicleId, math};
+    use scenario::link::Loss;
 
     const TENTH: SimTime = SimTime(100_000_000);
 

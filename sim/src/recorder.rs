@@ -2,9 +2,9 @@
 
 use crate::contest::Contest;
 use crate::report::Report;
-use game::input::Input;
-use game::message::{Frame, GameInfo};
-use game::run_state::RecordingState;
+use messages::input::Input;
+use messages::run_state::RecordingState;
+use messages::{Frame, GameInfo};
 use recording::{Decision, Ending, Entry, Header, NewFile, RecordError, Recorder, utc};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -94,7 +94,7 @@ impl GameRecorder {
             return;
         }
         let info = GameInfo {
-            version: game::VERSION.to_owned(),
+            version: primitives::VERSION.to_owned(),
             pace: self.pace.clone(),
             scenario: contest.scenario().clone(),
         };

@@ -1,7 +1,7 @@
 //! How a game went: what came of it, and how it was run.
 
-use game::Outcome;
-use game::refusal::Refusals;
+use messages::refusal::Refusals;
+use scenario::Outcome;
 use serde::{Deserialize, Serialize};
 
 /// How a game went.

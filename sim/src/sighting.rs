@@ -4,13 +4,14 @@
 //! its report: where there is a radio link, a report that is late or lost takes its sightings with it. How a sighting
 //! errs, and whether it is lost, is drawn once a decision for each team and boat seen, whoever of the team sees it.
 
-use game::angle::wrap_pi;
-use game::frame::{Ned, Pose};
-use game::link::Sharing;
-use game::picture::Contact;
-use game::reseed::TimedNoise;
-use game::stream::Noise;
-use game::{Scenario, SimTime};
+use messages::picture::Contact;
+use primitives::SimTime;
+use primitives::angle::wrap_pi;
+use primitives::frame::{Ned, Pose};
+use primitives::reseed::TimedNoise;
+use primitives::stream::Noise;
+use rules::Sharing;
+use scenario::Scenario;
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 

@@ -1,10 +1,11 @@
 //! Where boats start: as placed, or drawn from the game's `spawn` stream.
 
-use game::angle::wrap_pi;
-use game::frame::{Ned, Pose};
-use game::scenario::{Problems, RealBoats, Scenario, StartPosition};
-use game::stream::Stream;
-use game::{Field, TeamId};
+use primitives::TeamId;
+use primitives::angle::wrap_pi;
+use primitives::frame::{Ned, Pose};
+use primitives::stream::Stream;
+use rules::Field;
+use scenario::{Problems, RealBoats, Scenario, StartPosition};
 use thiserror::Error;
 
 /// How often a start position is drawn before the field counts as full.

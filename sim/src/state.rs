@@ -5,7 +5,7 @@ use crate::hull::Planar;
 use crate::kinematic::KinematicState;
 use crate::sensor::{Reading, SensorState};
 use crate::thruster::Shaft;
-use game::{Pose, SimTime};
+use primitives::{Pose, SimTime};
 use serde::{Deserialize, Serialize};
 
 /// Everything that changes in a world. Nothing else is remembered from tick to tick: what a step does follows from this

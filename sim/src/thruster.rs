@@ -3,8 +3,8 @@
 use crate::flaw::{FlawModel, FlawState};
 use crate::hull::Planar;
 use crate::piecewise_linear::PiecewiseLinear;
-use game::boat::{Propeller, ThrustCurve, Thruster, Ventilation};
-use game::math;
+use primitives::math;
+use scenario::boat::{Propeller, ThrustCurve, Thruster, Ventilation};
 use serde::{Deserialize, Serialize};
 
 /// A thruster ready for computing, for one tick length.
@@ -222,7 +222,7 @@ impl ThrusterModel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use game::boat::{Battery, Flaws};
+    use scenario::boat::{Battery, Flaws};
 
     fn thruster(curve: ThrustCurve) -> Thruster {
         Thruster { arm_m: 0.4, curve, lag_s: 0.2, slew_per_s: 1.0, deadband: 0.05, flaws: Flaws::default() }

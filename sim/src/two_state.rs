@@ -3,7 +3,7 @@
 //! With a rate of turning on λ and one of turning off μ, one that is off is on a period p later with probability
 //! λ / (λ + μ) (1 − e^−(λ+μ)p). So durations are exponential, and the share of time that it is on is λ / (λ + μ) exactly.
 
-use game::SimTime;
+use primitives::SimTime;
 
 /// The probabilities of a change from one sample to the next.
 #[derive(Clone, Copy, Debug)]

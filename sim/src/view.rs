@@ -3,11 +3,12 @@
 use crate::sensor::imu::ImuReading;
 use crate::sighting::Sightings;
 use crate::world::World;
-use game::event::{Event, Logged};
-use game::message::{Frame, Message, SeaView, Stamp, VehicleTruth};
-use game::picture::{Contact, FlagView, Imu, Nav, OwnBoat, Picture, number_of_flag};
-use game::rules::Standing;
-use game::{Scenario, TeamId, VehicleId};
+use messages::picture::{Contact, FlagView, Imu, Nav, OwnBoat, Picture, number_of_flag};
+use messages::{Frame, Message, SeaView, Stamp, VehicleTruth};
+use primitives::{TeamId, VehicleId};
+use rules::Standing;
+use rules::event::{Event, Logged};
+use scenario::Scenario;
 
 /// Everything that there is to see at one decision.
 #[derive(Clone, Copy)]
@@ -113,7 +114,7 @@ impl Scene<'_> {
         picture.score.clone_from(&self.standing.score);
         picture.events.clear();
         let concerns = events.iter().filter(|logged| concerns(self.scenario, team, logged.event));
-        picture.events.extend(concerns.map(|logged| game::message::EventRecord::from(*logged)));
+        picture.events.extend(concerns.map(|logged| messages::EventRecord::from(*logged)));
         picture.over = self.standing.over;
     }
 

@@ -8,15 +8,16 @@ use crate::sea::{Attitude, SeaNow};
 use crate::sensor::{Reading, Truth};
 use crate::spawn::{self, NoStart};
 use crate::state::{BoatState, State};
-use game::fault::{FaultSpan, fault_spans};
-use game::frame::{self, Leg, Ned, Rotation};
-use game::instructions::Instructions;
-use game::near::{Near, Pair};
-use game::reseed::Seeds;
-use game::rules::Contact;
-use game::scenario::Source;
-use game::sea::Sea;
-use game::{Boat, Field, Order, Pose, Scenario, SimTime, VehicleId, math};
+use messages::Order;
+use primitives::frame::{self, Leg, Ned, Rotation};
+use primitives::instructions::Instructions;
+use primitives::near::{Near, Pair};
+use primitives::reseed::Seeds;
+use primitives::{Pose, SimTime, VehicleId, math};
+use rules::{Contact, Field};
+use scenario::fault::{FaultSpan, fault_spans};
+use scenario::sea::Sea;
+use scenario::{Boat, Scenario, Source};
 
 /// No boat is faster than this over the ground, m/s; one that is has bad numbers.
 const ABSURD_M_S: f64 = 1_000.0;
@@ -245,7 +246,7 @@ impl World {
         Leg { from, to }
     }
 
-    /// Boats that are near each other, in the order of [`game::near::Near`]: all that may touch, and all within
+    /// Boats that are near each other, in the order of [`primitives::near::Near`]: all that may touch, and all within
     /// [`WorldPlan::pairs_within_m`].
     #[must_use]
     pub fn pairs(&self) -> &[Pair] {

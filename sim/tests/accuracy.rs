@@ -4,8 +4,9 @@
 mod common;
 
 use common::{afloat, alone, scenarios, waves};
-use game::sea::{Gusts, Sea, Wind};
-use game::{Ned, Order, Pose, SimTime};
+use messages::Order;
+use primitives::{Ned, Pose, SimTime};
+use scenario::sea::{Gusts, Sea, Wind};
 use sim::hull::{HullModel, Planar};
 
 /// Where the Otter is after 20 s on this sea under imposed thrust, by the length of the tick.
@@ -25,7 +26,7 @@ fn gains(change: impl Fn(&mut Sea)) -> Vec<[f64; 2]> {
     let truth = pose_after(0.001_25, &change);
     let errors = [0.1, 0.05, 0.025, 0.0125].map(|tick_s| {
         let pose = pose_after(tick_s, &change);
-        [pose.at.distance(truth.at), game::angle::wrap_pi(pose.psi_rad - truth.psi_rad).abs()]
+        [pose.at.distance(truth.at), primitives::angle::wrap_pi(pose.psi_rad - truth.psi_rad).abs()]
     });
     let gain = |pair: &[[f64; 2]]| [pair[0][0] / pair[1][0], pair[0][1] / pair[1][1]];
     errors.windows(2).map(gain).collect()
@@ -56,7 +57,7 @@ fn whatever_water_a_hull_carries_along_it_stays_stable_in_a_gale() {
     for (surge, sway, yaw) in [(3.0, 1.0, 1.0), (0.1, 3.0, 1.0), (0.1, 1.0, 3.0), (3.0, 3.0, 3.0)] {
         for order in [Order::Steer { heading_rad: 1.0, speed_m_s: 1.5 }, Order::Thrust { port: 0.8, starboard: 0.5 }] {
             let mut scenario = alone("surveyor_m1_8", "calm");
-            let gale = game::scenario::draw_sea(&scenarios().join("seas/bay_gale.toml"), 1);
+            let gale = scenario::draw_sea(&scenarios().join("seas/bay_gale.toml"), 1);
             scenario.sea = gale.unwrap_or_else(|e| panic!("{e}")).0;
             let hull = &mut scenario.boats[0].hull;
             hull.added_surge_kg = surge * hull.mass_kg;

@@ -6,7 +6,8 @@
 mod common;
 
 use common::{came_together, shipped};
-use game::{Ned, Order};
+use messages::Order;
+use primitives::Ned;
 use sim::World;
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use std::alloc::System;

@@ -4,10 +4,12 @@
 mod common;
 
 use common::{afloat, alone};
-use game::angle::wrap_pi;
-use game::frame::body_from_ned;
-use game::sea::{Gusts, Wind};
-use game::{Ned, Order, Scenario, SimTime};
+use messages::Order;
+use primitives::angle::wrap_pi;
+use primitives::frame::body_from_ned;
+use primitives::{Ned, SimTime};
+use scenario::Scenario;
+use scenario::sea::{Gusts, Wind};
 use sim::World;
 use sim::hull::Planar;
 
@@ -103,7 +105,7 @@ impl Accounts {
     fn powers_watt(&self) -> (f64, f64) {
         let (boat, kind) = (self.world.state().boats[0], &self.scenario.boats[0]);
         let (Planar { surge: u, sway: v, yaw: r }, hull) = (self.through_water(), &kind.hull);
-        let game::boat::Drive::Thrusters { thruster, .. } = &kind.drive else { panic!("it has thrusters") };
+        let scenario::boat::Drive::Thrusters { thruster, .. } = &kind.drive else { panic!("it has thrusters") };
         let (port, starboard) = (boat.port.newton, boat.starboard.newton);
         let given = (port + starboard) * u + thruster.arm_m * (port - starboard) * r;
         let plain = (hull.surge_linear_kg_s + hull.surge_quadratic_kg_m * u.abs()) * u * u

@@ -3,9 +3,11 @@
 mod common;
 
 use common::{afloat, among, came_together, digest, energy_joule, gap_m, hulls, put, shipped};
-use game::field::Obstacle;
-use game::stream::Stream;
-use game::{Ned, Order, Scenario};
+use messages::Order;
+use primitives::Ned;
+use primitives::stream::Stream;
+use rules::field::Obstacle;
+use scenario::Scenario;
 use sim::World;
 
 const BOATS: [&str; 3] = ["heron", "otter", "surveyor_m1_8"];
@@ -54,7 +56,7 @@ fn a_boat_that_rams_anothers_side_pushes_it_away() {
 fn collision_course(world: &mut World, seed: u64) {
     let mut stream = Stream::new(seed, "collision");
     let (bearing_deg, distance_m) = (stream.between(0.0, 360.0), stream.between(2.5, 3.5));
-    let (sin, cos) = game::math::sin_cos_deg(bearing_deg);
+    let (sin, cos) = primitives::math::sin_cos_deg(bearing_deg);
     let aim_deg = bearing_deg + 180.0 + stream.between(-15.0, 15.0);
     let mut nu = |ahead: f64, across: f64, turn: f64| {
         (stream.between(ahead, ahead + 2.0), stream.between(-across, across), stream.between(-turn, turn))
@@ -100,7 +102,7 @@ fn run_into(obstacle: &Obstacle, start: (f64, f64, f64)) -> (f64, Ned) {
     let mut least_m = f64::INFINITY;
     for _ in 0..600 {
         // The front seat keeps it pointing where it started out.
-        let heading_rad = game::angle::rad_from_compass_deg(start.2);
+        let heading_rad = primitives::angle::rad_from_compass_deg(start.2);
         world.step(&[Order::Steer { heading_rad, speed_m_s: 2.5 }, Order::Hold]);
         least_m = least_m.min(outline_gap_m(&world, &scenario, obstacle));
     }
@@ -152,7 +154,7 @@ fn boats_stay_inside_of_walls() {
     let scenario = shipped("harbour_2v2.toml");
     for (heading_deg, turn) in [(0.0, 0.02), (90.0, -0.02), (180.0, 0.0), (270.0, 0.05), (45.0, 0.0), (225.0, 0.0)] {
         let mut world = World::of_game(&scenario, 1).unwrap();
-        let heading_rad = game::angle::rad_from_compass_deg(heading_deg);
+        let heading_rad = primitives::angle::rad_from_compass_deg(heading_deg);
         for tick in 0..4_000 {
             let order = Order::Thrust { port: 1.0 - turn, starboard: 1.0 };
             let steer = Order::Steer { heading_rad, speed_m_s: 3.0 };
@@ -182,7 +184,7 @@ fn crowd(world: &World, orders: &mut Vec<Order>) {
 fn asking_rapier_only_about_close_hulls_changes_no_byte() {
     let crowded = |scenario: &mut Scenario| {
         for vehicle in &mut scenario.vehicles {
-            if let game::scenario::StartPosition::Somewhere { along_m, across_m, gap_m } = &mut vehicle.start_position {
+            if let scenario::StartPosition::Somewhere { along_m, across_m, gap_m } = &mut vehicle.start_position {
                 (*along_m, *across_m, *gap_m) = ((60.0, 75.0), (25.0, 55.0), 3.0);
             }
         }

@@ -5,7 +5,8 @@
 mod common;
 
 use common::{order, shipped};
-use game::{Order, VehicleId};
+use messages::Order;
+use primitives::VehicleId;
 use sim::Contest;
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use std::alloc::System;

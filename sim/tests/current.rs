@@ -3,9 +3,9 @@
 mod common;
 
 use common::{assert_memory, five_errors};
-use game::math;
-use game::sea::{Current, Eddy, RandomEddies, Shear, Tide, Wander};
-use game::{Field, Ned, Rotation, SimTime};
+use primitives::{Ned, Rotation, SimTime, math};
+use rules::Field;
+use scenario::sea::{Current, Eddy, RandomEddies, Shear, Tide, Wander};
 use sim::sea::current::CurrentField;
 use sim::sea::eddy;
 use std::f64::consts::TAU;

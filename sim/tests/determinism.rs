@@ -3,10 +3,12 @@
 mod common;
 
 use common::{alone, digest, order, put, shipped};
-use game::event::{EventCursor, Logged};
-use game::order::BadOrder;
-use game::scenario::StartPosition;
-use game::{Event, Order, Pose, Scenario, VehicleId};
+use messages::Order;
+use messages::order::BadOrder;
+use primitives::{Pose, VehicleId};
+use rules::Event;
+use rules::event::{EventCursor, Logged};
+use scenario::{Scenario, StartPosition};
 use sim::{Contest, RestoreError, World};
 
 /// Gives orders that make for a lively game, from nothing but the time and the vehicle, and plays a decision.
@@ -175,7 +177,7 @@ fn an_order_with_bad_numbers_is_refused_and_the_boat_holds() {
 #[test]
 fn a_boat_whose_numbers_go_bad_is_taken_out_and_the_others_sail_on() {
     let mut scenario = shipped("pav01_vs_pav01.toml");
-    let (victim, flag) = (VehicleId(1), game::FlagId(1));
+    let (victim, flag) = (VehicleId(1), primitives::FlagId(1));
     let pose = Pose { at: scenario.field.flags[1].home, psi_rad: 0.0 };
     scenario.vehicles[1].start_position = StartPosition::At(pose);
     let mut contest = started(&scenario, 1);
@@ -219,7 +221,7 @@ fn a_quarantined_boat_is_something_to_bump_into() {
         world.step(&[Order::Steer { heading_rad: std::f64::consts::FRAC_PI_2, speed_m_s: 2.0 }, Order::Hold]);
         assert!(common::gap_m(&world, &scenario, 0, 1) > -0.02);
     }
-    assert_eq!(world.state().boats[1].pose.at, game::Ned::from_xy(106.0, 100.0));
+    assert_eq!(world.state().boats[1].pose.at, primitives::Ned::from_xy(106.0, 100.0));
     assert!(world.state().boats[0].pose.at.east < 106.0);
 }
 

@@ -3,13 +3,14 @@
 mod common;
 
 use common::{gap_m, order, written};
-use game::angle::{rad_from_compass_deg, wrap_pi};
-use game::event::{EventCursor, TagCause};
-use game::external::ExternalOrder;
-use game::message::Message;
-use game::picture::Nav;
-use game::rules::TaggedBoat;
-use game::{Event, FlagId, Ned, Order, Scenario, SimTime, VehicleId};
+use messages::external::ExternalOrder;
+use messages::picture::Nav;
+use messages::{Message, Order};
+use primitives::angle::{rad_from_compass_deg, wrap_pi};
+use primitives::{FlagId, Ned, SimTime, VehicleId};
+use rules::event::{EventCursor, TagCause};
+use rules::{Event, TaggedBoat};
+use scenario::Scenario;
 use sim::{BadReport, Contest};
 
 /// A real boat, and a simulated one of the other team.
@@ -89,7 +90,7 @@ fn a_real_boat_is_tagged_and_its_effective_command_is_what_the_rules_make_of_its
     let Order::Steer { heading_rad, speed_m_s } = contest.effective_command(REAL) else { panic!("it is driven home") };
     assert!(wrap_pi(heading_rad - rad_from_compass_deg(270.0)).abs() < 1e-9 && speed_m_s == 1.5);
     // What goes to the boat is sound.
-    let sent = game::message::VehicleOrder::new(REAL, contest.effective_command(REAL));
+    let sent = messages::VehicleOrder::new(REAL, contest.effective_command(REAL));
     assert!(sent.order().expect("a known kind").check().is_ok() && ExternalOrder::VERSION == 2);
     // Nobody drives a boat without an agent.
     contest.lose_agent(REAL);
@@ -153,7 +154,7 @@ fn between_reports_a_real_boat_goes_on_as_it_did_and_then_it_is_lost() {
     order(&mut contest, REAL, Order::Thrust { port: 1.0, starboard: 1.0 });
     for decisions in 0..30 {
         let since_s = (contest.now() - fix_at).as_s();
-        let (turn, boat) = (game::math::sin_cos(r * since_s.min(1.0)), contest.world().state().boats[0]);
+        let (turn, boat) = (primitives::math::sin_cos(r * since_s.min(1.0)), contest.world().state().boats[0]);
         let want = Ned::from_xy(50.0 + u / r * (1.0 - turn.1), 40.0 + u / r * turn.0);
         assert!(boat.pose.at.distance(want) < 1e-9, "after {since_s} s: {:?} is not {want:?}", boat.pose.at);
         assert!(since_s > 0.999 || boat.nu.surge == u);

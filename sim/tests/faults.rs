@@ -1,8 +1,9 @@
 //! Faults in the midst of a game: what fails does so at its time, on its boat, and is well again afterwards.
 
-use game::event::Event;
-use game::scenario::{Overrides, Setting, load_with};
-use game::{Order, Scenario, SimTime, VehicleId};
+use messages::Order;
+use primitives::{SimTime, VehicleId};
+use rules::event::Event;
+use scenario::{Overrides, Scenario, Setting, load_with};
 use sim::Contest;
 use std::path::Path;
 
@@ -37,7 +38,7 @@ fn speed_m_s(contest: &Contest, vehicle: VehicleId) -> f64 {
 fn errors(contest: &Contest, vehicle: VehicleId) -> (f64, f64) {
     let pose = contest.world().state().boats[vehicle.index()].pose;
     let nav = contest.world().reading(vehicle).expect("it can be").nav;
-    (nav.at().distance(pose.at), game::angle::wrap_pi(nav.psi_rad - pose.psi_rad))
+    (nav.at().distance(pose.at), primitives::angle::wrap_pi(nav.psi_rad - pose.psi_rad))
 }
 
 #[test]

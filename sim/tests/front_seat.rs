@@ -3,8 +3,8 @@
 mod common;
 
 use common::alone;
-use game::Order;
-use game::angle::wrap_pi;
+use messages::Order;
+use primitives::angle::wrap_pi;
 use sim::World;
 
 /// Cruising and at top speed, m/s.

@@ -3,9 +3,9 @@
 mod common;
 
 use common::{mean_of, square, waves};
-use game::boat::Boat;
-use game::frame::{Body, Ned, Pose, Rotation, ned_from_body};
-use game::sea::{GRAVITY_M_S2, Spreading, Waves};
+use primitives::frame::{Body, Ned, Pose, Rotation, ned_from_body};
+use scenario::boat::Boat;
+use scenario::sea::{GRAVITY_M_S2, Spreading, Waves};
 use sim::hull::Planar;
 use sim::sea::wave::wavenumber_rad_m;
 use sim::sea::{Attitude, Component, HullWaves, WaveField, WaveResponse, WaveSample};

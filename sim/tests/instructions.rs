@@ -3,11 +3,12 @@
 mod common;
 
 use common::{boat, digest, on_sea, waves};
-use game::frame::{Body, Ned, Pose};
-use game::instructions::Instructions;
-use game::sea::{Spreading, Waves};
-use game::stream::Stream;
-use game::{Order, Scenario};
+use messages::Order;
+use primitives::frame::{Body, Ned, Pose};
+use primitives::instructions::Instructions;
+use primitives::stream::Stream;
+use scenario::Scenario;
+use scenario::sea::{Spreading, Waves};
 use sim::World;
 use sim::sea::{Attitude, HullWaves, Submergence, Surface, WaveField, WaveResponse, WaveSample};
 

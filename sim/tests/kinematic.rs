@@ -2,8 +2,9 @@
 
 mod common;
 
-use game::boat::Kinematic;
-use game::{Ned, Order};
+use messages::Order;
+use primitives::Ned;
+use scenario::boat::Kinematic;
 use sim::kinematic::{KinematicModel, KinematicState};
 
 const DT_S: f64 = 0.1;
@@ -13,7 +14,7 @@ const RUN_UP_S: f64 = 60.0;
 /// The shipped point boat of this name: Pyquaticus' (main, 2025-11).
 fn shipped(name: &str) -> Kinematic {
     let boat = common::boat(&format!("{name}_kinematic"));
-    let game::boat::Drive::Kinematic(kinematic) = boat.drive else { panic!("{name} is a point boat") };
+    let scenario::boat::Drive::Kinematic(kinematic) = boat.drive else { panic!("{name} is a point boat") };
     kinematic
 }
 

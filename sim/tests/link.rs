@@ -3,10 +3,11 @@
 mod common;
 
 use common::{alone, order};
-use game::boat::Drive;
-use game::link::{Link, Loss};
-use game::scenario::StartPosition;
-use game::{Ned, Order, Pose, Scenario, SimTime, VehicleId};
+use messages::Order;
+use primitives::{Ned, Pose, SimTime, VehicleId};
+use scenario::boat::Drive;
+use scenario::link::{Link, Loss};
+use scenario::{Scenario, StartPosition};
 use sim::Contest;
 
 const BLUE: VehicleId = VehicleId(0);

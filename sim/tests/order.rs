@@ -3,11 +3,12 @@
 mod common;
 
 use common::{alone, order};
-use game::boat::Hold;
-use game::input::{Input, InputRecord, Inputs};
-use game::link::{Link, Loss};
-use game::message::{Message, Stamp};
-use game::{Ned, Order, Scenario, SimTime, VehicleId};
+use messages::input::{Input, InputRecord, Inputs};
+use messages::{Message, Order, Stamp};
+use primitives::{Ned, SimTime, VehicleId};
+use scenario::Scenario;
+use scenario::boat::Hold;
+use scenario::link::{Link, Loss};
 use sim::Contest;
 
 const BLUE: VehicleId = VehicleId(0);

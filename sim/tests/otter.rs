@@ -2,8 +2,9 @@
 
 mod common;
 
-use game::angle::wrap_pi;
-use game::{Ned, Order};
+use messages::Order;
+use primitives::Ned;
+use primitives::angle::wrap_pi;
 use sim::World;
 
 /// One row of a reference: time, north, east, psi, u, v, r, commanded shaft speeds.
@@ -102,10 +103,10 @@ fn it_takes_up_speed_as_its_mass_resistance_and_shafts_say() {
     let time_s = 85.2815 / 77.5544;
     let share = |t_s: f64| {
         let ramp = |rate: f64| {
-            let hull = game::math::exp(-t_s / time_s);
-            (game::math::exp(-rate * t_s) - hull) / (1.0 - rate * time_s)
+            let hull = primitives::math::exp(-t_s / time_s);
+            (primitives::math::exp(-rate * t_s) - hull) / (1.0 - rate * time_s)
         };
-        1.0 - game::math::exp(-t_s / time_s) - 2.0 * ramp(10.0) + ramp(20.0)
+        1.0 - primitives::math::exp(-t_s / time_s) - 2.0 * ramp(10.0) + ramp(20.0)
     };
     for n_rad_s in [40.0, 80.0] {
         let track = from_rest([n_rad_s; 2], 60).0;

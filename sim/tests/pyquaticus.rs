@@ -4,9 +4,11 @@
 mod common;
 
 use common::{order, written};
-use game::event::TagCause;
-use game::rules::Contact;
-use game::{Event, Ned, Order, Rules, Scenario, SimTime, VehicleId};
+use messages::Order;
+use primitives::{Ned, SimTime, VehicleId};
+use rules::event::TagCause;
+use rules::{Contact, Event, Rules};
+use scenario::Scenario;
 use sim::Contest;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -135,7 +137,7 @@ fn boats_pass_through_each_other_where_the_rules_say_so() {
         (scenario.rules.contact, scenario.rules.tag_radius_m) = (contact, 0.1);
         let mut contest = afloat(&scenario);
         common::set_in(&mut contest, |state| {
-            state.boats[1].pose = game::Pose { at: Ned::from_xy(120.0, 60.5), psi_rad: -PI / 2.0 };
+            state.boats[1].pose = primitives::Pose { at: Ned::from_xy(120.0, 60.5), psi_rad: -PI / 2.0 };
             state.points[1] = sim::kinematic::KinematicState::at_rest(-PI / 2.0);
         });
         let mut gap_m = f64::INFINITY;
@@ -147,7 +149,7 @@ fn boats_pass_through_each_other_where_the_rules_say_so() {
         // Their keels pass each other at half a metre, and the hulls are a metre wide.
         let want_m = if contact == Contact::Ghost { -0.5..-0.45 } else { -0.02..0.05 };
         assert!(want_m.contains(&gap_m), "{contact:?}: {gap_m} m");
-        let collided = |logged: &game::event::Logged| matches!(logged.event, Event::Collided { .. });
+        let collided = |logged: &rules::event::Logged| matches!(logged.event, Event::Collided { .. });
         assert_eq!(contest.events().iter().filter(|logged| collided(logged)).count(), 1, "{contact:?}");
     }
 }

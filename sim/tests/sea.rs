@@ -4,8 +4,9 @@
 mod common;
 
 use common::{afloat, alone, on_sea, put, scenarios, surveyor_on};
-use game::sea::{GRAVITY_M_S2, Spreading, Waves};
-use game::{Ned, Order};
+use messages::Order;
+use primitives::Ned;
+use scenario::sea::{GRAVITY_M_S2, Spreading, Waves};
 use sim::World;
 use sim::sea::WaveField;
 use std::f64::consts::TAU;
@@ -43,7 +44,7 @@ fn energy_does_not_grow_without_input_in_a_moving_water_seen_from_it() {
     let relative = |world: &World| {
         let boat = world.state().boats[0];
         let rotation = boat.pose.rotation();
-        let water = game::frame::body_from_ned(rotation, Ned { north: 0.3, east: 0.1 });
+        let water = primitives::frame::body_from_ned(rotation, Ned { north: 0.3, east: 0.1 });
         sim::hull::Planar { surge: boat.nu.surge - water.ahead, sway: boat.nu.sway - water.starboard, yaw: boat.nu.yaw }
     };
     let mut before = hull.energy_joule(relative(&world));
@@ -103,12 +104,12 @@ fn boats_in_waves_heave_at_the_frequency_of_encounter() {
         let start = world.state().boats[0].pose.at;
         let step = |_| {
             world.step(&orders);
-            world.attitude(game::VehicleId(0)).heave_up_m
+            world.attitude(primitives::VehicleId(0)).heave_up_m
         };
         let spectrum = common::amplitudes(&(0..samples).map(step).collect::<Vec<_>>());
         let gone = world.state().boats[0].pose.at - start;
         let k = wave.omega_rad_s * wave.omega_rad_s / GRAVITY_M_S2;
-        let (sin, cos) = game::math::sin_cos(wave.toward_rad);
+        let (sin, cos) = primitives::math::sin_cos(wave.toward_rad);
         let along_m_s = (gone.north * cos + gone.east * sin) / (samples as f64 * dt_s);
         let want = (wave.omega_rad_s - k * along_m_s) / resolution;
         let peak = (1..spectrum.len()).fold(0, |best, bin| if spectrum[bin] > spectrum[best] { bin } else { best });
@@ -131,8 +132,12 @@ fn every_shipped_sea_can_be_sailed_for_a_whole_game() {
             world.step(&[Order::Steer { heading_rad: 1.0, speed_m_s: 2.0 }; 4]);
         }
         assert!(world.state().boats.iter().all(|boat| !boat.quarantined), "{}", file.display());
-        let speed =
-            world.state().boats.iter().map(|boat| game::math::length(boat.nu.surge, boat.nu.sway)).fold(0.0, f64::max);
+        let speed = world
+            .state()
+            .boats
+            .iter()
+            .map(|boat| primitives::math::length(boat.nu.surge, boat.nu.sway))
+            .fold(0.0, f64::max);
         assert!(speed < 10.0, "{}: {speed} m/s", file.display());
     }
 }

@@ -3,11 +3,11 @@
 mod common;
 
 use common::{assert_memory, five_errors, mean_of};
-use game::frame::{Body, Pose, Rotation, body_from_ned, ned_from_body};
-use game::math;
-use game::sea::GRAVITY_M_S2;
-use game::sensor::{Compass, Gps, Imu, Jump, Outage, Sensors};
-use game::{Ned, Order, SimTime, VehicleId};
+use messages::Order;
+use primitives::frame::{Body, Pose, Rotation, body_from_ned, ned_from_body};
+use primitives::{Ned, SimTime, VehicleId, math};
+use scenario::sea::GRAVITY_M_S2;
+use scenario::sensor::{Compass, Gps, Imu, Jump, Outage, Sensors};
 use sim::World;
 use sim::hull::Planar;
 use sim::sea::Attitude;
@@ -145,7 +145,7 @@ fn a_fix_says_where_the_boat_was_and_comes_out_after_its_latency() {
 
 #[test]
 fn the_longest_latency_that_a_file_may_state_comes_out_as_stated_whatever_the_periods() {
-    // What `game::scenario` allows: latency_s up to 2 and up to 12 periods, period_s from 0.02.
+    // What `scenario` allows: latency_s up to 2 and up to 12 periods, period_s from 0.02.
     for decision_ms in [10, 20, 50, 100, 250, 1_000] {
         let decision = SimTime(decision_ms * 1_000_000);
         for period_s in [0.02, 0.029, 0.05, 0.074, 0.1, 0.13, 0.149, 0.149_999, 0.15, 0.2, 1.0, 1.49, 10.0] {
@@ -306,7 +306,7 @@ fn a_compass_deviates_by_its_curve_and_no_more() {
         let (sin, cos) = math::sin_cos(psi_rad);
         let (sin_2, cos_2) = math::sin_cos(2.0 * psi_rad);
         let want = psi_rad + 0.21 - (a + b * sin + c * cos + d * sin_2 + e * cos_2) + 0.03;
-        let off = game::angle::wrap_pi(reading.nav.psi_rad - want);
+        let off = primitives::angle::wrap_pi(reading.nav.psi_rad - want);
         assert!(off.abs() < 1e-12, "heading {i}°: {} not {want}", reading.nav.psi_rad);
         assert!(reading.nav.psi_rad.abs() <= PI);
     }

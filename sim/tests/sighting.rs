@@ -4,11 +4,13 @@
 mod common;
 
 use common::{alone, order};
-use game::angle::rad_from_compass_deg;
-use game::link::{Link, Loss, Sharing};
-use game::picture::Contact;
-use game::scenario::StartPosition;
-use game::{Ned, Order, Pose, Scenario, SimTime, VehicleId};
+use messages::Order;
+use messages::picture::Contact;
+use primitives::angle::rad_from_compass_deg;
+use primitives::{Ned, Pose, SimTime, VehicleId};
+use rules::Sharing;
+use scenario::link::{Link, Loss};
+use scenario::{Scenario, StartPosition};
 use sim::Contest;
 
 const BLUE: VehicleId = VehicleId(0);
@@ -68,7 +70,7 @@ fn a_boat_is_seen_within_the_angle_of_view_whatever_the_heading() {
                 for side in [-1.0, 1.0] {
                     let sharing = Sharing { view_rad: Some(view_deg.to_radians()), ..clear_sight() };
                     let bearing_rad = rad_from_compass_deg(heading_deg + side * off_bow_deg);
-                    let (sin, cos) = game::math::sin_cos(bearing_rad);
+                    let (sin, cos) = primitives::math::sin_cos(bearing_rad);
                     let red = (400.0 + 50.0 * sin, 200.0 + 50.0 * cos, 0.0);
                     let mut contest = started(&facing(sharing, (400.0, 200.0, heading_deg), red));
                     assert_eq!(

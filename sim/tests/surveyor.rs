@@ -3,8 +3,8 @@
 mod common;
 
 use common::alone;
-use game::Order;
-use game::boat::{Drive, ThrustCurve};
+use messages::Order;
+use scenario::boat::{Drive, ThrustCurve};
 use sim::hull::Planar;
 use sim::{BoatState, World};
 
@@ -27,7 +27,7 @@ fn share(newton: f64) -> f64 {
     let scenario = alone("surveyor_m1_8", "calm");
     let Drive::Thrusters { thruster, .. } = &scenario.boats[0].drive else { panic!("it has thrusters") };
     let ThrustCurve::Table { points } = &thruster.curve else { panic!("it has a table") };
-    game::math::interpolate(points.iter().map(|(share, newton)| (*newton, *share)), newton)
+    primitives::math::interpolate(points.iter().map(|(share, newton)| (*newton, *share)), newton)
 }
 
 fn speed(nu: Planar) -> f64 {

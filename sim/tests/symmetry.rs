@@ -4,10 +4,13 @@
 mod common;
 
 use common::{afloat, digest, surveyor_on};
-use game::field::Plan;
-use game::math::sin_cos;
-use game::sea::{Eddy, Gusts, RandomEddies, Sea, Shear, Spreading, Tide, Wander, Waves, Wind};
-use game::{Field, Ned, Order, Pose, Scenario};
+use messages::Order;
+use primitives::math::sin_cos;
+use primitives::{Ned, Pose};
+use rules::Field;
+use rules::field::Plan;
+use scenario::Scenario;
+use scenario::sea::{Eddy, Gusts, RandomEddies, Sea, Shear, Spreading, Tide, Wander, Waves, Wind};
 
 fn waves(hs_m: f64) -> Waves {
     common::waves(hs_m, 2.5, 0.4)
@@ -65,7 +68,7 @@ fn track(scenario: &Scenario, order_of: impl Fn(f64) -> Order, by_rad: f64) -> V
         let boat = world.state().boats[0];
         let Pose { at, psi_rad } = boat.pose;
         let at = turned(at, -by_rad);
-        [at.north, at.east, game::angle::wrap_pi(psi_rad - by_rad), boat.nu.surge, boat.nu.sway, boat.nu.yaw]
+        [at.north, at.east, primitives::angle::wrap_pi(psi_rad - by_rad), boat.nu.surge, boat.nu.sway, boat.nu.yaw]
     };
     (0..1_200).map(step).collect()
 }
@@ -75,7 +78,7 @@ fn it_does_not_matter_where_north_is() {
     // The table of headings has an entry every 5°. Turned by a multiple of that, a boat finds the same numbers, to single
     // precision; by anything else, it finds others between the entries, which are off by a part of a per cent.
     let scenario = surveyor_on(everything);
-    let steer = |by_rad: f64| Order::Steer { heading_rad: game::angle::wrap_pi(0.6 + by_rad), speed_m_s: 1.5 };
+    let steer = |by_rad: f64| Order::Steer { heading_rad: primitives::angle::wrap_pi(0.6 + by_rad), speed_m_s: 1.5 };
     let thrust = |_| Order::Thrust { port: 0.6, starboard: 0.55 };
     let mut farthest_m = 0.0_f64;
     for by_deg in [90.0, 35.0, 180.0, -115.0, 2.5, 47.3, 181.7] {
@@ -84,8 +87,11 @@ fn it_does_not_matter_where_north_is() {
         let within_m = if by_deg % 5.0 == 0.0 { 1e-4 } else { 0.05 };
         for order_of in [&steer as &dyn Fn(f64) -> Order, &thrust] {
             let (here, there) = (track(&scenario, order_of, 0.0), track(&other, order_of, by_rad));
-            let off_m =
-                here.iter().zip(&there).map(|(a, b)| game::math::length(a[0] - b[0], a[1] - b[1])).fold(0.0, f64::max);
+            let off_m = here
+                .iter()
+                .zip(&there)
+                .map(|(a, b)| primitives::math::length(a[0] - b[0], a[1] - b[1]))
+                .fold(0.0, f64::max);
             assert!(off_m < within_m, "{by_deg}°: {off_m} m off after a minute");
             farthest_m = farthest_m.max(here[1199][0] - 200.0);
         }
@@ -146,7 +152,7 @@ fn a_uniform_current_carries_everything_along_and_changes_nothing_else() {
         carried.step(&orders);
         let (a, b) = (still.state().boats[0].pose, carried.state().boats[0].pose);
         let off_m = (b.at - current.scaled(f64::from(tick) * 0.05)).distance(a.at);
-        let off_rad = game::angle::wrap_pi(a.psi_rad - b.psi_rad).abs();
+        let off_rad = primitives::angle::wrap_pi(a.psi_rad - b.psi_rad).abs();
         // The state holds the velocity over the ground, so in every tick the current is added and taken away again:
         // that rounds, and headings are alike to rounding, not to the last bit.
         assert!(off_m < 1e-10 && off_rad < 1e-12, "tick {tick}: {off_m} m, {off_rad} rad");

@@ -3,9 +3,9 @@
 mod common;
 
 use common::square;
-use game::frame::Ned;
-use game::sea::{GRAVITY_M_S2, Spreading, Waves};
-use game::stream::Stream;
+use primitives::frame::Ned;
+use primitives::stream::Stream;
+use scenario::sea::{GRAVITY_M_S2, Spreading, Waves};
 use sim::sea::spectrum::{BAND, jonswap_m2_s};
 use sim::sea::wave::wavenumber_rad_m;
 use sim::sea::{Component, Surface, WaveField};

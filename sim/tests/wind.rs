@@ -3,11 +3,11 @@
 mod common;
 
 use common::{assert_memory, five_errors, mean_of};
-use game::boat::Windage;
-use game::frame::Body;
-use game::math;
-use game::sea::{Gusts, Wind};
-use game::{Field, Ned, Rotation, SimTime};
+use primitives::frame::Body;
+use primitives::{Ned, Rotation, SimTime, math};
+use rules::Field;
+use scenario::boat::Windage;
+use scenario::sea::{Gusts, Wind};
 use sim::hull::Planar;
 use sim::sea::wind::WindField;
 use sim::sea::windage::{AIR_DENSITY_KG_M3, wind_force, wind_past_boat};

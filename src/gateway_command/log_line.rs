@@ -2,8 +2,8 @@
 
 use crate::printer::Printer;
 use crate::{screen, style};
-use game::external::{GatewayStatus, GeofenceReport};
 use gateway::bridge::Event;
+use messages::external::{GatewayStatus, GeofenceReport};
 use std::io::IsTerminal;
 
 /// Prints a gateway's log. The gateway waits for none of it.
@@ -97,7 +97,7 @@ fn brief(status: &GatewayStatus) -> String {
             "x {:.1} y {:.1} m, {:03.0} deg, {:.1} m/s, {age_s:.1} s old",
             nav.east_m,
             nav.north_m,
-            game::angle::compass_deg_from_rad(nav.psi_rad),
+            primitives::angle::compass_deg_from_rad(nav.psi_rad),
             nav.surge_m_s
         ),
         _ => "no navigation".to_owned(),
@@ -138,7 +138,7 @@ pub(super) fn full(status: &GatewayStatus) -> String {
             "x {:.2} m, y {:.2} m, heading {:.1} deg, {:.2} m/s ahead, {:.1} s old",
             nav.east_m,
             nav.north_m,
-            game::angle::compass_deg_from_rad(nav.psi_rad),
+            primitives::angle::compass_deg_from_rad(nav.psi_rad),
             nav.surge_m_s,
             status.nav_age_s.unwrap_or(0.0)
         )

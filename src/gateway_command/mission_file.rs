@@ -1,8 +1,8 @@
 //! Missions in `.sea` files: the lines that a boat receives.
 
 use anyhow::{Context, Result, anyhow};
-use game::external::Mission;
 use gateway::nmea::{Command, Framer, Mode, Sentence, checksum};
+use messages::external::Mission;
 use std::path::Path;
 
 /// The longest mission file, bytes: many times what a boat takes.
@@ -10,7 +10,8 @@ const BYTES_MAX: u64 = 1 << 20;
 
 /// The mission in a `.sea` file.
 pub(super) fn read(path: &Path) -> Result<Mission> {
-    let bytes = game::input_file::read(path, BYTES_MAX).with_context(|| format!("cannot read {}", path.display()))?;
+    let bytes =
+        primitives::input_file::read(path, BYTES_MAX).with_context(|| format!("cannot read {}", path.display()))?;
     mission_of(&String::from_utf8_lossy(&bytes)).map_err(|(line, why)| {
         let place = line.map_or(String::new(), |line| format!(":{line}"));
         anyhow!("{}{place}: {why}", path.display())

@@ -15,7 +15,7 @@ mod tell;
 
 use anyhow::{Context, Result};
 use clap::Subcommand;
-use game::external::Mission;
+use messages::external::Mission;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -48,10 +48,10 @@ enum Command {
 }
 
 /// How a boat is driven and stopped, by this file, or by the defaults.
-fn gateway_file(path: Option<&Path>) -> Result<game::gateway::Gateway> {
+fn gateway_file(path: Option<&Path>) -> Result<scenario::gateway::Gateway> {
     let load =
-        |path: &Path| game::scenario::load_gateway(path).with_context(|| format!("cannot drive by {}", path.display()));
-    path.map_or_else(|| Ok(game::scenario::default_gateway()), load)
+        |path: &Path| scenario::load_gateway(path).with_context(|| format!("cannot drive by {}", path.display()));
+    path.map_or_else(|| Ok(scenario::default_gateway()), load)
 }
 
 /// The mission in the text of a mission file, or what is wrong with it.

@@ -18,7 +18,7 @@ pub(super) fn write(path: &Path, report: &Report) -> Result<()> {
 
 /// Reads a report.
 pub(super) fn read(path: &Path) -> Result<Report> {
-    let text =
-        game::input_file::read_text(path, BYTES_MAX).with_context(|| format!("cannot read {}", path.display()))?;
+    let text = primitives::input_file::read_text(path, BYTES_MAX)
+        .with_context(|| format!("cannot read {}", path.display()))?;
     serde_json::from_str(&text).with_context(|| format!("{} is no report of a pre-flight check", path.display()))
 }

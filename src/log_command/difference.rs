@@ -1,7 +1,7 @@
 //! Two recorded games beside each other, as text.
 
 use analysis::{Comparison, Pair, Response, SETTLED_S};
-use game::printable::add_line;
+use primitives::printable::add_line;
 use std::path::Path;
 
 /// The whole page.
@@ -53,11 +53,11 @@ fn responses(text: &mut String, width: usize, boats: &[Pair]) {
     for pair in boats {
         for (game, response) in ["A", "B"].into_iter().zip(&pair.response) {
             let cell = |(_, _, places, of): Measure| match of(response) {
-                Some(number) => format!("{:>13}", game::math::decimal(number, places)),
+                Some(number) => format!("{:>13}", primitives::math::decimal(number, places)),
                 None => format!("{:>13}", "-"),
             };
             let drift = match response.hold_drift_m_s {
-                Some(drift) => drift.map(|m_s| game::math::decimal(m_s, 3)).join(", "),
+                Some(drift) => drift.map(|m_s| primitives::math::decimal(m_s, 3)).join(", "),
                 None => "-".to_owned(),
             };
             let name = if game == "A" { pair.boat.as_str() } else { "" };

@@ -3,8 +3,9 @@
 use crate::output_file;
 use analysis::{alog, table};
 use anyhow::{Context, Result};
-use game::{Scenario, printable};
+use primitives::printable;
 use recording::{Bag, Damaged, Recording};
+use scenario::Scenario;
 use std::borrow::Cow;
 use std::io::{BufWriter, ErrorKind, IsTerminal, Write};
 use std::path::Path;

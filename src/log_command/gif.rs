@@ -8,9 +8,9 @@ use crate::plot::film::{Boat, Moment, Stage};
 use crate::plot::{colour, pixels};
 use crate::water_args::within;
 use anyhow::{Context, Result, bail};
-use game::Ned;
-use game::message::{Frame, VehicleTruth};
 use gif::{DisposalMethod, Encoder, Repeat};
+use messages::{Frame, VehicleTruth};
+use primitives::Ned;
 use recording::{Damaged, Recording};
 use std::borrow::Cow;
 use std::collections::{BTreeMap, VecDeque};
@@ -145,7 +145,7 @@ fn moment<'a>(
 ) -> Moment<'a> {
     let scenario = &recording.header().info.scenario;
     let named = scenario.vehicles.len() <= NAMES_MAX;
-    let boat = |(i, (vehicle, truth)): (usize, (&game::scenario::Vehicle, &VehicleTruth))| Boat {
+    let boat = |(i, (vehicle, truth)): (usize, (&scenario::Vehicle, &VehicleTruth))| Boat {
         name: if named { vehicle.name.replace('_', " ") } else { String::new() },
         team: vehicle.team.index(),
         at: place(truth),
@@ -154,7 +154,7 @@ fn moment<'a>(
         tagged: truth.tagged,
         trail: trails.iter().filter_map(|(_, places)| places.get(i).copied()).collect(),
     };
-    let flag = |(flag, view): (&game::field::Flag, &game::picture::FlagView)| {
+    let flag = |(flag, view): (&rules::field::Flag, &messages::picture::FlagView)| {
         let carrier = usize::try_from(view.carrier).ok().and_then(|carrier| frame.vehicles.get(carrier));
         (flag.team.index(), carrier.map_or(flag.home, place))
     };

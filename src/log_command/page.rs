@@ -1,7 +1,7 @@
 //! The summary of a recorded game as text.
 
 use analysis::{BoatStatistics, Gateway, Summary, Topic, Traffic};
-use game::printable::add_line;
+use primitives::printable::add_line;
 use recording::{Bag, Damaged, utc};
 use std::collections::BTreeMap;
 

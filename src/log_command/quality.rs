@@ -6,7 +6,7 @@ use crate::{output_file, recording_file, screen};
 use analysis::Step;
 use analysis::quality::{GameQuality, MindState, Quality};
 use anyhow::Result;
-use game::VehicleId;
+use primitives::VehicleId;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 

@@ -6,7 +6,7 @@ use crate::screen;
 use crate::stop;
 use agent::node::{News, Settings};
 use anyhow::{Context, Result};
-use game::strategy::Strategy;
+use scenario::strategy::Strategy;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
@@ -39,7 +39,7 @@ pub(crate) struct Args {
 
 /// The strategy in a file, with every problem in the error.
 fn load_strategy(path: &Path) -> Result<Strategy> {
-    game::scenario::load_strategy(path).with_context(|| format!("cannot play by {}", path.display()))
+    scenario::load_strategy(path).with_context(|| format!("cannot play by {}", path.display()))
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {

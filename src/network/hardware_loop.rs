@@ -7,9 +7,9 @@ use crate::game_args::GameArgs;
 use crate::output_file;
 use anyhow::{Context, Result, anyhow, bail};
 use bus::keys::Identity;
-use game::Scenario;
-use game::gateway::{BoatProtocol, Gateway};
 use recording::NewFile;
+use scenario::Scenario;
+use scenario::gateway::{BoatProtocol, Gateway};
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::time::Duration;
@@ -56,9 +56,9 @@ impl LoopArgs {
             bail!("no boat of this game is real: --emulate has nothing to stand in for");
         }
         let gateway = match &self.gateway {
-            None => game::scenario::default_gateway(),
+            None => scenario::default_gateway(),
             Some(path) => {
-                game::scenario::load_gateway(path).with_context(|| format!("cannot drive by {}", path.display()))?
+                scenario::load_gateway(path).with_context(|| format!("cannot drive by {}", path.display()))?
             }
         };
         if let Some(folder) = &self.record_gateways {

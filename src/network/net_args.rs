@@ -4,8 +4,8 @@ use anyhow::{Context, Result, anyhow, bail};
 use bus::keys::Bundle;
 use bus::token::TOKEN_VARIABLE;
 use bus::{Net, Place, Token};
-use game::input_file;
-use game::topic::GameName;
+use messages::topic::GameName;
+use primitives::input_file;
 use std::path::PathBuf;
 use std::sync::Arc;
 

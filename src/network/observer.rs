@@ -4,10 +4,10 @@ use super::net_args::LeafArgs;
 use anyhow::{Context, Result, bail};
 use bus::game_search;
 use bus::{Bus, clock};
-use game::VehicleId;
-use game::helm::{HelmQuestion, HelmReport};
-use game::message::GameInfo;
-use game::topic::{self, GameName};
+use messages::GameInfo;
+use messages::helm::{HelmQuestion, HelmReport};
+use messages::topic::{self, GameName};
+use primitives::VehicleId;
 use shore::page::is_sound;
 use std::time::Duration;
 

@@ -4,7 +4,7 @@ use super::child_process::{self, option};
 use super::sim_command::seconds;
 use crate::game_args::{GameArgs, speed};
 use anyhow::Result;
-use game::scenario::Setting;
+use scenario::Setting;
 use sim::node::Pace;
 use std::process::Command;
 

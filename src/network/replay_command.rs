@@ -7,7 +7,7 @@ use crate::screen::{self, Screen};
 use crate::stop;
 use crate::style::Names;
 use anyhow::{Result, bail};
-use game::VehicleId;
+use primitives::VehicleId;
 use shore::page::HelmAnswer;
 use shore::page::replay::{Helms, Recorded, ReplayView};
 use std::path::Path;

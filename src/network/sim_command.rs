@@ -10,7 +10,7 @@ use crate::style::Names;
 use crate::water_args::within;
 use anyhow::{Context, Result, bail};
 use bus::Token;
-use game::topic::GameName;
+use messages::topic::GameName;
 use sim::node::{GameRecorder, ProgressMessage, Settings};
 use std::path::PathBuf;
 use std::process::ExitCode;

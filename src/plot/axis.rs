@@ -74,7 +74,7 @@ mod tests {
             ("degrees", (0.0, 1e5), "0 20000 40000 60000 80000 100000"),
         ] {
             let Axis { labels, places, .. } = Axis::new(name, range);
-            let labels: Vec<String> = labels.into_iter().map(|at| game::math::decimal(at, places)).collect();
+            let labels: Vec<String> = labels.into_iter().map(|at| primitives::math::decimal(at, places)).collect();
             assert_eq!(labels.join(" "), want, "{name} {range:?}");
         }
     }

@@ -1,10 +1,10 @@
 //! A chart of the field with tracks on it, as SVG and PNG files.
 
 use crate::plot::{Area, Drawing, Drawn, FONT};
-use game::field::{Field, Obstacle};
-use game::{Ned, math};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
+use primitives::{Ned, math};
+use rules::field::{Field, Obstacle};
 
 /// A chart.
 pub(crate) struct Chart<'a> {
@@ -170,8 +170,8 @@ fn draw_axes<B: DrawingBackend>(root: &Area<B>, view: &View) -> Drawn<B> {
         .y_labels(10)
         .light_line_style(TRANSPARENT)
         .bold_line_style(RGBColor(232, 232, 232))
-        .x_label_formatter(&|x| game::math::decimal(*x, 0))
-        .y_label_formatter(&|y| game::math::decimal(*y, 0))
+        .x_label_formatter(&|x| primitives::math::decimal(*x, 0))
+        .y_label_formatter(&|y| primitives::math::decimal(*y, 0))
         .draw()
 }
 
@@ -309,12 +309,12 @@ fn draw_legend<B: DrawingBackend>(root: &Area<B>, chart: &Chart<'_>, view: &View
 #[cfg(test)]
 mod tests {
     use super::*;
-    use game::field::{Plan, Walls};
+    use rules::field::{Plan, Walls};
 
     fn field(along_deg: f64) -> Field {
         Field::new(Plan {
             name: "test".into(),
-            datum: game::LatLon::default(),
+            datum: primitives::LatLon::default(),
             corner: Ned::default(),
             along_deg,
             width_m: 160.0,

@@ -2,10 +2,10 @@
 
 use crate::plot::field::{Symbol, View, draw_field, draw_symbol, fine, is_drawn};
 use crate::plot::{Area, Drawing, Drawn, FONT};
-use game::field::Field;
-use game::{Ned, math};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
+use primitives::{Ned, math};
+use rules::field::Field;
 
 /// The page's water.
 const WATER: RGBColor = RGBColor(227, 238, 244);

@@ -4,11 +4,12 @@ use crate::plot::field::{Chart, Spot, Symbol, Track};
 use crate::plot::{self, Line, Page, Panel, colour};
 use analysis::{BoatSeries, Comparison, GameSeries, Sample, distances};
 use anyhow::Result;
-use game::angle::compass_deg_from_rad;
-use game::event::Event;
-use game::{Ned, Order};
+use messages::Order;
 use plotters::style::RGBColor;
+use primitives::Ned;
+use primitives::angle::compass_deg_from_rad;
 use recording::Header;
+use rules::event::Event;
 use std::path::Path;
 
 /// More boats than this have no names on the chart: they would hide it.

@@ -232,8 +232,8 @@ fn draw_lines<B: DrawingBackend>(area: &Area<B>, panel: &Panel) -> Drawn<B> {
         .label_style((FONT, 12))
         .light_line_style(TRANSPARENT)
         .bold_line_style(RGBColor(222, 222, 222))
-        .x_label_formatter(&|x| ::game::math::decimal(*x, x_places))
-        .y_label_formatter(&|y| ::game::math::decimal(*y, y_places))
+        .x_label_formatter(&|x| primitives::math::decimal(*x, x_places))
+        .y_label_formatter(&|y| primitives::math::decimal(*y, y_places))
         .draw()?;
     for (line, colour) in panel.coloured() {
         for piece in pieces(&line.points) {

@@ -3,8 +3,8 @@
 use crate::plot::{self, Line, Mark, Page, Panel};
 use anyhow::Result;
 use arena::trial::Sample;
-use game::sea::Sea;
-use game::{Ned, SimTime, math};
+use primitives::{Ned, SimTime, math};
+use scenario::sea::Sea;
 use sim::sea::{Band, SeaModel, band, spectrum};
 use std::path::Path;
 

@@ -1,12 +1,12 @@
 //! A recorded game played again from what it was given, beside what was recorded.
 
 use anyhow::{Result, bail};
-use game::Scenario;
-use game::codec;
-use game::event::EventCursor;
-use game::input::Inputs;
-use game::message::Frame;
+use messages::Frame;
+use messages::input::Inputs;
+use primitives::codec;
 use recording::{FRAME, INPUTS, Recording};
+use rules::event::EventCursor;
+use scenario::Scenario;
 use serde_json::Value;
 use sim::Contest;
 
@@ -105,23 +105,23 @@ fn differing(path: &str, a: &Value, b: &Value) -> Option<[String; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use game::event::EventCursor;
-    use game::input::Input;
-    use game::message::GameInfo;
-    use game::{Order, SimTime, VehicleId};
+    use messages::input::Input;
+    use messages::{GameInfo, Order};
+    use primitives::{SimTime, VehicleId};
     use recording::{Decision, Ending, Entry, Header, Writer};
+    use rules::event::EventCursor;
     use std::io::Cursor;
 
     /// The first second of a game with pictures that nobody wrote down; `change` may leave decisions out.
     fn recorded(change: impl Fn(Decision) -> Option<Decision>) -> Recording {
         let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/games/attack_1v1.toml");
-        let scenario = game::scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
+        let scenario = scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
         let header = Header {
             commit: String::new(),
             game: "made_up".to_owned(),
             began_utc_ns: 0,
-            info: GameInfo { version: game::VERSION.to_owned(), pace: String::new(), scenario: scenario.clone() },
-            water: game::water::Water::default(),
+            info: GameInfo { version: primitives::VERSION.to_owned(), pace: String::new(), scenario: scenario.clone() },
+            water: messages::water::Water::default(),
         };
         let mut writer = Writer::begin(Cursor::new(Vec::new()), &header.opening()).expect("memory");
         let mut written = EventCursor::default();

@@ -4,9 +4,9 @@ use super::events::Events;
 use crate::output_file;
 use crate::plot::training::{Learnt, svg};
 use anyhow::{Context, Result};
-use game::printable;
 use learn::environment::{Finished, recording_name};
 use learn::train::{Progress, Trainer};
+use primitives::printable;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 

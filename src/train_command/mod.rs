@@ -7,10 +7,10 @@ use crate::progress::Progress;
 use crate::{output_file, screen, stop};
 use anyhow::{Context, Result, bail};
 use files::Files;
-use game::scenario::{self, Kind};
-use game::training::Training;
 use learn::environment::{RecordingLog, RecordingNames, Recordings, check_recording_folder};
 use learn::train::{Evaluated, Played, Trainer};
+use scenario::Kind;
+use scenario::training::Training;
 use std::num::{NonZeroU64, NonZeroUsize};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -105,7 +105,7 @@ fn base(file: &Path, training: &Training) -> PathBuf {
 fn begin(args: &Args, training: Training, folder: &Path, jobs: usize) -> Result<Trainer> {
     let path = Files::state(folder);
     if args.resume {
-        let state = game::input_file::read(&path, STATE_BYTES_MAX);
+        let state = primitives::input_file::read(&path, STATE_BYTES_MAX);
         let state = state.with_context(|| format!("cannot read {}, which --resume goes on from", path.display()))?;
         return Trainer::resume(training, jobs, &state).with_context(|| path.display().to_string());
     }

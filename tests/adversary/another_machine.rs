@@ -6,8 +6,8 @@ use crate::intruder::{Intruder, Target};
 use crate::support::{FOUR, Process, token, wait_until};
 use crate::two_hosts::{ENDPOINT, GAME, Hosts};
 use bus::{Bus, Net};
-use game::message::Control;
-use game::topic::GameName;
+use messages::Control;
+use messages::topic::GameName;
 use std::time::{Duration, Instant};
 
 /// By it a process knows that it was started on the other machine.

@@ -4,7 +4,7 @@ use crate::crowd::{FILES, is_withstood, squall_with_files};
 use crate::disturbed_game::DisturbedGame;
 use crate::intruder::{Intruder, Target};
 use crate::support::{FOUR, LIMIT, Process, Sim, free_endpoint, wait_until};
-use game::message::Control;
+use messages::Control;
 use serde_json::Value;
 use std::any::Any;
 use std::io::Read;

@@ -1,10 +1,10 @@
 //! A boat at the other end of a gateway's link: it reports that all is well, follows commands, and notes when which came.
 
-use game::frame::LatLon;
-use game::picture::{Nav, OwnBoat};
-use game::{SimTime, VehicleId};
 use gateway::emulator::{Emulator, Plan, Port};
 use gateway::nmea::{Framer, Mode, Sentence, date_and_time};
+use messages::picture::{Nav, OwnBoat};
+use primitives::frame::LatLon;
+use primitives::{SimTime, VehicleId};
 use std::io::{ErrorKind, Read, Write};
 use std::net::{TcpListener, TcpStream};
 use std::sync::mpsc::{Receiver, Sender, channel};

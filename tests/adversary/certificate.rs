@@ -7,7 +7,7 @@ use crate::support::{FOUR, Process, Sim, free_endpoint, squall, temporary, wait_
 use bus::keys::{Bundle, Identity, make};
 use bus::token::TOKEN_VARIABLE;
 use bus::{Bus, BusError, Net};
-use game::message::Control;
+use messages::Control;
 use serde_json::{Value, json};
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -159,7 +159,7 @@ fn a_red_agent_learns_nothing_of_blue_and_changes_nothing() {
     let not_its_own = |key: &String| *key != red.topic("picture/red");
     assert_eq!(secret.iter().flat_map(|heard| heard.keys()).find(not_its_own), None);
     let request = |vehicles: Value| {
-        let body = json!({ "version": game::VERSION, "role": "agent", "node": "red", "vehicles": vehicles });
+        let body = json!({ "version": primitives::VERSION, "role": "agent", "node": "red", "vehicles": vehicles });
         json!({ "body": body }).to_string().into_bytes()
     };
     for (place, vehicles) in [("join/agent/blue", json!(["blue_one"])), ("join/agent", json!(["blue_one", "red_one"]))]
@@ -235,7 +235,7 @@ fn a_gateway_speaks_for_its_own_boat_only() {
     let sim = sim(&own, "mixed_60s", &["--pace", "realtime", "--join-s", "600"]);
     let red_one = traitor(&sim, &own, "gateway-red_one");
     let request = |vehicle: &str| {
-        let body = json!({ "version": game::VERSION, "role": "gateway", "node": "x", "vehicles": [vehicle] });
+        let body = json!({ "version": primitives::VERSION, "role": "gateway", "node": "x", "vehicles": [vehicle] });
         json!({ "body": body }).to_string().into_bytes()
     };
     assert_eq!(red_one.ask("join/gateway/blue_one", request("blue_one")).len(), 0);

@@ -3,8 +3,7 @@
 use crate::intruder::Target;
 use crate::support::{Sim, squall, wait_until, wait_within};
 use bus::Bus;
-use game::message::Control;
-use game::topic;
+use messages::{Control, topic};
 use serde_json::Value;
 use std::any::Any;
 use std::collections::VecDeque;

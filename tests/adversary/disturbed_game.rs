@@ -2,7 +2,7 @@
 
 use crate::support::{Process, Sim, own, result_of};
 use bus::Bus;
-use game::message::Control;
+use messages::Control;
 use serde_json::Value;
 
 /// In lockstep, so that any disturbance shows in the digest.

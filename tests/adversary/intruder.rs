@@ -1,7 +1,7 @@
 //! A zenoh session that is none of ours.
 
 use crate::support::Sim;
-use game::topic::{self, GameName};
+use messages::topic::{self, GameName};
 use serde_json::{Value, json};
 use std::io::Write;
 use std::net::TcpStream;

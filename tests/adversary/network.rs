@@ -3,10 +3,9 @@
 use crate::intruder::Intruder;
 use crate::support::{LIMIT, Sim, wait_until};
 use bus::{Latest, SimState, SimWatch};
-use game::message::{Frame, Message, Stamp};
-use game::run_state::{Phase, RunState};
-use game::topic;
-use game::{Picture, TeamId, codec};
+use messages::run_state::{Phase, RunState};
+use messages::{Frame, Message, Picture, Stamp, topic};
+use primitives::{TeamId, codec};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;

@@ -4,9 +4,10 @@ use crate::disturbed_game::DisturbedGame;
 use crate::intruder::Intruder;
 use crate::support::{LIMIT, Sim, token, wait_until};
 use bus::{Bus, Net, Priority, Token};
-use game::message::{JoinReply, JoinRequest, Message, Orders, Role, Stamp, VehicleOrder};
-use game::topic::{self, GameName};
-use game::{Order, Scenario, SimTime, TeamId, VehicleId, codec};
+use messages::topic::{self, GameName};
+use messages::{JoinReply, JoinRequest, Message, Order, Orders, Role, Stamp, VehicleOrder};
+use primitives::{SimTime, TeamId, VehicleId, codec};
+use scenario::Scenario;
 use serde_json::json;
 use std::time::Duration;
 use zenoh::Wait;
@@ -23,7 +24,7 @@ fn node(sim: &Sim, token: Option<Token>) -> Bus {
 
 /// What becomes of a request to have the boat; nothing if it is turned down for the token.
 fn join((game, scenario): (&GameName, &Scenario), bus: &Bus) -> Option<JoinReply> {
-    let (version, vehicles) = (game::VERSION.to_owned(), vec![BOAT.to_owned()]);
+    let (version, vehicles) = (primitives::VERSION.to_owned(), vec![BOAT.to_owned()]);
     let request = JoinRequest { version, role: Role::Agent, node: bus.id(), vehicles };
     let key = topic::join(game, scenario, Role::Agent, &request.vehicles);
     bus.request(&key, &request, Duration::from_secs(10)).ok()?
@@ -116,7 +117,7 @@ fn nobody_without_a_ticket_takes_over_what_others_steer() {
         for name in info.scenario.vehicles.iter().map(|vehicle| &vehicle.name) {
             for role in [Role::Agent, Role::Gateway] {
                 let request =
-                    json!({ "version": game::VERSION, "role": role, "node": agents.id(), "vehicles": [name] });
+                    json!({ "version": primitives::VERSION, "role": role, "node": agents.id(), "vehicles": [name] });
                 let key = topic::join(&sim.name(), &info.scenario, role, std::slice::from_ref(name));
                 for payload in [json!({ "body": request }), json!({ "body": request, "proof": proof })] {
                     let answers = intruder.ask_at(&key, payload.to_string().into_bytes());

@@ -4,8 +4,7 @@ use crate::intruder::Intruder;
 use crate::support::{FOUR, Sim, stderr, token};
 use bus::token::TOKEN_VARIABLE;
 use bus::{Bus, BusError, Net, Token};
-use game::message::{Control, JoinReply, JoinRequest, Role};
-use game::topic;
+use messages::{Control, JoinReply, JoinRequest, Role, topic};
 use serde_json::{Value, json};
 use std::time::Duration;
 
@@ -18,7 +17,7 @@ fn join(sim: &Sim, token: Option<Token>, role: Role) -> Result<JoinReply, BusErr
     let bus = session(sim, token);
     let vehicles = vec!["red_two".to_owned()];
     let key = topic::join(&sim.name(), &sim.info(&bus).scenario, role, &vehicles);
-    let request = JoinRequest { version: game::VERSION.to_owned(), role, node: bus.id(), vehicles };
+    let request = JoinRequest { version: primitives::VERSION.to_owned(), role, node: bus.id(), vehicles };
     Ok(bus.request(&key, &request, Duration::from_secs(10))?.expect("the sim answers"))
 }
 

@@ -1,12 +1,12 @@
 //! `squall policy` from outside: what it tells of a model, and how it explains a choice whose reason is known.
 
 use crate::program::{printed, project, refusal, scenario};
-use game::action::ActionSpace;
-use game::helm::{PolicyReport, PolicyWords};
-use game::observation::ObservationSpace;
-use game::policy::PolicySpec;
-use game::scenario::Overrides;
+use messages::helm::{PolicyReport, PolicyWords};
 use onnx::{Activation, Head, Layer, Perceptron};
+use scenario::Overrides;
+use scenario::action::ActionSpace;
+use scenario::observation::ObservationSpace;
+use scenario::policy::PolicySpec;
 use std::collections::BTreeMap;
 
 const SPEC: PolicySpec = PolicySpec {
@@ -38,7 +38,7 @@ fn model() -> Vec<u8> {
 
 /// The probability of [`ACTION`] in percent.
 fn percent(input: f64) -> f64 {
-    let part = game::math::exp(3.0 + 2.0 * input);
+    let part = primitives::math::exp(3.0 + 2.0 * input);
     100.0 * part / (part + 16.0)
 }
 
@@ -91,7 +91,7 @@ fn what_a_helm_reports_of_a_policy_is_told_in_words() {
         .unwrap();
     let strategies = BTreeMap::from([("blue".to_owned(), here.join("known.toml"))]);
     let overrides = Overrides { strategies, ..Overrides::default() };
-    let game = game::scenario::load_with(scenario("games/attack_1v1.toml").as_ref(), &overrides).unwrap();
+    let game = scenario::load_with(scenario("games/attack_1v1.toml").as_ref(), &overrides).unwrap();
     let blue = game.vehicle_named("blue_one").unwrap();
     let names = SPEC.observation.names(0, 1);
     let observed: Vec<f32> = (0..names.len()).map(|i| i as f32).collect();

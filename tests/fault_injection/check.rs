@@ -3,9 +3,9 @@
 use crate::plan::{FIRST_AGENT, Plan, SIM};
 use crate::play::Played;
 use bus::simulated::{Fault, Verdict};
-use game::outcome::Outcome;
-use game::refusal::Refusal;
+use messages::refusal::Refusal;
 use parking_lot::Mutex;
+use scenario::outcome::Outcome;
 use sim::node::{Pace, Report};
 use std::collections::BTreeMap;
 use std::time::Duration;

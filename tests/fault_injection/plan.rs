@@ -1,7 +1,7 @@
 //! The plan of one game: what is played, over which network, and what goes wrong. All of it is drawn from one seed.
 
 use bus::simulated::{Conditions, Damage, Fault};
-use game::stream::Stream;
+use primitives::stream::Stream;
 use sim::node::Pace;
 use std::time::Duration;
 

@@ -8,13 +8,13 @@ use agent::node::News;
 use bus::game_search::GameSearch;
 use bus::simulated::{Run, SimulatedNetwork};
 use bus::{Net, Patience, SimState, SimWatch, Watched};
-use game::external::ExternalOrder;
-use game::message::Frame;
-use game::refusal::Refusals;
-use game::scenario::Scenario;
-use game::topic::{self, GameName};
-use game::{SimTime, codec};
+use messages::Frame;
+use messages::external::ExternalOrder;
+use messages::refusal::Refusals;
+use messages::topic::{self, GameName};
 use parking_lot::Mutex;
+use primitives::{SimTime, codec};
+use scenario::Scenario;
 use sim::node::{Report, Settings};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -53,8 +53,7 @@ struct Results {
 /// The scenarios, read once.
 static SCENARIOS: LazyLock<Vec<Scenario>> = LazyLock::new(|| {
     let games = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fault_injection/games");
-    let read =
-        |game: &&str| game::scenario::load(&games.join(format!("{game}.toml"))).unwrap_or_else(|e| panic!("{e}"));
+    let read = |game: &&str| scenario::load(&games.join(format!("{game}.toml"))).unwrap_or_else(|e| panic!("{e}"));
     GAMES.iter().map(read).collect()
 });
 

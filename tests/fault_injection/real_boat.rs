@@ -4,10 +4,10 @@
 use crate::boat::{Boat, STEP_S, emulated};
 use crate::oracle::Oracle;
 use bus::{Watched, clock};
-use game::SimTime;
-use game::frame::{LatLon, Ned};
 use gateway::emulator::{self, Emulator, Port};
 use parking_lot::Mutex;
+use primitives::SimTime;
+use primitives::frame::{LatLon, Ned};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 

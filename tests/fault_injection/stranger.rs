@@ -3,10 +3,10 @@
 
 use crate::play::net;
 use bus::{Bus, Net, Query, Watched, clock};
-use game::external::{GatewayStatus, OperatorReply, Reported};
-use game::stream::Stream;
-use game::topic::{self, GameName};
+use messages::external::{GatewayStatus, OperatorReply, Reported};
+use messages::topic::{self, GameName};
 use parking_lot::Mutex;
+use primitives::stream::Stream;
 use std::sync::Arc;
 use std::time::Duration;
 

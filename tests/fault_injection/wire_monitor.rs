@@ -2,10 +2,10 @@
 
 use crate::plan::Plan;
 use bus::simulated::Published;
-use game::external::ExternalOrder;
-use game::message::{Frame, Orders, VehicleTruth};
-use game::scenario::Scenario;
-use game::{Order, SimTime, codec};
+use messages::external::ExternalOrder;
+use messages::{Frame, Order, Orders, VehicleTruth};
+use primitives::{SimTime, codec};
+use scenario::Scenario;
 use sim::node::Pace;
 use std::time::Duration;
 

@@ -6,16 +6,17 @@
 
 #![expect(clippy::print_stdout, reason = "what was measured is shown to whoever runs it by hand")]
 
-use game::angle::wrap_pi;
-use game::external::OperatorCommand;
-use game::frame::{Ned, Rotation, body_from_ned};
-use game::picture::{Imu, OwnBoat};
-use game::scenario::{Overrides, load_gateway, load_with};
-use game::stream::Stream;
-use game::{Order, SimTime, VehicleId};
 use gateway::bridge::{Bridge, Event, Input, Output, Plan, Preflight, Site};
 use gateway::emulator::{self, Emulator, Port};
 use gateway::nmea::{Date, TimeOfDay};
+use messages::Order;
+use messages::external::OperatorCommand;
+use messages::picture::{Imu, OwnBoat};
+use primitives::angle::wrap_pi;
+use primitives::frame::{Ned, Rotation, body_from_ned};
+use primitives::stream::Stream;
+use primitives::{SimTime, VehicleId};
+use scenario::{Overrides, load_gateway, load_with};
 use sim::World;
 use std::collections::BTreeMap;
 use std::path::Path;

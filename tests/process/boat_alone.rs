@@ -3,10 +3,9 @@
 use crate::support::{LIMIT, Process, Sim, newest, run, squall, stderr, stdout, wait_until, wait_within};
 use bus::token::TOKEN_VARIABLE;
 use bus::{Bus, Declaration, Watched};
-use game::codec;
-use game::message::Frame;
-use game::topic;
 use gateway::link::{Link, LinkAddress, LinkEvent, LinkSettings};
+use messages::{Frame, topic};
+use primitives::codec;
 use std::io::Write;
 use std::net::TcpStream;
 use std::process::{Child, Command, Stdio};

@@ -2,12 +2,13 @@
 
 use crate::support::{LIMIT, Sim, own, refusal_of, result_of, wait_until};
 use bus::{Bus, Declaration, Priority, Publisher};
-use game::angle::rad_from_compass_deg;
-use game::external::{ExternalOrder, NavReport};
-use game::message::{JoinReply, JoinRequest, Message, Role, Stamp};
-use game::picture::Nav;
-use game::topic::{self, GameName};
-use game::{Order, Scenario, VehicleId, codec};
+use messages::external::{ExternalOrder, NavReport};
+use messages::picture::Nav;
+use messages::topic::{self, GameName};
+use messages::{JoinReply, JoinRequest, Message, Order, Role, Stamp};
+use primitives::angle::rad_from_compass_deg;
+use primitives::{VehicleId, codec};
+use scenario::Scenario;
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
@@ -30,7 +31,7 @@ pub(crate) struct Gateway {
 }
 
 fn join(bus: &Bus, (name, scenario): (&GameName, &Scenario), vehicle: &str) -> JoinReply {
-    let (version, vehicles) = (game::VERSION.to_owned(), vec![vehicle.to_owned()]);
+    let (version, vehicles) = (primitives::VERSION.to_owned(), vec![vehicle.to_owned()]);
     let request = JoinRequest { version, role: Role::Gateway, node: bus.id(), vehicles };
     let key = topic::join(name, scenario, request.role, &request.vehicles);
     bus.request(&key, &request, LIMIT).expect("the hub is there").expect("an answer")
@@ -79,7 +80,7 @@ impl Gateway {
         if let Some(Order::Steer { heading_rad, speed_m_s }) = order {
             (self.at.psi_rad, self.at.surge_m_s) = (heading_rad, speed_m_s);
         }
-        let (sin, cos) = game::math::sin_cos(self.at.psi_rad);
+        let (sin, cos) = primitives::math::sin_cos(self.at.psi_rad);
         self.at.north_m += self.at.surge_m_s * passed_s * cos;
         self.at.east_m += self.at.surge_m_s * passed_s * sin;
         self.report(self.ticket);

@@ -9,10 +9,9 @@ use crate::support::{
     wait_until, wait_within,
 };
 use bus::{Bus, Declaration, Watched};
-use game::codec;
-use game::external::{GatewayStatus, OperatorCommand, OperatorReply};
-use game::message::Frame;
-use game::topic;
+use messages::external::{GatewayStatus, OperatorCommand, OperatorReply};
+use messages::{Frame, topic};
+use primitives::codec;
 use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
 use std::process::{Command, Stdio};

@@ -1,8 +1,8 @@
 //! Helm queries while a game is on, and a boat that is given another strategy.
 
 use crate::support::{FOUR, LIMIT, Process, Sim, own, run, squall, stderr, stdout, temporary};
-use game::helm::HelmReport;
-use game::topic;
+use messages::helm::HelmReport;
+use messages::topic;
 use std::process::Stdio;
 
 /// A game that goes on, with an agent for each boat.

@@ -6,7 +6,7 @@ use crate::support::{
 };
 use bus::token::TOKEN_VARIABLE;
 use bus::{BusError, Token};
-use game::external::{GatewayCommand, OperatorCommand};
+use messages::external::{GatewayCommand, OperatorCommand};
 use serde_json::Value;
 use std::net::{SocketAddr, TcpListener};
 use std::path::{Path, PathBuf};

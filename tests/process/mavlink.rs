@@ -2,7 +2,7 @@
 
 use crate::gateway::{Loop, start_gateway};
 use crate::support::{result_of, run, stdout, temporary, wait_until};
-use game::external::OperatorCommand;
+use messages::external::OperatorCommand;
 use std::time::Duration;
 
 const CONFIG: [&str; 4] = ["--config", "scenarios/gateways/blueboat.toml", "--without-preflight", "Ada"];

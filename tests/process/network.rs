@@ -6,10 +6,10 @@ use crate::support::{
     FOUR, LIMIT, Process, Sim, agent, free_endpoint, newest, own, result_of, squall, token, wait_until,
 };
 use bus::{Bus, Net, Priority};
-use game::external::ExternalOrder;
-use game::message::{Control, Frame};
-use game::topic::{self, GameName};
-use game::{Order, SimTime, codec};
+use messages::external::ExternalOrder;
+use messages::topic::{self, GameName};
+use messages::{Control, Frame, Order};
+use primitives::{SimTime, codec};
 use std::process::{Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};

@@ -4,7 +4,7 @@ use crate::boat_alone::Wire;
 use crate::fake_payload::{FakePayload, VALUES};
 use crate::support::{LIMIT, Process, run, squall, stderr, stdout, temporary, wait_until, wait_within};
 use bus::token::TOKEN_VARIABLE;
-use game::payload::PayloadBytes;
+use messages::payload::PayloadBytes;
 use recording::Bag;
 use serde_json::Value;
 use std::io::{BufRead, BufReader, ErrorKind, Read, Write};

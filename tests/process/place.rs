@@ -3,8 +3,8 @@
 use crate::support::{FOUR, LIMIT, Process, Sim, free_endpoint, squall, stderr, stdout, temporary, wait_until};
 use bus::token::TOKEN_VARIABLE;
 use bus::{Bus, BusError, Net};
-use game::external::{OperatorCommand, OperatorReply};
-use game::topic;
+use messages::external::{OperatorCommand, OperatorReply};
+use messages::topic;
 use serde_json::Value;
 use std::io::{BufRead, BufReader};
 use std::net::TcpListener;

@@ -2,9 +2,9 @@
 
 use crate::support::{Sim, own};
 use bus::{Bus, Declaration, Priority};
-use game::message::{Frame, GameInfo, Message, PolicyProposal, Stamp};
-use game::topic::{self, GameName};
-use game::{Picture, TeamId, VehicleId, codec};
+use messages::topic::{self, GameName};
+use messages::{Frame, GameInfo, Message, Picture, PolicyProposal, Stamp};
+use primitives::{TeamId, VehicleId, codec};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 

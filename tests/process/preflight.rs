@@ -2,7 +2,7 @@
 
 use crate::gateway::{Loop, start_gateway};
 use crate::support::{stderr, stdout, temporary, wait_until};
-use game::external::OperatorCommand;
+use messages::external::OperatorCommand;
 use std::time::Duration;
 
 #[test]

@@ -5,10 +5,9 @@ use crate::support::{
     wait_until,
 };
 use bus::Priority;
-use game::VehicleId;
-use game::external::LinkBytes;
-use game::message::{Message, PolicyProposal, Stamp};
-use game::topic;
+use messages::external::LinkBytes;
+use messages::{Message, PolicyProposal, Stamp, topic};
+use primitives::VehicleId;
 use recording::{Bag, Recording};
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -86,7 +85,7 @@ fn what_is_heard_is_written_down_if_it_is_sound() {
     let sim = Sim::start("long", &["--pace", "20x", "--record", &file]);
     let _agent = sim.agent(&FOUR);
     let (bus, game) = (sim.bus(), sim.name());
-    let scenario = game::scenario::load(Path::new(&own("long"))).unwrap_or_else(|e| panic!("{e}"));
+    let scenario = scenario::load(Path::new(&own("long"))).unwrap_or_else(|e| panic!("{e}"));
     // A recording begins with the game.
     sim.play_on(1.0);
     let publisher = |key| bus.publisher(key, Priority::Normal).expect("a session");

@@ -2,10 +2,8 @@
 
 use crate::support::{FOUR, Sim};
 use bus::{Bus, Latest, Priority, Publisher};
-use game::codec;
-use game::message::{JoinReply, JoinRequest, Message, Orders, Role, Stamp, VehicleOrder};
-use game::topic;
-use game::{Order, Picture, TeamId, VehicleId};
+use messages::{JoinReply, JoinRequest, Message, Order, Orders, Picture, Role, Stamp, VehicleOrder, topic};
+use primitives::{TeamId, VehicleId, codec};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -25,7 +23,7 @@ fn join(sim: &Sim, bus: &Bus, request: &JoinRequest) -> JoinReply {
 
 fn request(vehicles: &[&str]) -> JoinRequest {
     let vehicles = vehicles.iter().map(|name| (*name).to_owned()).collect();
-    JoinRequest { version: game::VERSION.to_owned(), role: Role::Agent, node: "rogue".to_owned(), vehicles }
+    JoinRequest { version: primitives::VERSION.to_owned(), role: Role::Agent, node: "rogue".to_owned(), vehicles }
 }
 
 impl Rogue {
@@ -116,7 +114,7 @@ fn another_version_is_a_clear_refusal() {
     else {
         panic!("another version is let in")
     };
-    assert!(reason.contains("9.9.9") && reason.contains(game::VERSION), "{reason}");
+    assert!(reason.contains("9.9.9") && reason.contains(primitives::VERSION), "{reason}");
     let key = topic::join(&sim.name(), &sim.info(&bus).scenario, Role::Agent, &[]);
     let answer = bus.ask(&key, b"{]".to_vec(), Duration::from_secs(10)).expect("a session");
     let text = String::from_utf8_lossy(&answer.expect("an answer")).into_owned();

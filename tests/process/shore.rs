@@ -2,10 +2,10 @@
 
 use crate::support::{FOUR, LIMIT, Sim, newest, own, result_of};
 use bus::{Bus, Declaration, Watched};
-use game::message::{Control, Frame};
-use game::run_state::{Phase, RunState};
-use game::topic::{self, GameName};
-use game::{codec, math};
+use messages::run_state::{Phase, RunState};
+use messages::topic::{self, GameName};
+use messages::{Control, Frame};
+use primitives::{codec, math};
 use serde_json::Value;
 use std::sync::Arc;
 

@@ -2,8 +2,8 @@
 
 use bus::token::TOKEN_VARIABLE;
 use bus::{Bus, Declaration, Net, Token, Watched};
-use game::message::GameInfo;
-use game::topic::{self, GameName};
+use messages::GameInfo;
+use messages::topic::{self, GameName};
 use serde_json::Value;
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Child, ChildStdin, Command, ExitStatus, Output, Stdio};

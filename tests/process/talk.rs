@@ -1,10 +1,10 @@
 //! Team messages from process to process: received exactly one decision later.
 
 use crate::support::{LIMIT, Process, Sim, assert_a_game_each, own, wait_until};
-use game::helm::HelmReport;
-use game::message::{GameInfo, Message, Say, Stamp, Word};
-use game::topic::{self, GameName};
-use game::{TeamId, VehicleId, codec};
+use messages::helm::HelmReport;
+use messages::topic::{self, GameName};
+use messages::{GameInfo, Message, Say, Stamp, Word};
+use primitives::{TeamId, VehicleId, codec};
 use std::sync::mpsc::channel;
 use std::time::Duration;
 

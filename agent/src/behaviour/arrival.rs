@@ -1,7 +1,7 @@
 //! When a point counts as reached.
 
-use game::Ned;
-use game::angle::wrap_pi;
+use primitives::Ned;
+use primitives::angle::wrap_pi;
 use std::f64::consts::TAU;
 
 /// A point draws away when it is this much farther than it once was, m: less may be noise of the position.
@@ -47,7 +47,7 @@ impl Arrival {
 #[cfg(test)]
 mod tests {
     use super::Arrival;
-    use game::{Ned, math};
+    use primitives::{Ned, math};
     use std::f64::consts::TAU;
 
     /// The line to a point that is so far away in this direction.

@@ -4,7 +4,7 @@ use super::nearest::nearness;
 use super::steering::toward;
 use super::{BehaviourLogic, BehaviourOutput};
 use crate::situation::Situation;
-use game::strategy::Attractor;
+use scenario::strategy::Attractor;
 
 impl BehaviourLogic for Attractor {
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {

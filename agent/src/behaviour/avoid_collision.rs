@@ -5,7 +5,7 @@ use super::steering::keep_clear;
 use super::{BehaviourLogic, BehaviourOutput};
 use crate::ivp::Side;
 use crate::situation::{MovingPoint, Situation};
-use game::strategy::{AvoidCollision, Grade};
+use scenario::strategy::{AvoidCollision, Grade};
 
 /// Boats that pass nearer than this to starboard leave each other to port all the same, m: so that both take the same side where
 /// either would do.
@@ -62,8 +62,8 @@ mod tests {
     use super::side;
     use crate::ivp::Side;
     use crate::situation::MovingPoint;
-    use game::Ned;
-    use game::stream::Stream;
+    use primitives::Ned;
+    use primitives::stream::Stream;
 
     #[test]
     fn two_boats_choose_the_same_side() {

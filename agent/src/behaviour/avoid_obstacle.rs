@@ -6,10 +6,10 @@ use super::steering::{keep_clear, lag};
 use super::{BehaviourLogic, BehaviourOutput};
 use crate::ivp::{Objective, Table};
 use crate::situation::{MovingPoint, Situation};
-use game::Ned;
-use game::field::Obstacle;
-use game::instructions::Instructions;
-use game::strategy::AvoidObstacle;
+use primitives::Ned;
+use primitives::instructions::Instructions;
+use rules::field::Obstacle;
+use scenario::strategy::AvoidObstacle;
 
 pub(super) struct AvoidObstacleBehaviour {
     task: AvoidObstacle,

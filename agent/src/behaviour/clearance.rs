@@ -4,9 +4,9 @@
 
 use crate::ivp::{Courses, Grid, LANES, Lanes, Table, larger, smaller};
 use crate::own_motion::Handling;
-use game::angle::wrap_pi;
-use game::instructions::Kernel;
-use game::{Ned, math};
+use primitives::angle::wrap_pi;
+use primitives::instructions::Kernel;
+use primitives::{Ned, math};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// What single precision may take from a bound on a distance, m, with room to spare.
@@ -348,7 +348,7 @@ fn kept(part: f32, bend: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use game::instructions::Instructions;
+    use primitives::instructions::Instructions;
 
     /// A boat that always turns alike.
     const HANDLING: Handling = Handling::evenly(0.35);
@@ -389,7 +389,7 @@ mod tests {
         // The last courses and speeds do not fill their lanes.
         let (grid, mut lowered) = (Grid::new(362, 37, 3.5), 0);
         for seed in 0..200 {
-            let mut stream = game::stream::Stream::new(seed, "op_region");
+            let mut stream = primitives::stream::Stream::new(seed, "op_region");
             let heading_rad = stream.between(-4.0, 4.0);
             let edges = [0.0, 1.6, 3.1, -1.6].map(|rad| {
                 let (sin, cos) = math::sin_cos(rad);
@@ -427,7 +427,7 @@ mod tests {
         let (save_m, fastest_m_s) = (6.0, 3.5_f32);
         let mut left_out = 0;
         for seed in 0..20_000 {
-            let mut stream = game::stream::Stream::new(seed, "op_region");
+            let mut stream = primitives::stream::Stream::new(seed, "op_region");
             let old_m_s = stream.between(0.0, 4.0);
             let mut lanes = |least, most| Lanes::splat(stream.between(least, most) as f32);
             let (out_s, back_s, straight_s) = (lanes(0.0, 9.0), lanes(0.0, 9.0), lanes(-9.0, 9.0));

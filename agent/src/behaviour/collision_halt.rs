@@ -3,8 +3,8 @@
 
 use super::{BehaviourLogic, BehaviourOutput};
 use crate::situation::Situation;
-use game::SimTime;
-use game::strategy::{AvoidCollision, Parameter};
+use primitives::SimTime;
+use scenario::strategy::{AvoidCollision, Parameter};
 
 /// Collision avoidance, and the halt where it was not enough.
 pub(super) struct HaltingAvoidance {

@@ -3,8 +3,8 @@
 use super::{BehaviourLogic, BehaviourOutput};
 use crate::ivp::{Objective, Peak};
 use crate::situation::Situation;
-use game::angle::rad_from_compass_deg;
-use game::strategy::{ConstantHeading, ConstantSpeed};
+use primitives::angle::rad_from_compass_deg;
+use scenario::strategy::{ConstantHeading, ConstantSpeed};
 
 /// How much less the edge of a peak is worth than its summit.
 const SUMMIT_DELTA: f64 = 25.0;

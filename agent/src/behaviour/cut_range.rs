@@ -3,7 +3,7 @@
 use super::{BehaviourLogic, BehaviourOutput};
 use crate::ivp::{Approach, Closest, Closing, Objective};
 use crate::situation::Situation;
-use game::strategy::CutRange;
+use scenario::strategy::CutRange;
 
 impl BehaviourLogic for CutRange {
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {

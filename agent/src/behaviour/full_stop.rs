@@ -3,7 +3,7 @@
 use super::{BehaviourLogic, BehaviourOutput};
 use crate::ivp::{Objective, Peak};
 use crate::situation::Situation;
-use game::strategy::FullStop;
+use scenario::strategy::FullStop;
 
 impl BehaviourLogic for FullStop {
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {

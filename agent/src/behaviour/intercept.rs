@@ -3,8 +3,8 @@
 use super::steering::steer_heading;
 use super::{BehaviourLogic, BehaviourOutput};
 use crate::situation::{MovingPoint, Situation, meeting_time_s};
-use game::Ned;
-use game::strategy::Intercept;
+use primitives::Ned;
+use scenario::strategy::Intercept;
 
 impl BehaviourLogic for Intercept {
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {

@@ -4,9 +4,9 @@ use super::arrival::Arrival;
 use super::steering::toward;
 use super::{BehaviourLogic, BehaviourOutput};
 use crate::situation::Situation;
-use game::field::{distance_to_outline, sides};
-use game::strategy::{Ellipse, Loiter, Shape, Turn};
-use game::{Ned, math};
+use primitives::{Ned, math};
+use rules::field::{distance_to_outline, sides};
+use scenario::strategy::{Ellipse, Loiter, Shape, Turn};
 use std::f64::consts::TAU;
 
 pub(super) struct LoiterBehaviour {

@@ -4,8 +4,8 @@ use super::nearest::is_meant;
 use super::{BehaviourLogic, BehaviourOutput};
 use crate::ivp::{Objective, SpeedLimit};
 use crate::situation::{OtherBoat, Situation};
-use game::angle::wrap_pi;
-use game::strategy::MaxSpeed;
+use primitives::angle::wrap_pi;
+use scenario::strategy::MaxSpeed;
 
 impl BehaviourLogic for MaxSpeed {
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {

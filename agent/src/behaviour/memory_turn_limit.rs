@@ -3,8 +3,8 @@
 use super::{BehaviourLogic, BehaviourOutput};
 use crate::ivp::{Objective, Peak};
 use crate::situation::Situation;
-use game::strategy::MemoryTurnLimit;
-use game::{SimTime, math};
+use primitives::{SimTime, math};
+use scenario::strategy::MemoryTurnLimit;
 use std::collections::VecDeque;
 use std::f64::consts::PI;
 

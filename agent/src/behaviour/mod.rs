@@ -31,7 +31,7 @@ pub(crate) use output::{BehaviourOutput, Functions};
 
 use crate::policy::BoardPolicy;
 use crate::situation::Situation;
-use game::strategy::Task;
+use scenario::strategy::Task;
 
 /// What a behaviour does while it runs; when it runs is the helm's matter.
 pub(crate) trait BehaviourLogic: Send {

@@ -1,7 +1,7 @@
 //! Which of many boats or obstacles a behaviour responds to, and how much: the nearest, the nearer the more.
 
 use crate::situation::{OtherBoat, Situation};
-use game::strategy::{Boat, Contacts, NEAREST_MAX};
+use scenario::strategy::{Boat, Contacts, NEAREST_MAX};
 
 /// How far ahead a boat looks whether it comes to the side on which it can be tagged, s.
 const TAG_FORESIGHT_S: f64 = 5.0;

@@ -5,9 +5,9 @@ use super::{BehaviourLogic, BehaviourOutput};
 use crate::ivp::{Objective, Peak, Table};
 use crate::own_motion::Handling;
 use crate::situation::Situation;
-use game::instructions::Instructions;
-use game::strategy::{BeyondHalt, OpRegion};
-use game::{Ned, SimTime};
+use primitives::instructions::Instructions;
+use primitives::{Ned, SimTime};
+use scenario::strategy::{BeyondHalt, OpRegion};
 use std::f64::consts::PI;
 
 /// How far inside of the edge a boat steers for that comes back, m.

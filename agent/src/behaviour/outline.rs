@@ -5,9 +5,9 @@
 
 use super::steering::CPA_MIN_UTILITY;
 use crate::ivp::{Courses, Grid, LANES, Lag, Lanes, Table, larger, smaller};
-use game::Ned;
-use game::field::{is_within, sides};
-use game::instructions::Kernel;
+use primitives::Ned;
+use primitives::instructions::Kernel;
+use rules::field::{is_within, sides};
 
 /// What rounding may take from a bound, m, with room to spare.
 const ROUNDING_M: f64 = 1e-6;
@@ -364,9 +364,9 @@ enum Clear {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use game::field::distance_to_line;
-    use game::instructions::Instructions;
-    use game::stream::Stream;
+    use primitives::instructions::Instructions;
+    use primitives::stream::Stream;
+    use rules::field::distance_to_line;
 
     const MIN_M: f64 = 1.0;
     const MAX_M: f64 = 4.0;

@@ -1,7 +1,7 @@
 //! What behaviours produce at one decision: weighted objective functions, and what has become of their tasks.
 
 use crate::ivp::{Grid, Objective, Problem};
-use game::VehicleId;
+use primitives::VehicleId;
 
 /// A function that a behaviour added.
 #[derive(Clone, Debug)]

@@ -4,8 +4,8 @@ use super::{BehaviourLogic, BehaviourOutput};
 use crate::ivp::{Objective, Peak};
 use crate::policy::{BoardPolicy, Chosen};
 use crate::situation::Situation;
-use game::action::SetPoint;
-use game::strategy::Policy;
+use scenario::action::SetPoint;
+use scenario::strategy::Policy;
 
 /// From the peak of the proposed speed down to nothing, m/s.
 const SPEED_BASE_M_S: f64 = 1.0;

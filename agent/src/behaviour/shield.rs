@@ -3,7 +3,7 @@
 use super::steering::{speed_to_turn_onto, steer};
 use super::{BehaviourLogic, BehaviourOutput};
 use crate::situation::Situation;
-use game::strategy::Shield;
+use scenario::strategy::Shield;
 
 /// Extra speed for each metre off the station, 1/s.
 const CATCH_UP_PER_S: f64 = 0.5;
@@ -22,7 +22,7 @@ impl BehaviourLogic for Shield {
             (situation.at.bearing_rad(station), guarded_m_s + CATCH_UP_PER_S * distance_m)
         } else if guarded_m_s > 0.1 {
             // On station: as what it guards, bow to the enemy where that lies still.
-            (game::math::atan2(guarded.velocity.east, guarded.velocity.north), guarded_m_s)
+            (primitives::math::atan2(guarded.velocity.east, guarded.velocity.north), guarded_m_s)
         } else {
             (situation.at.bearing_rad(enemy.at), guarded_m_s)
         };

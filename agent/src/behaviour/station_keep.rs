@@ -3,8 +3,8 @@
 use super::{BehaviourLogic, BehaviourOutput};
 use crate::ivp::{Objective, Peak};
 use crate::situation::{MovingPoint, Situation};
-use game::Ned;
-use game::strategy::StationKeep;
+use primitives::Ned;
+use scenario::strategy::StationKeep;
 use std::f64::consts::PI;
 
 /// From the peak of the speed down to nothing, m/s.

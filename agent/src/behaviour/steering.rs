@@ -2,7 +2,7 @@
 
 use crate::ivp::{Approach, Closest, Lag, Objective, Peak, Side};
 use crate::situation::{MovingPoint, Situation};
-use game::{Ned, angle, math};
+use primitives::{Ned, angle, math};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// From the peak of a speed down to nothing, m/s: MOOS-IvP's for waypoints.

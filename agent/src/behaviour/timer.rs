@@ -2,7 +2,7 @@
 
 use super::{BehaviourLogic, BehaviourOutput};
 use crate::situation::Situation;
-use game::strategy::Timer;
+use scenario::strategy::Timer;
 
 /// Runs until its duration is over, which the helm sees to.
 impl BehaviourLogic for Timer {

@@ -3,8 +3,8 @@
 use super::steering::steer;
 use super::{BehaviourLogic, BehaviourOutput};
 use crate::situation::Situation;
-use game::strategy::Trail;
-use game::{Ned, math};
+use primitives::{Ned, math};
+use scenario::strategy::Trail;
 
 /// Extra speed for each metre off the place, 1/s.
 const CATCH_UP_PER_S: f64 = 0.2;

@@ -4,8 +4,8 @@ use super::arrival::Arrival;
 use super::steering::steer;
 use super::{BehaviourLogic, BehaviourOutput};
 use crate::situation::Situation;
-use game::Ned;
-use game::strategy::Waypoint;
+use primitives::Ned;
+use scenario::strategy::Waypoint;
 
 pub(super) struct WaypointBehaviour {
     task: Waypoint,

@@ -13,12 +13,13 @@ use crate::ivp::{Choice, Decision, Grid, Preference};
 use crate::mind::{Mind, Proposal};
 use crate::own_motion::OwnMotion;
 use crate::situation::{GameModel, Situation, TeamMessages};
-use game::helm::HelmReport;
-use game::message::Word;
-use game::scenario::Scenario;
-use game::strategy::{Expression, Moment, Parameter, Program, Proposer, Rule, What, Who};
-use game::{Event, Order, Picture, VehicleId};
+use messages::helm::HelmReport;
+use messages::{Order, Picture, Word};
+use primitives::VehicleId;
+use rules::Event;
 use run_state::BehaviourRun;
+use scenario::Scenario;
+use scenario::strategy::{Expression, Moment, Parameter, Program, Proposer, Rule, What, Who};
 use steadiness::Steadiness;
 
 /// A behaviour of the program.

@@ -2,8 +2,8 @@
 
 use super::{Decided, HelmMind};
 use crate::policy::{BoardPolicy, Chosen};
-use game::angle::compass_deg_from_rad;
-use game::helm::{BehaviourReport, DriftReport, FunctionReport, HelmReport, PolicyReport, VariableReport};
+use messages::helm::{BehaviourReport, DriftReport, FunctionReport, HelmReport, PolicyReport, VariableReport};
+use primitives::angle::compass_deg_from_rad;
 
 impl HelmMind {
     pub(super) fn reported(&self) -> HelmReport {

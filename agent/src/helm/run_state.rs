@@ -1,8 +1,8 @@
 //! The run state of a behaviour and how it changes: idle, running, active, complete.
 
-use game::SimTime;
-use game::helm::RunState;
-use game::strategy::Moment;
+use messages::helm::RunState;
+use primitives::SimTime;
+use scenario::strategy::Moment;
 
 /// One behaviour's run state, and since when it has been running.
 #[derive(Clone, Copy, Debug)]

@@ -96,7 +96,7 @@ impl CellSize {
             north: part(4),
             east: part(5),
             half: self.half_rad.unwrap_or(std::f64::consts::PI) as f32,
-            stretch: self.half_rad.map_or(1.0, |half_rad| 1.0 / game::math::sin_cos(half_rad).1) as f32,
+            stretch: self.half_rad.map_or(1.0, |half_rad| 1.0 / primitives::math::sin_cos(half_rad).1) as f32,
             is_disc: self.half_rad.is_none(),
         }
     }
@@ -116,7 +116,7 @@ impl CellSize {
             // The square about all speeds, of which `speed` gives half a side.
             return [1.0, 1.0, 1.0, -1.0, 1.0, 0.0];
         }
-        let (east, north) = game::math::sin_cos(0.5 * (grid.course_rad(first) + grid.course_rad(last)));
+        let (east, north) = primitives::math::sin_cos(0.5 * (grid.course_rad(first) + grid.course_rad(last)));
         let (first, last) = (grid.direction(first), grid.direction(last));
         [first.0, first.1, last.0, last.1, north as f32, east as f32]
     }
@@ -197,8 +197,8 @@ mod tests {
     use super::super::objective::{Field, Objective, Parts};
     use super::*;
     use crate::ivp::Lag;
-    use game::Ned;
-    use game::stream::Stream;
+    use primitives::Ned;
+    use primitives::stream::Stream;
 
     fn within(stream: &mut Stream, most: f64) -> Ned {
         Ned { north: stream.between(-most, most), east: stream.between(-most, most) }

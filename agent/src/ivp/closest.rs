@@ -24,7 +24,7 @@
 use super::cell::Cell;
 use super::lanes::{larger, smaller};
 use super::turn::{Fan, Lag, MeanSpeed, Turn, Turning, Vector};
-use game::Ned;
+use primitives::Ned;
 
 /// What one number in single precision may be wrong by, with room to spare, in parts of the lengths that went into it.
 const ROUNDING: f64 = 1e-5;

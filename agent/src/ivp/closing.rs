@@ -2,7 +2,7 @@
 
 use super::cell::Cell;
 use super::lanes::{larger, smaller};
-use game::Ned;
+use primitives::Ned;
 
 /// Utility of the rate of closure: linear from 0, opening as fast as own ship and contact could, to 100, closing as fast
 /// as they could.

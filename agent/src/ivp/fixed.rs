@@ -15,7 +15,7 @@ pub const WEIGHT_MAX: f64 = 1000.0;
 pub const FUNCTIONS_MAX: usize = 256;
 
 // What a checked program may ask for is heard.
-const _: () = assert!(game::strategy::FUNCTIONS_MAX <= FUNCTIONS_MAX);
+const _: () = assert!(scenario::strategy::FUNCTIONS_MAX <= FUNCTIONS_MAX);
 
 /// The value of a place that does not exist: below all others, and far enough from overflow for two of them.
 pub(super) const NOWHERE: i32 = i32::MIN / 4;
@@ -86,7 +86,7 @@ mod tests {
         {
             assert_eq!(weight(factor).quanta(utility), want, "{factor} times {utility}");
         }
-        let mut stream = game::stream::Stream::new(1, "fixed");
+        let mut stream = primitives::stream::Stream::new(1, "fixed");
         for _ in 0..100_000 {
             let (factor, utility) = (stream.between(0.0, 64_000.0) as f32, stream.between(0.0, 100.0) as f32);
             let want = (f64::from(utility * factor)).round_ties_even() as i32;

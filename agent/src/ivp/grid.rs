@@ -166,6 +166,6 @@ fn direction(k: usize, n: usize) -> (f32, f32) {
     if 8 * k == n {
         return (std::f32::consts::FRAC_1_SQRT_2, std::f32::consts::FRAC_1_SQRT_2);
     }
-    let (sin, cos) = game::math::sin_cos(k as f64 * TAU / n as f64);
+    let (sin, cos) = primitives::math::sin_cos(k as f64 * TAU / n as f64);
     (cos as f32, sin as f32)
 }

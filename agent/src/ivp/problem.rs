@@ -6,7 +6,7 @@ use super::grid::Grid;
 use super::objective::Objective;
 use super::search::{Bounds, Present, Search};
 use super::sums::Sums;
-use game::instructions::Instructions;
+use primitives::instructions::Instructions;
 
 /// A point of the grid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]

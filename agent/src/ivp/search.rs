@@ -8,7 +8,7 @@ use super::measured::{Bounded, Distances};
 use super::objective::Field;
 use super::sums::Sums;
 use super::{closest, closing};
-use game::instructions::Kernel;
+use primitives::instructions::Kernel;
 use std::cmp::Ordering;
 
 /// A sector, tile or point that is done, or that is not on the grid.

@@ -7,7 +7,7 @@ use super::limit::SpeedLimit;
 use super::objective::{Field, Objective, Parts};
 use super::peak::{CoursePeak, Peak};
 use super::table::Table;
-use game::instructions::{Instructions, Kernel};
+use primitives::instructions::{Instructions, Kernel};
 
 /// Weighted utilities, added up as far as they can be before a point is known. Its lists are used again for the next decision.
 #[derive(Clone, Debug)]

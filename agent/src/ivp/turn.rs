@@ -12,7 +12,7 @@
 
 use super::cell::Cell;
 use super::lanes::{larger, smaller};
-use game::Ned;
+use primitives::Ned;
 
 /// A vector: north, east.
 pub(super) type Vector = (f32, f32);
@@ -200,7 +200,7 @@ mod tests {
             let (steps, duration_s) = (10_000, by_rad.abs() / LAG.turn_rad_s);
             let way_m = LAG.velocity.east * duration_s / f64::from(steps);
             let course = |share: f64| {
-                let (sin, cos) = game::math::sin_cos(std::f64::consts::FRAC_PI_2 + share * by_rad);
+                let (sin, cos) = primitives::math::sin_cos(std::f64::consts::FRAC_PI_2 + share * by_rad);
                 Ned { north: cos, east: sin }
             };
             let way = |step: i32| course((f64::from(step) + 0.5) / f64::from(steps)).scaled(way_m);

@@ -8,11 +8,12 @@ use super::talk::Talk;
 use crate::{MindRunner, mind_by, mind_of};
 use bus::game_search::Joined;
 use bus::{Bus, Declaration, Latest, Patience, Priority, Publisher, SimState, SimWatch};
-use game::codec::{self, DecodeError};
-use game::message::GameInfo;
-use game::refusal::{Refusal, Refusals};
-use game::topic::{self, GameName};
-use game::{Picture, Scenario, TeamId};
+use messages::refusal::{Refusal, Refusals};
+use messages::topic::{self, GameName};
+use messages::{GameInfo, Picture};
+use primitives::TeamId;
+use primitives::codec::{self, DecodeError};
+use scenario::Scenario;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -217,9 +218,9 @@ impl Subscriptions {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use game::event::{Event, Logged};
-    use game::message::{EventRecord, Stamp};
-    use game::{SimTime, VehicleId};
+    use messages::{EventRecord, Stamp};
+    use primitives::{SimTime, VehicleId};
+    use rules::event::{Event, Logged};
 
     /// A picture in which boat `seq` left the field.
     fn picture(seq: u64) -> Picture {

@@ -18,7 +18,7 @@ pub enum NodeError {
     #[error("the sim refuses: {0}")]
     Refused(String),
     /// The sim speaks another version.
-    #[error("agent and sim are not of one version: the agent is {ours}, {theirs}", ours = game::VERSION)]
+    #[error("agent and sim are not of one version: the agent is {ours}, {theirs}", ours = primitives::VERSION)]
     Version {
         /// What is known of the sim's.
         theirs: String,

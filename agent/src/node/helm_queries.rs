@@ -3,9 +3,10 @@
 use super::error::NodeError;
 use crate::{Mind, MindRunner};
 use bus::{Bus, Declaration, Inbox, Query, clock, inbox};
-use game::helm::HelmQuestion;
-use game::topic::{self, GameName};
-use game::{Scenario, VehicleId};
+use messages::helm::HelmQuestion;
+use messages::topic::{self, GameName};
+use primitives::VehicleId;
+use scenario::Scenario;
 use std::time::{Duration, Instant};
 
 /// Queries that may wait to be read.

@@ -3,11 +3,12 @@
 use super::error::NodeError;
 use crate::MindRunner;
 use bus::{Bus, Declaration, Watched};
-use game::message::{PolicyProposal, Stamp};
-use game::refusal::{Refusal, Refusals};
-use game::strategy::Proposer;
-use game::topic::{self, GameName};
-use game::{Scenario, SimTime, VehicleId};
+use messages::refusal::{Refusal, Refusals};
+use messages::topic::{self, GameName};
+use messages::{PolicyProposal, Stamp};
+use primitives::{SimTime, VehicleId};
+use scenario::Scenario;
+use scenario::strategy::Proposer;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -104,8 +105,8 @@ fn is_sound(proposal: &PolicyProposal) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use game::codec;
-    use game::message::Message;
+    use messages::Message;
+    use primitives::codec;
 
     fn proposal(vehicle: u16, seq: u64, speed_m_s: f64) -> PolicyProposal {
         let stamp = Stamp { seq, version: PolicyProposal::VERSION, ..Stamp::default() };

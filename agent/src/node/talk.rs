@@ -4,10 +4,11 @@ use super::error::NodeError;
 use super::team_inbox::TeamInbox;
 use crate::{MindRunner, roles};
 use bus::{Bus, Declaration, Priority, Publisher, Watched};
-use game::message::{Message, Say, Stamp, Word};
-use game::refusal::{Refusal, Refusals};
-use game::topic::{self, GameName};
-use game::{Scenario, TeamId, VehicleId};
+use messages::refusal::{Refusal, Refusals};
+use messages::topic::{self, GameName};
+use messages::{Message, Say, Stamp, Word};
+use primitives::{TeamId, VehicleId};
+use scenario::Scenario;
 use std::sync::Arc;
 use std::time::Duration;
 

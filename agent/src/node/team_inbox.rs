@@ -3,10 +3,10 @@
 //! No network and no clock in here. What a mate sends after decision `k` is delivered at decision `k + 1`, not earlier: a
 //! faster mate may have sent its message of `k + 1` already, so the two that came last are kept.
 
-use game::message::{Say, Word};
-use game::refusal::{Refusal, Refusals};
-use game::strategy::SHARED_MAX;
-use game::{TeamId, VehicleId};
+use messages::refusal::{Refusal, Refusals};
+use messages::{Say, Word};
+use primitives::{TeamId, VehicleId};
+use scenario::strategy::SHARED_MAX;
 
 /// What one boat sent after one decision.
 #[derive(Clone, Debug, PartialEq)]
@@ -132,8 +132,8 @@ impl Sender {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use game::codec;
-    use game::message::{Message, Stamp};
+    use messages::{Message, Stamp};
+    use primitives::codec;
 
     const BLUE: TeamId = TeamId(0);
 

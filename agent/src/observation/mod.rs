@@ -8,8 +8,8 @@ mod pyquaticus;
 mod squall;
 
 use crate::situation::Situation;
-use game::observation::ObservationSpace;
 use numbers::Numbers;
+use scenario::observation::ObservationSpace;
 
 /// Writes the observations of one boat.
 #[derive(Clone, Debug)]

@@ -11,10 +11,10 @@
 
 use super::numbers::Numbers;
 use crate::situation::{OtherBoat, Situation};
-use game::angle::wrap_pi;
-use game::observation::pyquaticus::OTHER;
-use game::strategy::{Fact, Values};
-use game::{Ned, SimTime};
+use primitives::angle::wrap_pi;
+use primitives::{Ned, SimTime};
+use scenario::observation::pyquaticus::OTHER;
+use scenario::strategy::{Fact, Values};
 use std::f64::consts::PI;
 
 /// Writes all numbers.
@@ -64,7 +64,7 @@ fn other_boat(situation: &Situation, other: &OtherBoat, out: &mut Numbers<'_>) {
 /// Bearing and distance of a place.
 fn toward(situation: &Situation, place: Ned, out: &mut Numbers<'_>) {
     let plan = &situation.model.field.plan;
-    let diagonal_m = game::math::length(plan.width_m, plan.depth_m);
+    let diagonal_m = primitives::math::length(plan.width_m, plan.depth_m);
     out.push(wrap_pi(situation.at.bearing_rad(place) - situation.own.nav.psi_rad) / PI);
     out.push(unit(situation.at.distance(place), diagonal_m));
 }

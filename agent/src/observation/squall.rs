@@ -6,11 +6,11 @@
 
 use super::numbers::Numbers;
 use crate::situation::{OtherBoat, Situation};
-use game::frame::Rotation;
-use game::observation::squall::OTHER;
-use game::rules::Ability;
-use game::strategy::{Fact, Mark, Place, Values};
-use game::{Ned, math};
+use primitives::frame::Rotation;
+use primitives::{Ned, math};
+use rules::Ability;
+use scenario::observation::squall::OTHER;
+use scenario::strategy::{Fact, Mark, Place, Values};
 
 /// What lengths are divided by, m.
 const LENGTH_M: f64 = 100.0;

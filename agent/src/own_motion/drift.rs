@@ -20,8 +20,8 @@
 //! speed over the ground, and is known from the first turn on.
 
 use super::handling::Handling;
-use game::picture::Nav;
-use game::{Ned, math};
+use messages::picture::Nav;
+use primitives::{Ned, math};
 
 /// Variance of the change of a drift in a second, m²/s³: a gust or a turn beam-on changes it by 0.2 m/s in four seconds.
 const WALK_M2_S3: f64 = 0.01;

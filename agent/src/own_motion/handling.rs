@@ -1,6 +1,6 @@
 //! Handling: how soon, how fast and how hard a boat turns and brakes, by its file and then as it is seen to do.
 
-use game::boat::{Autopilot, Boat, Drive, Hull, Kinematic, ThrustCurve, Thruster};
+use scenario::boat::{Autopilot, Boat, Drive, Hull, Kinematic, ThrustCurve, Thruster};
 
 /// Share of the steady yaw rate at full rudder that a turn has in the mean.
 const MEAN_OF_STEADY: f64 = 0.7;

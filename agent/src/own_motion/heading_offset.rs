@@ -9,8 +9,8 @@
 //! ```
 
 use super::handling::Handling;
-use game::angle::wrap_pi;
-use game::math;
+use primitives::angle::wrap_pi;
+use primitives::math;
 
 /// How fast the model follows the boat, 1/s.
 const MODEL_GAIN_PER_S: f64 = 0.6;

@@ -10,12 +10,13 @@ mod heading_offset;
 pub(crate) use handling::Handling;
 
 use drift::DriftEstimate;
-use game::angle::wrap_pi;
-use game::boat::{Boat, Drive};
-use game::picture::{Nav, OwnBoat};
-use game::{Ned, Order, SimTime, math};
 use handling::SeenTurn;
 use heading_offset::HeadingOffset;
+use messages::Order;
+use messages::picture::{Nav, OwnBoat};
+use primitives::angle::wrap_pi;
+use primitives::{Ned, SimTime, math};
+use scenario::boat::{Boat, Drive};
 use std::f64::consts::PI;
 
 /// No larger turn is ordered at once, rad: a front seat turns the shorter way, and of half a turn there is none.
@@ -202,13 +203,13 @@ impl OwnMotion {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use game::VehicleId;
-    use game::picture::Nav;
+    use messages::picture::Nav;
+    use primitives::VehicleId;
     use std::path::Path;
 
     fn motion(boat: &str) -> OwnMotion {
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../scenarios/boats/{boat}.toml"));
-        let boat = game::scenario::load_boat(&file).unwrap_or_else(|e| panic!("{e}"));
+        let boat = scenario::load_boat(&file).unwrap_or_else(|e| panic!("{e}"));
         OwnMotion::new(&boat, boat.speed_max_m_s(), true)
     }
 

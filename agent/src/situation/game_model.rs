@@ -1,9 +1,9 @@
 //! The game as one boat sees it: everything that does not change while it is played.
 
-use game::rules::{CaptureAt, TaggedBoat, UntagAt, corner_inset_m};
-use game::scenario::Scenario;
-use game::strategy::Program;
-use game::{Field, FlagId, Ned, SimTime, TeamId, VehicleId};
+use primitives::{FlagId, Ned, SimTime, TeamId, VehicleId};
+use rules::{CaptureAt, Field, TaggedBoat, UntagAt, corner_inset_m};
+use scenario::Scenario;
+use scenario::strategy::Program;
 
 /// The score at which Pyquaticus ends a game by default.
 const PYQUATICUS_SCORE_MAX: f64 = 20.0;

@@ -2,7 +2,7 @@
 //!
 //! Everybody works it out from what the whole team sees, and so comes to the same result without a word.
 
-use game::{Ned, VehicleId};
+use primitives::{Ned, VehicleId};
 
 /// A pair that was assigned before is thought to meet by this much sooner, s: what is seen is noisy, and two boats that change
 /// intruders with every picture meet neither.
@@ -150,7 +150,7 @@ mod tests {
     #[test]
     fn boats_that_are_too_far_off_to_be_sooner_change_nothing() {
         for seed in 0..500 {
-            let mut stream = game::stream::Stream::new(seed, "interception");
+            let mut stream = primitives::stream::Stream::new(seed, "interception");
             let mut place = |most_m: f64| Ned { north: stream.between(0.0, most_m), east: stream.between(0.0, most_m) };
             let boats: Vec<Interceptor> = (0..20)
                 .map(|i| Interceptor { at: place(300.0), unready_s: place(9.0).north, ..interceptor(i, 0.0) })

@@ -11,13 +11,14 @@ pub(crate) use team_messages::TeamMessages;
 
 use crate::mind::Proposal;
 use crate::own_motion::OwnMotion;
-use game::event::{EventRecord, TagCause};
-use game::frame::{Body, Rotation, ned_from_body};
-use game::picture::{Contact, OwnBoat};
-use game::rules::Ability;
-use game::strategy::{Boat, Expression, Fact, Mark, Measure, Place, Program, Values};
-use game::{Event, FlagId, Ned, Picture, SimTime, VehicleId};
 use interception::{Interceptor, Intruder, Pair};
+use messages::Picture;
+use messages::picture::{Contact, OwnBoat};
+use primitives::frame::{Body, Rotation, ned_from_body};
+use primitives::{FlagId, Ned, SimTime, VehicleId};
+use rules::event::{EventRecord, TagCause};
+use rules::{Ability, Event};
+use scenario::strategy::{Boat, Expression, Fact, Mark, Measure, Place, Program, Values};
 use std::cell::OnceCell;
 use turn_estimate::{TurnEstimate, turning_on};
 
@@ -132,7 +133,7 @@ impl Situation {
         team_messages: TeamMessages,
     ) -> Situation {
         Situation {
-            own: OwnBoat::new(model.me, game::picture::Nav::default()),
+            own: OwnBoat::new(model.me, messages::picture::Nav::default()),
             model,
             now: SimTime::ZERO,
             begun: false,

@@ -1,8 +1,8 @@
 //! Team messages: variables that a strategy shares, sent to mates and received from them.
 
-use game::VehicleId;
-use game::message::Word;
-use game::strategy::{Expression, Kind, Program, Values, Variable};
+use messages::Word;
+use primitives::VehicleId;
+use scenario::strategy::{Expression, Kind, Program, Values, Variable};
 use xxhash_rust::xxh3::xxh3_64;
 
 /// What one mate sent last.

@@ -1,10 +1,10 @@
 //! How boats turn, and where that takes them.
 
 use super::MovingPoint;
-use game::SimTime;
-use game::angle::wrap_pi;
-use game::frame::{Body, Rotation, ned_from_body};
-use game::picture::Contact;
+use messages::picture::Contact;
+use primitives::SimTime;
+use primitives::angle::wrap_pi;
+use primitives::frame::{Body, Rotation, ned_from_body};
 
 /// A boat is taken to turn on for this long, s.
 const TURNS_ON_S: f64 = 2.0;
@@ -61,8 +61,8 @@ pub(super) fn turning_on(boat: MovingPoint, yaw_rate_rad_s: f64) -> MovingPoint 
 mod tests {
     use super::{TURNS_ON_S, TurnEstimate, turning_on};
     use crate::situation::MovingPoint;
-    use game::picture::Contact;
-    use game::{Ned, SimTime, TeamId, VehicleId};
+    use messages::picture::Contact;
+    use primitives::{Ned, SimTime, TeamId, VehicleId};
 
     #[test]
     fn a_boat_on_a_circle_is_where_the_circle_leads() {
@@ -70,7 +70,7 @@ mod tests {
         let boat = MovingPoint { at: Ned { north: 10.0, east: 20.0 }, velocity: Ned { north: 2.0, east: 0.0 } };
         for yaw_rate_rad_s in [0.4, -0.4] {
             let turned = turning_on(boat, yaw_rate_rad_s);
-            let (sin, cos) = game::math::sin_cos(0.4 * TURNS_ON_S);
+            let (sin, cos) = primitives::math::sin_cos(0.4 * TURNS_ON_S);
             let side = f64::signum(yaw_rate_rad_s);
             let want = boat.at + Ned { north: 5.0 * sin, east: side * 5.0 * (1.0 - cos) };
             let got = turned.at + turned.velocity.scaled(TURNS_ON_S);
@@ -99,7 +99,7 @@ mod tests {
         let mut turn = TurnEstimate::seen(None, &contact(0, 3.0));
         // Through south, where headings wrap, and twice each.
         for ms in (100..5_000).step_by(100) {
-            let psi_rad = game::angle::wrap_pi(3.0 + 0.3 * 0.001 * ms as f64);
+            let psi_rad = primitives::angle::wrap_pi(3.0 + 0.3 * 0.001 * ms as f64);
             for _ in 0..2 {
                 turn = TurnEstimate::seen(Some(turn), &contact(ms, psi_rad));
             }

@@ -2,9 +2,9 @@
 
 use crate::scene::{Boat, alone, decided, helm, only, picture, scenario, without_safety};
 use agent::Mind;
-use game::SimTime;
-use game::helm::{HelmReport, RunState};
-use game::picture::Picture;
+use messages::helm::{HelmReport, RunState};
+use messages::picture::Picture;
+use primitives::SimTime;
 
 /// What boat 0 decides by this behaviour alone in this scene.
 fn alone_decides(behaviour: &str, picture: &Picture) -> HelmReport {
@@ -85,10 +85,10 @@ fn driven(behaviour: &str, from: Boat, turn_rad_s: f64, contact: Boat) -> Vec<Bo
         scene.stamp.valid_ns = SimTime::from_s(0.1 * f64::from(step));
         let report = decided(&mut helm, &scene);
         let wanted = report.course_deg.zip(report.speed_m_s).expect("it steers");
-        let off_rad = game::angle::wrap_pi((wanted.0 - own.heading_deg).to_radians());
+        let off_rad = primitives::angle::wrap_pi((wanted.0 - own.heading_deg).to_radians());
         own.heading_deg += off_rad.clamp(-0.1 * turn_rad_s, 0.1 * turn_rad_s).to_degrees();
         own.speed_m_s += 0.1 * (wanted.1 - own.speed_m_s);
-        let (east, north) = game::math::sin_cos(own.heading_deg.to_radians());
+        let (east, north) = primitives::math::sin_cos(own.heading_deg.to_radians());
         (own.x, own.y) = (own.x + 0.1 * own.speed_m_s * east, own.y + 0.1 * own.speed_m_s * north);
         track.push(own);
     }
@@ -224,7 +224,7 @@ fn a_point_within_the_turning_circle_does_not_hold_a_boat_in_an_orbit() {
         let own = Boat::at(at.0, at.1).going(heading_rad.to_degrees(), 1.5);
         let course_rad =
             decided(&mut helm, &alone(f64::from(step) * 0.1, own)).course_deg.expect("a course").to_radians();
-        heading_rad += game::angle::wrap_pi(course_rad - heading_rad).clamp(-0.03, 0.03);
+        heading_rad += primitives::angle::wrap_pi(course_rad - heading_rad).clamp(-0.03, 0.03);
         at = (at.0 + 0.15 * libm::sin(heading_rad), at.1 + 0.15 * libm::cos(heading_rad));
         farthest_m = farthest_m.max(libm::hypot(at.0, at.1));
     }
@@ -283,7 +283,8 @@ fn safety_arbitrates_what_a_policy_proposes() {
     // It goes on for a moment, then as decided for the eight seconds that it looks ahead.
     let places = (0..=80).map(|i| 0.1 * f64::from(i) * speed_m_s);
     let from_m = |run_m: f64| (run_m * libm::cos(course_rad), 14.0 - 2.0 * 0.7 - run_m * libm::sin(course_rad));
-    let miss_m = places.map(|run_m| game::math::length(from_m(run_m).0, from_m(run_m).1)).fold(f64::INFINITY, f64::min);
+    let miss_m =
+        places.map(|run_m| primitives::math::length(from_m(run_m).0, from_m(run_m).1)).fold(f64::INFINITY, f64::min);
     assert!(miss_m > 4.9, "not into a boat: {course_rad} rad, {speed_m_s} m/s, {miss_m} m");
 }
 

@@ -2,7 +2,7 @@
 
 use crate::scene::{Boat, decided, helm, picture, without_safety};
 use agent::HelmMind;
-use game::picture::{OwnBoat, Picture};
+use messages::picture::{OwnBoat, Picture};
 
 /// A helm that works an expression out at every decision.
 fn asking(expression: &str) -> HelmMind {
@@ -69,7 +69,7 @@ fn an_intruder_is_assigned_to_one_boat_and_to_the_same_by_everybody() {
     assert_eq!(answer(&mut mine, &picture(0.3, own_x(-20.0), intruders(-60.0))), -1.0);
     // The mate has no time: it has just tagged, is tagged, or carries a flag.
     let busy: [fn(&mut Picture); 3] = [
-        |scene| scene.own[1].tag_ready_ns = game::SimTime::from_s(60.0),
+        |scene| scene.own[1].tag_ready_ns = primitives::SimTime::from_s(60.0),
         |scene| scene.own[1].tagged = true,
         |scene| scene.own[1].carrying = 1,
     ];
@@ -104,6 +104,6 @@ fn a_boat_may_keep_out_of_the_reach_of_its_own_opponent_alone() {
     };
     let beyond = Boat::at(20.0, 0.0);
     assert_eq!(avoids("taggers", beyond).len(), 2);
-    assert_eq!(avoids("opponent", beyond), [game::VehicleId(2)]);
+    assert_eq!(avoids("opponent", beyond), [primitives::VehicleId(2)]);
     assert!(avoids("opponent", Boat::at(-40.0, 0.0)).is_empty(), "at home it can tag nobody");
 }

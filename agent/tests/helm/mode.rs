@@ -2,10 +2,10 @@
 
 use crate::scene::{Boat, alone, decided, helm, picture, without_safety};
 use agent::{HelmMind, Mind};
-use game::event::{Event, Logged, TagCause};
-use game::helm::{HelmReport, RunState};
-use game::message::{EventRecord, Word};
-use game::{SimTime, VehicleId};
+use messages::helm::{HelmReport, RunState};
+use messages::{EventRecord, Word};
+use primitives::{SimTime, VehicleId};
+use rules::event::{Event, Logged, TagCause};
 
 const PROGRAM: &str = include_str!("mode.toml");
 

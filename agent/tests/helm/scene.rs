@@ -1,9 +1,11 @@
 //! Scenes: a program, the picture that a boat has, and what it decides.
 
 use agent::{HelmMind, Mind};
-use game::helm::HelmReport;
-use game::picture::{Contact, FlagView, Nav, OwnBoat, Picture};
-use game::{Ned, Order, Scenario, SimTime, TeamId, VehicleId};
+use messages::Order;
+use messages::helm::HelmReport;
+use messages::picture::{Contact, FlagView, Nav, OwnBoat, Picture};
+use primitives::{Ned, SimTime, TeamId, VehicleId};
+use scenario::Scenario;
 use std::path::Path;
 
 /// The scenario in which all boats follow the program `strategy`: two against two on the tests' field.
@@ -15,7 +17,7 @@ pub(crate) fn scenario(strategy: &str) -> Scenario {
     for (name, content) in [("game.toml", game), ("field.toml", field), ("strategy.toml", strategy)] {
         std::fs::write(folder.path().join(name), text(content)).expect("a file in it");
     }
-    game::scenario::load(&folder.path().join("game.toml")).unwrap_or_else(|e| panic!("{e}"))
+    scenario::load(&folder.path().join("game.toml")).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// The scenario in which all boats follow a program without the mandatory safety behaviours.
@@ -54,7 +56,7 @@ impl Boat {
         Nav {
             north_m: self.y,
             east_m: self.x,
-            psi_rad: game::angle::rad_from_compass_deg(self.heading_deg),
+            psi_rad: primitives::angle::rad_from_compass_deg(self.heading_deg),
             surge_m_s: self.speed_m_s,
             ..Nav::default()
         }
@@ -72,7 +74,7 @@ impl Boat {
             seen_ns: seen,
             north_m: self.y,
             east_m: self.x,
-            psi_rad: game::angle::rad_from_compass_deg(self.heading_deg),
+            psi_rad: primitives::angle::rad_from_compass_deg(self.heading_deg),
             velocity_north_m_s: towards.north,
             velocity_east_m_s: towards.east,
             tagged: false,
@@ -124,5 +126,5 @@ pub(crate) fn decided(helm: &mut HelmMind, picture: &Picture) -> HelmReport {
 }
 
 fn wrap_180(angle_deg: f64) -> f64 {
-    game::angle::wrap_pi(angle_deg.to_radians()).to_degrees()
+    primitives::angle::wrap_pi(angle_deg.to_radians()).to_degrees()
 }

@@ -2,8 +2,10 @@
 
 use crate::scene::{Boat, picture};
 use agent::{HelmMind, Mind, roles};
-use game::stream::Stream;
-use game::{Order, Picture, Scenario, TeamId, VehicleId};
+use messages::{Order, Picture};
+use primitives::stream::Stream;
+use primitives::{TeamId, VehicleId};
+use scenario::Scenario;
 use std::path::Path;
 
 /// The scene as the other team has it that stands where this one stood: turned by half a turn about the datum, which is
@@ -12,7 +14,7 @@ fn turned(picture: &Picture) -> Picture {
     let mut other = picture.clone();
     other.team = 1 - picture.team;
     let swap = |vehicle: VehicleId| VehicleId((vehicle.0 + 2) % 4);
-    let half_a_turn = |psi_rad: f64| game::angle::wrap_pi(psi_rad + std::f64::consts::PI);
+    let half_a_turn = |psi_rad: f64| primitives::angle::wrap_pi(psi_rad + std::f64::consts::PI);
     for own in &mut other.own {
         own.vehicle = swap(own.vehicle);
         (own.nav.north_m, own.nav.east_m) = (-own.nav.north_m, -own.nav.east_m);
@@ -72,7 +74,7 @@ fn a_scene_turned_by_half_a_turn_gives_a_decision_turned_by_half_a_turn() {
             match (here, there) {
                 (Order::Hold, Order::Hold) => {}
                 (Order::Steer { heading_rad: a, speed_m_s: u }, Order::Steer { heading_rad: b, speed_m_s: v }) => {
-                    let off_deg = game::angle::wrap_pi(b - a - std::f64::consts::PI).to_degrees().abs();
+                    let off_deg = primitives::angle::wrap_pi(b - a - std::f64::consts::PI).to_degrees().abs();
                     assert!(
                         off_deg < 1e-6 && u == v,
                         "{strategy}, scene {scene}: {here:?}, and turned {there:?}: {picture:#?}"

@@ -3,9 +3,9 @@
 use crate::scene::{self, Table, decision, points, solved};
 use agent::ivp::{Approach, Choice, Closest, Closing, Decision, FUNCTIONS_MAX, Grid, Objective, Peak};
 use agent::ivp::{Preference, Problem, QUANTUM, SpeedLimit, WEIGHT_MAX};
-use game::Ned;
-use game::angle::wrap_pi;
-use game::stream::Stream;
+use primitives::Ned;
+use primitives::angle::wrap_pi;
+use primitives::stream::Stream;
 
 /// Every sum on the grid, in quanta, by course and speed.
 fn sums(grid: &Grid, functions: &[(f64, Objective)]) -> Vec<i64> {

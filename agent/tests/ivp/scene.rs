@@ -2,9 +2,9 @@
 
 use agent::ivp::{Approach, Choice, Closest, Closing, Decision, Grid, Lag, Objective, Peak};
 use agent::ivp::{Preference, Problem, Side, SpeedLimit};
-use game::Ned;
-use game::instructions::Instructions;
-use game::stream::Stream;
+use primitives::Ned;
+use primitives::instructions::Instructions;
+use primitives::stream::Stream;
 
 /// A table.
 pub(crate) struct Table(agent::ivp::Table);
@@ -124,7 +124,7 @@ pub(crate) fn closest(stream: &mut Stream, grid: &Grid) -> Closest {
 }
 
 fn lag(stream: &mut Stream, grid: &Grid) -> Lag {
-    let (heading_east, heading_north) = game::math::sin_cos(stream.between(-4.0, 4.0));
+    let (heading_east, heading_north) = primitives::math::sin_cos(stream.between(-4.0, 4.0));
     Lag {
         velocity: within(stream, grid.speed_max_m_s()),
         heading: Ned { north: heading_north, east: heading_east },

@@ -2,8 +2,8 @@
 
 use crate::scene::within;
 use agent::ivp::{Approach, Closest, Closing, Grid, Lag, Objective, Peak, Side, SpeedLimit};
-use game::Ned;
-use game::stream::Stream;
+use primitives::Ned;
+use primitives::stream::Stream;
 
 /// Single precision over some hundred metres, in points of utility.
 const TOLERANCE: f64 = 0.01;
@@ -49,7 +49,7 @@ fn a_limit_is_flat_within_and_falls_beyond() {
 /// The distance at the closest point of approach, by looking at many times.
 fn searched_m(closest: &Closest, grid: &Grid, k: usize, j: usize) -> f64 {
     const TIMES: usize = 40_000;
-    let (sin, cos) = game::math::sin_cos(grid.course_rad(k));
+    let (sin, cos) = primitives::math::sin_cos(grid.course_rad(k));
     let course = Ned { north: cos, east: sin };
     // From a place, with a velocity, for a time.
     let least = |from: Ned, velocity: Ned, time_s: f64| {
@@ -133,7 +133,7 @@ fn a_contact_on_the_other_side_counts_a_fifth() {
         })
     };
     // It lies 40 m ahead: 20 degrees to starboard leave it to port.
-    let passes_m = 40.0 * game::math::sin_cos(20_f64.to_radians()).0;
+    let passes_m = 40.0 * primitives::math::sin_cos(20_f64.to_radians()).0;
     for (course, to_port, to_starboard) in [(2, passes_m, 0.2 * passes_m), (34, 0.2 * passes_m, passes_m)] {
         let utility = |leave_to| closest(40.0, leave_to).utility(&grid, course, 7);
         near(utility(None), passes_m, &format!("course {course}, either"));

@@ -2,8 +2,8 @@
 
 use crate::scene::{self, Table, solved};
 use agent::ivp::{Approach, Closest, Closing, Grid, Lag, Objective, Peak, Preference, Side};
-use game::Ned;
-use game::stream::Stream;
+use primitives::Ned;
+use primitives::stream::Stream;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// A motion of the plane that leaves the own ship where it is.
@@ -142,7 +142,7 @@ fn directions_are_exact_images_of_each_other() {
             if courses % 4 == 0 {
                 assert_eq!(grid.direction((k + courses / 4) % courses), (0.0 - east, north), "{k} of {courses}");
             }
-            let (sin, cos) = game::math::sin_cos(grid.course_rad(k));
+            let (sin, cos) = primitives::math::sin_cos(grid.course_rad(k));
             assert!((f64::from(north) - cos).abs() < 1e-7 && (f64::from(east) - sin).abs() < 1e-7, "{k}");
         }
     }

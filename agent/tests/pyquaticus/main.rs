@@ -2,9 +2,12 @@
 //! among them boats that carry, are tagged, or have tagged lately. Commit and names of the numbers are in the files.
 
 use agent::{ActionSpace, ObservationSpace, Pilot, Spaces};
-use game::event::{EventRecord, Logged, TagCause};
-use game::picture::{Contact, FlagView, Nav, OwnBoat};
-use game::{Event, Picture, Scenario, SimTime, TeamId, VehicleId};
+use messages::Picture;
+use messages::picture::{Contact, FlagView, Nav, OwnBoat};
+use primitives::{SimTime, TeamId, VehicleId};
+use rules::Event;
+use rules::event::{EventRecord, Logged, TagCause};
+use scenario::Scenario;
 use serde::Deserialize;
 use std::path::Path;
 
@@ -58,7 +61,7 @@ fn scenario(team_size: usize) -> Scenario {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("game.toml");
     std::fs::write(&path, text).expect("a file");
-    game::scenario::load(&path).unwrap_or_else(|problems| panic!("{problems}"))
+    scenario::load(&path).unwrap_or_else(|problems| panic!("{problems}"))
 }
 
 /// What the team of a boat knows in a state.

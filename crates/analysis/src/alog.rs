@@ -11,12 +11,13 @@
 //! | a vehicle | `NAV_X`, `NAV_Y`, `NAV_HEADING`, `NAV_SPEED` (what it estimated), the same as `NAV_GT_…` (the truth), `DESIRED_HEADING`, `DESIRED_TURN`, `DESIRED_SPEED`, `DESIRED_THRUST_L` and `_R`, `HAS_FLAG`, `TAGGED`, `NODE_REPORT_LOCAL` |
 
 use crate::step::{Sample, Step, for_each_step};
-use game::angle::compass_deg_from_rad;
-use game::math::decimal;
-use game::outcome::EventOutcome;
-use game::picture::Nav;
-use game::{Order, Scenario};
+use messages::Order;
+use messages::picture::Nav;
+use primitives::angle::compass_deg_from_rad;
+use primitives::math::decimal;
 use recording::{Damaged, Header, Recording, utc};
+use scenario::Scenario;
+use scenario::outcome::EventOutcome;
 use std::io::{self, BufWriter, Write};
 
 /// Node reports come this often, s: as the reporter of that test-bed has it by default.
@@ -205,7 +206,7 @@ impl Log {
     fn node_report(&self, at_s: f64, scenario: &Scenario, (place, sample, nav): (usize, &Sample, &Nav)) -> String {
         let vehicle = &scenario.vehicles[place];
         let group = scenario.teams.get(vehicle.team.index()).map_or("", |team| team.name.as_str());
-        let length_m = scenario.boat_of(game::VehicleId::at(place)).length_m;
+        let length_m = scenario.boat_of(primitives::VehicleId::at(place)).length_m;
         format!(
             "NAME={},TYPE=kayak,TIME={:.2},X={},Y={},SPD={},HDG={},DEPTH=0,LENGTH={length_m},MODE={},GROUP={group}",
             vehicle.name,

@@ -3,8 +3,8 @@
 use crate::response::{Response, response};
 use crate::series::{BoatSeries, GameSeries};
 use crate::track::{TrackDifference, apart};
-use game::outcome::EventOutcome;
 use recording::Header;
+use scenario::outcome::EventOutcome;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use thiserror::Error;
@@ -150,7 +150,7 @@ fn notes(heads: [&Header; 2], [a, b]: [&GameSeries; 2]) -> Vec<String> {
     let kind = |is_real: bool| if is_real { "real" } else { "simulated" };
     for (i, boat) in a.boats.iter().enumerate() {
         let Some(j) = b.boats.iter().position(|there| there.name == boat.name) else { continue };
-        let of = |scenario: &game::Scenario, i: usize| scenario.boat_of(game::VehicleId::at(i)).name.clone();
+        let of = |scenario: &scenario::Scenario, i: usize| scenario.boat_of(primitives::VehicleId::at(i)).name.clone();
         differ(&boat.name, &of(one, i), &of(other, j));
         differ(&boat.name, kind(boat.is_real), kind(b.boats[j].is_real));
     }

@@ -1,7 +1,7 @@
 //! Gateways: what went over their links, and what stopped their boats.
 
 use crate::link_line::{Line, Lines};
-use game::external::{FailsafeReport, GatewayStatus, LinkBytes};
+use messages::external::{FailsafeReport, GatewayStatus, LinkBytes};
 use recording::{Bag, Damaged, Kind, Recording};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;

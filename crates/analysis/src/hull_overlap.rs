@@ -1,6 +1,6 @@
 //! Whether two hulls touch, as the rectangles around them.
 
-use game::{Ned, Pose};
+use primitives::{Ned, Pose};
 
 /// A hull as the rectangle around it.
 #[derive(Clone, Copy, Debug, PartialEq)]

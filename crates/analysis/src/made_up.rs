@@ -2,8 +2,8 @@
 
 use crate::series::{BoatSeries, GameSeries};
 use crate::step::Sample;
-use game::math;
-use game::picture::Nav;
+use messages::picture::Nav;
+use primitives::math;
 use std::f64::consts::TAU;
 
 /// A series of samples every 0.1 s up to `span_s`, in which one boat does this.

@@ -2,9 +2,10 @@
 
 use crate::series::{BoatSeries, GameSeries};
 use crate::step::Sample;
-use game::angle::wrap_pi;
-use game::frame::{Rotation, body_from_ned};
-use game::{Ned, Order};
+use messages::Order;
+use primitives::Ned;
+use primitives::angle::wrap_pi;
+use primitives::frame::{Rotation, body_from_ned};
 use serde::{Deserialize, Serialize};
 
 /// A boat's answer to its orders. What the game gave no occasion to tell is none.
@@ -143,13 +144,13 @@ fn cross_track(boat: &BoatSeries) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::made_up;
-    use game::picture::Nav;
+    use messages::picture::Nav;
     use std::f64::consts::TAU;
 
     /// Orders that go up and down, and a boat that does the same later, with this factor on its speed.
     fn late(lag_s: f64, gain: f64) -> GameSeries {
-        let heading_rad = |time_s: f64| 3.0 + 0.8 * game::math::sin_cos(TAU * time_s / 40.0).0;
-        let speed_m_s = |time_s: f64| 1.5 + 0.5 * game::math::sin_cos(TAU * time_s / 23.0).0;
+        let heading_rad = |time_s: f64| 3.0 + 0.8 * primitives::math::sin_cos(TAU * time_s / 40.0).0;
+        let speed_m_s = |time_s: f64| 1.5 + 0.5 * primitives::math::sin_cos(TAU * time_s / 23.0).0;
         made_up::game(120.0, |time_s| {
             let psi_rad = heading_rad(time_s - lag_s) + TAU;
             let surge_m_s = gain * speed_m_s(time_s - lag_s);

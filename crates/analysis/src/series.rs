@@ -1,11 +1,11 @@
 //! A recorded game as time series, as plots and comparisons need it: of a long game every so manieth decision.
 
 use crate::step::{Sample, Step, for_each_step};
-use game::event::Logged;
-use game::outcome::EventOutcome;
-use game::scenario::Source;
-use game::{Ned, Scenario};
+use primitives::Ned;
 use recording::{Damaged, Recording};
+use rules::event::Logged;
+use scenario::outcome::EventOutcome;
+use scenario::{Scenario, Source};
 
 /// The most samples of all boats together, about 140 bytes each. A game that has more is thinned out.
 const SAMPLES_MAX: usize = 1_000_000;
@@ -62,7 +62,7 @@ impl GameSeries {
         let scenario = recording.scenario();
         let all = recording.frame_count().saturating_mul(scenario.vehicles.len());
         let every = all.div_ceil(samples_max).max(1);
-        let boat = |vehicle: &game::scenario::Vehicle| BoatSeries {
+        let boat = |vehicle: &scenario::Vehicle| BoatSeries {
             name: vehicle.name.clone(),
             team: vehicle.team.index(),
             is_real: vehicle.source == Source::External,

@@ -2,10 +2,10 @@
 
 use crate::quantile::Quantile;
 use crate::step::{Sample, Step};
-use game::angle::wrap_pi;
-use game::count::{Counts, Tally};
-use game::scenario::{Source, Vehicle};
-use game::{Ned, Scenario};
+use primitives::Ned;
+use primitives::angle::wrap_pi;
+use rules::count::{Counts, Tally};
+use scenario::{Scenario, Source, Vehicle};
 use serde::{Deserialize, Serialize};
 
 /// A boat's game in statistics.
@@ -199,16 +199,16 @@ mod tests {
     use super::*;
     use crate::made_up;
     use crate::series::GameSeries;
-    use game::Order;
-    use game::event::{Event, Logged, TagCause};
-    use game::picture::Nav;
-    use game::{FlagId, SimTime, VehicleId};
+    use messages::Order;
+    use messages::picture::Nav;
+    use primitives::{FlagId, SimTime, VehicleId};
+    use rules::event::{Event, Logged, TagCause};
     use std::path::Path;
 
     /// The statistics of a made-up game, whose events happen at its beginning.
     fn statistics(series: &GameSeries) -> Vec<BoatStatistics> {
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
-        let scenario = game::scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
+        let scenario = scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
         let mut builder = StatisticsBuilder::new(&scenario);
         for (i, time_s) in series.times_s.iter().copied().enumerate() {
             let samples = series.boats.iter().map(|boat| boat.samples[i]).collect();

@@ -1,11 +1,12 @@
 //! A recorded game decision by decision: each boat's true and estimated position, and its order.
 
-use game::event::Logged;
-use game::input::{Input, Inputs};
-use game::message::{Frame, VehicleTruth};
-use game::picture::{Nav, Picture};
-use game::{Order, Scenario, SimTime};
+use messages::input::{Input, Inputs};
+use messages::picture::{Nav, Picture};
+use messages::{Frame, Order, VehicleTruth};
+use primitives::SimTime;
 use recording::{Damaged, FRAME, INPUTS, RecordedMessage, Recording, RecordingError, picture};
+use rules::event::Logged;
+use scenario::Scenario;
 
 /// A decision of a game.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -3,8 +3,8 @@
 use crate::gateway::{Gateway, gateways};
 use crate::statistics::{BoatStatistics, StatisticsBuilder};
 use crate::step::for_each_step;
-use game::outcome::EventOutcome;
 use recording::{Bag, Damaged, Recording};
+use scenario::outcome::EventOutcome;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

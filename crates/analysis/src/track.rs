@@ -1,7 +1,7 @@
 //! How far two tracks are apart, sample by sample and as shapes.
 
 use crate::series::{BoatSeries, GameSeries};
-use game::Ned;
+use primitives::Ned;
 use serde::{Deserialize, Serialize};
 
 /// How far apart a boat was in two games.
@@ -139,7 +139,7 @@ mod tests {
             *sample = samples[i.saturating_sub(50)];
         }
         let apart = apart((&a, &a.boats[0]), (&b, &b.boats[0])).expect("they were on together");
-        let chord_m = 2.0 * 20.0 * game::math::sin_cos(TAU * 5.0 / 100.0 / 2.0).0;
+        let chord_m = 2.0 * 20.0 * primitives::math::sin_cos(TAU * 5.0 / 100.0 / 2.0).0;
         assert!((apart.max_m - chord_m).abs() < 1e-9 && (apart.final_m - chord_m).abs() < 1e-9, "{apart:?}");
         assert!(apart.mean_m < chord_m && apart.rms_m < chord_m && apart.mean_m > 0.9 * chord_m, "{apart:?}");
     }

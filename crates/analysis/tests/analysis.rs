@@ -1,25 +1,26 @@
 //! What a recording tells afterwards: statistics, tables and logs of a small made-up game, to the byte where others read them.
 
 use analysis::{Comparison, GameSeries, Incomparable, Summary, alog, gateway_of, table};
-use game::event::{Event, Logged};
-use game::external::{FailsafeReport, GatewayStatus, LinkBytes};
-use game::input::Input;
-use game::message::{Frame, GameInfo, Message, Stamp, VehicleTruth};
-use game::picture::{Contact, FlagView, Nav, OwnBoat};
-use game::water::Water;
-use game::{FlagId, Order, Outcome, Picture, SimTime, TeamId, VehicleId};
+use messages::external::{FailsafeReport, GatewayStatus, LinkBytes};
+use messages::input::Input;
+use messages::picture::{Contact, FlagView, Nav, OwnBoat};
+use messages::water::Water;
+use messages::{Frame, GameInfo, Message, Order, Picture, Stamp, VehicleTruth};
+use primitives::{FlagId, SimTime, TeamId, VehicleId};
 use recording::{Bag, Decision, Ending, Entry, Facts, Header, Kind, Opening, Recording, Writer};
+use rules::event::{Event, Logged};
+use scenario::Outcome;
 use std::io::Cursor;
 use std::path::Path;
 
 fn header() -> Header {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
-    let scenario = game::scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
+    let scenario = scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
     Header {
         commit: "c0ffee".to_owned(),
         game: "pav01-1".to_owned(),
         began_utc_ns: 1_700_000_000_000_000_000,
-        info: GameInfo { version: game::VERSION.to_owned(), pace: "lockstep".to_owned(), scenario },
+        info: GameInfo { version: primitives::VERSION.to_owned(), pace: "lockstep".to_owned(), scenario },
         water: Water { waves: vec![] },
     }
 }
@@ -72,7 +73,7 @@ fn decision(seq: u64) -> Decision {
 fn link(outward: bool, data: &[u8]) -> Entry {
     let stamp = Stamp { version: LinkBytes::VERSION, ..Stamp::default() };
     let bytes = LinkBytes { stamp, vehicle: VehicleId(0), outward, data: data.to_vec() };
-    let bytes = game::codec::encode(&bytes);
+    let bytes = primitives::codec::encode(&bytes);
     Entry::Message {
         topic: "link/blue_one".to_owned(),
         schema: Some(LinkBytes::SCHEMA),

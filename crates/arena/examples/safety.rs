@@ -8,11 +8,14 @@
 
 use agent::MindRunner;
 use analysis::HullRectangle;
-use game::angle::compass_deg_from_rad;
-use game::event::EventCursor;
-use game::outcome::Outcome;
-use game::stream::Stream;
-use game::{Event, Order, Scenario, VehicleId};
+use messages::Order;
+use primitives::VehicleId;
+use primitives::angle::compass_deg_from_rad;
+use primitives::stream::Stream;
+use rules::Event;
+use rules::event::EventCursor;
+use scenario::Scenario;
+use scenario::outcome::Outcome;
 use sim::Contest;
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
@@ -134,7 +137,7 @@ fn scenario(folder: &Path, (sea, boat): (&str, &str), duration_s: u64, seed: u64
         game += &format!("[[team]]\nname = \"{team}\"\nstrategy = \"{team}.toml\"\n");
     }
     write(folder.join("game.toml"), &game);
-    game::scenario::load(&folder.join("game.toml")).unwrap_or_else(|e| panic!("seed {seed}: {e}"))
+    scenario::load(&folder.join("game.toml")).unwrap_or_else(|e| panic!("seed {seed}: {e}"))
 }
 
 fn write(path: PathBuf, text: &str) {

@@ -4,7 +4,8 @@
 //! shipped games that need no person and no real boat, with seed 1. A change that is only to make games faster leaves
 //! every digest as it is.
 
-use game::{Scenario, SimTime};
+use primitives::SimTime;
+use scenario::Scenario;
 use std::path::{Path, PathBuf};
 
 fn main() {
@@ -22,7 +23,7 @@ fn main() {
         games = shipped();
     }
     for path in &games {
-        let scenario = game::scenario::load(path).unwrap_or_else(|e| panic!("{e}"));
+        let scenario = scenario::load(path).unwrap_or_else(|e| panic!("{e}"));
         for seed in 1..=seeds {
             print_game(path, &scenario, seed, SimTime::from_s(duration_s.min(1e6)));
         }

@@ -7,7 +7,8 @@ pub mod tournament;
 pub mod trial;
 
 use agent::{Mind, MindRunner};
-use game::{Outcome, Scenario, VehicleId};
+use primitives::VehicleId;
+use scenario::{Outcome, Scenario};
 use sim::Contest;
 use sim::NoStart;
 

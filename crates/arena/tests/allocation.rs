@@ -2,7 +2,7 @@
 //!
 //! `stats_alloc` counts for us, see `sim/tests/allocation.rs`; one test, since it counts the whole process.
 
-use game::Scenario;
+use scenario::Scenario;
 use sim::Contest;
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use std::alloc::System;
@@ -17,7 +17,7 @@ const WARM_UP: u64 = 3_000;
 #[test]
 fn a_decision_takes_nothing_from_the_heap_unless_hulls_are_close_or_something_happens() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
-    let scenario: Scenario = game::scenario::load(&path).unwrap_or_else(|e| panic!("{e}"));
+    let scenario: Scenario = scenario::load(&path).unwrap_or_else(|e| panic!("{e}"));
     let mut runner = arena::runner_of(agent::minds_of(&scenario));
     let mut contest = Contest::new(&scenario, 1).unwrap_or_else(|e| panic!("{e}"));
     let (mut free, mut busy) = (0, 0);

@@ -1,9 +1,8 @@
 //! A scenario knows whether its seed matters: games of two seeds differ exactly where it says so.
 
-use game::Scenario;
-use game::reseed::Reseed;
-use game::scenario::{Overrides, load_with};
-use game::time::SimTime;
+use primitives::reseed::Reseed;
+use primitives::time::SimTime;
+use scenario::{Overrides, Scenario, load_with};
 use sim::Contest;
 use std::path::Path;
 

@@ -1,8 +1,8 @@
 //! Boats in current and wind: what their helms see of the drift, and where they go in spite of it.
 
 use agent::MindRunner;
-use game::scenario::StartPosition;
-use game::{Ned, Scenario, VehicleId};
+use primitives::{Ned, VehicleId};
+use scenario::{Scenario, StartPosition};
 use sim::Contest;
 use std::path::Path;
 
@@ -31,7 +31,7 @@ fn scenario(boat: &str, sea: &str, strategy: &str, heading_deg: f64) -> Scenario
         let text = text.replace("SCENARIOS", &scenarios.display().to_string());
         std::fs::write(folder.path().join(name), text).expect("a file in it");
     }
-    game::scenario::load(&folder.path().join("game.toml")).unwrap_or_else(|e| panic!("{e}"))
+    scenario::load(&folder.path().join("game.toml")).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// Calm water that goes this way.
@@ -135,7 +135,8 @@ fn a_boat_outside_comes_back_against_a_wind_that_drifts_it_faster_than_its_recov
     let boat = "base = \"SCENARIOS/boats/surveyor_m1_8.toml\"\n";
     let mut scenario = scenario(boat, "base = \"SCENARIOS/seas/bay_gale.toml\"\n", strategy, 0.0);
     let field = scenario.field.clone();
-    scenario.vehicles[0].start_position = StartPosition::At(game::Pose { at: field.at(300.0, 415.0), psi_rad: 0.0 });
+    scenario.vehicles[0].start_position =
+        StartPosition::At(primitives::Pose { at: field.at(300.0, 415.0), psi_rad: 0.0 });
     let mut inside_s = None;
     watch(&scenario, |contest, _| {
         let (_, y) = field.along_across(blue_at(contest));

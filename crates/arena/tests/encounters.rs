@@ -1,8 +1,9 @@
 //! Boats whose ways cross: they keep clear of each other, and do not both turn to the same side.
 
 use analysis::HullRectangle;
-use game::stream::Stream;
-use game::{Ned, Scenario, VehicleId};
+use primitives::stream::Stream;
+use primitives::{Ned, VehicleId};
+use scenario::Scenario;
 use sim::Contest;
 use std::path::Path;
 
@@ -27,7 +28,7 @@ fn encounter(stream: &mut Stream) -> Scenario {
     let other_deg = one_deg + stream.between(40.0, 320.0);
     for (name, file, way_deg) in [("blue_one", "blue_one.toml", one_deg), ("blue_two", "blue_two.toml", other_deg)] {
         let beside_m = stream.between(-4.0, 4.0);
-        let (sin, cos) = game::math::sin_cos(f64::to_radians(way_deg));
+        let (sin, cos) = primitives::math::sin_cos(f64::to_radians(way_deg));
         let place = |way_m: f64| (MIDDLE_M.0 + way_m * cos - beside_m * sin, MIDDLE_M.1 + way_m * sin + beside_m * cos);
         let (from, to) = (place(-START_M), place(2.0 * START_M));
         let heading_deg = f64::rem_euclid(90.0 - way_deg, 360.0);
@@ -47,7 +48,7 @@ fn encounter(stream: &mut Stream) -> Scenario {
         let text = text.replace("SCENARIOS", &scenarios.display().to_string());
         std::fs::write(folder.path().join(name), text).expect("a file in it");
     }
-    game::scenario::load(&folder.path().join("game.toml")).unwrap_or_else(|e| panic!("{e}"))
+    scenario::load(&folder.path().join("game.toml")).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// How near the two come, m, and whether their hulls touch.

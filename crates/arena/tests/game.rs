@@ -1,14 +1,15 @@
 //! Whole games of the shipped strategies.
 
-use game::count::Counts;
-use game::{Outcome, Scenario, SimTime, VehicleId};
+use primitives::{SimTime, VehicleId};
+use rules::count::Counts;
+use scenario::{Outcome, Scenario};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::{Arc, Mutex, OnceLock};
 
 fn shipped(name: &str) -> Scenario {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games").join(name);
-    game::scenario::load(&path).unwrap_or_else(|e| panic!("{e}"))
+    scenario::load(&path).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// Games that were played once, by name and seed: no two tests play the same one.
@@ -78,7 +79,7 @@ fn mirrored_teams_draw() {
 fn seeds_deal_the_roles_when_the_strategy_says_so() {
     let mut pav01 = shipped("pav01_vs_pav01.toml");
     for strategy in &mut pav01.strategies {
-        strategy.assignment = game::strategy::Assignment::Seeded;
+        strategy.assignment = scenario::strategy::Assignment::Seeded;
     }
     let deal = |seed: u64| {
         let scenario = Scenario { seed, ..pav01.clone() };
@@ -132,7 +133,7 @@ fn an_agent_that_is_killed_begins_anew_when_it_is_back() {
     );
     std::fs::write(dir.path().join("counts.toml"), counts).expect("it is written");
     std::fs::write(dir.path().join("game.toml"), game).expect("it is written");
-    let mut scenario = game::scenario::load(&dir.path().join("game.toml")).unwrap_or_else(|e| panic!("{e}"));
+    let mut scenario = scenario::load(&dir.path().join("game.toml")).unwrap_or_else(|e| panic!("{e}"));
     scenario.rules.time_limit = SimTime::from_s(20.0);
     let mut decisions = vec![];
     arena::play_observed(&scenario, agent::minds_of(&scenario), 1, |_, runner| {

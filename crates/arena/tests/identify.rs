@@ -2,9 +2,9 @@
 
 use arena::identify::{self, Fit, Log, NoFit, Setting};
 use arena::trial::{self, Engine, Orders, Sheet, Start, TrialBoat};
-use game::boat::{Boat, Drive};
-use game::stream::Stream;
-use game::{SimTime, scenario};
+use primitives::SimTime;
+use primitives::stream::Stream;
+use scenario::boat::{Boat, Drive};
 use std::path::Path;
 
 const TICK: SimTime = SimTime(50_000_000);

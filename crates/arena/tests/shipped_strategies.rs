@@ -1,10 +1,10 @@
 //! Shipped strategies: what they are said to do.
 
 use agent::Mind;
-use game::count::Counts;
-use game::helm::HelmReport;
-use game::scenario::{Overrides, load_with};
-use game::{Outcome, Scenario, VehicleId};
+use messages::helm::HelmReport;
+use primitives::VehicleId;
+use rules::count::Counts;
+use scenario::{Outcome, Overrides, Scenario, load_with};
 use std::path::{Path, PathBuf};
 
 fn shipped(path: &str) -> PathBuf {

@@ -2,8 +2,8 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 use arena::tournament::{Game, Match, Plan, Record, Report, play};
-use game::count::Counts;
-use game::scenario::{Entrant, Overrides, Tournament, load_tournament, load_with};
+use rules::count::Counts;
+use scenario::{Entrant, Overrides, Tournament, load_tournament, load_with};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -1,7 +1,9 @@
 //! A boat in a trial is the boat of a game: same law, same sea.
 
 use arena::trial::{self, Command, Start, TrialBoat};
-use game::{Ned, Order, Pose, Scenario, SimTime, scenario};
+use messages::Order;
+use primitives::{Ned, Pose, SimTime};
+use scenario::Scenario;
 use sim::World;
 use std::path::Path;
 
@@ -10,7 +12,7 @@ fn scenarios() -> std::path::PathBuf {
 }
 
 /// A game whose first boat is of this kind, at the datum pointing north, on this sea.
-fn game_of(boat: &game::Boat, sea: &game::sea::Sea, tick: SimTime) -> Scenario {
+fn game_of(boat: &scenario::Boat, sea: &scenario::sea::Sea, tick: SimTime) -> Scenario {
     let mut game = scenario::load(&scenarios().join("games/attack_1v1.toml")).unwrap_or_else(|e| panic!("{e}"));
     (game.tick, game.sea) = (tick, sea.clone());
     game.boats.push(boat.clone());

@@ -8,9 +8,8 @@
 //! it, where it has to send a key of more than 65535 bytes.
 
 use crate::keys::Identity;
-use game::Scenario;
-use game::scenario::Vehicle;
-use game::topic::{self, GameName};
+use messages::topic::{self, GameName};
+use scenario::{Scenario, Vehicle};
 use serde_json::{Value, json};
 
 /// What somebody may do, by patterns of topics. `{team}` stands for each of its teams, `{boat}` for each of its boats; only what the

@@ -1,8 +1,8 @@
 //! Controlling a game from outside of it.
 
 use crate::{ANSWER, Bus, BusError, Priority, Watched, clock, start_thread};
-use game::message::{Control, ControlReply};
-use game::topic::{self, GameName};
+use messages::topic::{self, GameName};
+use messages::{Control, ControlReply};
 use std::sync::Arc;
 use std::time::Duration;
 

@@ -2,9 +2,10 @@
 
 use crate::keys::Identity;
 use crate::{Bus, BusError, Place, PlacedSession, clock};
-use game::message::{GameInfo, JoinReply, JoinRequest, Role};
-use game::topic::{self, GameName};
-use game::{Scenario, SimTime, VehicleId};
+use messages::topic::{self, GameName};
+use messages::{GameInfo, JoinReply, JoinRequest, Role};
+use primitives::{SimTime, VehicleId};
+use scenario::Scenario;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use thiserror::Error;
@@ -32,7 +33,7 @@ pub enum Refusal {
     #[error("{0}")]
     Refused(String),
     /// It speaks another version of Squall; this is what is known of it.
-    #[error("not of one version: this program is {ours}, {0}", ours = game::VERSION)]
+    #[error("not of one version: this program is {ours}, {0}", ours = primitives::VERSION)]
     Version(String),
 }
 
@@ -183,7 +184,7 @@ fn understood(answer: &[u8]) -> Result<GameInfo, Refusal> {
     // The version first: of another version we may not understand the rest.
     let value: serde_json::Value = serde_json::from_slice(answer).unwrap_or_default();
     let version = value.get("version").and_then(serde_json::Value::as_str).unwrap_or("unknown");
-    if version != game::VERSION {
+    if version != primitives::VERSION {
         return Err(Refusal::Version(format!("the sim is {version}")));
     }
     let not_understood = |e: String| Refusal::Version(format!("the sim's scenario is not understood: {e}"));
@@ -218,7 +219,7 @@ pub fn join(
 ) -> Result<Joined, Missing> {
     check_keys(bus, scenario, role, vehicles)?;
     let bus = bus.clone().with_token(place.net(Some(game))?.token);
-    let (version, node, asked) = (game::VERSION.to_owned(), bus.id(), clock::now());
+    let (version, node, asked) = (primitives::VERSION.to_owned(), bus.id(), clock::now());
     let request = JoinRequest { version, role, node, vehicles: vehicles.to_vec() };
     match bus.request(&topic::join(game, scenario, role, vehicles), &request, ANSWER)? {
         None => Err(Missing::Yet("the sim does not answer the join request".to_owned())),
@@ -255,8 +256,8 @@ mod tests {
     #[test]
     fn a_game_is_believed_if_it_is_of_this_version_and_everything_that_it_names_is_in_it() {
         let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
-        let scenario = game::scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
-        let info = GameInfo { version: game::VERSION.to_owned(), pace: "lockstep".to_owned(), scenario };
+        let scenario = scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
+        let info = GameInfo { version: primitives::VERSION.to_owned(), pace: "lockstep".to_owned(), scenario };
         let told = |change: &dyn Fn(&mut GameInfo)| {
             let mut info = info.clone();
             change(&mut info);
@@ -265,7 +266,7 @@ mod tests {
         assert_eq!(told(&|_| ()), Ok(info.clone()));
         let refused = |change: &dyn Fn(&mut GameInfo)| told(change).expect_err("it is refused");
         assert!(refused(&|info| info.version = "0.0.1".to_owned()).contains("the sim is 0.0.1"));
-        let other_team = refused(&|info| info.scenario.vehicles[0].team = game::TeamId(9));
+        let other_team = refused(&|info| info.scenario.vehicles[0].team = primitives::TeamId(9));
         assert!(other_team.contains("the team of blue_one is 9, expected less than 2"), "{other_team}");
         let other_strategy = refused(&|info| info.scenario.vehicles[1].strategy = 77);
         assert!(other_strategy.contains("the strategy of blue_two is 77"), "{other_strategy}");

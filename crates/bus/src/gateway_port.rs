@@ -2,7 +2,7 @@
 //! the network (`token`).
 
 use crate::{BusError, Token, clock, token};
-use game::external::{GatewayCommand, OperatorReply};
+use messages::external::{GatewayCommand, OperatorReply};
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::{SocketAddr, TcpStream};
 use std::time::{Duration, Instant};

@@ -158,7 +158,7 @@ struct Process {
 const ENTRY_MAX: u64 = 1 << 16;
 
 fn live_entry<E: DeserializeOwned>(path: &Path) -> Option<E> {
-    let json = game::input_file::read(path, ENTRY_MAX).ok()?;
+    let json = primitives::input_file::read(path, ENTRY_MAX).ok()?;
     let Process { pid } = serde_json::from_slice(&json).ok()?;
     // Where there is no /proc we cannot tell, and believe the file.
     let dead = Path::new("/proc/self").exists() && !Path::new(&format!("/proc/{pid}")).exists();

@@ -5,8 +5,8 @@ use crate::open_files::OpenFiles;
 use crate::runtime::check_threads_for_keys;
 use crate::session::reason;
 use crate::{BusError, Token, access, random_bytes};
-use game::Scenario;
-use game::topic::{self, GameName};
+use messages::topic::{self, GameName};
+use scenario::Scenario;
 use serde_json::json;
 use std::net::{SocketAddr, TcpListener};
 use std::path::PathBuf;
@@ -116,7 +116,7 @@ impl Net {
             Some(path) => {
                 let refused = |reason| BusError::Open { what: path.display().to_string(), reason };
                 // The library would read whatever it is.
-                game::input_file::read(path, CONFIG_MAX).map_err(|e| refused(e.to_string()))?;
+                primitives::input_file::read(path, CONFIG_MAX).map_err(|e| refused(e.to_string()))?;
                 Config::from_file(path).map_err(|e| refused(reason(&e)))?
             }
         };

@@ -4,7 +4,7 @@
 use crate::game_search::{Missing, Refusal};
 use crate::token::CurrentToken;
 use crate::{Bus, Net};
-use game::topic::GameName;
+use messages::topic::GameName;
 use std::sync::Arc;
 
 /// Says where a game is: this one, or the only one there.

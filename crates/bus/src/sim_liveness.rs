@@ -4,7 +4,7 @@
 //! the link to it is cut, it falls silent first, and its token goes when the network gives the link up.
 
 use crate::{Bus, BusError, Declaration, Watched, clock};
-use game::topic::{self, GameName};
+use messages::topic::{self, GameName};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::{Duration, Instant};

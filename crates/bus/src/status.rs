@@ -1,8 +1,8 @@
 //! The status of a boat's gateway, as the sim publishes it.
 
 use crate::{Bus, BusError, Declaration};
-use game::external::GatewayStatus;
-use game::topic::{self, GameName};
+use messages::external::GatewayStatus;
+use messages::topic::{self, GameName};
 
 impl Bus {
     /// Calls `take` with every status of this boat's gateway; what is not understood, or is about another boat, is dropped.

@@ -2,8 +2,8 @@
 
 use bus::keys::{Bundle, Identity, make};
 use bus::{Bus, BusError, Net, Priority, Query, Watched, clock};
-use game::Scenario;
-use game::topic::{self, GameName};
+use messages::topic::{self, GameName};
+use scenario::Scenario;
 use std::io::Write;
 use std::net::TcpStream;
 use std::path::Path;
@@ -20,7 +20,7 @@ fn game() -> GameName {
 /// Blue one and red one are real boats.
 fn scenario() -> Scenario {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/mixed_2v2.toml");
-    game::scenario::load(&file).unwrap_or_else(|e| panic!("{e}"))
+    scenario::load(&file).unwrap_or_else(|e| panic!("{e}"))
 }
 
 fn team(name: &str) -> Identity {

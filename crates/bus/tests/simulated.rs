@@ -2,9 +2,9 @@
 
 use bus::simulated::{Conditions, Damage, Fault, Run, SimulatedNetwork, Verdict};
 use bus::{Bus, Net, Priority, Watched, clock, inbox};
-use game::Scenario;
-use game::topic::GameName;
+use messages::topic::GameName;
 use parking_lot::Mutex;
+use scenario::Scenario;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
@@ -34,7 +34,7 @@ fn net() -> Net {
 
 fn scenario() -> Scenario {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
-    game::scenario::load(&file).unwrap_or_else(|e| panic!("{e}"))
+    scenario::load(&file).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// What a node saw, in order, with the second of virtual time.

@@ -1,9 +1,10 @@
 //! Real inputs: scenario files of the tree, and a short game with everything that was sent in it.
 
-use game::event::EventCursor;
-use game::message::{Frame, GameInfo, Message, Orders, PolicyProposal, Say, Stamp, VehicleOrder, Word};
-use game::water::{PlaneWave, Water};
-use game::{Picture, Scenario, VehicleId};
+use rules::event::EventCursor;
+use messages::{Frame, GameInfo, Message, Orders, Picture, PolicyProposal, Say, Stamp, VehicleOrder, Word};
+use messages::water::{PlaneWave, Water};
+use scenario::Scenario;
+use primitives::VehicleId;
 use recording::{Decision, Ending, Entry, Header, Writer};
 use std::io::Cursor;
 use std::path::PathBuf;
@@ -21,7 +22,7 @@ pub fn scenarios() -> PathBuf {
 #[must_use]
 pub fn scenario(name: &str) -> Scenario {
     let file = scenarios().join("games").join(name).with_extension("toml");
-    game::scenario::load(&file).unwrap_or_else(|e| panic!("{e}"))
+    scenario::load(&file).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// A game with two teams of two, of which a boat of each is real.
@@ -74,7 +75,7 @@ impl Played {
     /// What a sim says of the game.
     #[must_use]
     pub fn info(&self) -> GameInfo {
-        GameInfo { version: game::VERSION.to_owned(), pace: "lockstep".to_owned(), scenario: self.scenario.clone() }
+        GameInfo { version: primitives::VERSION.to_owned(), pace: "lockstep".to_owned(), scenario: self.scenario.clone() }
     }
 
     /// Its recording.
@@ -110,7 +111,7 @@ pub fn proposal() -> PolicyProposal {
 /// An order of each kind for a boat.
 #[must_use]
 pub fn orders() -> [VehicleOrder; 3] {
-    let thrust = game::Order::Thrust { port: 0.5, starboard: -0.5 };
-    let steer = game::Order::Steer { heading_rad: 1.0, speed_m_s: 1.0 };
-    [game::Order::Hold, steer, thrust].map(|order| VehicleOrder::new(VehicleId(0), order))
+    let thrust = messages::Order::Thrust { port: 0.5, starboard: -0.5 };
+    let steer = messages::Order::Steer { heading_rad: 1.0, speed_m_s: 1.0 };
+    [messages::Order::Hold, steer, thrust].map(|order| VehicleOrder::new(VehicleId(0), order))
 }

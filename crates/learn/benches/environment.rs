@@ -3,10 +3,10 @@
 
 use agent::{Action, ActionSpace, ObservationSpace, Spaces};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use game::rewards::Rewards;
-use game::stream::Stream;
-use game::training::CriticInput;
 use learn::environment::{Control, Player, Setup, VectorEnvironment};
+use primitives::stream::Stream;
+use scenario::rewards::Rewards;
+use scenario::training::CriticInput;
 use std::path::Path;
 
 const GAMES: usize = 64;
@@ -14,7 +14,7 @@ const GAMES: usize = 64;
 fn setup(game: &str, opponent: Player) -> Setup {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../scenarios/games/{game}.toml"));
     Setup {
-        scenario: game::scenario::load(&path).unwrap_or_else(|problems| panic!("{problems}")),
+        scenario: scenario::load(&path).unwrap_or_else(|problems| panic!("{problems}")),
         spaces: Spaces { observation: ObservationSpace::Pyquaticus, action: ActionSpace::Pyquaticus },
         control: Control::Direct,
         teacher: None,
@@ -33,7 +33,7 @@ fn setup(game: &str, opponent: Player) -> Setup {
 fn steps(c: &mut Criterion) {
     let mut group = c.benchmark_group("environment");
     let strategy = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/strategies/strategy_4.toml");
-    let strategy = game::scenario::load_strategy(&strategy).unwrap_or_else(|problems| panic!("{problems}"));
+    let strategy = scenario::load_strategy(&strategy).unwrap_or_else(|problems| panic!("{problems}"));
     let games = [
         ("calm", "pyquaticus_2v2", Player::Policy),
         ("sea and sensors", "surveyor_2v2", Player::Policy),

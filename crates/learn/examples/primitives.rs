@@ -5,13 +5,13 @@
 //! shipped policies, `scenarios/policies/primitive_NAME.onnx`. The same numbers are the same games.
 
 use agent::{Action, ActionSpace};
-use game::count::Counts;
-use game::rewards::{BoatProgress, Placed, progress};
-use game::scenario;
-use game::stream::Stream;
-use game::{Ned, VehicleId};
+use rules::count::Counts;
+use scenario::rewards::{BoatProgress, Placed, progress};
+
 use learn::environment::{Setup, VectorEnvironment};
 use onnx::Network;
+use primitives::stream::Stream;
+use primitives::{Ned, VehicleId};
 use sim::Contest;
 use std::path::{Path, PathBuf};
 

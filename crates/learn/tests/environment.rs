@@ -1,11 +1,12 @@
 //! Environments: the same games as everywhere else, whatever the number of threads.
 
 use agent::{Action, ActionSpace, Mind, ObservationSpace, Pilot, Spaces};
-use game::rewards::{Potential, Rewards, Worth};
-use game::stream::Stream;
-use game::training::CriticInput;
-use game::{Order, Picture, TeamId, VehicleId};
 use learn::environment::{Control, Player, Setup, Teacher, VectorEnvironment};
+use messages::{Order, Picture};
+use primitives::stream::Stream;
+use primitives::{TeamId, VehicleId};
+use scenario::rewards::{Potential, Rewards, Worth};
+use scenario::training::CriticInput;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -13,9 +14,9 @@ fn scenarios() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios")
 }
 
-fn strategy(name: &str) -> Box<game::strategy::Strategy> {
+fn strategy(name: &str) -> Box<scenario::strategy::Strategy> {
     let path = scenarios().join(format!("strategies/{name}.toml"));
-    Box::new(game::scenario::load_strategy(&path).unwrap_or_else(|problems| panic!("{problems}")))
+    Box::new(scenario::load_strategy(&path).unwrap_or_else(|problems| panic!("{problems}")))
 }
 
 const SPACES: Spaces = Spaces {
@@ -24,7 +25,7 @@ const SPACES: Spaces = Spaces {
 };
 
 fn setup(game: &str, opponents: Vec<(f64, Player)>) -> Setup {
-    let scenario = game::scenario::load(&scenarios().join(format!("games/{game}.toml")));
+    let scenario = scenario::load(&scenarios().join(format!("games/{game}.toml")));
     let worth = Worth { grab: 1.0, capture: 2.0, tag: 0.5, left_field: -1.0, ..Worth::default() };
     Setup {
         scenario: scenario.unwrap_or_else(|problems| panic!("{problems}")),
@@ -88,7 +89,7 @@ fn a_critic_is_given_the_truth_that_sensors_do_not_tell() {
         let scenario = contest.scenario();
         let field = &scenario.field;
         let sign = if scenario.team_of(me).index() == 0 { 1.0 } else { -1.0 };
-        let truth = contest.frame(&mut game::event::EventCursor::default()).vehicles[me.index()].nav;
+        let truth = contest.frame(&mut rules::event::EventCursor::default()).vehicles[me.index()].nav;
         let ahead = sign * (truth.at() - field.middle()).dot(field.along) / (0.5 * field.plan.width_m);
         assert!((f64::from(state[observation]) - ahead).abs() < 1e-6, "row {row}: {}, not {ahead}", state[observation]);
         off_m = off_m.max((f64::from(observed[0]) - ahead).abs() * 0.5 * field.plan.width_m);

@@ -1,12 +1,13 @@
 //! A trained policy in a strategy is the one that was trained.
 
 use agent::{Action, ActionSpace, HelmMind, Mind, ObservationSpace, Pilot, Spaces};
-use game::policy::{PartialSpec, PolicyModel, PolicySpec};
-use game::scenario::{self, Scenario};
-use game::strategy::{Program, Strategy, Task};
-use game::{Order, Picture, VehicleId};
 use learn::nn::Perceptron;
+use messages::{Order, Picture};
 use onnx::Network;
+use primitives::VehicleId;
+use scenario::Scenario;
+use scenario::policy::{PartialSpec, PolicyModel, PolicySpec};
+use scenario::strategy::{Program, Strategy, Task};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -22,7 +23,7 @@ fn file(path: &str) -> PathBuf {
 
 /// A policy with random weights, large enough that it does not always do the same.
 fn model(spec: PolicySpec) -> PolicyModel {
-    let mut stream = game::stream::Stream::new(8, "test/model");
+    let mut stream = primitives::stream::Stream::new(8, "test/model");
     let (inputs, outputs) = (spec.observation.size(1, 2), spec.action.outputs());
     let network = Perceptron::new(&[inputs, 32, outputs], 3.0, &mut stream);
     let bytes = network.onnx("logits", BTreeMap::from(spec.metadata())).unwrap_or_else(|error| panic!("{error}"));
@@ -93,7 +94,7 @@ fn a_model_in_a_strategy_plays_the_game_that_it_was_trained_in() {
 
 /// A network that gives what is no number: its weights add up beyond single precision.
 fn model_of_nan() -> PolicyModel {
-    let mut stream = game::stream::Stream::new(8, "test/model");
+    let mut stream = primitives::stream::Stream::new(8, "test/model");
     let mut network = Perceptron::new(&[SPEC.observation.size(1, 2), 4, 17], 1.0, &mut stream);
     network.parameters_mut().iter_mut().for_each(|number| *number = 3e38);
     let bytes = network.onnx("logits", BTreeMap::from(SPEC.metadata())).unwrap_or_else(|error| panic!("{error}"));

@@ -1,14 +1,14 @@
 //! Trainings by TD3 and double DQN: the same by everybody, stopped and resumed or not, something is learnt, and the file plays what was
 //! trained.
 
-use game::policy::{PartialSpec, PolicyModel};
-use game::scenario;
-use game::stream::Stream;
-use game::training::{Algorithm, Dqn, Evaluation, Layers, League, Opponent, Stage, Td3, Training};
+use scenario::policy::{PartialSpec, PolicyModel};
+
 use learn::environment::SetupError;
 use learn::nn::Trace;
 use learn::off_policy::td3;
 use learn::train::{Learner, Progress, Trainer};
+use primitives::stream::Stream;
+use scenario::training::{Algorithm, Dqn, Evaluation, Layers, League, Opponent, Stage, Td3, Training};
 use std::path::{Path, PathBuf};
 
 fn file(path: &str) -> PathBuf {

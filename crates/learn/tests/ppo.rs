@@ -1,9 +1,9 @@
 //! Networks and their training: gradients against differences, the same bits on any number of threads, and that something is learnt.
 
-use game::stream::Stream;
-use game::training::Ppo;
 use learn::nn::{Adam, AdamSettings, Perceptron, Trace};
 use learn::ppo::{ActorCritic, Batch, Lesson, choice};
+use primitives::stream::Stream;
+use scenario::training::Ppo;
 
 #[test]
 fn gradients_are_the_slopes_of_the_output() {

@@ -1,11 +1,11 @@
 //! Policies that each do one thing: what places are worth to them, and what those that are shipped do.
 
 use agent::{Action, ActionSpace};
-use game::rewards::{BoatProgress, Place, Placed, Rewards, progress};
-use game::strategy::Task;
-use game::training::Training;
-use game::{Ned, VehicleId, scenario};
 use learn::environment::{Player, Setup, VectorEnvironment};
+use primitives::{Ned, VehicleId};
+use scenario::rewards::{BoatProgress, Place, Placed, Rewards, progress};
+use scenario::strategy::Task;
+use scenario::training::Training;
 use sim::Contest;
 use std::path::{Path, PathBuf};
 

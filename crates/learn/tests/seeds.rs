@@ -1,8 +1,8 @@
 //! Environments begun again: games of seeds, one boat of a team, a setup as a person gives it.
 
 use agent::{Action, ActionSpace};
-use game::TeamId;
 use learn::environment::{CriticInput, Games, RawObservation, RawSetup, Rows, SetupError};
+use primitives::TeamId;
 use std::path::{Path, PathBuf};
 
 fn scenario(file: &str) -> PathBuf {

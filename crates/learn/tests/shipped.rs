@@ -1,8 +1,7 @@
 //! The policy that is shipped plays, and plays well.
 
-use game::scenario;
-use game::strategy::{Strategy, Task};
-use game::{TeamId, VehicleId};
+use primitives::{TeamId, VehicleId};
+use scenario::strategy::{Strategy, Task};
 use std::path::{Path, PathBuf};
 
 fn file(path: &str) -> PathBuf {

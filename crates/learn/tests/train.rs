@@ -1,9 +1,8 @@
 //! Training: something is learnt in a few seconds, and the same by everybody.
 
-use game::scenario;
-use game::training::{CriticInput, Evaluation, Layers, League, Ppo, Stage, Teacher, Training};
 use learn::environment::{Moment, Watch};
 use learn::train::{Progress, StateError, Trainer};
+use scenario::training::{CriticInput, Evaluation, Layers, League, Ppo, Stage, Teacher, Training};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
@@ -46,7 +45,7 @@ fn short() -> Training {
         self_play: 1.0,
         past_selves: 1.0,
         strategies: 1.0,
-        opponent: vec![game::training::Opponent { strategy: file("strategies/pav01.toml") }],
+        opponent: vec![scenario::training::Opponent { strategy: file("strategies/pav01.toml") }],
         starts: Some(8),
         episode_max_s: Some(20.0),
         samples: 4_000,

@@ -1,11 +1,11 @@
 //! Games that are seen as they are played: from what they were given they can be played again, to the last bit.
 
 use agent::{Action, ActionSpace};
-use game::event::EventCursor;
-use game::input::Input;
-use game::message::Frame;
-use game::{Outcome, Scenario};
 use learn::environment::{CriticInput, Games, Moment, RawObservation, RawSetup, Rows, Watch};
+use messages::Frame;
+use messages::input::Input;
+use rules::event::EventCursor;
+use scenario::{Outcome, Scenario};
 use sim::Contest;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};

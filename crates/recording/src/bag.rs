@@ -5,9 +5,9 @@ use crate::json_string;
 use crate::records::{Extent, Record, for_each_record};
 use crate::source::Source;
 use crate::{BEGAN, CHECKSUM, Facts, Kind, RESULT, VERSION, checksum};
-use game::SimTime;
-use game::codec::{self, DecodeError};
-use game::message::Message;
+use messages::Message;
+use primitives::SimTime;
+use primitives::codec::{self, DecodeError};
 use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -40,7 +40,7 @@ pub enum RecordingError {
         found: Kind,
     },
     /// It was made by another version, whose messages may mean something else.
-    #[error("recorded by Squall {found}, this is {ours}", ours = game::VERSION)]
+    #[error("recorded by Squall {found}, this is {ours}", ours = primitives::VERSION)]
     Version {
         /// The recorder's.
         found: String,
@@ -300,7 +300,7 @@ impl Found {
         let (kind, facts) =
             header.ok_or_else(|| foreign("there is neither metadata \"squall\" nor \"gateway\" in it"))?;
         let version = facts.get(VERSION).cloned().unwrap_or_default();
-        if version != game::VERSION {
+        if version != primitives::VERSION {
             return Err(RecordingError::Version { found: version });
         }
         match facts.get(CHECKSUM) {

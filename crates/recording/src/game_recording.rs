@@ -2,9 +2,9 @@
 
 use crate::bag::{Bag, RecordedMessage, RecordingError};
 use crate::{Facts, Kind, Opening};
-use game::message::{Frame, GameInfo};
-use game::water::Water;
-use game::{Outcome, Scenario};
+use messages::water::Water;
+use messages::{Frame, GameInfo};
+use scenario::{Outcome, Scenario};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::OnceLock;

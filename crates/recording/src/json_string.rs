@@ -1,6 +1,6 @@
 //! JSON in a recording: the text of a ROS 2 string, since tools of ROS 2 read files in which everything is CDR, and no others.
 
-use game::codec::ENCAPSULATION;
+use primitives::codec::ENCAPSULATION;
 
 /// The message that holds it.
 pub(crate) const SCHEMA: &str = "std_msgs/msg/String";

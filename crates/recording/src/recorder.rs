@@ -2,7 +2,7 @@
 
 use crate::writer::{Entry, Opening, Writer};
 use crate::{Facts, RecordError, utc};
-use game::run_state::RecordingState;
+use messages::run_state::RecordingState;
 use std::fs::File;
 use std::io::{BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
@@ -264,8 +264,8 @@ fn now() -> Instant {
 mod tests {
     use super::*;
     use crate::{Bag, Decision, FRAME, INPUTS, Kind};
-    use game::SimTime;
-    use game::message::{Frame, Message, Stamp};
+    use messages::{Frame, Message, Stamp};
+    use primitives::SimTime;
     use std::io::{Cursor, ErrorKind, SeekFrom};
     use std::sync::Mutex;
 

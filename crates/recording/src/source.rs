@@ -35,7 +35,7 @@ impl std::fmt::Debug for Source {
 impl Source {
     /// Those of a file.
     pub(crate) fn open(path: &Path) -> Result<Source, Error> {
-        let file = game::input_file::open(path)?;
+        let file = primitives::input_file::open(path)?;
         let length = file.metadata()?.len();
         Ok(Source::new(Box::new(file), length))
     }

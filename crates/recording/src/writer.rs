@@ -3,12 +3,10 @@
 use crate::{
     BEGAN, CHECKSUM, FRAME, Facts, INPUTS, Kind, RESULT, RecordError, VERSION, checksum, json_string, picture,
 };
-use game::codec;
-use game::input::{Input, Inputs};
-use game::message::{Frame, Message, Stamp};
-use game::ros;
-use game::{Picture, SimTime};
 use mcap::records::{MessageHeader, Metadata};
+use messages::input::{Input, Inputs};
+use messages::{Frame, Message, Picture, Stamp, ros};
+use primitives::{SimTime, codec};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::io::{Seek, Write};
@@ -93,13 +91,13 @@ impl<W: Write + Seek> Writer<W> {
     /// # Errors
     /// [`RecordError`] if the file does not take it.
     pub fn begin(file: W, opening: &Opening) -> Result<Writer<W>, RecordError> {
-        let options = mcap::WriteOptions::new().profile("ros2").library(format!("squall {}", game::VERSION));
+        let options = mcap::WriteOptions::new().profile("ros2").library(format!("squall {}", primitives::VERSION));
         // A chunk is written when it is whole: what is on the disk is then never in need of mending.
         let options = options.compression(None).chunk_size(Some(CHUNK)).disable_seeking(true);
         let mut mcap = options.create(file)?;
         let Opening { kind, began_utc_ns, facts, more, teams } = opening.clone();
         let mut header = facts;
-        header.entry(VERSION.to_owned()).or_insert_with(|| game::VERSION.to_owned());
+        header.entry(VERSION.to_owned()).or_insert_with(|| primitives::VERSION.to_owned());
         header.insert(BEGAN.to_owned(), began_utc_ns.to_string());
         header.insert(CHECKSUM.to_owned(), checksum(&header));
         for (name, facts) in std::iter::once((kind.header(), header)).chain(more) {

@@ -1,24 +1,25 @@
 //! Recordings: what is written is read again, also from a file that was cut, and other files are refused.
 
-use game::helm::HelmQuestion;
-use game::input::{Input, Inputs};
-use game::message::{Frame, GameInfo, Message, Orders, Stamp, VehicleTruth};
-use game::picture::Nav;
-use game::water::{PlaneWave, Water};
-use game::{Order, Outcome, Picture, SimTime, VehicleId};
+use messages::helm::HelmQuestion;
+use messages::input::{Input, Inputs};
+use messages::picture::Nav;
+use messages::water::{PlaneWave, Water};
+use messages::{Frame, GameInfo, Message, Order, Orders, Picture, Stamp, VehicleTruth};
+use primitives::{SimTime, VehicleId};
 use recording::{Decision, Ending, Entry, Header, NewFile, Recorder, Recording, RecordingError, Writer};
+use scenario::Outcome;
 use std::io::Cursor;
 use std::path::Path;
 
 fn header() -> Header {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
-    let scenario = game::scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
+    let scenario = scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
     let wave = PlaneWave { amplitude_m: 0.1, wavenumber_rad_m: 0.3, ..PlaneWave::default() };
     Header {
         commit: "c0ffee".to_owned(),
         game: "pav01-1".to_owned(),
         began_utc_ns: 1_700_000_000_000_000_000,
-        info: GameInfo { version: game::VERSION.to_owned(), pace: "lockstep".to_owned(), scenario },
+        info: GameInfo { version: primitives::VERSION.to_owned(), pace: "lockstep".to_owned(), scenario },
         water: Water { waves: vec![wave] },
     }
 }
@@ -279,7 +280,7 @@ fn a_damaged_header_is_refused_also_in_a_file_that_is_cut() {
 
 #[test]
 fn a_header_that_refers_to_nothing_is_refused() {
-    let refused = |change: fn(&mut game::Scenario)| {
+    let refused = |change: fn(&mut scenario::Scenario)| {
         let mut header = header();
         change(&mut header.info.scenario);
         let writer = Writer::begin(Cursor::new(Vec::new()), &header.opening()).expect("it begins");
@@ -290,10 +291,10 @@ fn a_header_that_refers_to_nothing_is_refused() {
         (refused(|scenario| scenario.vehicles[0].boat = 7), "the boat of blue_one is 7, expected less than 1"),
         (refused(|scenario| scenario.vehicles[0].strategy = 9), "the strategy of blue_one is 9"),
         (
-            refused(|scenario| scenario.vehicles[2].team = game::TeamId(2)),
+            refused(|scenario| scenario.vehicles[2].team = primitives::TeamId(2)),
             "the team of red_one is 2, expected less than 2",
         ),
-        (refused(|scenario| scenario.field.flags[1].team = game::TeamId(5)), "the team of flag 1 is 5"),
+        (refused(|scenario| scenario.field.flags[1].team = primitives::TeamId(5)), "the team of flag 1 is 5"),
         (refused(|scenario| scenario.vehicles[1].name = "../x".to_owned()), "\"../x\" is no name"),
     ] {
         assert!(message.contains("its scenario is not understood") && message.contains(part), "{message}");

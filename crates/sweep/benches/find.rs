@@ -2,7 +2,7 @@
 //!
 //! `cargo bench -p squall-sweep --bench find -- [GAMES] [CONDITION]`, by default 1000 games and `strategy_5.out_of_bounds > 0`.
 
-use game::scenario::load_sweep;
+use scenario::load_sweep;
 use std::num::NonZeroUsize;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;

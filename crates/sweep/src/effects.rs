@@ -6,7 +6,7 @@
 use crate::metric::{HEADLINES, METRICS, index_of};
 use crate::plan::{Plan, Point};
 use arena::tournament::Estimate;
-use game::scenario::{Axis, AxisValue, Design};
+use scenario::{Axis, AxisValue, Design};
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 

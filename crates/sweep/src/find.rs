@@ -18,9 +18,9 @@ use crate::plan::{Job, Plan, Point};
 use crate::split::{Branch, Least, Path, Splitting};
 use crate::study::StudyError;
 use arena::tournament::Estimate;
-use game::reseed::Reseed;
-use game::scenario::AxisValue;
-use game::stream::Stream;
+use primitives::reseed::Reseed;
+use primitives::stream::Stream;
+use scenario::AxisValue;
 use serde::Serialize;
 use std::f64::consts::E;
 use std::num::NonZeroUsize;
@@ -210,7 +210,7 @@ fn variance(numbers: &[f64]) -> f64 {
 }
 
 /// How many pieces an axis is cut into.
-fn pieces(axis: &game::scenario::Axis) -> usize {
+fn pieces(axis: &scenario::Axis) -> usize {
     if axis.values.is_empty() { PIECES } else { axis.values.len() }
 }
 
@@ -223,9 +223,8 @@ fn draw(plan: &Plan, (density, nominal): (&Density, &Density), (before, count): 
     let mut stream = Stream::new(plan.sweep().seed, &format!("sweep/find/{before}"));
     let mut sample = |i: usize| {
         let (pieces, weight) = draw_pieces(&mut stream, density, nominal);
-        let value = |(k, axis): (usize, &game::scenario::Axis)| {
-            axis.at((pieces[k] as f64 + stream.unit()) / density[k].len() as f64)
-        };
+        let value =
+            |(k, axis): (usize, &scenario::Axis)| axis.at((pieces[k] as f64 + stream.unit()) / density[k].len() as f64);
         let values: Vec<AxisValue> = plan.sweep().axes.iter().enumerate().map(value).collect();
         let (seed, side) = (plan.sweep().seed.wrapping_add((before + i) as u64), (before + i) % 2);
         let job = Job { index: 0, point: 0, entry: 0, seed, side };

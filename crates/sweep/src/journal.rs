@@ -114,7 +114,7 @@ impl Journal {
 /// What a game is: its entry, its seed, the entry's side, the values of the axes, and the seeds that take over.
 fn key(plan: &Plan, job: &Job) -> Vec<String> {
     let point = &plan.points()[job.point];
-    let values = point.values.iter().map(game::scenario::AxisValue::toml).chain(point.reseed_toml());
+    let values = point.values.iter().map(scenario::AxisValue::toml).chain(point.reseed_toml());
     let first = [plan.sweep().entries[job.entry].name.clone(), job.seed.to_string(), job.side.to_string()];
     first.into_iter().chain(values).collect()
 }

@@ -1,12 +1,11 @@
 //! Which games a sweep consists of.
 
-use game::Scenario;
-use game::reseed::Reseed;
-use game::scenario::{
-    Axis, AxisValue, Design, Entrant, Files, Overrides, Packed, Problem, Problems, Setting, Sweep, UnpackError,
-    digest_of, load_with_files,
+use primitives::reseed::Reseed;
+use primitives::stream::Stream;
+use scenario::{
+    Axis, AxisValue, Design, Entrant, Files, Overrides, Packed, Problem, Problems, Scenario, Setting, Sweep,
+    UnpackError, digest_of, load_with_files,
 };
-use game::stream::Stream;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

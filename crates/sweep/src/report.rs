@@ -5,7 +5,7 @@ use crate::metric::{METRICS, Metric, index_of};
 use crate::plan::{Job, Plan};
 use crate::study::Row;
 use arena::tournament::Estimate;
-use game::scenario::Design;
+use scenario::Design;
 use serde::Serialize;
 
 /// How many of the worst games of an entry are named.
@@ -134,7 +134,7 @@ impl Report {
         Report {
             sweep: sweep.name.clone(),
             about: sweep.about.clone(),
-            version: game::VERSION.to_owned(),
+            version: primitives::VERSION.to_owned(),
             game: sweep.game.display().to_string(),
             opponent: sweep.opponent.display().to_string(),
             design: sweep.design,

@@ -7,7 +7,7 @@
 //! Rousset, Annals of Applied Probability 2016): for weights over failures too. All that came no nearer than the last one given up are
 //! given up with it; that is what keeps the mean unbiased where several are as near as each other.
 
-use game::stream::Stream;
+use primitives::stream::Stream;
 
 /// A game of a population.
 pub(crate) trait Path {

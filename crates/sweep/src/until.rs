@@ -9,7 +9,7 @@ use crate::journal::Journal;
 use crate::plan::{Job, Plan, Point};
 use crate::study::StudyError;
 use arena::tournament::Estimate;
-use game::scenario::AxisValue;
+use scenario::AxisValue;
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::num::NonZeroUsize;
@@ -145,7 +145,7 @@ fn try_value(
     journal: &mut Journal,
     (jobs, stop): (NonZeroUsize, &AtomicBool),
 ) -> Result<Tried, UntilError> {
-    let mut values: Vec<AxisValue> = plan.sweep().axes.iter().map(game::scenario::Axis::nominal).collect();
+    let mut values: Vec<AxisValue> = plan.sweep().axes.iter().map(scenario::Axis::nominal).collect();
     values[axis] = plan.sweep().axes[axis].at(share);
     let value = values[axis].number().unwrap_or(f64::NAN);
     let most = plan.seeds();
@@ -226,7 +226,7 @@ mod tests {
         let condition = Condition { entry: 0, metric: 0, is_below: true, threshold: 0.5 };
         let mut wrong = 0;
         for trial in 0..2000 {
-            let mut stream = game::stream::Stream::new(trial, "coins");
+            let mut stream = primitives::stream::Stream::new(trial, "coins");
             let coins: Vec<f64> = (0..64).map(|_| f64::from(u8::from(stream.unit() < 0.5))).collect();
             wrong += i32::from(verdict(&condition, &coins, 0.05).is_some());
         }

@@ -1,6 +1,6 @@
 //! A sweep in a folder: whole, cut off and taken up again, on any number of threads; what is wrong with it is said before a game.
 
-use game::scenario::{Overrides, load_sweep, load_with};
+use scenario::{Overrides, load_sweep, load_with};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -105,7 +105,7 @@ fn a_game_of_the_report_is_the_one_that_its_command_plays() {
     }
     let settings = ["game.duration_s=30", "sea.wind.speed_m_s=9"];
     let overrides = Overrides {
-        settings: settings.map(|text| game::scenario::Setting::parse(text).unwrap()).to_vec(),
+        settings: settings.map(|text| scenario::Setting::parse(text).unwrap()).to_vec(),
         strategies: [("blue", "strategies/easy_attackers.toml"), ("red", "strategies/pav01.toml")]
             .map(|(team, file)| (team.to_owned(), shipped(file)))
             .into(),

@@ -8,7 +8,7 @@
 mod sentences;
 
 use chrono::{Datelike, Timelike};
-use game::LatLon;
+use primitives::LatLon;
 use gateway::nmea::{Date, Framer, Mwv, Sentence, SpeedUnit, TimeOfDay, Vtg, WindReference, checksum};
 use nmea::ParseResult;
 use nmea::sentences::mwv::{MwvReference, MwvWindSpeedUnits};

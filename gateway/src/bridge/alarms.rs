@@ -5,8 +5,8 @@
 use super::Event;
 use crate::protocol::{Command, Power};
 use crate::set_point::SetPoint;
-use game::SimTime;
-use game::gateway::CurrentWatch;
+use primitives::SimTime;
+use scenario::gateway::CurrentWatch;
 
 /// A thruster that is ordered this much draws a current, per cent.
 const ORDERED_MIN_PCT: f64 = 20.0;

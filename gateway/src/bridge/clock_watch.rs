@@ -1,7 +1,7 @@
 //! Watches the receiver's time of day for steps against our clock.
 
 use crate::nmea::TimeOfDay;
-use game::SimTime;
+use primitives::SimTime;
 
 /// A step that is worth a warning, s.
 const CLOCK_STEP_S: f64 = 2.0;

@@ -5,9 +5,9 @@
 
 use crate::nmea::Mode;
 use crate::protocol::Shown;
-use game::SimTime;
-use game::angle::wrap_pi;
-use game::gateway::ControlWatch;
+use primitives::SimTime;
+use primitives::angle::wrap_pi;
+use scenario::gateway::ControlWatch;
 use std::collections::VecDeque;
 
 /// In mode G speeds and headings are the same if they are as near as this, kn and degrees: ArduPilot leaves out all after the comma.

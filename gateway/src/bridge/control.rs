@@ -4,8 +4,8 @@ use super::command_echo::CommandEcho;
 use crate::nmea::{Mode, Operator};
 use crate::protocol::{ControlReport, Shown};
 use crate::supervisor::Control;
-use game::SimTime;
-use game::gateway::ControlWatch;
+use primitives::SimTime;
+use scenario::gateway::ControlWatch;
 
 /// The boat's last control state.
 #[derive(Clone, Copy, Debug)]

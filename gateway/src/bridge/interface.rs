@@ -1,10 +1,12 @@
 //! The interface of a bridge: its inputs and outputs.
 
-use game::external::{FleetCommand, OperatorCommand};
-use game::frame::Ned;
-use game::gateway::{CompassFrame, Gateway};
-use game::picture::Nav;
-use game::{Field, Order, SimTime};
+use messages::Order;
+use messages::external::{FleetCommand, OperatorCommand};
+use messages::picture::Nav;
+use primitives::SimTime;
+use primitives::frame::Ned;
+use rules::Field;
+use scenario::gateway::{CompassFrame, Gateway};
 use serde::{Deserialize, Serialize};
 
 /// What a bridge is made for; constant.

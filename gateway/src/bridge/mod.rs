@@ -27,13 +27,14 @@ use alarms::Alarms;
 use battery::BatteryLog;
 use clock_watch::ClockWatch;
 use control::ControlLog;
-use game::external::{FailsafeReport, FleetCommand, Mission, OperatorCommand};
-use game::frame::Ned;
-use game::gateway::{Gateway, SwitchWord};
-use game::{Order, SimTime};
+use messages::Order;
+use messages::external::{FailsafeReport, FleetCommand, Mission, OperatorCommand};
 use on_site::OnSite;
 use operator_request::request_from;
+use primitives::SimTime;
+use primitives::frame::Ned;
 use recovery_point::RecoveryPoint;
+use scenario::gateway::{Gateway, SwitchWord};
 use status::Counters;
 use std::collections::VecDeque;
 

@@ -7,10 +7,10 @@ use crate::geofence::GeofenceWatch;
 use crate::nav_estimate::NavEstimator;
 use crate::set_point::SetPointMapper;
 use crate::supervisor::Task;
-use game::SimTime;
-use game::external::{BoatMode, GeofenceReport, Mission};
-use game::frame::Ned;
-use game::gateway::{BoatProtocol, Gateway};
+use messages::external::{BoatMode, GeofenceReport, Mission};
+use primitives::SimTime;
+use primitives::frame::Ned;
+use scenario::gateway::{BoatProtocol, Gateway};
 
 /// What only works where the field is known.
 pub(super) struct OnSite {

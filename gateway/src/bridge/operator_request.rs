@@ -2,7 +2,7 @@
 
 use super::Bridge;
 use crate::supervisor::{OperatorRequest, Scope, Task};
-use game::external::{BoatMode, OperatorCommand};
+use messages::external::{BoatMode, OperatorCommand};
 
 /// The request in a command; `None` where it asks nothing of the supervisor, or that depends on the boat.
 pub(super) fn request_from(command: &OperatorCommand) -> Option<OperatorRequest> {

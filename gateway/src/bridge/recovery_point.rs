@@ -2,7 +2,7 @@
 
 use crate::nmea::{Mode, Operator};
 use crate::protocol::ControlReport;
-use game::external::Mission;
+use messages::external::Mission;
 
 /// A home that is as near to the recovery point as this is the one that was set, degrees: one metre.
 const HOME_DEG: f64 = 9e-6;

@@ -4,8 +4,8 @@ use super::Bridge;
 use crate::nmea::Operator;
 use crate::protocol::Command;
 use crate::supervisor::{Cause, State};
-use game::SimTime;
-use game::external::GatewayStatus;
+use messages::external::GatewayStatus;
+use primitives::SimTime;
 
 /// How often each thing happened.
 #[derive(Clone, Debug, Default)]

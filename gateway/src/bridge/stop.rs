@@ -3,7 +3,7 @@
 use super::Bridge;
 use crate::protocol::Command;
 use crate::supervisor::Control;
-use game::SimTime;
+use primitives::SimTime;
 
 impl Bridge {
     /// The shutdown message, sent before the link closes: thrust zero, then standby.

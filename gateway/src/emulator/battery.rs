@@ -1,7 +1,8 @@
 //! The battery of an emulated boat: what its thrusters draw empties it, and its voltage falls.
 
 use super::autopilot::speed_of_thrust;
-use game::{Order, SimTime, math};
+use messages::Order;
+use primitives::{SimTime, math};
 
 /// Voltage of a lithium cell at rest by what is left in it, a share of all: typical of NMC cells.
 const CELL_V: [(f64, f64); 9] = [

@@ -2,8 +2,9 @@
 
 use super::{ArduPilot, Emulator, Port};
 use crate::nmea::{Operator, date_and_time};
-use game::picture::OwnBoat;
-use game::{Order, SimTime};
+use messages::Order;
+use messages::picture::OwnBoat;
+use primitives::SimTime;
 
 /// The front seat.
 pub enum FrontSeat {

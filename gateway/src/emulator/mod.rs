@@ -19,9 +19,10 @@ use crate::geodesy::LocalFrame;
 use crate::nmea::{Command, Date, Framer, M_S_PER_KN, Mode, Operator, Sentence, TimeOfDay};
 use autopilot::Autopilot;
 use battery::{Battery, Pack};
-use game::frame::LatLon;
-use game::picture::OwnBoat;
-use game::{Order, SimTime};
+use messages::Order;
+use messages::picture::OwnBoat;
+use primitives::SimTime;
+use primitives::frame::LatLon;
 use sensed::Sensed;
 
 /// What an emulated boat is made of; constant but for its clock.

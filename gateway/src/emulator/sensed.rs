@@ -1,7 +1,7 @@
 //! What an emulated boat knows of itself, whichever protocol it speaks.
 
-use game::SimTime;
-use game::picture::OwnBoat;
+use messages::picture::OwnBoat;
+use primitives::SimTime;
 
 /// A receiver that has no newer fix than this reports none, s.
 const FIX_AGE_MAX_S: f64 = 1.0;

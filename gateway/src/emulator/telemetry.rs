@@ -5,10 +5,9 @@ use crate::nmea::{
     Attitude, Battery, BoatError, ControlState, Date, Gga, Hdg, Hdt, M_S_PER_KN, Mode, Rmc, Sentence, Talker,
     TimeOfDay, Vtg, Zda,
 };
-use game::angle::compass_deg_from_rad;
-use game::math;
-use game::picture::{Imu, Nav};
-use game::{LatLon, SimTime};
+use messages::picture::{Imu, Nav};
+use primitives::angle::compass_deg_from_rad;
+use primitives::{LatLon, SimTime, math};
 
 /// Below this speed a receiver reports no course, m/s.
 const COURSE_FROM_M_S: f64 = 0.1;

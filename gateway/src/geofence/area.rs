@@ -1,11 +1,11 @@
 //! The water where a boat may be: a polygon, without the keep-outs in it.
 
 use crate::geodesy::LocalFrame;
-use game::field::{Field, distance_to_outline, do_meet, is_within, sides};
-use game::frame::{LatLon, Ned};
-use game::gateway::Geofence;
-use game::scenario::{Scenario, StartPosition};
-use game::{VehicleId, math};
+use primitives::frame::{LatLon, Ned};
+use primitives::{VehicleId, math};
+use rules::field::{Field, distance_to_outline, do_meet, is_within, sides};
+use scenario::gateway::Geofence;
+use scenario::{Scenario, StartPosition};
 use thiserror::Error;
 
 /// A round corner is drawn in steps of this, degrees: it is cut by less than half a per cent of the margin.

@@ -6,10 +6,10 @@ mod tests;
 
 pub use area::{GeofenceArea, GeofenceError};
 
-use game::SimTime;
-use game::field::Field;
-use game::frame::Ned;
-use game::gateway::Geofence;
+use primitives::SimTime;
+use primitives::frame::Ned;
+use rules::field::Field;
+use scenario::gateway::Geofence;
 
 /// Watches that a boat is inside of the geofence and can stop there.
 #[derive(Clone, Debug)]

@@ -2,18 +2,18 @@
 
 use super::*;
 use crate::geodesy::LocalFrame;
-use game::field::sides;
-use game::frame::LatLon;
-use game::math;
+use primitives::frame::LatLon;
+use primitives::math;
 use proptest::prelude::*;
+use rules::field::sides;
 
 fn field() -> Field {
     let game = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/pav01_vs_pav01.toml");
-    game::scenario::load(&game).unwrap_or_else(|problems| panic!("{problems}")).field
+    scenario::load(&game).unwrap_or_else(|problems| panic!("{problems}")).field
 }
 
 fn rules() -> Geofence {
-    game::scenario::default_gateway().geofence
+    scenario::default_gateway().geofence
 }
 
 fn at(seconds: f64) -> SimTime {
@@ -208,7 +208,7 @@ fn a_concave_geofence_and_a_keep_out_count_on_all_of_the_way_to_rest() {
 #[test]
 fn a_geofence_that_does_not_go_with_the_game_is_refused() {
     let game = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/pav01_vs_pav01.toml");
-    let scenario = game::scenario::load(&game).unwrap_or_else(|problems| panic!("{problems}"));
+    let scenario = scenario::load(&game).unwrap_or_else(|problems| panic!("{problems}"));
     let square = |x: f64, y: f64, half_m: f64| {
         typed(
             &scenario.field,
@@ -220,7 +220,7 @@ fn a_geofence_that_does_not_go_with_the_game_is_refused() {
         .vehicles
         .iter()
         .map(|vehicle| match &vehicle.start_position {
-            game::scenario::StartPosition::At(pose) => pose.at,
+            scenario::StartPosition::At(pose) => pose.at,
             other => panic!("{other:?}"),
         })
         .collect();
@@ -235,7 +235,7 @@ fn a_geofence_that_does_not_go_with_the_game_is_refused() {
     ] {
         let area = GeofenceArea::new(&scenario.field, &Geofence { polygon, keep_out, ..rules() });
         let checked =
-            area.check(&scenario, game::VehicleId::at(0)).map_err(|e| e.to_string()).err().unwrap_or_default();
+            area.check(&scenario, primitives::VehicleId::at(0)).map_err(|e| e.to_string()).err().unwrap_or_default();
         assert!(
             checked.contains(refusal) && checked.is_empty() == refusal.is_empty(),
             "{checked:?}, expected {refusal:?}"

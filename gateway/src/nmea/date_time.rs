@@ -1,6 +1,6 @@
 //! Date and time of day as sentences carry them.
 
-use game::SimTime;
+use primitives::SimTime;
 use serde::{Deserialize, Serialize};
 use time::{Month, UtcDateTime};
 

@@ -5,7 +5,7 @@ use super::mode::Mode;
 use super::operator::Operator;
 use super::talker::Talker;
 use super::wind::{SpeedUnit, WindReference};
-use game::LatLon;
+use primitives::LatLon;
 
 /// What a sentence consists of.
 pub(super) struct Layout<'a> {

@@ -9,7 +9,7 @@ use super::operator::Operator;
 use super::position::{Axis, LATITUDE, LONGITUDE};
 use super::talker::Talker;
 use super::wind::{KNOT_KM_H, SpeedUnit, WindReference};
-use game::LatLon;
+use primitives::LatLon;
 use std::str::FromStr;
 
 /// A sentence's address, and its data fields counted from 1 as manuals do.

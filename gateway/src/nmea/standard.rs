@@ -4,7 +4,7 @@ use super::date_time::{Date, TimeOfDay};
 use super::layout::{COMPASS, Field, HUNDREDTHS, Layout, TENTHS};
 use super::talker::Talker;
 use super::wind::{SpeedUnit, WindReference};
-use game::LatLon;
+use primitives::LatLon;
 
 /// `GGA`, a fix: when, where, how good.
 #[derive(Clone, Debug, Default, PartialEq)]

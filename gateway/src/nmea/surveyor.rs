@@ -3,7 +3,7 @@
 use super::layout::{BRIEF_THOUSANDTHS, Field, HUNDREDTHS, Layout, TENTHS, WHOLE};
 use super::mode::Mode;
 use super::operator::Operator;
-use game::LatLon;
+use primitives::LatLon;
 
 /// `PSEAC`, the command: what a back seat tells the boat to do. What a field means depends on the mode, and any but the
 /// mode may be empty.

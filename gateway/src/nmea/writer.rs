@@ -5,7 +5,7 @@ use super::layout::{Field, Format, HUNDREDTHS, Layout, TENTHS};
 use super::position::{LATITUDE, LONGITUDE};
 use super::wind::KNOT_KM_H;
 use super::{EMITTED_MAX, checksum};
-use game::LatLon;
+use primitives::LatLon;
 use std::ops::Range;
 
 /// `$`, `*`, two digits, CR and LF.

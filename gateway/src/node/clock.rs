@@ -2,7 +2,7 @@
 //! as the game.
 
 use bus::clock;
-use game::SimTime;
+use primitives::SimTime;
 use std::time::{Duration, Instant};
 
 /// Time since the gateway began.

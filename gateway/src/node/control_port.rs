@@ -11,7 +11,7 @@ use crate::supervisor::Scope;
 use bus::stop::{DatagramPort, States, StopRequest};
 use bus::token::{self, Checked, Guard};
 use bus::{CurrentToken, GATEWAY_PORT_KEY, Slot};
-use game::external::{FleetCommand, GatewayCommand, GatewayStatus, OperatorCommand, OperatorReply};
+use messages::external::{FleetCommand, GatewayCommand, GatewayStatus, OperatorCommand, OperatorReply};
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::net::{SocketAddr, TcpStream, UdpSocket};
 use std::sync::Arc;

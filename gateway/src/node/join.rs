@@ -3,9 +3,9 @@
 use super::loop_input::Call;
 use bus::game_search::{self, GameSearch, NotFound};
 use bus::{Bus, BusError, InboxSender, NodeThread, Patience, Place, SimWatch};
-use game::Scenario;
-use game::message::Role;
-use game::topic::GameName;
+use messages::Role;
+use messages::topic::GameName;
+use scenario::Scenario;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;

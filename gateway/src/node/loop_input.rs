@@ -6,7 +6,7 @@ use crate::link::LinkEvent;
 use crate::supervisor::Scope;
 use bus::game_search::Joined;
 use bus::{Inbox, InboxSender, Query, Watched, inbox};
-use game::external::{ExternalOrder, GatewayCommand, OperatorCommand, OperatorReply};
+use messages::external::{ExternalOrder, GatewayCommand, OperatorCommand, OperatorReply};
 use parking_lot::Mutex;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};

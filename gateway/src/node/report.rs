@@ -4,9 +4,9 @@ use super::NodeError;
 use super::gateway_loop::GatewayLoop;
 use crate::bridge::{Input, NavOut, Output};
 use bus::Publisher;
-use game::SimTime;
-use game::external::{GatewayStatus, LinkBytes, NavReport, Reported};
-use game::message::{Message, Stamp};
+use messages::external::{GatewayStatus, LinkBytes, NavReport, Reported};
+use messages::{Message, Stamp};
+use primitives::SimTime;
 use recording::Entry;
 
 impl GatewayLoop<'_> {

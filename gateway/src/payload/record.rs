@@ -2,10 +2,9 @@
 
 use super::exo2::Measurement;
 use crate::record::json;
-use game::SimTime;
-use game::codec;
-use game::message::{Message, Stamp};
-use game::payload::PayloadBytes;
+use messages::payload::PayloadBytes;
+use messages::{Message, Stamp};
+use primitives::{SimTime, codec};
 use recording::Entry;
 
 /// Turns what passes between a payload and its clients into entries of a recording.

@@ -3,9 +3,9 @@
 //! The deviation is A + B sin h + C cos h + D sin 2h + E cos 2h at the heading h (Bowditch, *American Practical Navigator*,
 //! ch. 6), east positive: what has to be added to the compass to have the heading.
 
-use game::angle::wrap_pi;
-use game::math;
 use nalgebra::{Matrix5, Vector5};
+use primitives::angle::wrap_pi;
+use primitives::math;
 use std::f64::consts::TAU;
 
 /// The most pairs that are kept.
@@ -146,7 +146,7 @@ mod tests {
         let base = base.canonicalize().expect("it is there");
         let file = folder.path().join("boat.toml");
         std::fs::write(&file, format!("base = {base:?}\n\n{toml}")).expect("written");
-        let boat = game::scenario::load_boat(&file).unwrap_or_else(|problems| panic!("{problems}"));
+        let boat = scenario::load_boat(&file).unwrap_or_else(|problems| panic!("{problems}"));
         let compass = boat.sensors.compass.expect("it has one");
         assert!((compass.deviation_rad[2].to_degrees() + 3.0).abs() < 0.01, "{compass:?}");
     }

@@ -1,7 +1,7 @@
 //! How far the fixes of a boat that lies still are apart.
 
 use crate::geodesy::LocalFrame;
-use game::frame::{LatLon, Ned};
+use primitives::frame::{LatLon, Ned};
 
 /// The scatter of fixes.
 #[derive(Clone, Copy, Debug, PartialEq)]

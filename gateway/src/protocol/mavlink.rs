@@ -21,9 +21,9 @@ use crate::nmea::Mode;
 use crate::set_point::SetPoint;
 use crate::supervisor::Task;
 use ::mavlink::MessageData;
-use game::external::Mission;
-use game::gateway::{Gateway, Mavlink as Settings};
-use game::{SimTime, math};
+use messages::external::Mission;
+use primitives::{SimTime, math};
+use scenario::gateway::{Gateway, Mavlink as Settings};
 
 /// How often we say that we are there, s.
 const HEARTBEAT_S: f64 = 1.0;

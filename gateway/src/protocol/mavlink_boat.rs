@@ -9,8 +9,8 @@ use crate::mavlink::dialect::{
 use crate::mavlink::{AUTOPILOT, Received, RoverMode};
 use crate::nmea::{Mode, Operator, date_and_time};
 use ::mavlink::Message;
-use game::frame::Ned;
-use game::{LatLon, SimTime};
+use primitives::frame::Ned;
+use primitives::{LatLon, SimTime};
 
 /// A receiver that has told nothing of its fix for this long has none, s.
 const FIX_TYPE_AGE_MAX_S: f64 = 2.0;

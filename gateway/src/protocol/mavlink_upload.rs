@@ -7,8 +7,8 @@ use crate::mavlink::dialect::{
     MavMissionResult,
 };
 use ::mavlink::MessageData;
-use game::SimTime;
-use game::external::Mission;
+use messages::external::Mission;
+use primitives::SimTime;
 
 /// What the boat does not answer is sent again after this time, s, and so often in all.
 const AGAIN_S: f64 = 1.0;

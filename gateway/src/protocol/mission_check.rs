@@ -1,6 +1,6 @@
 //! The check of a mission before it is uploaded.
 
-use game::external::Mission;
+use messages::external::Mission;
 
 /// Most waypoints of a mission.
 const WAYPOINTS_MAX: usize = 200;

@@ -12,11 +12,11 @@ mod surveyor_upload;
 
 use crate::set_point::SetPoint;
 use crate::supervisor::Task;
-use game::SimTime;
-use game::external::Mission;
-use game::gateway::{BoatProtocol, Gateway, SwitchWord};
 use mavlink::Mavlink;
+use messages::external::Mission;
+use primitives::SimTime;
 pub use report::{ControlReport, Fix, Heading, North, Power, Report, Shown};
+use scenario::gateway::{BoatProtocol, Gateway, SwitchWord};
 use surveyor::Surveyor;
 
 /// What a boat is told.
@@ -100,7 +100,7 @@ impl Protocol {
         }
     }
 
-    /// Whether its boats have the modes of [`game::external::BoatMode`].
+    /// Whether its boats have the modes of [`messages::external::BoatMode`].
     #[must_use]
     pub fn has_boat_modes(&self) -> bool {
         matches!(self, Protocol::Surveyor(_))

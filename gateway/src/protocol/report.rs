@@ -1,8 +1,8 @@
 //! What boats report of themselves, whichever protocol they speak.
 
 use crate::nmea::{Mode, Operator, TimeOfDay};
-use game::LatLon;
-use game::frame::Ned;
+use primitives::LatLon;
+use primitives::frame::Ned;
 
 /// Something that a boat reports.
 #[derive(Clone, Debug, PartialEq)]

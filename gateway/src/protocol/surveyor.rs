@@ -6,9 +6,9 @@ use super::{Command, UploadStep, mission_check};
 use crate::nmea::{self, ControlState, Framer, Gga, M_S_PER_KN, Mode, ParseError, Sentence};
 use crate::set_point::SetPoint;
 use crate::supervisor::Task;
-use game::SimTime;
-use game::external::{BoatMode, Mission};
-use game::frame::Ned;
+use messages::external::{BoatMode, Mission};
+use primitives::SimTime;
+use primitives::frame::Ned;
 use std::collections::BTreeMap;
 
 /// How many names of unknown sentences are kept.

@@ -2,9 +2,9 @@
 
 use super::surveyor::{end_of_download, start_of_download};
 use crate::nmea::{MissionSettings, Sentence, Waypoint};
-use game::SimTime;
-use game::external::Mission;
-use game::frame::LatLon;
+use messages::external::Mission;
+use primitives::SimTime;
+use primitives::frame::LatLon;
 use std::collections::VecDeque;
 
 /// What is still to be sent.

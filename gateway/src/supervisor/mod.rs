@@ -29,8 +29,8 @@ mod cause;
 pub use cause::{Cause, NavFault};
 
 use crate::thrust_check::ThrustFault;
-use game::external::BoatMode;
-use game::gateway::{FailsafeAction, FailsafeActions};
+use messages::external::BoatMode;
+use scenario::gateway::{FailsafeAction, FailsafeActions};
 use thiserror::Error;
 
 /// What is true now.

@@ -1,10 +1,11 @@
 //! A boat with simple dynamics, and the plan of its emulated front seat.
 
-use game::frame::{LatLon, Ned, Rotation};
-use game::picture::{Imu, Nav, OwnBoat};
-use game::{Order, SimTime, VehicleId};
 use gateway::emulator;
 use gateway::nmea::{Date, TimeOfDay};
+use messages::Order;
+use messages::picture::{Imu, Nav, OwnBoat};
+use primitives::frame::{LatLon, Ned, Rotation};
+use primitives::{SimTime, VehicleId};
 
 /// The time of a step.
 pub(crate) const STEP_S: f64 = 0.01;
@@ -25,14 +26,14 @@ impl Boat {
             Order::Hold => (0.0, 0.0),
             Order::Thrust { port, starboard } => (1.6 * (port + starboard), 1.5 * (port - starboard)),
             Order::Steer { heading_rad, speed_m_s } => {
-                let error_rad = game::angle::wrap_pi(heading_rad - self.psi_rad);
+                let error_rad = primitives::angle::wrap_pi(heading_rad - self.psi_rad);
                 (speed_m_s, error_rad.clamp(-0.5, 0.5))
             }
             Order::Turn { by_rad, speed_m_s } => (speed_m_s, by_rad.clamp(-0.5, 0.5)),
         };
         self.speed_m_s += (speed_m_s - self.speed_m_s) * STEP_S / 2.0;
         self.turn_rad_s += (turn_rad_s - self.turn_rad_s) * STEP_S / 0.5;
-        self.psi_rad = game::angle::wrap_pi(self.psi_rad + self.turn_rad_s * STEP_S);
+        self.psi_rad = primitives::angle::wrap_pi(self.psi_rad + self.turn_rad_s * STEP_S);
         self.at = self.at + Rotation::from_heading(self.psi_rad).ahead().scaled(self.speed_m_s * STEP_S);
     }
 

@@ -4,9 +4,10 @@ use crate::boat::emulated;
 use crate::rig::{Rig, plan};
 use crate::script::{play, played};
 use crate::tamper::with_checksum;
-use game::{Order, SimTime};
 use gateway::emulator::{self, Emulator, Extra, Port};
 use gateway::nmea::Sentence;
+use messages::Order;
+use primitives::SimTime;
 
 fn boat(change: impl FnOnce(&mut emulator::Plan)) -> Emulator {
     let mut plan = emulated(plan("surveyor.toml", false).site.expect("the rig has one").field.plan.datum, 0.0);
@@ -17,7 +18,7 @@ fn boat(change: impl FnOnce(&mut emulator::Plan)) -> Emulator {
 fn send(boat: &mut Emulator, body: &str) {
     boat.take(SimTime::ZERO, Port::Secondary, with_checksum(body).as_bytes());
     // It has to know where it is to do anything.
-    let own = game::picture::OwnBoat::new(game::VehicleId(0), game::picture::Nav::default());
+    let own = messages::picture::OwnBoat::new(primitives::VehicleId(0), messages::picture::Nav::default());
     boat.observe(SimTime::ZERO, &own);
 }
 

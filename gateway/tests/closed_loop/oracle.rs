@@ -1,7 +1,7 @@
 //! The test oracle: checks every sentence that is sent against the safety rules, independent of the implementation.
 
-use game::SimTime;
 use gateway::nmea::{Operator, Sentence};
+use primitives::SimTime;
 
 /// The state as seen from outside of the gateway.
 #[derive(Debug)]

@@ -1,8 +1,9 @@
 //! How often orders become sentences, and sentences reports.
 
 use crate::script::played;
-use game::{Order, SimTime};
 use gateway::bridge::Input;
+use messages::Order;
+use primitives::SimTime;
 
 fn steer(heading_deg: f64, speed_m_s: f64) -> Order {
     Order::Steer { heading_rad: heading_deg.to_radians(), speed_m_s }

@@ -1,10 +1,10 @@
 //! What is recorded plays again just so, whole or cut.
 
 use crate::script::played;
-use game::SimTime;
 use gateway::bridge::Event;
 use gateway::record::{StepEncoder, opening};
 use gateway::replay::{Replay, replay};
+use primitives::SimTime;
 use recording::{Bag, Facts, Kind, Opening, RecordingError, Writer};
 use std::io::Cursor;
 
@@ -87,7 +87,7 @@ fn what_is_no_recording_is_refused() {
     assert!(refused(|opening| opening.facts.clear()).contains("its plan is not understood"));
     // Before gateways recorded bags, their headers had no checksum.
     let mut writer = mcap::Writer::new(Cursor::new(Vec::new())).expect("memory");
-    let metadata = [("version".to_owned(), game::VERSION.to_owned())].into();
+    let metadata = [("version".to_owned(), primitives::VERSION.to_owned())].into();
     writer.write_metadata(&mcap::records::Metadata { name: "gateway".to_owned(), metadata }).expect("memory");
     writer.finish().expect("memory");
     let error = replayed(writer.into_inner().get_ref()).expect_err("an old one").to_string();

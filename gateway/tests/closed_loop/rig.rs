@@ -3,11 +3,12 @@
 use crate::boat::{Boat, STEP_S, emulated};
 use crate::oracle::Oracle;
 use crate::tamper::{Tamper, with_checksum};
-use game::external::{FleetCommand, OperatorCommand};
-use game::frame::Ned;
-use game::{Order, SimTime};
 use gateway::bridge::{Bridge, Event, Input, NavOut, Output, Plan, Preflight, Site};
 use gateway::emulator::{self, Emulator, Port};
+use messages::Order;
+use messages::external::{FleetCommand, OperatorCommand};
+use primitives::SimTime;
+use primitives::frame::Ned;
 use std::path::Path;
 
 const TELEMETRY_STEPS: u64 = 10;
@@ -53,11 +54,11 @@ pub(crate) struct Rig {
 /// The plan of a gateway with this file's settings, on the field of the first game.
 pub(crate) fn plan(file: &str, arms_itself: bool) -> Plan {
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios");
-    let game = game::scenario::load(&scenarios.join("games/pav01_vs_pav01.toml")).unwrap_or_else(|e| panic!("{e}"));
+    let game = scenario::load(&scenarios.join("games/pav01_vs_pav01.toml")).unwrap_or_else(|e| panic!("{e}"));
     let gateway = scenarios.join("gateways").join(file);
     Plan {
         vehicle: "blue_one".to_owned(),
-        gateway: game::scenario::load_gateway(&gateway).unwrap_or_else(|e| panic!("{e}")),
+        gateway: scenario::load_gateway(&gateway).unwrap_or_else(|e| panic!("{e}")),
         site: Some(Site { length_m: 1.83, field: game.field, declination_rad: (-12.5_f64).to_radians() }),
         arms_itself,
         dry_run: false,

@@ -4,13 +4,13 @@
 
 use crate::rig::{Rig, plan};
 use crate::tamper::tamper;
-use game::Order;
-use game::angle::wrap_pi;
-use game::external::{Mission, OperatorCommand};
-use game::frame::Ned;
 use gateway::bridge::{Input, Preflight};
 use gateway::emulator::Port;
 use gateway::geodesy::LocalFrame;
+use messages::Order;
+use messages::external::{Mission, OperatorCommand};
+use primitives::angle::wrap_pi;
+use primitives::frame::Ned;
 use serde::de::DeserializeOwned;
 use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};

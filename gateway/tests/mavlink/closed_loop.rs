@@ -1,11 +1,6 @@
 //! An ArduPilot boat and its gateway: who drives it when, and what stops it.
 
 use crate::rig::{Rig, plan};
-use game::Order;
-use game::angle::wrap_pi;
-use game::external::{Mission, OperatorCommand};
-use game::frame::Ned;
-use game::gateway::Drive;
 use gateway::bridge::{Event, Input};
 use gateway::emulator::ArduPilot;
 use gateway::geodesy::LocalFrame;
@@ -13,6 +8,11 @@ use gateway::mavlink::dialect::{
     COMMAND_LONG_DATA, MavCmd, MavFrame, MavMessage, PositionTargetTypemask, SET_POSITION_TARGET_LOCAL_NED_DATA,
 };
 use gateway::mavlink::{Framer, RoverMode};
+use messages::Order;
+use messages::external::{Mission, OperatorCommand};
+use primitives::angle::wrap_pi;
+use primitives::frame::Ned;
+use scenario::gateway::Drive;
 
 const HOLD: (RoverMode, bool) = (RoverMode::Hold, false);
 

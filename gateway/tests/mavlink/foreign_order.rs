@@ -1,9 +1,6 @@
 //! Orders of others at an ArduPilot boat: a second gateway, a ground station that steers.
 
 use crate::rig::{Rig, plan};
-use game::Order;
-use game::external::OperatorCommand;
-use game::frame::Ned;
 use gateway::bridge::{Bridge, Input};
 use gateway::geodesy::LocalFrame;
 use gateway::mavlink::dialect::{
@@ -11,6 +8,9 @@ use gateway::mavlink::dialect::{
     SET_POSITION_TARGET_LOCAL_NED_DATA,
 };
 use gateway::mavlink::{RoverMode, Writer};
+use messages::Order;
+use messages::external::OperatorCommand;
+use primitives::frame::Ned;
 
 /// The time in which two gateways find each other, s; it is the motion of the boat that takes long.
 const LIMIT_S: f64 = 15.0;

@@ -2,8 +2,6 @@
 
 use crate::boat::Boat;
 use crate::rig::plan;
-use game::SimTime;
-use game::frame::Ned;
 use gateway::emulator::{ArduPilot, SYSTEM};
 use gateway::geofence::GeofenceArea;
 use gateway::mavlink::dialect::{HEARTBEAT_DATA, MavAutopilot, MavCmd, MavMessage, MavType};
@@ -11,6 +9,8 @@ use gateway::mavlink::{AUTOPILOT, Framer, RoverMode, Writer};
 use gateway::nmea::date_and_time;
 use gateway::preflight::{Check, Verdict, Water, boat_checks};
 use gateway::sensor_check::SensorCheck;
+use primitives::SimTime;
+use primitives::frame::Ned;
 
 const BEGAN_UTC_NS: u64 = 1_795_000_000_000_000_000;
 

@@ -1,13 +1,14 @@
 //! The test rig: a boat with simple dynamics, its emulated ArduPilot, and the gateway. The test owns the time.
 
 use crate::boat::{Boat, STEP_S};
-use game::external::OperatorCommand;
-use game::frame::Ned;
-use game::{Order, SimTime};
 use gateway::bridge::{Bridge, Event, Input, Output, Plan, Preflight, Site};
 use gateway::emulator::ArduPilot;
 use gateway::mavlink::dialect::MavMessage;
 use gateway::mavlink::{Framer, RoverMode, Writer};
+use messages::Order;
+use messages::external::OperatorCommand;
+use primitives::SimTime;
+use primitives::frame::Ned;
 use std::path::Path;
 
 const TELEMETRY_STEPS: u64 = 10;
@@ -36,8 +37,8 @@ pub(crate) struct Rig {
 
 pub(crate) fn plan() -> Plan {
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios");
-    let game = game::scenario::load(&scenarios.join("games/pav01_vs_pav01.toml")).unwrap_or_else(|e| panic!("{e}"));
-    let gateway = game::scenario::load_gateway(&scenarios.join("gateways/blueboat.toml"));
+    let game = scenario::load(&scenarios.join("games/pav01_vs_pav01.toml")).unwrap_or_else(|e| panic!("{e}"));
+    let gateway = scenario::load_gateway(&scenarios.join("gateways/blueboat.toml"));
     Plan {
         vehicle: "blue_one".to_owned(),
         gateway: gateway.unwrap_or_else(|e| panic!("{e}")),

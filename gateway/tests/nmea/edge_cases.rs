@@ -1,8 +1,8 @@
 //! Edge cases: what real peers send beyond their manuals, and what no peer should.
 
 use crate::written;
-use game::LatLon;
 use gateway::nmea::{Command, ControlState, Hdg, Mode, ParseError, Sentence, Talker};
+use primitives::LatLon;
 
 #[test]
 fn a_battery_has_as_many_fields_as_it_likes() {

@@ -2,8 +2,8 @@
 
 use crate::sentences::{Domain, boat_sentences, on_the_globe, sentences, values};
 use crate::{bodies, written};
-use game::LatLon;
 use gateway::nmea::{Command, EMITTED_MAX, Mode, ParseError, Sentence};
+use primitives::LatLon;
 use proptest::prelude::*;
 use proptest::sample::select;
 

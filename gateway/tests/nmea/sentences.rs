@@ -1,10 +1,10 @@
 //! Sentences of every kind by chance: for the tests here, and for the comparisons with other people's codecs.
 
-use game::LatLon;
 use gateway::nmea::{
     Attitude, Battery, BoatError, Command, ControlState, Date, Gga, Gll, Hdg, Hdt, MissionSettings, Mode, Mwv,
     Operator, Rmc, Sentence, SpeedUnit, Talker, TimeOfDay, Vhw, Vtg, Waypoint, WindReference, Zda,
 };
+use primitives::LatLon;
 use proptest::option;
 use proptest::prelude::*;
 use proptest::sample::select;

@@ -1,8 +1,10 @@
 //! Faults of agents and links in the midst of a game: who is silent, and who holds.
 
 use super::Contest;
-use game::fault::{FaultKind, FaultSpan, fault_spans};
-use game::{Event, Scenario, SimTime, VehicleId};
+use primitives::{SimTime, VehicleId};
+use rules::Event;
+use scenario::Scenario;
+use scenario::fault::{FaultKind, FaultSpan, fault_spans};
 
 /// The faults of a vehicle's agent and link in this game.
 pub(super) fn of(scenario: &Scenario, vehicle: VehicleId) -> Vec<FaultSpan> {

@@ -4,6 +4,7 @@
 //! network node and the in-process arena do just that and nothing else, so a game is the same bytes in both. The world
 //! is physics alone: what a boat does in a tick is worked out in [`Contest::effective_command`].
 
+mod ask;
 mod faults;
 mod order;
 mod snapshot;
@@ -18,17 +19,18 @@ use crate::sighting::Sightings;
 use crate::spawn::NoStart;
 use crate::view::Scene;
 use crate::world::World;
-use game::boat::Drive;
-use game::event::{EventCursor, Logged};
-use game::fault::FaultSpan;
-use game::input::Input;
-use game::message::Frame;
-use game::outcome::{Outcome, Played};
-use game::picture::Nav;
-use game::rules::{Acting, Asks, Look, Notes, Referee, asks_of};
-use game::scenario::Source;
-use game::stream::Stream;
-use game::{Event, Leg, Order, Picture, Scenario, SimTime, VehicleId};
+use ask::asks_of;
+use messages::input::Input;
+use messages::picture::Nav;
+use messages::{Frame, Order, Picture};
+use primitives::stream::Stream;
+use primitives::{Leg, SimTime, VehicleId};
+use rules::event::{EventCursor, Logged};
+use rules::{Acting, Asks, Event, Look, Notes, Referee};
+use scenario::boat::Drive;
+use scenario::fault::FaultSpan;
+use scenario::outcome::{Outcome, Played};
+use scenario::{Scenario, Source};
 use state::{ContestState, OrderInForce};
 use std::sync::Arc;
 

@@ -2,11 +2,12 @@
 
 use super::Contest;
 use super::state::OrderInForce;
-use game::boat::Hold;
-use game::input::Input;
-use game::order::BadOrder;
-use game::rules::Directive;
-use game::{Ned, Order, SimTime, VehicleId};
+use messages::Order;
+use messages::input::Input;
+use messages::order::BadOrder;
+use primitives::{Ned, SimTime, VehicleId};
+use rules::Directive;
+use scenario::boat::Hold;
 
 /// A boat that keeps its station lies still as near to it, m ...
 const STATION_RADIUS_M: f64 = 2.0;

@@ -5,7 +5,7 @@ use super::state::ContestState;
 use crate::radio::{Radio, RadioState};
 use crate::sighting::{SightingState, Sightings};
 use crate::state::State;
-use game::Scenario;
+use scenario::Scenario;
 use thiserror::Error;
 use xxhash_rust::xxh3;
 
@@ -73,7 +73,7 @@ impl Contest {
         let mut hash = xxh3::Xxh3::new();
         hash.update(&xxh3::xxh3_128(&bytes(&(self.world.state(), standing))).to_le_bytes());
         for logged in events {
-            let record = game::message::EventRecord::from(*logged);
+            let record = messages::EventRecord::from(*logged);
             hash.update(&record.tick.to_le_bytes());
             hash.update(&[record.kind]);
             hash.update(&record.subject.to_le_bytes());

@@ -2,11 +2,12 @@
 
 use super::Contest;
 use crate::external::Track;
-use game::count::Tally;
-use game::event::{EventCursor, Logged};
-use game::picture::OwnBoat;
-use game::rules::Standing;
-use game::{Ned, Order, Picture, SimTime, VehicleId};
+use messages::picture::OwnBoat;
+use messages::{Order, Picture};
+use primitives::{Ned, SimTime, VehicleId};
+use rules::Standing;
+use rules::count::Tally;
+use rules::event::{EventCursor, Logged};
 use serde::{Deserialize, Serialize};
 
 /// How a game stands: the referee's memory, what the boats were ordered, and what their people know.

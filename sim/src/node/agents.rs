@@ -1,9 +1,9 @@
 //! Orders of agents: which are accepted, and from whom. No network and no clock in here.
 
 use super::membership::Membership;
-use game::message::Orders;
-use game::refusal::{Refusal, Refusals};
-use game::{Order, VehicleId};
+use messages::refusal::{Refusal, Refusals};
+use messages::{Order, Orders};
+use primitives::VehicleId;
 
 /// Which orders are in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,7 +76,7 @@ fn orders_for(own: &[VehicleId], message: &Orders, refusals: &mut Refusals) -> V
 mod tests {
     use super::*;
     use crate::node::membership::tests::{NOW, granted, membership, request};
-    use game::message::{Message, Role, Stamp, VehicleOrder};
+    use messages::{Message, Role, Stamp, VehicleOrder};
 
     const PUSH: Order = Order::Thrust { port: 1.0, starboard: 1.0 };
 

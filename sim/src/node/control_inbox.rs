@@ -1,8 +1,8 @@
 //! Commands of operators on their way into the game: before everything else that comes in, and no stop is ever lost.
 
 use bus::Watched;
-use game::message::Control;
-use game::refusal::{Refusal, Refusals};
+use messages::Control;
+use messages::refusal::{Refusal, Refusals};
 use std::collections::VecDeque;
 
 /// Commands that may wait to be read: more than people give between two looks of the sim.

@@ -1,9 +1,9 @@
 //! Reports of gateways: which are accepted, and from whom. No network and no clock in here.
 
 use super::membership::Membership;
-use game::SimTime;
-use game::external::NavReport;
-use game::refusal::{Refusal, Refusals};
+use messages::external::NavReport;
+use messages::refusal::{Refusal, Refusals};
+use primitives::SimTime;
 
 /// A fix is never taken to be older than this, a day: longer than any game.
 const OLDEST: SimTime = SimTime(86_400_000_000_000);
@@ -34,9 +34,9 @@ pub fn accept(gateways: &mut Membership, report: &NavReport, now: SimTime, refus
 mod tests {
     use super::*;
     use crate::node::membership::tests::{NOW, membership, request};
-    use game::VehicleId;
-    use game::message::{Message, Role, Stamp};
-    use game::picture::Nav;
+    use messages::picture::Nav;
+    use messages::{Message, Role, Stamp};
+    use primitives::VehicleId;
 
     /// A gateway with ticket 7 for these of the real boats blue one (0) and red one (2).
     fn gateways(vehicles: &[&str]) -> Membership {

@@ -3,9 +3,9 @@
 //! A node that joins gets a ticket, and shows it with every message. No network and no clock in here: the server passes
 //! in what came, and does what follows.
 
-use game::message::{JoinReply, JoinRequest, Role};
-use game::scenario::Source;
-use game::{Scenario, SimTime, VehicleId};
+use messages::{JoinReply, JoinRequest, Role};
+use primitives::{SimTime, VehicleId};
+use scenario::{Scenario, Source};
 
 /// The nodes that have joined in one role.
 #[derive(Clone, Debug)]
@@ -59,8 +59,8 @@ impl Membership {
     pub fn join(&mut self, request: &JoinRequest, ticket: u64, now: SimTime) -> JoinReply {
         let role = self.role;
         let refused = |reason: String| JoinReply::Refused { reason };
-        if request.version != game::VERSION {
-            let (theirs, ours) = (&request.version, game::VERSION);
+        if request.version != primitives::VERSION {
+            let (theirs, ours) = (&request.version, primitives::VERSION);
             return refused(format!("the {role} is Squall {theirs}, the sim is Squall {ours}: use the same version"));
         }
         if request.vehicles.is_empty() {
@@ -199,12 +199,12 @@ pub(super) mod tests {
     pub(in super::super) fn membership(role: Role, is_mixed: bool) -> Membership {
         let name = if is_mixed { "mixed_2v2" } else { "pav01_vs_pav01" };
         let game = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../scenarios/games/{name}.toml"));
-        Membership::new(&game::scenario::load(&game).unwrap_or_else(|e| panic!("{e}")), role)
+        Membership::new(&scenario::load(&game).unwrap_or_else(|e| panic!("{e}")), role)
     }
 
     pub(in super::super) fn request(role: Role, node: &str, vehicles: &[&str]) -> JoinRequest {
         let vehicles = vehicles.iter().map(|name| (*name).to_owned()).collect();
-        JoinRequest { version: game::VERSION.to_owned(), role, node: node.to_owned(), vehicles }
+        JoinRequest { version: primitives::VERSION.to_owned(), role, node: node.to_owned(), vehicles }
     }
 
     pub(in super::super) fn granted(ticket: u64, vehicles: &[u16]) -> JoinReply {

@@ -2,8 +2,8 @@
 
 use super::subscriptions::Incoming;
 use bus::Watched;
-use game::message::Message;
-use game::refusal::{Refusal, Refusals};
+use messages::Message;
+use messages::refusal::{Refusal, Refusals};
 use serde::de::DeserializeOwned;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::time::Duration;
@@ -130,7 +130,7 @@ impl MessageInbox {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use game::message::Orders;
+    use messages::Orders;
 
     fn inbox(tickets: &[u64]) -> MessageInbox {
         let inbox = MessageInbox::default();

@@ -1,9 +1,10 @@
 //! What a sim answers observers, and the topics that it subscribes to only for the recorder.
 
 use crate::contest::Contest;
-use game::message::{Message, PolicyProposal, Say};
-use game::outcome::EventOutcome;
-use game::{Scenario, codec};
+use messages::{Message, PolicyProposal, Say};
+use primitives::codec;
+use scenario::Scenario;
+use scenario::outcome::EventOutcome;
 use serde::de::DeserializeOwned;
 
 /// The waves, as JSON.

@@ -1,6 +1,6 @@
 //! Paused or not, and how fast: what people ask of a running game.
 
-use game::message::Control;
+use messages::Control;
 
 /// Paused or not, and how fast.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -15,15 +15,14 @@ use crate::contest::Contest;
 use bus::stop::HubStopPort;
 use bus::token::Guard;
 use bus::{Bus, Declaration, Inbox, Priority, Publisher, Query, clock, inbox};
-use game::codec;
-use game::event::EventCursor;
-use game::external::{ExternalOrder, Reported};
-use game::message::{Frame, GameInfo, Message, Role, Stamp, VehicleOrder};
-use game::refusal::{Refusal, Refusals};
-use game::run_state::{Phase, RunState};
-use game::topic::{self, GameName};
-use game::{Order, Picture, SimTime, TeamId, VehicleId};
+use messages::external::{ExternalOrder, Reported};
+use messages::refusal::{Refusal, Refusals};
+use messages::run_state::{Phase, RunState};
+use messages::topic::{self, GameName};
+use messages::{Frame, GameInfo, Message, Order, Picture, Role, Stamp, VehicleOrder};
+use primitives::{SimTime, TeamId, VehicleId, codec};
 use recording::Entry;
+use rules::event::EventCursor;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -120,8 +119,11 @@ impl<'w> GameServer<'w> {
         let is_real = !external_orders.is_empty();
         let real: Vec<String> = scenario.externals().map(|v| scenario.vehicles[v.index()].name.clone()).collect();
         let stop_port = HubStopPort::open(&bus, &settings.net, game, &real)?;
-        let game_info =
-            GameInfo { version: game::VERSION.to_owned(), pace: settings.pace.to_string(), scenario: scenario.clone() };
+        let game_info = GameInfo {
+            version: primitives::VERSION.to_owned(),
+            pace: settings.pace.to_string(),
+            scenario: scenario.clone(),
+        };
         Ok(GameServer {
             agents: Membership::new(scenario, Role::Agent),
             gateways: Membership::new(scenario, Role::Gateway),
@@ -366,7 +368,7 @@ impl<'w> GameServer<'w> {
     /// Sends everybody the end of the game, and waits a little for the agents to leave.
     pub(super) fn shut_down(&mut self) -> Result<(), NodeError> {
         for (picture, publisher) in self.contest.pictures().to_vec().into_iter().zip(&self.pictures) {
-            publisher.send(&game::Picture { over: true, ..picture })?;
+            publisher.send(&messages::Picture { over: true, ..picture })?;
         }
         let frame = Frame { over: true, ..Frame::clone(&self.frame()) };
         self.frames.send(&frame)?;

@@ -51,7 +51,7 @@ mod tests {
     use super::super::wave::Component;
     use super::super::waves_from;
     use super::*;
-    use game::sea::Waves;
+    use scenario::sea::Waves;
 
     fn waves(gamma: f64, components: u32) -> Waves {
         Waves { gamma, ..waves_from(1.0, 0.5, 3.0, components) }

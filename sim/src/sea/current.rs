@@ -6,12 +6,11 @@
 use super::cached_process::CachedProcess;
 use super::eddy::{self, Vortex};
 use super::gauss_markov::{GaussMarkov, STEPS_PER_LENGTH};
-use game::SimTime;
-use game::field::Field;
-use game::frame::{Ned, Rotation};
-use game::math;
-use game::reseed::Seeds;
-use game::sea::{Current, Shear, Tide, Wander};
+use primitives::frame::{Ned, Rotation};
+use primitives::reseed::Seeds;
+use primitives::{SimTime, math};
+use rules::field::Field;
+use scenario::sea::{Current, Shear, Tide, Wander};
 use std::f64::consts::TAU;
 
 /// The current over a field.

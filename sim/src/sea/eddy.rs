@@ -3,10 +3,10 @@
 //! v(r) = Γ / (2 π r) (1 − exp(−r² / a²)), clockwise seen from above where Γ > 0. The flow is fastest at r = √α a with
 //! e^α = 1 + 2 α, α = 1.2564, where it is Γ / (2 π a) (1 − e^−α) / √α.
 
-use game::Field;
-use game::frame::Ned;
-use game::sea::{Eddy, RandomEddies};
-use game::stream::Stream;
+use primitives::frame::Ned;
+use primitives::stream::Stream;
+use rules::Field;
+use scenario::sea::{Eddy, RandomEddies};
 
 /// The root of e^α = 1 + 2 α other than 0.
 pub const ALPHA: f64 = 1.256_431_208_626_169_7;

@@ -16,9 +16,9 @@
 //! one, it is y_j + (x_k − y_k) e^(−lag) at the points j after k. That has the law of the process given all up to k: what y has
 //! of its own value at k is taken out of it, and the rest does not depend on that.
 
-use game::SimTime;
-use game::reseed::Seeds;
-use game::stream::Noise;
+use primitives::SimTime;
+use primitives::reseed::Seeds;
+use primitives::stream::Noise;
 
 /// Grid points in one correlation length.
 pub(super) const STEPS_PER_LENGTH: f64 = 32.0;
@@ -146,7 +146,7 @@ impl GaussMarkov {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use game::reseed::Reseed;
+    use primitives::reseed::Reseed;
 
     /// A seed that another takes the place of at point 500, and one more at 900.
     fn reseeded(seed: u64) -> Seeds {

@@ -13,9 +13,9 @@ use super::submergence::{self, Submergence};
 use super::wave::{Phases, PlaneWave, WaveField, row_count, row_of, waves_of_row};
 use crate::hull::Planar;
 use crate::lanes::{FOLD, LANES, Lanes, ROW};
-use game::boat::Boat;
-use game::frame::Pose;
-use game::instructions::{Instructions, Kernel};
+use primitives::frame::Pose;
+use primitives::instructions::{Instructions, Kernel};
+use scenario::boat::Boat;
 
 /// The waves at one hull, in its own axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

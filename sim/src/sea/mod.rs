@@ -32,13 +32,15 @@ pub use wind::WindField;
 use patch::Patches;
 
 use crate::hull::{HullModel, Planar};
-use game::boat::{Drive, Windage};
-use game::frame::{Body, Ned, Pose, Rotation};
-use game::instructions::Instructions;
-use game::reseed::Seeds;
-use game::sea::Sea;
-use game::water::Water;
-use game::{Boat, Field, SimTime};
+use messages::water::Water;
+use primitives::SimTime;
+use primitives::frame::{Body, Ned, Pose, Rotation};
+use primitives::instructions::Instructions;
+use primitives::reseed::Seeds;
+use rules::Field;
+use scenario::Boat;
+use scenario::boat::{Drive, Windage};
+use scenario::sea::Sea;
 use std::sync::Arc;
 
 /// Propellers are this share of the length astern of midships.
@@ -309,7 +311,7 @@ fn index_of<const N: usize, T>(made: &mut Made<N, T>, size: [f64; N], make: impl
 
 /// A short-crested sea for tests.
 #[cfg(test)]
-fn waves_from(from_rad: f64, hs_m: f64, tp_s: f64, components: u32) -> game::sea::Waves {
-    let spreading = game::sea::Spreading::CosineSquared;
-    game::sea::Waves { hs_m, tp_s, gamma: 3.3, from_rad, spreading, components, drift_factor: 1.0 }
+fn waves_from(from_rad: f64, hs_m: f64, tp_s: f64, components: u32) -> scenario::sea::Waves {
+    let spreading = scenario::sea::Spreading::CosineSquared;
+    scenario::sea::Waves { hs_m, tp_s, gamma: 3.3, from_rad, spreading, components, drift_factor: 1.0 }
 }

@@ -49,7 +49,7 @@ fn quartic(c: [f32; 5], x: Lanes<f32>) -> Lanes<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use game::stream::Stream;
+    use primitives::stream::Stream;
 
     fn one(turns: f64) -> (f64, f64) {
         let (sin, cos) = sin_cos_turns(Lanes::<f64>::splat(turns));

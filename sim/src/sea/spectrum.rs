@@ -8,8 +8,8 @@
 //! ```
 
 use super::wave::Component;
-use game::sea::{Spreading, Waves};
-use game::stream::Stream;
+use primitives::stream::Stream;
+use scenario::sea::{Spreading, Waves};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// The band that is kept, in peak frequencies: 99.8 % of the variance and 96 % of its second moment at γ = 3.3.

@@ -5,8 +5,8 @@ use super::patch::{Patch, Patches};
 use super::wave::{PlaneWave, WaveField, row_count};
 use super::wave_response::{HEAVE, PITCH, ROLL, pressed_m, quasi_static, transfer};
 use crate::lanes::{FOLD, LANES, Lanes};
-use game::boat::Boat;
-use game::frame::Body;
+use primitives::frame::Body;
+use scenario::boat::Boat;
 
 /// How the submergence of the two propellers of a kind of boat changes in a field of waves.
 #[derive(Clone, Debug)]
@@ -105,12 +105,12 @@ impl Wave {
 mod tests {
     use super::super::{HullWaves, WaveResponse, waves_from};
     use super::*;
-    use game::frame::{Ned, Pose, ned_from_body};
+    use primitives::frame::{Ned, Pose, ned_from_body};
 
     #[test]
     fn it_is_the_surface_less_the_hull_at_that_place() {
         let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/boats/surveyor_m1_8.toml");
-        let boat = game::scenario::load_boat(&file).unwrap_or_else(|e| panic!("{e}"));
+        let boat = scenario::load_boat(&file).unwrap_or_else(|e| panic!("{e}"));
         let field = WaveField::new(&waves_from(0.7, 0.3, 2.5, 64), None, 3);
         let places = [-0.33, 0.33].map(|starboard| Body { ahead: -0.7, starboard });
         let (submergence, response) = (Submergence::new(&field, &boat, places), WaveResponse::new(&field, &boat));

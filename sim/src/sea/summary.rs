@@ -6,9 +6,10 @@ use super::windage::{AIR_DENSITY_KG_M3, wind_force};
 use super::{CurrentField, WaveField};
 use crate::hull::HullModel;
 use crate::motion::cross_flow_newton;
-use game::frame::{Body, Ned};
-use game::sea::{Gusts, Sea, Wind};
-use game::{Boat, Field};
+use primitives::frame::{Body, Ned};
+use rules::Field;
+use scenario::Boat;
+use scenario::sea::{Gusts, Sea, Wind};
 
 /// What a sea means for a kind of boat.
 #[derive(Clone, Debug, PartialEq)]
@@ -67,7 +68,7 @@ impl Summary {
             }),
             wind: sea.wind.as_ref().map(|wind| wind_summary(wind, boat, &hull)),
             current_m_s: CurrentField::new(&sea.current, field, &seed.into())
-                .at_time(game::SimTime::ZERO)
+                .at_time(primitives::SimTime::ZERO)
                 .at(field.middle()),
         }
     }
@@ -137,8 +138,8 @@ mod tests {
     #[test]
     fn the_surveyor_drifts_as_its_published_balance_says() {
         let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios");
-        let boat = game::scenario::load_boat(&root.join("boats/surveyor_m1_8.toml")).unwrap_or_else(|e| panic!("{e}"));
-        let game = game::scenario::load(&root.join("games/attack_1v1.toml")).unwrap_or_else(|e| panic!("{e}"));
+        let boat = scenario::load_boat(&root.join("boats/surveyor_m1_8.toml")).unwrap_or_else(|e| panic!("{e}"));
+        let game = scenario::load(&root.join("games/attack_1v1.toml")).unwrap_or_else(|e| panic!("{e}"));
         let mut sea = Sea::at_rest();
         // 0.128 m/s at 5 and 0.340 m/s at 10 m/s of wind at the boat; the estimate had a little more windage.
         for (wind_m_s, want_m_s) in [(5.0, 0.128), (10.0, 0.340)] {

@@ -8,10 +8,10 @@ use super::sine::sin_cos_turns;
 use super::spectrum;
 use crate::hull::Planar;
 use crate::lanes::{FOLD, LANES, Lanes, ROW};
-use game::boat::Boat;
-use game::frame::Ned;
-use game::instructions::{Instructions, Kernel};
-use game::sea::{GRAVITY_M_S2, Waves};
+use primitives::frame::Ned;
+use primitives::instructions::{Instructions, Kernel};
+use scenario::boat::Boat;
+use scenario::sea::{GRAVITY_M_S2, Waves};
 use std::f64::consts::TAU;
 
 /// One plane wave.
@@ -250,8 +250,8 @@ impl WaveField {
 
     /// The components as observers draw them.
     #[must_use]
-    pub fn plane_waves(&self) -> Vec<game::water::PlaneWave> {
-        let plane = |wave: &PlaneWave| game::water::PlaneWave {
+    pub fn plane_waves(&self) -> Vec<messages::water::PlaneWave> {
+        let plane = |wave: &PlaneWave| messages::water::PlaneWave {
             amplitude_m: wave.component.amplitude_m,
             wavenumber_rad_m: wave.wavenumber_rad_m,
             toward_rad: wave.component.toward_rad,

@@ -7,9 +7,9 @@ use super::heading::HeadingTable;
 use super::patch::{Patch, Patches};
 use super::wave::{Phases, PlaneWave, WaveField, row_count, row_of, waves_of_row};
 use crate::lanes::{FOLD, LANES, Lanes, ROW};
-use game::boat::Boat;
-use game::frame::{Ned, Pose};
-use game::instructions::{Instructions, Kernel};
+use primitives::frame::{Ned, Pose};
+use primitives::instructions::{Instructions, Kernel};
+use scenario::boat::Boat;
 
 /// Natural frequency, rad/s, and damping ratio: those of the Otter in Fossen's Marine Systems Simulator. A hull as long as
 /// the Otter has much the same.

@@ -9,11 +9,11 @@
 
 use super::cached_process::CachedProcess;
 use super::gauss_markov::{GaussMarkov, STEPS_PER_LENGTH};
-use game::SimTime;
-use game::field::Field;
-use game::frame::{Ned, Rotation};
-use game::reseed::Seeds;
-use game::sea::{Gusts, Wind};
+use primitives::SimTime;
+use primitives::frame::{Ned, Rotation};
+use primitives::reseed::Seeds;
+use rules::field::Field;
+use scenario::sea::{Gusts, Wind};
 
 /// Slowest speed at which gusts travel, m/s.
 pub const CARRY_MIN_M_S: f64 = 1.0;

@@ -13,8 +13,8 @@
 //! starboard bow, so a free boat comes to lie beam to the wind.
 
 use crate::hull::Planar;
-use game::boat::Windage;
-use game::frame::{Body, Ned, Rotation, body_from_ned};
+use primitives::frame::{Body, Ned, Rotation, body_from_ned};
+use scenario::boat::Windage;
 
 /// Density of air at 15 °C and sea level, kg/m³.
 pub const AIR_DENSITY_KG_M3: f64 = 1.225;

@@ -9,12 +9,11 @@
 //! thrust error is that of the reading, at full thrust of both thrusters.
 
 use super::{Truth, whole_ticks};
-use game::SimTime;
-use game::angle::wrap_pi;
-use game::fault::{FaultKind, FaultSpan};
-use game::math;
-use game::reseed::{Seeds, TimedNoise};
-use game::sensor::Compass;
+use primitives::angle::wrap_pi;
+use primitives::reseed::{Seeds, TimedNoise};
+use primitives::{SimTime, math};
+use scenario::fault::{FaultKind, FaultSpan};
+use scenario::sensor::Compass;
 use serde::{Deserialize, Serialize};
 
 /// A compass: constant.

@@ -6,12 +6,11 @@
 
 use super::{GaussMarkovStep, Truth, whole_ticks};
 use crate::two_state::TwoStateChain;
-use game::SimTime;
-use game::fault::{FaultKind, FaultSpan};
-use game::frame::Ned;
-use game::math;
-use game::reseed::{Seeds, TimedNoise};
-use game::sensor::{Gps, Outage};
+use primitives::frame::Ned;
+use primitives::reseed::{Seeds, TimedNoise};
+use primitives::{SimTime, math};
+use scenario::fault::{FaultKind, FaultSpan};
+use scenario::sensor::{Gps, Outage};
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 

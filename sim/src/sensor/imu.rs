@@ -10,11 +10,10 @@
 //! and to each a white noise and a wandering bias (Gauss-Markov). The accelerometers sit midships.
 
 use super::{GaussMarkovStep, Truth};
-use game::SimTime;
-use game::math;
-use game::reseed::{Seeds, TimedNoise};
-use game::sea::GRAVITY_M_S2;
-use game::sensor::Imu;
+use primitives::reseed::{Seeds, TimedNoise};
+use primitives::{SimTime, math};
+use scenario::sea::GRAVITY_M_S2;
+use scenario::sensor::Imu;
 use serde::{Deserialize, Serialize};
 
 /// Pairs of normal numbers that a reading takes: noise and bias for each of six axes.

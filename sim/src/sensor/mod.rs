@@ -12,15 +12,14 @@ pub mod imu;
 use crate::hull::Planar;
 use crate::sea::Attitude;
 use compass::{CompassModel, CompassState};
-use game::fault::FaultSpan;
-use game::frame::{Ned, Pose, Rotation, body_from_ned};
-use game::math;
-use game::picture::Nav;
-use game::reseed::Seeds;
-use game::sensor::Sensors;
-use game::{SimTime, frame::Body};
 use gps::{GpsModel, GpsState};
 use imu::{ImuModel, ImuReading, ImuState};
+use messages::picture::Nav;
+use primitives::frame::{Body, Ned, Pose, Rotation, body_from_ned};
+use primitives::reseed::Seeds;
+use primitives::{SimTime, math};
+use scenario::fault::FaultSpan;
+use scenario::sensor::Sensors;
 use serde::{Deserialize, Serialize};
 
 /// The true state of a boat at one tick, as far as sensors measure it.

@@ -1,11 +1,13 @@
 //! Scenarios for tests, written as a user would write them.
 #![allow(dead_code, reason = "each test file uses its part")]
 
-use game::field::{Obstacle, Plan, Walls};
-use game::link::{Link, Loss, Sharing};
-use game::scenario::Overrides;
-use game::sea::{Sea, Spreading, Waves};
-use game::{Boat, Field, LatLon, Ned, Order, Pose, Scenario, VehicleId};
+use messages::Order;
+use primitives::{LatLon, Ned, Pose, VehicleId};
+use rules::field::{Obstacle, Plan, Walls};
+use rules::{Field, Sharing};
+use scenario::link::{Link, Loss};
+use scenario::sea::{Sea, Spreading, Waves};
+use scenario::{Boat, Overrides, Scenario};
 use sim::hull::{HullModel, Planar};
 use sim::{Contest, State, World};
 use std::path::{Path, PathBuf};
@@ -17,7 +19,7 @@ pub(crate) fn scenarios() -> PathBuf {
 
 /// A shipped game.
 pub(crate) fn shipped(game: &str) -> Scenario {
-    game::scenario::load(&scenarios().join("games").join(game)).unwrap_or_else(|e| panic!("{e}"))
+    scenario::load(&scenarios().join("games").join(game)).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// A game written here; paths in it are relative to `scenarios/games`.
@@ -26,7 +28,7 @@ pub(crate) fn written(toml: &str) -> Scenario {
     let root = scenarios().canonicalize().expect("the scenarios are there");
     let path = dir.path().join("test.toml");
     std::fs::write(&path, toml.replace("../", &format!("{}/", root.display()))).expect("a file can be written");
-    game::scenario::load(&path).unwrap_or_else(|e| panic!("{e}"))
+    scenario::load(&path).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// One boat of this kind a side, idle, on open salt water, blue at its half point.
@@ -56,7 +58,7 @@ pub(crate) fn afloat(scenario: &Scenario, seed: u64, start: (f64, f64, f64), nu:
 pub(crate) fn on_sea(game: &str, sea: &Path) -> Scenario {
     let overrides = Overrides { sea: Some(scenarios().join("seas").join(sea)), ..Overrides::default() };
     let path = scenarios().join("games").join(game);
-    game::scenario::load_with(&path, &overrides).unwrap_or_else(|e| panic!("{e}"))
+    scenario::load_with(&path, &overrides).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// Radio links with losses, and limits of what boats see of each other.
@@ -118,7 +120,7 @@ pub(crate) fn order(contest: &mut Contest, vehicle: VehicleId, order: Order) {
 pub(crate) fn put(world: &mut World, boat: usize, (x, y, heading_deg): (f64, f64, f64), nu: (f64, f64, f64)) {
     set(world, |state| {
         let boat = &mut state.boats[boat];
-        boat.pose = Pose { at: Ned::from_xy(x, y), psi_rad: game::angle::rad_from_compass_deg(heading_deg) };
+        boat.pose = Pose { at: Ned::from_xy(x, y), psi_rad: primitives::angle::rad_from_compass_deg(heading_deg) };
         boat.nu = Planar { surge: nu.0, sway: nu.1, yaw: nu.2 };
     });
 }
@@ -183,7 +185,7 @@ pub(crate) fn surveyor_on(change: impl FnOnce(&mut Sea)) -> Scenario {
 
 /// A shipped kind of boat.
 pub(crate) fn boat(name: &str) -> Boat {
-    game::scenario::load_boat(&scenarios().join(format!("boats/{name}.toml"))).unwrap_or_else(|e| panic!("{e}"))
+    scenario::load_boat(&scenarios().join(format!("boats/{name}.toml"))).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// An empty field of 160 m by 80 m from this corner.
@@ -222,7 +224,7 @@ pub(crate) fn five_errors(count: usize, step: f64) -> f64 {
 pub(crate) fn assert_memory(what: &str, x: &[f64], lags: &[usize], step: f64, within: f64) {
     assert!(mean_of(x.len(), |i| x[i]).abs() < within, "{what}: mean");
     for lag in lags {
-        let want = game::math::exp(-(*lag as f64) * step);
+        let want = primitives::math::exp(-(*lag as f64) * step);
         let got = mean_of(x.len() - lag, |i| x[i] * x[i + lag]);
         assert!((got - want).abs() < within, "{what}, lag {lag}: {got}, not {want} within {within}");
     }
@@ -238,7 +240,7 @@ pub(crate) fn mean_of(count: usize, f: impl Fn(usize) -> f64) -> f64 {
 pub(crate) fn amplitudes(series: &[f64]) -> Vec<f64> {
     let count = series.len();
     let turns: Vec<(f64, f64)> =
-        (0..count).map(|i| game::math::sin_cos(std::f64::consts::TAU * i as f64 / count as f64)).collect();
+        (0..count).map(|i| primitives::math::sin_cos(std::f64::consts::TAU * i as f64 / count as f64)).collect();
     let windowed: Vec<f64> = series.iter().zip(&turns).map(|(x, turn)| x * (1.0 - turn.1)).collect();
     let amplitude = |harmonic: usize| {
         let (mut sin, mut cos, mut place) = (0.0, 0.0, 0);
@@ -247,7 +249,7 @@ pub(crate) fn amplitudes(series: &[f64]) -> Vec<f64> {
             place += harmonic;
             place -= if place >= count { count } else { 0 };
         }
-        2.0 / count as f64 * game::math::length(sin, cos)
+        2.0 / count as f64 * primitives::math::length(sin, cos)
     };
     (0..count / 2).map(amplitude).collect()
 }

@@ -1,9 +1,9 @@
 //! Polar plots of a helm's objective functions: coloured discs with north on top.
 
 use crate::plot::{self, Area, Diagram, Drawn, colour};
-use game::math;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
+use primitives::math;
 
 /// A disc: course as its angle, clockwise from north, speed as its radius, colour as the value.
 pub(crate) struct PolarPlot {

@@ -3,7 +3,7 @@
 use crate::in_process;
 use crate::network::replay_command;
 use anyhow::{Context, Result, bail};
-use game::Scenario;
+use scenario::Scenario;
 use shore::page::{PreparingView, Showing, Shown};
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};

@@ -2,10 +2,11 @@
 
 use super::Rates;
 use crate::style;
-use game::angle::compass_deg_from_rad;
-use game::message::{Frame, GameInfo, VehicleTruth};
-use game::topic::GameName;
-use game::{Ned, Scenario};
+use messages::topic::GameName;
+use messages::{Frame, GameInfo, VehicleTruth};
+use primitives::Ned;
+use primitives::angle::compass_deg_from_rad;
+use scenario::Scenario;
 
 /// Columns and rows of the chart. Letters are twice as high as wide, a field twice as wide as deep.
 const COLUMNS: usize = 78;

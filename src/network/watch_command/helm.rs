@@ -4,7 +4,7 @@ use super::super::observer::{Observer, SILENCE};
 use crate::{helm_text, screen};
 use anyhow::{Result, bail};
 use bus::clock;
-use game::helm::HelmQuestion;
+use messages::helm::HelmQuestion;
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;

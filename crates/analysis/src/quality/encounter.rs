@@ -3,8 +3,9 @@
 use super::{Quality, strategy_name};
 use crate::hull_overlap::HullRectangle;
 use crate::step::{Sample, Step};
-use game::event::{Event, TagCause};
-use game::{Scenario, VehicleId};
+use primitives::VehicleId;
+use rules::event::{Event, TagCause};
+use scenario::Scenario;
 use serde::Serialize;
 
 /// A tagger and the boat that it tagged are that to each other for this long, s.

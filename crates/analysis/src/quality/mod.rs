@@ -12,10 +12,12 @@ pub use orbit::ORBIT_MIN_S;
 
 use crate::step::{Sample, Step};
 use encounter::EncounterCounter;
-use game::angle::wrap_pi;
-use game::helm::HelmReport;
-use game::{Ned, Order, Scenario, TeamId, VehicleId};
+use messages::Order;
+use messages::helm::HelmReport;
 use orbit::OrbitDetector;
+use primitives::angle::wrap_pi;
+use primitives::{Ned, TeamId, VehicleId};
+use scenario::Scenario;
 use serde::Serialize;
 use std::collections::BTreeMap;
 

@@ -4,8 +4,8 @@
 //! Instrumentation and Measurement 25, 1976). It is an orbit where every place is near the circle, and the boat went
 //! round at least once in that minute.
 
-use game::Ned;
-use game::angle::wrap_pi;
+use primitives::Ned;
+use primitives::angle::wrap_pi;
 use std::collections::VecDeque;
 use std::f64::consts::TAU;
 
@@ -100,7 +100,7 @@ fn circle(places: &VecDeque<(f64, Ned)>) -> Option<(Ned, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use game::math;
+    use primitives::math;
 
     /// Orbits and their length, s, of a boat that is there at each time, ten times a second.
     fn orbits(span_s: f64, at: impl Fn(f64) -> Ned) -> (u64, f64) {

@@ -2,15 +2,15 @@
 
 use super::encounter::Nearness;
 use super::*;
-use game::SimTime;
-use game::event::{Event, Logged, TagCause};
-use game::picture::Nav;
+use messages::picture::Nav;
+use primitives::SimTime;
+use rules::event::{Event, Logged, TagCause};
 use std::path::Path;
 
 /// Two blue boats with Pav01's two roles, then two red ones, on the field of 160 m east by 80 m north of the datum.
 fn scenario() -> Scenario {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
-    game::scenario::load(&file).unwrap_or_else(|e| panic!("{e}"))
+    scenario::load(&file).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// At rest, in the middle of the own half, blue 30 m apart and red likewise.
@@ -171,7 +171,7 @@ fn a_team_attacks_while_a_free_boat_is_beyond_its_side_or_a_flag_is_carried() {
 #[test]
 fn a_boat_that_goes_round_and_round_is_in_an_orbit() {
     let got = quality(1000, |step, samples, _, _| {
-        let (sin, cos) = game::math::sin_cos(std::f64::consts::TAU * step as f64 / 180.0);
+        let (sin, cos) = primitives::math::sin_cos(std::f64::consts::TAU * step as f64 / 180.0);
         samples[0].truth.north_m += 4.0 * sin;
         samples[0].truth.east_m += 4.0 * cos;
     });

@@ -1,6 +1,6 @@
 //! The cells of a row: values laid flat, each under the path that leads to it.
 
-use game::SimTime;
+use primitives::SimTime;
 use serde_json::Value;
 use std::collections::BTreeMap;
 

@@ -2,13 +2,14 @@
 //! is what a table wants otherwise: names for numbers, seconds for nanoseconds, a row for each item of a list.
 
 use super::cells::{Cells, flat, text, time};
-use game::external::{ExternalOrder, NavReport};
-use game::input::{Input, InputRecord, Inputs};
-use game::message::{Frame, Message, PolicyProposal, Say};
-use game::outcome::EventOutcome;
-use game::picture::FlagView;
-use game::{Order, Picture, Scenario, SimTime, ros};
+use messages::external::{ExternalOrder, NavReport};
+use messages::input::{Input, InputRecord, Inputs};
+use messages::picture::FlagView;
+use messages::{Frame, Message, Order, Picture, PolicyProposal, Say, ros};
+use primitives::SimTime;
 use recording::{RecordedMessage, RecordingError};
+use scenario::Scenario;
+use scenario::outcome::EventOutcome;
 use serde::Serialize;
 use serde_json::Value;
 

@@ -19,12 +19,13 @@ mod message;
 
 use crate::link_line::{Line, Lines};
 use cells::Cells;
-use game::external::LinkBytes;
-use game::message::{Frame, Message};
-use game::outcome::EventOutcome;
-use game::payload::PayloadBytes;
-use game::{Scenario, SimTime};
+use messages::external::LinkBytes;
+use messages::payload::PayloadBytes;
+use messages::{Frame, Message};
+use primitives::SimTime;
 use recording::{Bag, Damaged, FRAME, RecordedMessage, RecordingError};
+use scenario::Scenario;
+use scenario::outcome::EventOutcome;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};

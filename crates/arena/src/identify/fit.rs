@@ -4,9 +4,9 @@ use super::log::{CHANNELS, Log, Unit};
 use super::parameter::{Knob, PARAMETERS, Parameter};
 use super::problem::Problem;
 use super::rollout::Setting;
-use game::boat::Boat;
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::DMatrix;
+use scenario::boat::Boat;
 use std::cell::Cell;
 use thiserror::Error;
 

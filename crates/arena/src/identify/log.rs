@@ -1,9 +1,9 @@
 //! A log of a boat: what it was told, and what was measured of it.
 
 use crate::trial::{Engine, LONGEST_S, Mistake, Orders, Sheet};
-use game::SimTime;
-use game::angle::wrap_pi;
-use game::boat::{Boat, Drive};
+use primitives::SimTime;
+use primitives::angle::wrap_pi;
+use scenario::boat::{Boat, Drive};
 
 /// What can be measured: name, column, and from the column's unit to ours.
 pub(super) const CHANNELS: [(&str, &str, Unit); 6] = [

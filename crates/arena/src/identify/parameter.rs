@@ -1,7 +1,7 @@
 //! What can be fitted: numbers of a boat, their keys in a boat file, and how the search moves them.
 
-use game::boat::{Boat, Drive, Thruster};
-use game::math;
+use primitives::math;
+use scenario::boat::{Boat, Drive, Thruster};
 
 /// A number of a boat that can be fitted.
 #[derive(Clone, Copy, Debug)]

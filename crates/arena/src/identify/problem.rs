@@ -7,9 +7,9 @@
 use super::log::Log;
 use super::parameter::Knob;
 use super::rollout::{Point, Setting, rollout};
-use game::boat::Boat;
 use levenberg_marquardt::LeastSquaresProblem;
 use nalgebra::{DMatrix, DVector, Dyn, Owned};
+use scenario::boat::Boat;
 
 /// Step of a parameter's logarithm for its derivative.
 const PARAMETER_STEP: f64 = 1e-4;

@@ -2,10 +2,10 @@
 
 use super::log::{HEADING, Log, SURGE, SWAY, YAW_RATE};
 use crate::trial::{Command, Start, TrialBoat};
-use game::angle::wrap_pi;
-use game::boat::Boat;
-use game::sea::Sea;
-use game::{Ned, Pose, SimTime};
+use primitives::angle::wrap_pi;
+use primitives::{Ned, Pose, SimTime};
+use scenario::boat::Boat;
+use scenario::sea::Sea;
 use sim::hull::Planar;
 
 /// A boat's state in the order of the log's channels.

@@ -1,7 +1,6 @@
 //! Which games a tournament consists of.
 
-use game::Scenario;
-use game::scenario::{Entrant, Files, Packed, Problem, Problems, Tournament, UnpackError, digest_of};
+use scenario::{Entrant, Files, Packed, Problem, Problems, Scenario, Tournament, UnpackError, digest_of};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use std::sync::Arc;

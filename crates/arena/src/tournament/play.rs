@@ -2,8 +2,8 @@
 
 use super::plan::{Match, Plan};
 use agent::MindRunner;
-use game::count::Counts;
-use game::{Outcome, Scenario};
+use rules::count::Counts;
+use scenario::{Outcome, Scenario};
 use serde::{Deserialize, Serialize};
 use sim::Contest;
 use std::num::NonZeroUsize;

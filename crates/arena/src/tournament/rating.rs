@@ -5,8 +5,8 @@
 //! all games, so that their order does not matter.
 
 use super::estimate::quantile;
-use game::math;
 use nalgebra::{DMatrix, DVector};
+use primitives::math;
 use serde::{Deserialize, Serialize};
 
 /// An Elo rating with its 95 % confidence interval. The mean of all entries is 1500.
@@ -131,7 +131,7 @@ fn errors(rounds: &[Vec<Meeting>], strengths: &DVector<f64>, curvature: &DMatrix
 #[cfg(test)]
 mod tests {
     use super::*;
-    use game::stream::Stream;
+    use primitives::stream::Stream;
 
     fn meetings(sides: [usize; 2], wins: usize, of: usize) -> Vec<Vec<Meeting>> {
         (0..of).map(|i| vec![Meeting { sides, share: f64::from(u8::from(i < wins)) }]).collect()

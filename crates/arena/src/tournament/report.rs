@@ -4,8 +4,8 @@ use super::estimate::Estimate;
 use super::plan::Plan;
 use super::play::{Game, Record};
 use super::rating::{Meeting, Rating, ratings};
-use game::count::Counts;
-use game::scenario::Packed;
+use rules::count::Counts;
+use scenario::Packed;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
@@ -199,7 +199,7 @@ impl Report {
         });
         Report {
             tournament: tournament.name.clone(),
-            version: game::VERSION.to_owned(),
+            version: primitives::VERSION.to_owned(),
             commit: String::new(),
             game: tournament.game.display().to_string(),
             sea: tournament.sea.as_ref().map(|sea| sea.display().to_string()),

@@ -3,7 +3,7 @@
 use super::estimate::Estimate;
 use super::rating::Rating;
 use super::report::{Cell, Report, Row};
-use game::printable::add_line;
+use primitives::printable::add_line;
 
 /// A column: its name in the CSV file, its heading for people, and its value.
 type Column = (&'static str, &'static str, fn(&Row) -> Estimate);

@@ -1,6 +1,6 @@
 //! What a boat in a trial is told, and the units in which people write that down.
 
-use game::boat::{Boat, Drive, Kinematic, ThrustCurve, Thruster};
+use scenario::boat::{Boat, Drive, Kinematic, ThrustCurve, Thruster};
 use sim::thruster::ThrusterModel;
 
 /// What a boat is told.
@@ -52,7 +52,9 @@ impl Command {
             Command::Hold => [0.0, 0.0],
             Command::Thrust { port, starboard } => [100.0 * port, 100.0 * starboard],
             Command::Impose { thrust, rudder } => [thrust, rudder],
-            Command::Steer { heading_rad, speed_m_s } => [speed_m_s, game::angle::compass_deg_from_rad(heading_rad)],
+            Command::Steer { heading_rad, speed_m_s } => {
+                [speed_m_s, primitives::angle::compass_deg_from_rad(heading_rad)]
+            }
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::manoeuvre::turned_rad;
 use super::sample::Sample;
-use game::Ned;
+use primitives::Ned;
 
 /// How a boat drifts, over the second half of what was sailed, when it has found how it lies.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,8 +50,8 @@ const STAYS_M_S: f64 = 1e-8;
 mod tests {
     use super::*;
     use crate::trial::{Command, ROW, Start, TrialBoat, still_sea, ticks_per_row};
-    use game::SimTime;
-    use game::sea::{Gusts, Wind};
+    use primitives::SimTime;
+    use scenario::sea::{Gusts, Wind};
     use sim::sea::Summary;
     use std::f64::consts::FRAC_PI_2;
     use std::path::Path;
@@ -63,11 +63,11 @@ mod tests {
         let boats = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/boats");
         let tick = SimTime::from_s(0.05);
         for (name, wind_m_s) in [("surveyor_m1_8", 4.0), ("surveyor_m1_8", 12.0), ("otter", 8.0), ("heron", 8.0)] {
-            let boat = game::scenario::load_boat(&boats.join(format!("{name}.toml"))).expect("it is shipped");
+            let boat = scenario::load_boat(&boats.join(format!("{name}.toml"))).expect("it is shipped");
             let from_rad = 2.0;
             let gusts = Gusts::None;
             let wind = Wind { speed_10m_m_s: wind_m_s, from_rad, profile_exponent: 0.12, gusts };
-            let sea = game::sea::Sea { wind: Some(wind), ..still_sea() };
+            let sea = scenario::sea::Sea { wind: Some(wind), ..still_sea() };
             let want_m_s =
                 Summary::new(&sea, &boat, &crate::trial::open_field(), 1).wind.expect("there is wind").drift_m_s;
 
@@ -82,8 +82,8 @@ mod tests {
             let drift = Drift::of(&samples).expect("it was sailed");
             let (speed_m_s, toward_rad) = (drift.speed_m_s(), drift.toward_rad().expect("it moves"));
             assert!((speed_m_s / want_m_s - 1.0).abs() < TOLERANCE, "{name}: {speed_m_s} m/s, balance {want_m_s} m/s");
-            let off_rad = game::angle::wrap_pi(toward_rad - from_rad - std::f64::consts::PI);
-            let off_beam_rad = game::angle::wrap_pi(drift.heading_rad - from_rad).abs() - FRAC_PI_2;
+            let off_rad = primitives::angle::wrap_pi(toward_rad - from_rad - std::f64::consts::PI);
+            let off_beam_rad = primitives::angle::wrap_pi(drift.heading_rad - from_rad).abs() - FRAC_PI_2;
             assert!(off_rad.abs() < 0.05 && off_beam_rad.abs() < 0.1, "{name}: {off_rad} off, {off_beam_rad} rad");
         }
     }

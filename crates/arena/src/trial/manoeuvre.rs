@@ -7,9 +7,9 @@ use super::command::{Command, Engine};
 use super::replay::{ROW, Unsound, ticks_per_row};
 use super::sample::Sample;
 use super::trial_boat::TrialBoat;
-use game::SimTime;
-use game::angle::wrap_pi;
-use game::boat::{Boat, Drive};
+use primitives::SimTime;
+use primitives::angle::wrap_pi;
+use scenario::boat::{Boat, Drive};
 use strum::{EnumString, IntoStaticStr, VariantNames};
 
 /// A standard manoeuvre. *Port* and *starboard* are thrusters; a kinematic boat has thrust and rudder instead.

@@ -3,8 +3,8 @@
 use super::drift::Drift;
 use super::manoeuvre::{DEAD, Manoeuvre, Plan, Sailed, turned_rad};
 use super::sample::Sample;
-use game::angle::compass_deg_from_rad;
-use game::{Ned, math};
+use primitives::angle::compass_deg_from_rad;
+use primitives::{Ned, math};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// A number with what it is and its unit; NaN where the boat did not get that far.

@@ -2,7 +2,7 @@
 
 use super::command::{Command, Engine, Pair};
 use super::sheet::{Mistake, Sheet};
-use game::SimTime;
+use primitives::SimTime;
 
 /// The longest trial, s: a day. Times count from the start of the trial.
 pub const LONGEST_S: f64 = 86_400.0;

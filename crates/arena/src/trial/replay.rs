@@ -3,7 +3,7 @@
 use super::orders::Orders;
 use super::sample::Sample;
 use super::trial_boat::TrialBoat;
-use game::SimTime;
+use primitives::SimTime;
 use thiserror::Error;
 
 /// The time between two rows of a trial's file.

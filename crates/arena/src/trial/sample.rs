@@ -1,9 +1,9 @@
 //! What a trial writes down about a boat at one moment, and the columns in which it stands.
 
 use super::command::Command;
-use game::Ned;
-use game::angle::compass_deg_from_rad;
-use game::math::decimal;
+use primitives::Ned;
+use primitives::angle::compass_deg_from_rad;
+use primitives::math::decimal;
 use sim::hull::Planar;
 
 /// The columns of a trial's file, in order.
@@ -49,7 +49,7 @@ impl Sample {
     /// Speed over the ground, m/s.
     #[must_use]
     pub fn speed_m_s(&self) -> f64 {
-        game::math::length(self.nu.surge, self.nu.sway)
+        primitives::math::length(self.nu.surge, self.nu.sway)
     }
 }
 

@@ -3,10 +3,11 @@
 use super::command::Command;
 use super::sample::Sample;
 use super::water::open_field;
-use game::boat::{Boat, Drive, Kinematic};
-use game::frame::{self, Body};
-use game::sea::Sea;
-use game::{Ned, Order, Pose, Rotation, SimTime, VehicleId};
+use messages::Order;
+use primitives::frame::{self, Body};
+use primitives::{Ned, Pose, Rotation, SimTime, VehicleId};
+use scenario::boat::{Boat, Drive, Kinematic};
+use scenario::sea::Sea;
 use sim::hull::Planar;
 use sim::kinematic::{KinematicModel, KinematicState};
 use sim::{VehiclePlan, World, WorldPlan};

@@ -1,9 +1,10 @@
 //! Open water: a sea, and a field that holds nothing to bump into.
 
-use game::field::{Plan, Walls};
-use game::frame::LatLon;
-use game::sea::{Current, Sea};
-use game::{Field, Ned};
+use primitives::Ned;
+use primitives::frame::LatLon;
+use rules::Field;
+use rules::field::{Plan, Walls};
+use scenario::sea::{Current, Sea};
 
 /// Extent of the field each way, m. It ends nothing: a boat sails on beyond it, and so does the sea. Only random
 /// eddies are laid over it.
@@ -20,7 +21,7 @@ pub fn still_sea() -> Sea {
 /// Gives `sea` this mean current in place of its own. What else flows in it (tide, shear, eddies) stays.
 pub fn set_mean_current(sea: &mut Sea, speed_m_s: f64, toward_deg: f64) {
     let toward = Ned::toward_deg(toward_deg);
-    let wander = sea.current.wander.map(|wander| game::sea::Wander { toward, ..wander });
+    let wander = sea.current.wander.map(|wander| scenario::sea::Wander { toward, ..wander });
     sea.current = Current { mean_m_s: toward.scaled(speed_m_s), wander, ..sea.current.clone() };
 }
 

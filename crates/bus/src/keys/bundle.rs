@@ -1,7 +1,7 @@
 //! The keys of one node, read and checked.
 
 use super::{AUTHORITY_FILE, CERTIFICATE_FILE, Identity, KEY_FILE};
-use game::input_file;
+use primitives::input_file;
 use rustls::crypto::ring;
 use rustls::pki_types::pem::PemObject;
 use rustls::pki_types::{CertificateDer, PrivateKeyDer};

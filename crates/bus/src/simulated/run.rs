@@ -4,7 +4,7 @@ use super::event::{Event, nanos};
 use super::scheduler::World;
 use super::state::{Node, State};
 use crate::clock;
-use game::stream::Stream;
+use primitives::stream::Stream;
 use std::collections::{BTreeMap, BinaryHeap};
 use std::hash::{DefaultHasher, Hasher};
 use std::sync::Arc;

@@ -5,7 +5,7 @@ use super::link::Link;
 use super::routing::{Declared, PendingQuery};
 use super::scheduler::Call;
 use super::{Conditions, Fault, NodeEnd, Published, Verdict};
-use game::stream::Stream;
+use primitives::stream::Stream;
 use std::collections::{BTreeMap, BinaryHeap};
 use std::hash::{DefaultHasher, Hash};
 use std::sync::Arc;

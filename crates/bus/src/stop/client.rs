@@ -8,9 +8,9 @@ use crate::net::address;
 use crate::{
     Bus, BusError, CurrentToken, Declaration, Priority, Publisher, Token, Watched, clock, control, start_thread,
 };
-use game::external::{FleetCommand, GatewayCommand, GatewayStatus, OperatorCommand};
-use game::message::Control;
-use game::topic::{self, GameName};
+use messages::Control;
+use messages::external::{FleetCommand, GatewayCommand, GatewayStatus, OperatorCommand};
+use messages::topic::{self, GameName};
 use parking_lot::Mutex;
 use std::collections::BTreeMap;
 use std::io;

@@ -4,7 +4,7 @@
 //! is never longer than the request: the port is of no use for flooding others.
 
 use crate::token::{Proof, Token};
-use game::external::GatewayCommand;
+use messages::external::GatewayCommand;
 use serde::{Deserialize, Serialize};
 use serde_json::value::{RawValue, to_raw_value};
 use std::collections::BTreeMap;
@@ -119,7 +119,7 @@ pub(super) fn answered_number(bytes: &[u8]) -> Option<u64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use game::external::{FleetCommand, OperatorCommand};
+    use messages::external::{FleetCommand, OperatorCommand};
 
     fn request(command: GatewayCommand) -> StopRequest {
         StopRequest { session: u64::MAX, number: 7, game: Some("match".to_owned()), command }

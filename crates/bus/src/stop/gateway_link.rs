@@ -5,7 +5,7 @@ use super::datagram_port::DatagramPort;
 use crate::gateway_port::ANSWER_BYTES_MAX;
 use crate::token::{Answered, first, read};
 use crate::{CurrentToken, GATEWAY_PORT_KEY, clock, random_number, start_thread};
-use game::external::{GatewayCommand, OperatorReply};
+use messages::external::{GatewayCommand, OperatorReply};
 use parking_lot::Mutex;
 use std::collections::VecDeque;
 use std::io::{self, BufRead, BufReader, Read, Write};

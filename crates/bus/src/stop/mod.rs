@@ -17,7 +17,7 @@ pub use datagram_port::DatagramPort;
 pub use hub_port::HubStopPort;
 pub use orders::{KnownBoat, StopNews, StopOrders};
 
-use game::external::OperatorCommand;
+use messages::external::OperatorCommand;
 
 /// What stops boats.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

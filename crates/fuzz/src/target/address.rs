@@ -2,7 +2,7 @@
 
 use super::{Target, check_shown, texts};
 use bus::Token;
-use game::topic::{self, GameName};
+use messages::topic::{GameName, self};
 use gateway::link::LinkAddress;
 
 pub(super) const TARGET: Target =

@@ -4,16 +4,16 @@ use super::{Target, binaries, check_shown};
 use crate::played::{self, Played, mixed, played};
 use agent::MindRunner;
 use agent::node::team_inbox::TeamInbox;
-use game::codec;
-use game::event::EventCursor;
-use game::external::{ExternalOrder, LinkBytes, NavReport};
-use game::input::{InputRecord, Inputs};
-use game::message::{Frame, JoinRequest, Message, Orders, PolicyProposal, Role, Say, Stamp};
-use game::outcome::EventOutcome;
-use game::payload::PayloadBytes;
-use game::picture::Nav;
-use game::refusal::Refusals;
-use game::{Picture, Scenario, SimTime, VehicleId};
+use primitives::{SimTime, VehicleId, codec};
+use rules::event::EventCursor;
+use messages::external::{ExternalOrder, LinkBytes, NavReport};
+use messages::input::{InputRecord, Inputs};
+use messages::{Frame, JoinRequest, Message, Orders, Picture, PolicyProposal, Role, Say, Stamp};
+use scenario::outcome::EventOutcome;
+use messages::payload::PayloadBytes;
+use messages::picture::Nav;
+use messages::refusal::Refusals;
+use scenario::Scenario;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use sim::Contest;
@@ -78,7 +78,7 @@ impl Readers {
         let names = scenario.vehicles.iter().map(|vehicle| vehicle.name.clone());
         let member = |role, vehicles: Vec<String>| {
             let mut membership = Membership::new(&scenario, role);
-            let request = JoinRequest { version: game::VERSION.to_owned(), role, node: "fuzz".to_owned(), vehicles };
+            let request = JoinRequest { version: primitives::VERSION.to_owned(), role, node: "fuzz".to_owned(), vehicles };
             membership.join(&request, TICKET, SimTime::ZERO);
             membership
         };
@@ -189,12 +189,12 @@ impl Readers {
     fn hear(&self, bytes: &[u8], seq: u64) {
         for team in 0..self.scenario.teams.len() {
             let mut inbox = self.team_inbox.clone();
-            inbox.take(game::TeamId(team as u8), bytes);
+            inbox.take(primitives::TeamId(team as u8), bytes);
             let mut words = Vec::new();
             inbox.is_complete(seq.saturating_add(1));
             inbox.deliver(seq.saturating_add(1), &mut words);
             assert!(words.iter().all(|word| word.value.is_finite()));
-            assert!(words.len() <= game::strategy::SHARED_MAX * self.scenario.vehicles.len());
+            assert!(words.len() <= scenario::strategy::SHARED_MAX * self.scenario.vehicles.len());
         }
     }
 }

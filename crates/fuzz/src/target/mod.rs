@@ -68,7 +68,7 @@ fn binaries(seeds: Vec<Vec<u8>>) -> Change {
 
 /// Checks what a person is shown: so many lines at most, none of which is endless or steers the terminal.
 fn check_shown(error: &dyn std::fmt::Display) {
-    let shown = game::printable::message(&error.to_string());
+    let shown = primitives::printable::message(&error.to_string());
     assert!(!shown.trim().is_empty(), "an error that says nothing");
     for line in shown.lines() {
         assert!(line.chars().count() < 2100, "{} characters: {line:.200}", line.chars().count());

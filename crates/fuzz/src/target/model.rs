@@ -1,9 +1,9 @@
 //! Trained policies (ONNX): a file is a network that answers whatever it is given, and the same each time, or it is refused.
 
 use super::{Target, binaries, check_shown};
-use game::action::ActionSpace;
-use game::observation::ObservationSpace;
-use game::policy::{PartialSpec, PolicyModel, PolicySpec};
+use scenario::action::ActionSpace;
+use scenario::observation::ObservationSpace;
+use scenario::policy::{PartialSpec, PolicyModel, PolicySpec};
 use onnx::{Activation, Head, Layer, Network, Perceptron};
 use std::collections::BTreeMap;
 use std::path::Path;

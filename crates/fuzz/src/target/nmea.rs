@@ -1,7 +1,7 @@
 //! What boats send (NMEA sentences).
 
 use super::{Target, texts};
-use game::LatLon;
+use primitives::LatLon;
 use gateway::nmea::{
     ACCEPTED_MAX, Battery, Command, Counts, EMITTED_MAX, Framer, Gga, Hdg, Mode, Sentence, Talker, TimeOfDay, Waypoint,
     checksum,

@@ -7,11 +7,11 @@ use crate::change::text::Pieces;
 use crate::played::{self, mixed, played};
 use analysis::table::{self, TableError};
 use analysis::{Comparison, GameSeries, Summary, alog};
-use game::codec;
-use game::external::{FailsafeReport, GatewayStatus, LinkBytes};
-use game::input::Inputs;
-use game::message::{Message, Stamp};
-use game::{Scenario, SimTime, VehicleId};
+use primitives::{SimTime, VehicleId, codec};
+use messages::external::{FailsafeReport, GatewayStatus, LinkBytes};
+use messages::input::Inputs;
+use messages::{Message, Stamp};
+use scenario::Scenario;
 use gateway::bridge::{Bridge, Input, Output, Plan, Preflight, Site};
 use gateway::record::StepEncoder;
 use recording::{Bag, Entry, FRAME, INPUTS, Kind, Recording, RecordingError, Writer};
@@ -56,7 +56,7 @@ fn seeds() -> Vec<Vec<u8>> {
 /// A short recording of a gateway.
 fn gateway_recording() -> Vec<u8> {
     let (scenario, vehicle) = (mixed(), "blue_one".to_owned());
-    let gateway = game::scenario::default_gateway();
+    let gateway = scenario::default_gateway();
     let field = scenario.field.clone();
     let site = Some(Site { field, length_m: 2.0, declination_rad: 0.1 });
     let plan = Plan { vehicle, gateway, site, arms_itself: true, dry_run: false, preflight: Preflight::NotRequired };
@@ -126,7 +126,7 @@ fn play_again(recording: &Recording) {
     {
         contest.give(input);
     }
-    drop(contest.frame(&mut game::event::EventCursor::default()));
+    drop(contest.frame(&mut rules::event::EventCursor::default()));
     assert_eq!(recording.bag().places(FRAME).count(), recording.frame_count());
 }
 

@@ -4,12 +4,12 @@ use super::{Target, check_shown, texts};
 use crate::played::{self, mixed, played};
 use bus::token::{self, Checked, Guard, Token};
 use bus::{Entry, GATEWAY_PORT_KEY, GatewayEntry};
-use game::external::{FleetCommand, GatewayCommand, GatewayStatus, Mission, OperatorCommand, OperatorReply};
-use game::helm::{HelmQuestion, HelmReport};
-use game::message::{Control, ControlReply, GameInfo, JoinReply, JoinRequest, Role};
-use game::outcome::{EventOutcome, Outcome};
-use game::run_state::{RecordingState, RunState};
-use game::water::{PlaneWave, Water};
+use messages::external::{FleetCommand, GatewayCommand, GatewayStatus, Mission, OperatorCommand, OperatorReply};
+use messages::helm::{HelmQuestion, HelmReport};
+use messages::{Control, ControlReply, GameInfo, JoinReply, JoinRequest, Role};
+use scenario::outcome::{EventOutcome, Outcome};
+use messages::run_state::{RecordingState, RunState};
+use messages::water::{PlaneWave, Water};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
@@ -38,17 +38,17 @@ fn seeds() -> Vec<Vec<u8>> {
     let controls = [Control::EStop, Control::Halt, Control::Speed(Some(4.0)), Control::Speed(None), Control::Release];
     seeds.extend(controls.iter().flat_map(requests));
     let vehicles = vec!["blue_one".to_owned(), "blue_two".to_owned()];
-    let (version, node) = (game::VERSION.to_owned(), "a7".to_owned());
+    let (version, node) = (primitives::VERSION.to_owned(), "a7".to_owned());
     seeds.extend(requests(&JoinRequest { version, role: Role::Agent, node, vehicles: vehicles.clone() }));
     seeds.push(bytes_of(&JoinReply::Granted {
         ticket: 7,
-        vehicles: vec![game::VehicleId(0)],
-        now_ns: game::SimTime(5),
+        vehicles: vec![primitives::VehicleId(0)],
+        now_ns: primitives::SimTime(5),
     }));
     seeds.push(bytes_of(&ControlReply::Err("no".to_owned())));
     seeds.push(br#"{"challenge":"0123456789abcdef0123456789abcdef"}"#.to_vec());
     let status = GatewayStatus {
-        nav: Some(game::picture::Nav::default()),
+        nav: Some(messages::picture::Nav::default()),
         nav_age_s: Some(0.5),
         mode: Some('T'),
         counts: vec![("sentences".to_owned(), 3)],
@@ -87,7 +87,7 @@ fn check(bytes: &[u8]) {
     answered(bytes);
     if let Some(request) = read::<JoinRequest>(bytes) {
         for membership in MEMBERSHIPS.iter() {
-            match membership.clone().join(&request, 7, game::SimTime(5)) {
+            match membership.clone().join(&request, 7, primitives::SimTime(5)) {
                 JoinReply::Granted { vehicles, .. } => assert_eq!(vehicles.len(), request.vehicles.len()),
                 JoinReply::Refused { reason } => check_shown(&reason),
                 JoinReply::Busy { vehicle } => panic!("nobody else has {vehicle}"),

@@ -3,8 +3,8 @@
 
 use super::{Target, check_shown, texts};
 use crate::played::scenarios;
-use game::scenario::{self, Kind, Problems};
-use game::{Scenario, VehicleId};
+use scenario::{Kind, Problems, Scenario};
+use primitives::VehicleId;
 use gateway::bridge::{Bridge, Plan, Preflight, Site};
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
@@ -41,7 +41,7 @@ fn files() -> Vec<(PathBuf, Vec<u8>)> {
 }
 
 fn seeds() -> Vec<Vec<u8>> {
-    let broken = include_str!("../../../game/tests/scenario_hostile_values.txt");
+    let broken = include_str!("../../../scenario/tests/scenario_hostile_values.txt");
     // A game of a thousand boats costs as much as all others together.
     let files = files().into_iter().filter(|(path, _)| !path.ends_with("swarm_500v500.toml"));
     let seed = |(path, text): (PathBuf, Vec<u8>)| {
@@ -83,7 +83,7 @@ fn accepted(kind: Kind, path: &Path) {
         Kind::Strategy => {
             let strategy = scenario::load_strategy(path).expect("it was accepted");
             let json = serde_json::to_string(&strategy).expect("JSON");
-            assert_eq!(serde_json::from_str::<game::strategy::Strategy>(&json).expect("JSON"), strategy);
+            assert_eq!(serde_json::from_str::<scenario::strategy::Strategy>(&json).expect("JSON"), strategy);
             for role in &strategy.roles {
                 let conditions = role.modes.iter().filter_map(|mode| mode.when.as_ref());
                 conditions.for_each(|condition| assert!(!role.condition_text(condition).is_empty()));
@@ -126,7 +126,7 @@ fn playable(scenario: &Scenario) {
         arena::decide(&mut contest, &mut runner);
         contest.advance();
     }
-    let frame = contest.frame(&mut game::event::EventCursor::default());
+    let frame = contest.frame(&mut rules::event::EventCursor::default());
     for (i, truth) in frame.vehicles.iter().enumerate() {
         let name = &scenario.vehicles[VehicleId::at(i).index()].name;
         assert!(truth.nav.north_m.is_finite() && truth.nav.east_m.is_finite(), "{name} is at {:?}", truth.nav);

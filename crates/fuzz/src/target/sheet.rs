@@ -4,8 +4,8 @@ use super::{Target, check_shown, texts};
 use crate::played::scenarios;
 use arena::identify::Log;
 use arena::trial::{Engine, LONGEST_S, Mistake, Orders, Sheet};
-use game::SimTime;
-use game::boat::Boat;
+use primitives::SimTime;
+use scenario::boat::Boat;
 use std::fmt::Write;
 use std::sync::LazyLock;
 
@@ -15,7 +15,7 @@ pub(super) const TARGET: Target = Target { name: "sheet", seeds, change: texts, 
 static BOATS: LazyLock<[Boat; 3]> = LazyLock::new(|| {
     ["otter", "heron", "surveyor_kinematic"].map(|name| {
         let file = scenarios().join("boats").join(name).with_extension("toml");
-        game::scenario::load_boat(&file).unwrap_or_else(|e| panic!("{e}"))
+        scenario::load_boat(&file).unwrap_or_else(|e| panic!("{e}"))
     })
 });
 

@@ -4,12 +4,13 @@ use super::games::Standing;
 use super::setup::{Control, Player, Setup};
 use super::watch::{Moment, Watch};
 use agent::{Action, Mind, MindRunner, Pilot};
-use game::count::Tally;
-use game::event::EventCursor;
-use game::rewards::{BoatProgress, Placed, progress};
-use game::scenario::Scenario;
-use game::stream::Stream;
-use game::{Ned, Picture, TeamId, VehicleId};
+use messages::Picture;
+use primitives::stream::Stream;
+use primitives::{Ned, TeamId, VehicleId};
+use rules::count::Tally;
+use rules::event::EventCursor;
+use scenario::Scenario;
+use scenario::rewards::{BoatProgress, Placed, progress};
 use sim::Contest;
 
 /// Who plays whom in a game.

@@ -6,9 +6,9 @@ use super::starts::Starts;
 use super::truth;
 use super::watch::Watches;
 use agent::Action;
-use game::VehicleId;
-use game::count::Counts;
+use primitives::VehicleId;
 use rayon::prelude::*;
+use rules::count::Counts;
 use sim::Contest;
 
 /// How a game stands.

@@ -13,8 +13,9 @@ mod truth;
 mod vector;
 mod watch;
 
-pub use ::game::training::CriticInput;
 pub use agent::{Action, ActionSpace, ObservationSpace, Spaces};
+pub use scenario::training::CriticInput;
+
 pub use game::Side;
 pub use games::{Finished, Games, Rows, Standing};
 pub use raw::{RawObservation, RawSetup};

@@ -2,11 +2,11 @@
 
 use super::setup::{Control, Player, Setup, SetupError};
 use agent::{ActionSpace, ObservationSpace, Spaces};
-use game::TeamId;
-use game::rewards::Rewards;
-use game::scenario::{self, Scenario};
-use game::strategy::Strategy;
-use game::training::CriticInput;
+use primitives::TeamId;
+use scenario::Scenario;
+use scenario::rewards::Rewards;
+use scenario::strategy::Strategy;
+use scenario::training::CriticInput;
 use std::path::{Path, PathBuf};
 
 /// What policies see, before it is known how large the teams are.

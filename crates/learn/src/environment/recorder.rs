@@ -1,10 +1,10 @@
 //! Records games of an environment, each into a file of its own, as `squall run` records one.
 
 use super::watch::{Moment, Watch, Watches};
-use game::Scenario;
-use game::event::EventCursor;
-use game::message::Frame;
+use messages::Frame;
 use recording::{RecordError, utc};
+use rules::event::EventCursor;
+use scenario::Scenario;
 use sim::{Contest, GameRecorder, Report, Run};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};

@@ -2,12 +2,12 @@
 
 use super::truth;
 use agent::{ActionSpace, Spaces};
-use game::policy::PolicyModel;
-use game::rewards::Rewards;
-use game::scenario::{Problems, Scenario};
-use game::strategy::{Program, Strategy, Task};
-use game::training::CriticInput;
-use game::{TeamId, VehicleId};
+use primitives::{TeamId, VehicleId};
+use scenario::policy::PolicyModel;
+use scenario::rewards::Rewards;
+use scenario::strategy::{Program, Strategy, Task};
+use scenario::training::CriticInput;
+use scenario::{Problems, Scenario};
 use std::collections::BTreeMap;
 use thiserror::Error;
 

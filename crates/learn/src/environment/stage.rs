@@ -3,8 +3,8 @@
 use super::raw::{decisions_per_step, steps_max};
 use super::setup::{Control, Player, Setup, SetupError, Teacher};
 use agent::Spaces;
-use game::scenario::{self, Overrides};
-use game::training::{self, Stage, Training};
+use scenario::Overrides;
+use scenario::training::{self, Stage, Training};
 use std::collections::{BTreeMap, BTreeSet};
 
 impl Setup {

@@ -4,10 +4,10 @@
 //! field; speeds in units of 3 m/s, wind in units of 10 m/s, truths as 0 or 1. The own boat comes first, then its mates, then the
 //! enemies, each in the scenario's order.
 
-use game::event::EventCursor;
-use game::frame::{Body, Rotation, ned_from_body};
-use game::message::VehicleTruth;
-use game::{Ned, Picture, VehicleId};
+use messages::{Picture, VehicleTruth};
+use primitives::frame::{Body, Rotation, ned_from_body};
+use primitives::{Ned, VehicleId};
+use rules::event::EventCursor;
 use sim::Contest;
 
 /// The numbers of each boat.

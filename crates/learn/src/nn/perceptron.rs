@@ -1,8 +1,8 @@
 //! A multilayer perceptron: layers of weights with the hyperbolic tangent between them, none after the last.
 
-use game::stream::Stream;
 use nalgebra::{DMatrixView, DMatrixViewMut};
 use onnx::tanh;
+use primitives::stream::Stream;
 use serde::{Deserialize, Serialize};
 
 /// A multilayer perceptron.

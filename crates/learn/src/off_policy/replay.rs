@@ -1,6 +1,6 @@
 //! A replay buffer: the newest transitions, from which minibatches are drawn.
 
-use game::stream::Stream;
+use primitives::stream::Stream;
 use serde::{Deserialize, Serialize};
 
 /// One step of one boat.
@@ -155,7 +155,7 @@ impl<A> Minibatch<A> {
 #[cfg(test)]
 mod tests {
     use super::{Replay, Transition};
-    use game::stream::Stream;
+    use primitives::stream::Stream;
 
     fn filled(capacity: usize, count: usize) -> Replay<u16> {
         let mut replay = Replay::new(2, capacity);

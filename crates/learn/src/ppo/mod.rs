@@ -8,9 +8,9 @@ pub use advantage::{Steps, advantages};
 
 use crate::nn::{Adam, AdamSettings, Perceptron, SHARD, Trace};
 use choice::log_probabilities;
-use game::stream::Stream;
-use game::training::Ppo;
+use primitives::stream::Stream;
 use rayon::prelude::*;
+use scenario::training::Ppo;
 use serde::{Deserialize, Serialize};
 
 /// A policy and what it expects, with their optimisers: all that a run goes on from.

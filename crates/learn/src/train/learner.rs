@@ -8,8 +8,8 @@ use crate::off_policy::dqn::DqnLearner;
 use crate::off_policy::td3::{Numbers, Td3Learner, action};
 use crate::ppo::ActorCritic;
 use agent::Action;
-use game::training::{Algorithm, Dqn, Td3, Training};
 use onnx::NetworkError;
+use scenario::training::{Algorithm, Dqn, Td3, Training};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

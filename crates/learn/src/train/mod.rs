@@ -17,12 +17,12 @@ pub use state::{Best, Evaluated, StateError};
 use crate::environment::{Finished, Player, Setup, SetupError, VectorEnvironment, Watches};
 use crate::nn::{Perceptron, SHARD, Trace};
 use crate::ppo::{ActorCritic, Batch, Lesson};
-use game::policy::{PolicySpec, options_metadata};
-use game::scenario;
-use game::stream::Stream;
-use game::training::{CriticInput, Ppo, Stage, Training};
+use scenario::policy::{PolicySpec, options_metadata};
+
+use primitives::stream::Stream;
 use rayon::prelude::*;
 use rollout::Rollout;
+use scenario::training::{CriticInput, Ppo, Stage, Training};
 use state::State;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -204,7 +204,7 @@ impl Trainer {
             ("squall.training".to_owned(), name.clone()),
             ("squall.seed".to_owned(), seed.to_string()),
             (SAMPLES.to_owned(), self.state.samples.to_string()),
-            ("squall.version".to_owned(), game::VERSION.to_owned()),
+            ("squall.version".to_owned(), primitives::VERSION.to_owned()),
         ]);
         metadata.extend(self.setups.last().and_then(Setup::options).map(options_metadata));
         self.state.learner.onnx(metadata)

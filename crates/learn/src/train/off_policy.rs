@@ -8,9 +8,9 @@ use crate::off_policy::dqn::{self, DqnLearner};
 use crate::off_policy::td3::{self, NUMBERS, Numbers, Td3Learner};
 use crate::off_policy::{Replay, Transition};
 use agent::Action;
-use game::stream::Stream;
-use game::training::{Dqn, Td3};
+use primitives::stream::Stream;
 use rayon::ThreadPool;
+use scenario::training::{Dqn, Td3};
 use serde::{Deserialize, Serialize};
 
 /// A learner with its settings and its replay buffer.

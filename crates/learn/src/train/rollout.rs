@@ -4,8 +4,8 @@ use super::outputs;
 use crate::environment::{Finished, SetupError, VectorEnvironment};
 use crate::ppo::{ActorCritic, Steps, advantages, choice};
 use agent::Action;
-use game::stream::Stream;
-use game::training::Ppo;
+use primitives::stream::Stream;
+use scenario::training::Ppo;
 
 /// What was played, each steps × rows.
 pub(super) struct Rollout {

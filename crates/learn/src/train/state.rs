@@ -4,7 +4,7 @@ use super::evaluation::Played;
 use super::league::League;
 use super::learner::Learner;
 use crate::environment::SetupError;
-use game::training::Training;
+use scenario::training::Training;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -66,7 +66,7 @@ struct Head {
 impl Head {
     fn of(training: &Training) -> Head {
         let training = serde_json::to_string(training).expect("numbers and lists can be written");
-        Head { version: game::VERSION.to_owned(), training }
+        Head { version: primitives::VERSION.to_owned(), training }
     }
 }
 
@@ -77,7 +77,7 @@ pub enum StateError {
     #[error("it is no state of a training, or a damaged one")]
     Damaged,
     /// It was made by another version of the program.
-    #[error("it was made by version {found}, expected {}", game::VERSION)]
+    #[error("it was made by version {found}, expected {}", primitives::VERSION)]
     Version {
         /// That version.
         found: String,
@@ -113,7 +113,7 @@ impl State {
     pub(super) fn read(bytes: &[u8], training: &Training) -> Result<State, StateError> {
         // The version stands first: of another one nothing else may be as here.
         let (version, _) = postcard::take_from_bytes::<String>(bytes).map_err(|_| StateError::Damaged)?;
-        if version != game::VERSION {
+        if version != primitives::VERSION {
             return Err(StateError::Version { found: version });
         }
         let (head, state): (Head, State) = postcard::from_bytes(bytes).map_err(|_| StateError::Damaged)?;

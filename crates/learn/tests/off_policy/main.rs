@@ -4,11 +4,11 @@
 mod step;
 mod toy;
 
-use game::stream::Stream;
 use learn::nn::Perceptron;
 use learn::off_policy::Minibatch;
 use learn::off_policy::dqn::DqnLearner;
 use learn::off_policy::td3::{NUMBERS, Numbers, Td3Learner};
+use primitives::stream::Stream;
 
 /// Random transitions of a game with observations of three numbers; every third does not count.
 fn random<A>(count: usize, stream: &mut Stream, action: impl Fn(&mut Stream) -> A) -> Minibatch<A> {
@@ -82,6 +82,6 @@ fn the_gradient_of_double_dqn_is_the_slope_of_its_loss() {
     learner.network = Perceptron::new(&[3, 6, 5, 4], 1.0, stream);
     learner.target = Perceptron::new(&[3, 6, 5, 4], 1.0, stream);
     let minibatch = random(11, stream, |stream| stream.below(4) as u16);
-    let settings = game::training::Dqn::default();
+    let settings = scenario::training::Dqn::default();
     assert_slopes(&learner, |learner| &mut learner.network, |learner| learner.gradient(&minibatch, &settings));
 }

@@ -1,11 +1,11 @@
 //! Small problems with known answers, which are learnt from random transitions.
 
-use game::stream::Stream;
-use game::training::{Dqn, Td3};
 use learn::nn::Trace;
 use learn::off_policy::dqn::DqnLearner;
 use learn::off_policy::td3::{self, Td3Learner};
 use learn::off_policy::{Replay, Transition};
+use primitives::stream::Stream;
+use scenario::training::{Dqn, Td3};
 
 fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads").install(work)

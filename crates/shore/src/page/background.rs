@@ -3,7 +3,7 @@
 //! Both are placed by latitude and longitude of WGS 84: GeoJSON has no other since RFC 7946, and an image has a world file beside
 //! it. The page lays them on the field by the field's datum.
 
-use game::input_file;
+use primitives::input_file;
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
 use thiserror::Error;

@@ -2,10 +2,11 @@
 //!
 //! x is east and y is north, both in metres from the datum; bearings are compass degrees.
 
-use game::field::{Obstacle, Walls};
-use game::scenario::{Drawn, Source, Vehicle};
-use game::water::{PlaneWave, Water};
-use game::{Field, Ned, Scenario, math};
+use messages::water::{PlaneWave, Water};
+use primitives::{Ned, math};
+use rules::Field;
+use rules::field::{Obstacle, Walls};
+use scenario::{Drawn, Scenario, Source, Vehicle};
 use serde_json::{Map, Value, json};
 
 /// The chart of a game, as it stands in `PROTOCOL.md`.
@@ -96,7 +97,7 @@ mod tests {
 
     fn chart(file: &str, water: &Water) -> Value {
         let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games").join(file);
-        let scenario = game::scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
+        let scenario = scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
         super::chart(&scenario, water)
     }
 

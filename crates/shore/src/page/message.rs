@@ -2,11 +2,11 @@
 
 use super::rose::Helm;
 use super::view::Access;
-use game::SimTime;
-use game::external::GatewayStatus;
-use game::outcome::EventOutcome;
-use game::picture::OwnBoat;
-use game::run_state::RecordingState;
+use messages::external::GatewayStatus;
+use messages::picture::OwnBoat;
+use messages::run_state::RecordingState;
+use primitives::SimTime;
+use scenario::outcome::EventOutcome;
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -173,7 +173,7 @@ impl PageMessage<'_> {
         (game, about): (&'a str, Option<&'a str>),
         chart: &'a Value,
     ) -> PageMessage<'a> {
-        let definitions = game::ros::DEFINITIONS.into_iter().collect();
+        let definitions = messages::ros::DEFINITIONS.into_iter().collect();
         let (rights, operates) = (access >= Access::Control, access >= Access::Operate);
         PageMessage::Hello { protocol: PROTOCOL, version, mode, rights, operates, game, about, definitions, chart }
     }
@@ -201,7 +201,7 @@ impl PageMessage<'_> {
 #[cfg(test)]
 mod tests {
     use super::{EventMessage, PageMessage};
-    use game::outcome::EventOutcome;
+    use scenario::outcome::EventOutcome;
     use serde_json::{Value, json};
 
     fn value(tell: &PageMessage<'_>) -> Value {

@@ -1,8 +1,8 @@
 //! Requests of a page to its server, as `PROTOCOL.md` defines them.
 
 use super::view::Access;
-use game::external::OperatorCommand;
-use game::message::Control;
+use messages::Control;
+use messages::external::OperatorCommand;
 use serde::Deserialize;
 
 /// A message from a page, as it stands in `PROTOCOL.md`.

@@ -1,8 +1,9 @@
 //! The rose: what a helm thinks, as the page draws it, its utilities as whole per cents.
 
 use super::message::PageMessage;
-use game::helm::{BehaviourReport, HelmReport, PolicyReport, VariableReport};
-use game::{Scenario, VehicleId};
+use messages::helm::{BehaviourReport, HelmReport, PolicyReport, VariableReport};
+use primitives::VehicleId;
+use scenario::Scenario;
 use serde::Serialize;
 
 /// A helm's report, as it stands in `PROTOCOL.md`.
@@ -71,7 +72,7 @@ impl Helm {
     /// A sound report with names in place of numbers, with utilities for those who asked for them.
     pub(super) fn new(scenario: &Scenario, report: &HelmReport, has_utilities: bool) -> Helm {
         let percents = |utilities: &[f32]| utilities.iter().map(|utility| whole(f64::from(*utility))).collect();
-        let function = |function: &game::helm::FunctionReport| Function {
+        let function = |function: &messages::helm::FunctionReport| Function {
             behaviour: function.behaviour.clone(),
             contact: function.contact.and_then(|v| Some(scenario.vehicles.get(v.index())?.name.clone())),
             weight: function.weight,
@@ -159,13 +160,13 @@ fn whole(per_cent: f64) -> u8 {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use game::SimTime;
-    use game::helm::{DriftReport, FunctionReport};
+    use messages::helm::{DriftReport, FunctionReport};
+    use primitives::SimTime;
     use proptest::prelude::*;
 
     pub(in super::super) fn scenario() -> Scenario {
         let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
-        game::scenario::load(&file).unwrap_or_else(|e| panic!("{e}"))
+        scenario::load(&file).unwrap_or_else(|e| panic!("{e}"))
     }
 
     fn function(weight: f64, utilities: &[f32]) -> FunctionReport {

@@ -5,18 +5,18 @@ use super::source::{frame, own_boat, report, scenario, seq_of};
 use super::{open_viewer, visit};
 use bus::token::{self, Checked, Guard};
 use bus::{Bus, Declaration, Net, Priority, Publisher, Token, Watched};
-use game::codec;
-use game::event::{Event, Logged};
-use game::external::{GatewayStatus, OperatorReply};
-use game::helm::{HelmQuestion, HelmReport};
-use game::message::{Control, ControlReply, EventRecord, GameInfo, Message, PolicyProposal, Stamp};
-use game::outcome::EventOutcome;
-use game::picture::Picture;
-use game::run_state::{Phase, RunState};
-use game::strategy::{Behaviour, Expression, Parameter, Policy, Proposer, Task};
-use game::topic::{self, GameName};
-use game::water::{PlaneWave, Water};
-use game::{Scenario, SimTime, TeamId, VehicleId};
+use messages::external::{GatewayStatus, OperatorReply};
+use messages::helm::{HelmQuestion, HelmReport};
+use messages::picture::Picture;
+use messages::run_state::{Phase, RunState};
+use messages::topic::{self, GameName};
+use messages::water::{PlaneWave, Water};
+use messages::{Control, ControlReply, EventRecord, GameInfo, Message, PolicyProposal, Stamp};
+use primitives::{SimTime, TeamId, VehicleId, codec};
+use rules::event::{Event, Logged};
+use scenario::Scenario;
+use scenario::outcome::EventOutcome;
+use scenario::strategy::{Behaviour, Expression, Parameter, Policy, Proposer, Task};
 use serde_json::json;
 use shore::page::live::LiveView;
 use shore::page::{Page, View};
@@ -92,7 +92,8 @@ impl Sim {
         let pictures = publisher(topic::picture(&game, &scenario, TeamId(0)));
         let events = Arc::new(Watched::new(vec![]));
         let (controls, proposals) = (Arc::new(Watched::new(vec![])), Arc::new(Watched::new(vec![])));
-        let info = GameInfo { version: game::VERSION.to_owned(), pace: pace.to_owned(), scenario: scenario.clone() };
+        let info =
+            GameInfo { version: primitives::VERSION.to_owned(), pace: pace.to_owned(), scenario: scenario.clone() };
         let wave = PlaneWave { amplitude_m: 0.25, ..PlaneWave::default() };
         let fixed = |key: String, answer: Vec<u8>| {
             bus.answer(key, move |question| question.answer(answer.clone())).expect("it answers")
@@ -369,7 +370,7 @@ fn a_selected_boat_tells_what_its_helm_thinks_and_where_it_believes_to_be() {
 #[test]
 fn gateways_tell_and_real_boats_keep_their_pace() {
     let (sim, _page, mut client) = meet("mixed_2v2.toml");
-    let external = sim.scenario.vehicles.iter().find(|v| v.source == game::scenario::Source::External);
+    let external = sim.scenario.vehicles.iter().find(|v| v.source == scenario::Source::External);
     let name = external.expect("a real boat").name.clone();
     let game = GameName::new("pond").expect("a good name");
     let gateway = sim.bus.publisher(topic::status(&game, &name), Priority::Normal).expect("it publishes");

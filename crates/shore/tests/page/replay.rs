@@ -3,7 +3,7 @@
 use super::source::{Rememberer, bytes_of_recording, recorded, recorded_in, seq_of, two_minutes};
 use super::{open_viewer, page, visit};
 use bus::clock;
-use game::message::Control;
+use messages::Control;
 use proptest::prelude::*;
 use recording::Recording;
 use serde_json::json;
@@ -140,7 +140,7 @@ fn curves_are_of_the_whole_recording() {
     // All boats are at the datum.
     assert_eq!(curves["range_m"][7], json!(0.0));
     let flag_m = curves["boat"]["flag_m"][7].as_f64().expect("a distance");
-    assert!((flag_m - game::math::length(140.0, 40.0)).abs() < 0.01, "{flag_m}");
+    assert!((flag_m - primitives::math::length(140.0, 40.0)).abs() < 0.01, "{flag_m}");
     client.send(r#"{"do":"curves","vehicle":"whale"}"#);
     assert_eq!(client.until("refused", |_| true)["what"], "curves");
 }

@@ -1,13 +1,14 @@
 //! A made-up recording.
 
-use game::event::{Event, Logged};
-use game::external::{FailsafeReport, GatewayStatus};
-use game::helm::{DriftReport, HelmReport};
-use game::message::{EventRecord, Frame, GameInfo, Message, Stamp, VehicleTruth};
-use game::picture::{FlagView, Nav, OwnBoat, Picture};
-use game::water::Water;
-use game::{Scenario, SimTime, VehicleId};
+use messages::external::{FailsafeReport, GatewayStatus};
+use messages::helm::{DriftReport, HelmReport};
+use messages::picture::{FlagView, Nav, OwnBoat, Picture};
+use messages::water::Water;
+use messages::{EventRecord, Frame, GameInfo, Message, Stamp, VehicleTruth};
+use primitives::{SimTime, VehicleId};
 use recording::{Decision, Entry, Header, Recording, Writer};
+use rules::event::{Event, Logged};
+use scenario::Scenario;
 use shore::page::HelmAnswer;
 use shore::page::replay::{Helms, Recorded};
 use std::io::Cursor;
@@ -15,7 +16,7 @@ use std::sync::{Arc, OnceLock};
 
 pub(crate) fn scenario(file: &str) -> Scenario {
     let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games").join(file);
-    game::scenario::load(&file).unwrap_or_else(|e| panic!("{e}"))
+    scenario::load(&file).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// The frame of a decision in a game of ten decisions a second.
@@ -31,7 +32,7 @@ pub(crate) fn frame(scenario: &Scenario, seq: u64) -> Frame {
 
 /// The decision that a frame on the wire is of.
 pub(crate) fn seq_of(wire: &[u8]) -> u64 {
-    game::codec::decode::<Frame>(&wire[1..]).expect("frames are CDR").stamp.seq
+    primitives::codec::decode::<Frame>(&wire[1..]).expect("frames are CDR").stamp.seq
 }
 
 pub(crate) fn own_boat(vehicle: VehicleId) -> OwnBoat {
@@ -106,7 +107,11 @@ pub(crate) fn bytes_of_recording(frames: u64) -> Vec<u8> {
         commit: "c0ffee".to_owned(),
         game: "made_up".to_owned(),
         began_utc_ns: 1_700_000_000_000_000_000,
-        info: GameInfo { version: game::VERSION.to_owned(), pace: "lockstep".to_owned(), scenario: scenario.clone() },
+        info: GameInfo {
+            version: primitives::VERSION.to_owned(),
+            pace: "lockstep".to_owned(),
+            scenario: scenario.clone(),
+        },
         water: Water::default(),
     };
     let mut writer = Writer::begin(Cursor::new(Vec::new()), &header.opening()).expect("it begins");

@@ -4,7 +4,7 @@ use crate::mavlink::dialect::{
     MISSION_ACK_DATA, MISSION_COUNT_DATA, MISSION_ITEM_INT_DATA, MISSION_REQUEST_INT_DATA, MavCmd, MavMessage,
     MavMissionResult,
 };
-use game::LatLon;
+use primitives::LatLon;
 
 /// The most items that it takes.
 const ITEMS_MAX: u16 = 700;

@@ -5,8 +5,9 @@ use crate::mavlink::dialect::{
     AttitudeTargetTypemask, MANUAL_CONTROL_DATA, MavFrame, PositionTargetTypemask, RC_CHANNELS_OVERRIDE_DATA,
     SET_ATTITUDE_TARGET_DATA, SET_POSITION_TARGET_GLOBAL_INT_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
 };
-use game::angle::wrap_pi;
-use game::{Order, SimTime, math};
+use messages::Order;
+use primitives::angle::wrap_pi;
+use primitives::{SimTime, math};
 use std::f64::consts::PI;
 
 /// A set-point of mode GUIDED is forgotten after this time, s, as is one of a remote control by MAVLink.

@@ -11,8 +11,8 @@ use crate::mavlink::dialect::{
     REQUEST_DATA_STREAM_DATA, SYS_STATUS_DATA, SYSTEM_TIME_DATA, VFR_HUD_DATA,
 };
 use ::mavlink::MessageData;
-use game::angle::compass_deg_from_rad;
-use game::{SimTime, math};
+use primitives::angle::compass_deg_from_rad;
+use primitives::{SimTime, math};
 use std::collections::BTreeMap;
 
 /// Nothing is sent more often than this, s.
@@ -257,7 +257,7 @@ impl ArduPilot {
         let nav = self.sensed.own?.nav;
         Some(ATTITUDE_DATA {
             time_boot_ms: boot_ms(now),
-            yaw: game::angle::wrap_pi(nav.psi_rad) as f32,
+            yaw: primitives::angle::wrap_pi(nav.psi_rad) as f32,
             yawspeed: nav.yaw_rate_rad_s as f32,
             ..ATTITUDE_DATA::default()
         })

@@ -8,10 +8,10 @@ use crate::node::subscriptions::{Incoming, Question};
 use crate::node::{Pace, gateways};
 use bus::token::{self, Checked};
 use bus::{Query, clock, random_number};
-use game::external::{LinkBytes, NavReport, Reported};
-use game::message::{Control, ControlReply, JoinReply, JoinRequest, Message, Orders, Role};
-use game::refusal::Refusal;
-use game::{SimTime, VehicleId, topic};
+use messages::external::{LinkBytes, NavReport, Reported};
+use messages::refusal::Refusal;
+use messages::{Control, ControlReply, JoinReply, JoinRequest, Message, Orders, Role, topic};
+use primitives::{SimTime, VehicleId};
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 

@@ -1,6 +1,6 @@
 //! The event log of a running game: events from frames as they come, and from the sim where frames were missed.
 
-use game::outcome::EventOutcome;
+use scenario::outcome::EventOutcome;
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 

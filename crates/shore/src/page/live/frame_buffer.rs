@@ -2,8 +2,8 @@
 
 use crate::page::view::{TRAIL_S, TRAIL_STEP_S, marked};
 use axum::body::Bytes;
-use game::SimTime;
-use game::message::{Frame, Stamp};
+use messages::{Frame, Stamp};
+use primitives::SimTime;
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 

@@ -9,14 +9,13 @@ use bus::{
     Bus, BusError, Declaration, Inbox, InboxSender, NodeThread, Patience, Place, PlacedSession, Priority, Publisher,
     SimState, SimWatch, Watched, inbox,
 };
-use game::codec;
-use game::message::{Control, Frame, Message, PolicyProposal, Stamp};
-use game::picture::Picture;
-use game::run_state::RunState;
-use game::topic::{self, GameName};
-use game::water::Water;
-use game::{TeamId, VehicleId};
+use messages::picture::Picture;
+use messages::run_state::RunState;
+use messages::topic::{self, GameName};
+use messages::water::Water;
+use messages::{Control, Frame, Message, PolicyProposal, Stamp};
 use parking_lot::Mutex;
+use primitives::{TeamId, VehicleId, codec};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::time::{Duration, Instant};

@@ -5,9 +5,9 @@ use super::SharedState;
 use super::live_state::{LiveGame, LiveState};
 use bus::stop::StopCommand;
 use bus::{ANSWER, Bus, BusError, start_thread};
-use game::VehicleId;
-use game::external::{OperatorCommand, OperatorReply};
-use game::topic;
+use messages::external::{OperatorCommand, OperatorReply};
+use messages::topic;
+use primitives::VehicleId;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
 

@@ -1,6 +1,6 @@
 //! Which page steers which boat: one page at a time.
 
-use game::VehicleId;
+use primitives::VehicleId;
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 

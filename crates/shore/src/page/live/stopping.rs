@@ -5,7 +5,7 @@ use super::SharedState;
 use super::live_state::LiveState;
 use bus::start_thread;
 use bus::stop::{StopCommand, StopNews};
-use game::message::Control;
+use messages::Control;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;

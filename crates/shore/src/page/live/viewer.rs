@@ -7,10 +7,10 @@ use crate::page::message::{EventMessage, Mode, PageMessage, seconds};
 use crate::page::request::PageRequest;
 use crate::page::view::{Access, Budget, ESTIMATE_INTERVAL, MODES_INTERVAL, Outgoing, SEND_INTERVAL, Viewer};
 use axum::body::Bytes;
-use game::external::{GatewayStatus, OperatorCommand};
-use game::message::Control;
-use game::picture::OwnBoat;
-use game::{SimTime, VehicleId};
+use messages::Control;
+use messages::external::{GatewayStatus, OperatorCommand};
+use messages::picture::OwnBoat;
+use primitives::{SimTime, VehicleId};
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 use std::time::Instant;
@@ -348,16 +348,16 @@ impl Sent {
 mod tests {
     use super::*;
     use bus::{clock, inbox};
-    use game::message::{Frame, GameInfo};
-    use game::topic::GameName;
-    use game::water::Water;
+    use messages::topic::GameName;
+    use messages::water::Water;
+    use messages::{Frame, GameInfo};
     use std::path::Path;
 
     #[test]
     fn what_is_told_of_the_selected_boat_waits_until_there_is_room() {
         let shared = Arc::new(SharedState::new(inbox(1).0, Box::new(|_| ()), |_| Err(String::new())).unwrap());
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
-        let (scenario, now) = (game::scenario::load(&file).unwrap(), clock::now());
+        let (scenario, now) = (scenario::load(&file).unwrap(), clock::now());
         let info = GameInfo { version: String::new(), pace: "lockstep".to_owned(), scenario };
         let name = GameName::new("pond").unwrap();
         shared.state.lock().begin(Arc::new(LiveGame::new(name, info, &Water::default())));

@@ -2,9 +2,11 @@
 
 use crate::page::message::{BoatCurves, Curves, PageMessage};
 use analysis::{GameSeries, Sample};
-use game::angle::compass_deg_from_rad;
-use game::{Field, Ned, Order, VehicleId};
+use messages::Order;
+use primitives::angle::compass_deg_from_rad;
+use primitives::{Ned, VehicleId};
 use recording::Recording;
+use rules::Field;
 use std::sync::Arc;
 
 /// How many samples of a boat a page gets at most: more than a screen has pixels.
@@ -88,7 +90,7 @@ fn flag_distances(series: &GameSeries, field: &Field, vehicle: VehicleId) -> Vec
             let Some(flag) = logged.event.flag() else { continue };
             if let Some(carrier) = carriers.get_mut(usize::from(flag.0)) {
                 *carrier =
-                    logged.event.vehicle().filter(|_| matches!(logged.event, game::event::Event::Grabbed { .. }));
+                    logged.event.vehicle().filter(|_| matches!(logged.event, rules::event::Event::Grabbed { .. }));
             }
         }
         let at = boat.samples[sample].truth.at();

@@ -1,6 +1,6 @@
 //! The playback position in a recording, and how it advances.
 
-use game::SimTime;
+use primitives::SimTime;
 use std::time::{Duration, Instant};
 
 /// The slowest and the fastest that a recording is played, simulated seconds a second.

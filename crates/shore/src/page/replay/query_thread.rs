@@ -5,7 +5,8 @@ use crate::page::message::{PageMessage, seconds};
 use crate::page::rose::{HelmAnswer, helm_text};
 use crate::page::view::Changes;
 use bus::Watched;
-use game::{Scenario, SimTime, VehicleId};
+use primitives::{SimTime, VehicleId};
+use scenario::Scenario;
 use std::collections::BTreeMap;
 use std::ops::Bound;
 use std::sync::Arc;
@@ -196,7 +197,7 @@ mod tests {
     #[test]
     fn nothing_is_kept_for_a_reader_who_left_while_the_answer_was_worked_on() {
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
-        let scenario = game::scenario::load(&file).unwrap();
+        let scenario = scenario::load(&file).unwrap();
         let ((began, begins), (go, goes)) = (channel(), channel());
         let helms: Option<Box<dyn Helms>> = Some(Box::new(SlowHelms(began, goes)));
         let thread = QueryThread::open(Sources { scenario, helms, plotter: Plotter::default() }, Changes::default());

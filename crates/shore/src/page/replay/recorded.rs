@@ -1,11 +1,11 @@
 //! A recording as a replay needs it.
 
-use game::external::GatewayStatus;
-use game::message::GameInfo;
-use game::outcome::EventOutcome;
-use game::picture::{OwnBoat, Picture};
-use game::{SimTime, VehicleId};
+use messages::GameInfo;
+use messages::external::GatewayStatus;
+use messages::picture::{OwnBoat, Picture};
+use primitives::{SimTime, VehicleId};
 use recording::{Damaged, Header, Recording, picture};
+use scenario::outcome::EventOutcome;
 use std::sync::Arc;
 
 /// A recording, ready to be shown.

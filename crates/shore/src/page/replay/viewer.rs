@@ -9,9 +9,9 @@ use crate::page::view::{
     Access, Budget, ESTIMATE_INTERVAL, HELM_INTERVAL, MODES_INTERVAL, Outgoing, SEND_INTERVAL, TRAIL_S, TRAIL_STEP_S,
     Viewer,
 };
-use game::external::GatewayStatus;
-use game::message::Control;
-use game::{SimTime, VehicleId};
+use messages::Control;
+use messages::external::GatewayStatus;
+use primitives::{SimTime, VehicleId};
 use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -341,13 +341,13 @@ impl Drop for PageViewer {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use game::message::{Frame, Message};
+    use messages::{Frame, Message};
 
     #[test]
     fn the_number_of_a_frame_stands_where_it_is_looked_for() {
         let mut frame = Frame::default();
         (frame.stamp.seq, frame.stamp.version) = (0x0102_0304_0506, Frame::VERSION);
-        let bytes = game::codec::encode(&frame);
+        let bytes = primitives::codec::encode(&frame);
         assert_eq!(bytes[DECISION], 0x0102_0304_0506_u64.to_le_bytes());
     }
 }

@@ -1,0 +1,256 @@
+//! What a team may know: its own boats, what it sees of the others, the flags, the score.
+//!
+//! An agent decides from this and nothing else. It is the same on the sea and in simulation.
+
+use primitives::frame::{Body, Ned, Pose, ned_from_body};
+use primitives::id::{FlagId, TeamId, VehicleId};
+use primitives::math;
+use primitives::stamp::{Message, Stamp};
+use primitives::time::SimTime;
+use rules::Ability;
+use rules::event::EventRecord;
+use serde::{Deserialize, Serialize};
+
+/// What one team knows at one decision tick.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Picture {
+    /// When, and which tick orders must answer.
+    pub stamp: Stamp,
+    /// Whose picture this is.
+    pub team: u8,
+    /// The team's own boats, by rising vehicle index.
+    pub own: Vec<OwnBoat>,
+    /// The other boats as the team knows them, by rising vehicle index.
+    pub contacts: Vec<Contact>,
+    /// By flag.
+    pub flags: Vec<FlagView>,
+    /// Points, by team.
+    pub score: Vec<u32>,
+    /// What happened to the team's boats and flags since the picture before.
+    pub events: Vec<EventRecord>,
+    /// Whether the game is over.
+    pub over: bool,
+}
+
+/// A boat's own navigation: where it is and how it moves over the ground.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Nav {
+    /// North of the datum, m.
+    pub north_m: f64,
+    /// East of the datum, m.
+    pub east_m: f64,
+    /// Heading, rad clockwise from north.
+    pub psi_rad: f64,
+    /// Velocity ahead over the ground, m/s.
+    pub surge_m_s: f64,
+    /// Velocity to starboard over the ground, m/s.
+    pub sway_m_s: f64,
+    /// Yaw rate, rad/s clockwise.
+    pub yaw_rate_rad_s: f64,
+}
+
+impl Nav {
+    /// The position.
+    #[must_use]
+    pub fn at(&self) -> Ned {
+        Ned { north: self.north_m, east: self.east_m }
+    }
+
+    /// Position and heading.
+    #[must_use]
+    pub fn pose(&self) -> Pose {
+        Pose { at: self.at(), psi_rad: self.psi_rad }
+    }
+
+    /// Speed over the ground, m/s.
+    #[must_use]
+    pub fn speed_m_s(&self) -> f64 {
+        math::length(self.surge_m_s, self.sway_m_s)
+    }
+
+    /// Velocity over the ground, m/s.
+    #[must_use]
+    pub fn velocity_m_s(&self) -> Ned {
+        ned_from_body(self.pose().rotation(), Body { ahead: self.surge_m_s, starboard: self.sway_m_s })
+    }
+}
+
+/// Gyro and accelerometers, along the boat's axes: ahead, to starboard, down.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Imu {
+    /// Rate of turn about the axis ahead, rad/s.
+    pub roll_rate_rad_s: f64,
+    /// About the axis to starboard, rad/s.
+    pub pitch_rate_rad_s: f64,
+    /// About the axis down, rad/s.
+    pub yaw_rate_rad_s: f64,
+    /// Specific force ahead, m/s².
+    pub ahead_m_s2: f64,
+    /// To starboard, m/s².
+    pub starboard_m_s2: f64,
+    /// Down, m/s²: minus gravity at rest.
+    pub down_m_s2: f64,
+}
+
+/// One of the team's own boats.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct OwnBoat {
+    /// Which.
+    pub vehicle: VehicleId,
+    /// Its navigation, as its sensors tell it.
+    pub nav: Nav,
+    /// When the last satellite fix in it was taken, ns.
+    pub fix_ns: SimTime,
+    /// Gyro and accelerometers.
+    pub imu: Imu,
+    /// Whether it is tagged.
+    pub tagged: bool,
+    /// The flag it carries, or -1.
+    pub carrying: i16,
+    /// Whether it is out of action by power play.
+    pub disabled: bool,
+    /// Whether it is outside of the field.
+    pub outside: bool,
+    /// From when on it may tag again, ns.
+    pub tag_ready_ns: SimTime,
+}
+
+/// Another team's boat, as known.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Contact {
+    /// Which.
+    pub vehicle: VehicleId,
+    /// Its team.
+    pub team: TeamId,
+    /// When it was seen so, ns.
+    pub seen_ns: SimTime,
+    /// North of the datum, m.
+    pub north_m: f64,
+    /// East of the datum, m.
+    pub east_m: f64,
+    /// Heading, rad clockwise from north.
+    pub psi_rad: f64,
+    /// Velocity over the ground towards north, m/s.
+    pub velocity_north_m_s: f64,
+    /// Velocity over the ground towards east, m/s.
+    pub velocity_east_m_s: f64,
+    /// Whether it is tagged.
+    pub tagged: bool,
+    /// The flag it carries, or -1.
+    pub carrying: i16,
+}
+
+/// One flag.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FlagView {
+    /// The vehicle that carries it, or -1: it is at its home.
+    pub carrier: i32,
+}
+
+impl Message for Picture {
+    const SCHEMA: &'static str = "squall_msgs/msg/Picture";
+    const VERSION: u8 = 2;
+}
+
+impl Picture {
+    /// No number in a picture is larger than this, in the units of the message. The helm's functions take ten times as much: sums
+    /// and differences of a few such numbers.
+    const NUMBER_MAX: f64 = 1e6;
+
+    /// Takes out the boats of which a number is none, or out of all bounds, and gives how many there were: a mind is to decide on
+    /// the others.
+    pub fn remove_bad_numbers(&mut self) -> u64 {
+        let count = |picture: &Picture| picture.own.len() + picture.contacts.len();
+        let before = count(self);
+        let is_sound = |numbers: &[f64]| numbers.iter().all(|number| number.abs() <= Picture::NUMBER_MAX);
+        self.own.retain(|OwnBoat { nav, imu, .. }| {
+            let Nav { north_m, east_m, psi_rad, surge_m_s, sway_m_s, yaw_rate_rad_s } = *nav;
+            let Imu { roll_rate_rad_s, pitch_rate_rad_s, yaw_rate_rad_s: gyro_rad_s, .. } = *imu;
+            is_sound(&[north_m, east_m, psi_rad, surge_m_s, sway_m_s, yaw_rate_rad_s])
+                && is_sound(&[roll_rate_rad_s, pitch_rate_rad_s, gyro_rad_s])
+                && is_sound(&[imu.ahead_m_s2, imu.starboard_m_s2, imu.down_m_s2])
+        });
+        self.contacts.retain(|contact| {
+            let Contact { north_m, east_m, psi_rad, velocity_north_m_s, velocity_east_m_s, .. } = *contact;
+            is_sound(&[north_m, east_m, psi_rad, velocity_north_m_s, velocity_east_m_s])
+        });
+        (before - count(self)) as u64
+    }
+
+    /// The own boat `vehicle`, if it is of this team.
+    #[must_use]
+    pub fn own(&self, vehicle: VehicleId) -> Option<&OwnBoat> {
+        self.own.binary_search_by_key(&vehicle, |boat| boat.vehicle).ok().map(|i| &self.own[i])
+    }
+}
+
+impl OwnBoat {
+    /// A boat in play of which only the navigation is known.
+    #[must_use]
+    pub fn new(vehicle: VehicleId, nav: Nav) -> OwnBoat {
+        OwnBoat {
+            vehicle,
+            nav,
+            fix_ns: SimTime::ZERO,
+            imu: Imu::default(),
+            tagged: false,
+            carrying: -1,
+            disabled: false,
+            outside: false,
+            tag_ready_ns: SimTime::ZERO,
+        }
+    }
+
+    /// The flag it carries.
+    #[must_use]
+    pub fn carried_flag(&self) -> Option<FlagId> {
+        u8::try_from(self.carrying).ok().map(FlagId)
+    }
+}
+
+/// A flag or none as the messages say it.
+#[must_use]
+pub fn number_of_flag(flag: Option<FlagId>) -> i16 {
+    flag.map_or(-1, |flag| i16::from(flag.0))
+}
+
+impl From<&OwnBoat> for Ability {
+    fn from(boat: &OwnBoat) -> Ability {
+        let OwnBoat { tagged, disabled, outside, tag_ready_ns: tag_ready, .. } = *boat;
+        Ability { tagged, disabled, outside, tag_ready }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn boats_with_bad_numbers_are_taken_out_and_counted_and_the_others_stay() {
+        let contact = Contact {
+            vehicle: VehicleId(2),
+            team: TeamId(1),
+            seen_ns: SimTime::ZERO,
+            north_m: 1.0,
+            east_m: -2.0,
+            psi_rad: 3.0,
+            velocity_north_m_s: 0.0,
+            velocity_east_m_s: -1e6,
+            tagged: false,
+            carrying: -1,
+        };
+        let own = OwnBoat::new(VehicleId(0), Nav::default());
+        let good = Picture { own: vec![own], contacts: vec![contact], ..Picture::default() };
+        let mut picture = good.clone();
+        assert_eq!((picture.remove_bad_numbers(), &picture), (0, &good));
+        for bad in [f64::NAN, f64::INFINITY, -1.1e6] {
+            let nav = Nav { yaw_rate_rad_s: bad, ..Nav::default() };
+            let imu = Imu { down_m_s2: bad, ..Imu::default() };
+            picture.own.extend([OwnBoat { nav, ..own }, OwnBoat { imu, ..own }]);
+            picture
+                .contacts
+                .extend([Contact { psi_rad: bad, ..contact }, Contact { velocity_east_m_s: bad, ..contact }]);
+        }
+        assert_eq!((picture.remove_bad_numbers(), &picture), (12, &good));
+    }
+}

@@ -1,0 +1,158 @@
+//! Why messages of other programs were not used, counted by reason: the same for agents, gateways and the sim.
+
+use crate::Message;
+use primitives::codec::{self, DecodeError};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::ops::Add;
+
+/// Why a message, or a part of it, was not used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Refusal {
+    /// Bytes that are no such message.
+    Garbage,
+    /// A message of another version.
+    Version,
+    /// A ticket that nobody holds (any more).
+    Ticket,
+    /// Orders for a tick that is over, or still to come; a report that came after a later one.
+    WrongTick,
+    /// Something about a vehicle that the sender does not have, or that is not there.
+    NotYours,
+    /// Numbers that are not finite or out of range, or an order of an unknown kind: the boat holds then.
+    BadNumber,
+    /// An agent gave no order for a vehicle of its own. The boat holds.
+    Missing,
+    /// Requests of people that the game cannot follow: another speed with real boats, a step of a game that is not paused.
+    OutOfPlace,
+    /// Messages that came faster than they could be read.
+    Flood,
+    /// More team messages of one boat than a boat has variables.
+    Surplus,
+    /// A team message that was waited for in vain, from a boat that had sent one at the decision before.
+    TeamMessageMissing,
+    /// A decision for which a policy's proposal was waited for in vain.
+    ProposalMissing,
+}
+
+impl Refusal {
+    /// All of them, with what people read.
+    const ALL: [(Refusal, &str); 12] = [
+        (Refusal::Garbage, "not understood"),
+        (Refusal::Version, "of another version"),
+        (Refusal::Ticket, "with a ticket that nobody holds"),
+        (Refusal::WrongTick, "for another tick"),
+        (Refusal::NotYours, "about a boat of somebody else"),
+        (Refusal::BadNumber, "with a number out of range"),
+        (Refusal::Missing, "without an order for an own boat"),
+        (Refusal::OutOfPlace, "out of place"),
+        (Refusal::Flood, "too many at once"),
+        (Refusal::Surplus, "more team messages than a boat has variables"),
+        (Refusal::TeamMessageMissing, "a team message that never came"),
+        (Refusal::ProposalMissing, "a proposal that never came"),
+    ];
+}
+
+/// How often something was refused, or never came, by reason. In JSON an object with a number for each.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(into = "BTreeMap<Refusal, u64>", from = "BTreeMap<Refusal, u64>")]
+pub struct Refusals([u64; Refusal::ALL.len()]);
+
+impl Refusals {
+    /// Counts one.
+    pub fn count(&mut self, refusal: Refusal) {
+        self.add(refusal, 1);
+    }
+
+    /// Counts several.
+    pub fn add(&mut self, refusal: Refusal, count: u64) {
+        self.0[refusal as usize] += count;
+    }
+
+    /// How many there were for this reason.
+    #[must_use]
+    pub fn of(&self, refusal: Refusal) -> u64 {
+        self.0[refusal as usize]
+    }
+
+    /// How many there were in all.
+    #[must_use]
+    pub fn total(&self) -> u64 {
+        self.0.iter().sum()
+    }
+
+    /// The message in `bytes`, if it is one; if not, the reason is counted.
+    pub fn decode<M: Message + DeserializeOwned>(&mut self, bytes: &[u8]) -> Option<M> {
+        let decoded = codec::decode(bytes);
+        if let Err(error) = &decoded {
+            let is_other = matches!(error, DecodeError::Version { .. });
+            self.count(if is_other { Refusal::Version } else { Refusal::Garbage });
+        }
+        decoded.ok()
+    }
+}
+
+impl<const N: usize> From<[(Refusal, u64); N]> for Refusals {
+    fn from(counts: [(Refusal, u64); N]) -> Refusals {
+        Refusals::from(BTreeMap::from(counts))
+    }
+}
+
+impl From<BTreeMap<Refusal, u64>> for Refusals {
+    fn from(counts: BTreeMap<Refusal, u64>) -> Refusals {
+        Refusals(Refusal::ALL.map(|(refusal, _)| counts.get(&refusal).copied().unwrap_or(0)))
+    }
+}
+
+impl From<Refusals> for BTreeMap<Refusal, u64> {
+    fn from(refusals: Refusals) -> BTreeMap<Refusal, u64> {
+        Refusal::ALL.map(|(refusal, _)| (refusal, refusals.of(refusal))).into()
+    }
+}
+
+impl Add for Refusals {
+    type Output = Refusals;
+
+    fn add(mut self, other: Refusals) -> Refusals {
+        self.0.iter_mut().zip(other.0).for_each(|(own, more)| *own += more);
+        self
+    }
+}
+
+impl fmt::Display for Refusals {
+    /// The reasons that occurred: `2 x not understood, 1 x for another tick`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let occurred = Refusal::ALL.iter().filter(|(refusal, _)| self.of(*refusal) > 0);
+        let texts: Vec<String> = occurred.map(|(refusal, text)| format!("{} x {text}", self.of(*refusal))).collect();
+        f.write_str(&texts.join(", "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Orders, Stamp};
+
+    #[test]
+    fn what_cannot_be_decoded_is_counted_by_reason_and_told_in_words_and_json() {
+        let mut refusals = Refusals::default();
+        let good = Orders { stamp: Stamp { version: Orders::VERSION, ..Stamp::default() }, ..Orders::default() };
+        let newer = Orders { stamp: Stamp { version: 99, ..Stamp::default() }, ..Orders::default() };
+        assert_eq!(refusals.decode::<Orders>(&codec::encode(&good)), Some(good));
+        assert_eq!((refusals.total(), refusals.to_string().as_str()), (0, ""));
+        for bytes in [b"ahoy".to_vec(), vec![], codec::encode(&newer)] {
+            assert_eq!(refusals.decode::<Orders>(&bytes), None, "{bytes:?}");
+        }
+        assert_eq!(refusals, Refusals::from([(Refusal::Garbage, 2), (Refusal::Version, 1)]));
+        assert_eq!(refusals.to_string(), "2 x not understood, 1 x of another version");
+        let json = serde_json::to_value(refusals).expect("JSON");
+        assert_eq!((&json["garbage"], &json["team_message_missing"]), (&2.into(), &0.into()));
+        assert_eq!(serde_json::from_value::<Refusals>(json).expect("refusals"), refusals);
+        let of_old_files = serde_json::from_str::<Refusals>(r#"{"garbage": 2, "version": 1}"#);
+        assert_eq!(of_old_files.expect("refusals") + Refusals::default(), refusals);
+        assert!(Refusal::ALL.iter().enumerate().all(|(i, (refusal, _))| *refusal as usize == i));
+    }
+}

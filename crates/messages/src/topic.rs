@@ -1,0 +1,268 @@
+//! The key expressions of a game. Nothing else spells them.
+//!
+//! All keys begin with `squall/<game>/`, so that games on one network never meet.
+
+use crate::Role;
+use crate::external::Reported;
+use primitives::id::{TeamId, VehicleId};
+use scenario::Scenario;
+
+/// A game's name on the network: small letters, digits, `_` and `-`.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct GameName(String);
+
+impl GameName {
+    /// The name, if it can be part of a key.
+    ///
+    /// # Errors
+    /// Says what is allowed.
+    pub fn new(name: &str) -> Result<GameName, String> {
+        let allowed = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_' || c == '-';
+        if (1..=64).contains(&name.len()) && name.chars().all(allowed) {
+            Ok(GameName(name.to_owned()))
+        } else {
+            Err(format!("game name {name:?} is not 1 to 64 of the characters a-z 0-9 _ -"))
+        }
+    }
+
+    /// The name.
+    #[must_use]
+    pub fn as_str(&self) -> &str {
+        &self.0
+    }
+}
+
+/// All topics of a game that match `pattern`, in which `*` stands for one word and `**` for any number of them.
+#[must_use]
+pub fn matching(game: &GameName, pattern: &str) -> String {
+    format!("squall/{}/{pattern}", game.0)
+}
+
+/// The truth for observers (publish).
+#[must_use]
+pub fn frame(game: &GameName) -> String {
+    format!("squall/{}/frame", game.0)
+}
+
+/// A team's picture (publish).
+#[must_use]
+pub fn picture(game: &GameName, scenario: &Scenario, team: TeamId) -> String {
+    format!("squall/{}/picture/{}", game.0, scenario.teams[team.index()].name)
+}
+
+/// The orders of an agent that plays for these teams (publish).
+#[must_use]
+pub fn orders(game: &GameName, scenario: &Scenario, teams: &[TeamId], agent: &str) -> String {
+    match teams {
+        [team] => format!("squall/{}/order/{}/{agent}", game.0, scenario.teams[team.index()].name),
+        _ => format!("squall/{}/order/{agent}", game.0),
+    }
+}
+
+/// All agents' orders (subscribe).
+#[must_use]
+pub fn all_orders(game: &GameName) -> String {
+    format!("squall/{}/order/**", game.0)
+}
+
+/// What the minds of a team tell each other (publish, subscribe).
+#[must_use]
+pub fn say(game: &GameName, scenario: &Scenario, team: TeamId) -> String {
+    format!("squall/{}/say/{}", game.0, scenario.teams[team.index()].name)
+}
+
+/// What a policy outside proposes for a boat (publish).
+#[must_use]
+pub fn policy(game: &GameName, scenario: &Scenario, vehicle: VehicleId) -> String {
+    format!("squall/{}/policy/{}", game.0, scenario.vehicles[vehicle.index()].name)
+}
+
+/// The helm report of a boat (query).
+#[must_use]
+pub fn helm(game: &GameName, scenario: &Scenario, vehicle: VehicleId) -> String {
+    format!("squall/{}/helm/{}", game.0, scenario.vehicles[vehicle.index()].name)
+}
+
+/// Where a real boat is, from its gateway (publish).
+#[must_use]
+pub fn nav(game: &GameName, scenario: &Scenario, vehicle: VehicleId) -> String {
+    format!("squall/{}/nav/{}", game.0, scenario.vehicles[vehicle.index()].name)
+}
+
+/// Where all real boats are (subscribe).
+#[must_use]
+pub fn all_nav(game: &GameName) -> String {
+    format!("squall/{}/nav/*", game.0)
+}
+
+/// What a real boat is to do, from the sim (publish).
+#[must_use]
+pub fn external_order(game: &GameName, scenario: &Scenario, vehicle: VehicleId) -> String {
+    format!("squall/{}/external/{}", game.0, scenario.vehicles[vehicle.index()].name)
+}
+
+/// What a gateway reports for others, to the sim alone (publish): see [`Reported`].
+#[must_use]
+pub fn report(game: &GameName, what: Reported, vehicle: &str) -> String {
+    format!("squall/{}/report/{what}/{vehicle}", game.0)
+}
+
+/// The bytes between a gateway and its boat, from the sim (publish).
+#[must_use]
+pub fn link(game: &GameName, vehicle: &str) -> String {
+    format!("squall/{}/link/{vehicle}", game.0)
+}
+
+/// How a gateway and its boat are, from the sim (publish).
+#[must_use]
+pub fn status(game: &GameName, vehicle: &str) -> String {
+    format!("squall/{}/status/{vehicle}", game.0)
+}
+
+/// Where people ask something of a boat's gateway (query).
+#[must_use]
+pub fn operate(game: &GameName, vehicle: &str) -> String {
+    format!("squall/{}/operate/{vehicle}", game.0)
+}
+
+/// Where anybody stops a real boat: a command that needs no token (publish).
+#[must_use]
+pub fn stop(game: &GameName, vehicle: &str) -> String {
+    format!("squall/{}/stop/{vehicle}", game.0)
+}
+
+/// How the run of the game stands (publish).
+#[must_use]
+pub fn run(game: &GameName) -> String {
+    format!("squall/{}/run", game.0)
+}
+
+/// Everything that has happened so far (query).
+#[must_use]
+pub fn events(game: &GameName) -> String {
+    format!("squall/{}/events", game.0)
+}
+
+/// The waves (query).
+#[must_use]
+pub fn water(game: &GameName) -> String {
+    format!("squall/{}/water", game.0)
+}
+
+/// Where a node asks to join in this role with these vehicles (query): agents at the place of their team, gateways at that of
+/// their boat. Who names vehicles of several teams, several boats, or what is no vehicle, has no place of its own.
+#[must_use]
+pub fn join(game: &GameName, scenario: &Scenario, role: Role, vehicles: &[String]) -> String {
+    let known = vehicles.iter().map(|name| scenario.vehicle_by_name(name));
+    let place = match (role, known.collect::<Option<Vec<VehicleId>>>().as_deref()) {
+        (Role::Agent, Some([first, others @ ..])) => {
+            let team = scenario.team_of(*first);
+            let is_of_team = others.iter().all(|other| scenario.team_of(*other) == team);
+            is_of_team.then(|| &scenario.teams[team.index()].name)
+        }
+        (Role::Gateway, Some([boat])) => Some(&scenario.vehicles[boat.index()].name),
+        _ => None,
+    };
+    let place = place.map(|name| format!("/{name}")).unwrap_or_default();
+    format!("squall/{}/join/{role}{place}", game.0)
+}
+
+/// Where all nodes ask to join (query).
+#[must_use]
+pub fn all_join(game: &GameName) -> String {
+    format!("squall/{}/join/**", game.0)
+}
+
+/// What the game is (query).
+#[must_use]
+pub fn scenario(game: &GameName) -> String {
+    format!("squall/{}/scenario", game.0)
+}
+
+/// Where the game is controlled: what stops boats is published by anybody, everything else is asked of the sim (query).
+#[must_use]
+pub fn control(game: &GameName) -> String {
+    format!("squall/{}/control", game.0)
+}
+
+/// That an E-stop is over, from the sim (publish).
+#[must_use]
+pub fn released(game: &GameName) -> String {
+    format!("squall/{}/released", game.0)
+}
+
+/// That the sim of a game is there (liveliness token).
+#[must_use]
+pub fn alive(game: &GameName, sim: &str) -> String {
+    format!("squall/{}/alive/sim/{sim}", game.0)
+}
+
+/// All sims of a game (liveliness).
+#[must_use]
+pub fn all_alive(game: &GameName) -> String {
+    alive(game, "*")
+}
+
+/// The sims of all games (liveliness).
+#[must_use]
+pub fn everyone_alive() -> String {
+    "squall/*/alive/sim/*".to_owned()
+}
+
+/// The game and the sim that an [`alive`] key names.
+#[must_use]
+pub fn parse_alive(key: &str) -> Option<(GameName, String)> {
+    let (game, sim) = key.strip_prefix("squall/")?.split_once("/alive/sim/")?;
+    Some((GameName::new(game).ok()?, sim.to_owned()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_token_says_which_sim_is_alive() {
+        let game = GameName::new("pav01-3f").expect("a good name");
+        assert_eq!(parse_alive(&alive(&game, "a7")), Some((game, "a7".into())));
+        for other in ["squall/x/alive/sim", "squall/x/frame", "other/x/alive/sim/a", "squall/x/alive/cat/a"] {
+            assert_eq!(parse_alive(other), None, "{other}");
+        }
+    }
+
+    #[test]
+    fn keys_name_game_team_and_boat() {
+        let game = GameName::new("pav01").expect("a good name");
+        let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
+        let scenario = scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
+        let (red, two) = (TeamId(1), VehicleId(1));
+        for (key, want) in [
+            (say(&game, &scenario, red), "squall/pav01/say/red"),
+            (policy(&game, &scenario, two), "squall/pav01/policy/blue_two"),
+            (helm(&game, &scenario, two), "squall/pav01/helm/blue_two"),
+            (nav(&game, &scenario, two), "squall/pav01/nav/blue_two"),
+            (external_order(&game, &scenario, two), "squall/pav01/external/blue_two"),
+            (orders(&game, &scenario, &[red], "a7"), "squall/pav01/order/red/a7"),
+            (orders(&game, &scenario, &[TeamId(0), red], "a7"), "squall/pav01/order/a7"),
+        ] {
+            assert_eq!(key, want);
+        }
+        for (role, vehicles, want) in [
+            (Role::Agent, &["red_one", "red_two"][..], "squall/pav01/join/agent/red"),
+            (Role::Agent, &["red_one", "blue_two"], "squall/pav01/join/agent"),
+            (Role::Agent, &["red_one", "nobody"], "squall/pav01/join/agent"),
+            (Role::Agent, &[], "squall/pav01/join/agent"),
+            (Role::Gateway, &["red_one"], "squall/pav01/join/gateway/red_one"),
+            (Role::Gateway, &["red_one", "red_two"], "squall/pav01/join/gateway"),
+        ] {
+            let vehicles: Vec<String> = vehicles.iter().map(|name| (*name).to_owned()).collect();
+            assert_eq!(join(&game, &scenario, role, &vehicles), want);
+        }
+    }
+
+    #[test]
+    fn names_that_would_break_a_key_are_refused() {
+        for bad in ["", "a/b", "a*", "Game", "a b", "x?"] {
+            assert!(GameName::new(bad).is_err(), "{bad}");
+        }
+    }
+}

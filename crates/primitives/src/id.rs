@@ -1,0 +1,53 @@
+//! Who is who: small indices into the scenario's lists.
+
+use serde::{Deserialize, Serialize};
+
+/// A vehicle: its index in [`scenario::Scenario::vehicles`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct VehicleId(pub u16);
+
+/// A team: its index in [`scenario::Scenario::teams`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct TeamId(pub u8);
+
+/// A flag: its index in [`rules::Field::flags`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct FlagId(pub u8);
+
+impl VehicleId {
+    /// The index as the lists want it.
+    #[inline]
+    #[must_use]
+    pub fn index(self) -> usize {
+        usize::from(self.0)
+    }
+
+    /// The vehicle at `index` of a list the scenario has checked to be short enough.
+    #[inline]
+    #[must_use]
+    pub fn at(index: usize) -> VehicleId {
+        debug_assert!(index < usize::from(u16::MAX));
+        VehicleId(index as u16)
+    }
+}
+
+impl TeamId {
+    /// The index as the lists want it.
+    #[inline]
+    #[must_use]
+    pub fn index(self) -> usize {
+        usize::from(self.0)
+    }
+}
+
+impl FlagId {
+    /// The index as the lists want it.
+    #[inline]
+    #[must_use]
+    pub fn index(self) -> usize {
+        usize::from(self.0)
+    }
+}

@@ -1,0 +1,26 @@
+//! What all of Squall computes with: angles, frames, time, ids, random streams, bytes.
+//!
+//! Every number of the simulation goes through [`math`] and [`stream`], so that the same seed gives the same bits on every machine.
+
+pub mod angle;
+pub mod codec;
+pub mod frame;
+pub mod id;
+pub mod input_file;
+pub mod instructions;
+pub mod math;
+pub mod near;
+mod normal;
+pub mod omitted;
+pub mod printable;
+pub mod reseed;
+pub mod stamp;
+pub mod stream;
+pub mod time;
+
+pub use frame::{Body, LatLon, Leg, Ned, Pose, Rotation};
+pub use id::{FlagId, TeamId, VehicleId};
+pub use time::SimTime;
+
+/// The version of Squall, as every node states it when it joins a game.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");

@@ -1,0 +1,34 @@
+//! The boundary: boats that leave the field are tagged and lose their flags.
+
+use super::{Referee, Standing};
+use crate::event::{Event, TagCause};
+use primitives::frame::Ned;
+use primitives::id::VehicleId;
+
+impl Referee {
+    /// Notes who left the field and who came back. Outside of it nobody carries a flag and, with
+    /// `boundary_tags`, everybody is tagged.
+    pub(super) fn watch_boundary(&self, standing: &mut Standing, at: &impl Fn(usize) -> Ned, events: &mut Vec<Event>) {
+        for i in 0..standing.vehicles.len() {
+            let boat = &mut standing.vehicles[i];
+            if !boat.in_play {
+                continue;
+            }
+            let vehicle = VehicleId::at(i);
+            let outside = !self.field.contains(at(i));
+            match (boat.outside, outside) {
+                (false, true) => events.push(Event::LeftField(vehicle)),
+                (true, false) => events.push(Event::ReturnedToField(vehicle)),
+                _ => {}
+            }
+            boat.outside = outside;
+            if !outside {
+                continue;
+            }
+            if self.rules.boundary_tags && !boat.tagged {
+                standing.put_tag(vehicle, TagCause::Boundary, events);
+            }
+            standing.drop_flag(vehicle, events);
+        }
+    }
+}

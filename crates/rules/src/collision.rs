@@ -1,0 +1,32 @@
+//! Collisions: boats that come closer than they should.
+
+use super::{Notes, Referee, Standing};
+use crate::event::Event;
+use primitives::id::VehicleId;
+use primitives::near::Pair;
+
+impl Referee {
+    /// Notes who has come too close to whom; once for as long as they stay close. Boats out of play are
+    /// as solid as any.
+    pub(super) fn watch_collisions(
+        &self,
+        standing: &mut Standing,
+        notes: &mut Notes,
+        near: &[Pair],
+        events: &mut Vec<Event>,
+    ) {
+        let reach_squared = self.rules.collision_distance_m * self.rules.collision_distance_m;
+        notes.touching.clear();
+        // Both lists are in the same order: one pass over the old one finds every pair of the new one.
+        let mut before = standing.touching.iter().peekable();
+        for pair in near.iter().filter(|pair| pair.distance_squared < reach_squared) {
+            let (first, second) = (VehicleId(pair.a), VehicleId(pair.b));
+            while before.next_if(|old| **old < (first, second)).is_some() {}
+            if before.next_if(|old| **old == (first, second)).is_none() {
+                events.push(Event::Collided { first, second });
+            }
+            notes.touching.push((first, second));
+        }
+        std::mem::swap(&mut standing.touching, &mut notes.touching);
+    }
+}

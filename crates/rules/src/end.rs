@@ -1,0 +1,24 @@
+//! The end: a score is reached or time is up.
+
+use super::{Referee, Standing};
+use crate::event::Event;
+use primitives::id::TeamId;
+
+impl Referee {
+    /// Ends the game when it is won or time is up. The highest score wins, even if two teams reach the
+    /// winning score at the same look; equal scores are a draw.
+    pub(super) fn end(&self, standing: &mut Standing, events: &mut Vec<Event>) {
+        let best = standing.score.iter().copied().max().unwrap_or(0);
+        let won = self.rules.win_score.is_some_and(|win_score| best >= win_score);
+        if !won && standing.now < self.rules.time_limit {
+            return;
+        }
+        standing.over = true;
+        let mut leaders = standing.score.iter().enumerate().filter(|(_, score)| **score == best);
+        let winner = match (leaders.next(), leaders.next()) {
+            (Some((team, _)), None) => Some(TeamId(team as u8)),
+            _ => None,
+        };
+        events.push(Event::Ended { winner });
+    }
+}

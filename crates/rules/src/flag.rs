@@ -1,0 +1,98 @@
+//! Flags: grabbed by coming near, captured by bringing them in, home again when lost.
+
+use super::claim::{Claim, settle};
+use super::{Acting, CaptureAt, Look, Notes, Referee, Resolution, Standing, TagChoice};
+use crate::event::Event;
+use primitives::frame::{Leg, Ned};
+use primitives::id::{FlagId, TeamId, VehicleId};
+
+impl Referee {
+    /// Gives flags to the opponents that are near enough, and ask where they have to; nobody has two.
+    ///
+    /// A boat reaches for the nearest flag that can be taken; who of several boats at one flag gets it,
+    /// [`Resolution`] says. Only flags that were home all the time since the last look can be taken, but in turn.
+    pub(super) fn grab(&self, standing: &mut Standing, notes: &mut Notes, look: &Look<'_>, events: &mut Vec<Event>) {
+        let reach_squared = self.rules.grab_radius_m * self.rules.grab_radius_m;
+        notes.claims.clear();
+        for (on, (flag, state)) in self.field.flags.iter().zip(&standing.flags).enumerate() {
+            let has_just_come = state.moved_at == standing.now && self.rules.resolution == Resolution::AtOnce;
+            if state.carrier.is_some() || has_just_come {
+                continue;
+            }
+            for (by, boat) in standing.vehicles.iter().enumerate() {
+                if self.team_of[by] == flag.team || !boat.acts() || boat.carrying.is_some() {
+                    continue;
+                }
+                let asks = self.rules.tags_and_grabs == Acting::Automatic || look.asks[by].grab;
+                let distance_squared = look.legs[by].to.distance_squared(flag.home);
+                if asks && distance_squared < reach_squared {
+                    notes.claims.push(Claim { by: by as u16, on: on as u16, distance_squared });
+                }
+            }
+        }
+        if notes.claims.is_empty() {
+            return;
+        }
+        settle(&mut notes.claims, TagChoice::Nearest, self.rules.resolution);
+        for claim in &notes.claims {
+            let (vehicle, flag) = (VehicleId(claim.by), FlagId(claim.on as u8));
+            standing.vehicles[vehicle.index()].carrying = Some(flag);
+            let state = &mut standing.flags[flag.index()];
+            (state.carrier, state.moved_at) = (Some(vehicle), standing.now);
+            standing.award(self.team_of[vehicle.index()], self.rules.points.grab);
+            events.push(Event::Grabbed { vehicle, flag });
+        }
+    }
+
+    /// Counts the flags that carriers have brought in; they are home again. A flag grabbed at this look
+    /// counts at the next one at the earliest, even where the grab is already at the place of capture.
+    ///
+    /// With `capture_needs_own_flag`, all flags of the carrier's own team must be home after the grabs and
+    /// before the captures of this look.
+    pub(super) fn capture(&self, standing: &mut Standing, notes: &mut Notes, look: &Look<'_>, events: &mut Vec<Event>) {
+        notes.claims.clear();
+        for (on, state) in standing.flags.iter().enumerate() {
+            let Some(carrier) = state.carrier.filter(|_| state.moved_at != standing.now) else { continue };
+            let (team, here) = (self.team_of[carrier.index()], look.legs[carrier.index()]);
+            let own_flags_home = || self.own_flags(team).all(|(own, _)| standing.flags[own.index()].carrier.is_none());
+            if standing.vehicles[carrier.index()].acts()
+                && self.is_capture_place(team, here)
+                && (!self.rules.capture_needs_own_flag || own_flags_home())
+            {
+                notes.claims.push(Claim { by: carrier.0, on: on as u16, distance_squared: 0.0 });
+            }
+        }
+        for claim in &notes.claims {
+            let (vehicle, flag) = (VehicleId(claim.by), FlagId(claim.on as u8));
+            standing.bring_home(flag);
+            standing.vehicles[vehicle.index()].carrying = None;
+            standing.award(self.team_of[vehicle.index()], self.rules.points.capture);
+            events.push(Event::Captured { vehicle, flag });
+        }
+    }
+
+    fn is_capture_place(&self, team: TeamId, leg: Leg) -> bool {
+        let reach_squared = self.rules.capture_radius_m * self.rules.capture_radius_m;
+        let near = |place: Ned| leg.to.distance_squared(place) < reach_squared;
+        match self.rules.capture_at {
+            CaptureAt::OwnSide => self.is_own_side(team, self.side_place(leg)),
+            CaptureAt::OwnFlag => self.own_flags(team).any(|(_, home)| near(home)),
+            CaptureAt::OwnCorners => self.own_corners(team).iter().any(|corner| near(*corner)),
+        }
+    }
+}
+
+impl Standing {
+    /// Takes the flag from a boat that carries one and puts it back to its home.
+    pub(super) fn drop_flag(&mut self, vehicle: VehicleId, events: &mut Vec<Event>) {
+        if let Some(flag) = self.vehicles[vehicle.index()].carrying.take() {
+            self.bring_home(flag);
+            events.push(Event::FlagReturned { vehicle, flag });
+        }
+    }
+
+    fn bring_home(&mut self, flag: FlagId) {
+        let state = &mut self.flags[flag.index()];
+        (state.carrier, state.moved_at) = (None, self.now);
+    }
+}

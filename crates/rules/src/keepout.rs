@@ -1,0 +1,44 @@
+//! Keep-out circles: a flag that is home keeps its own defenders at a distance.
+
+use super::home::nearest;
+use super::{Referee, Standing};
+use crate::event::Event;
+use primitives::frame::Ned;
+use primitives::id::{TeamId, VehicleId};
+
+impl Referee {
+    /// The circle that a boat at `at` must stay out of, if there is one: centre and radius in m. Of several
+    /// flags of its own that are home it is the nearest one's.
+    #[must_use]
+    pub fn keepout(&self, standing: &Standing, vehicle: VehicleId, at: Ned) -> Option<(Ned, f64)> {
+        let radius_m = self.rules.flag_keepout_m;
+        if radius_m <= 0.0 || !standing.vehicles[vehicle.index()].in_play {
+            return None;
+        }
+        nearest(at, self.own_flags_home(standing, self.team_of[vehicle.index()])).map(|centre| (centre, radius_m))
+    }
+
+    /// Notes who has come into a keep-out circle, or was caught in one when the flag came home.
+    pub(super) fn watch_keepouts(&self, standing: &mut Standing, at: &impl Fn(usize) -> Ned, events: &mut Vec<Event>) {
+        let radius_m = self.rules.flag_keepout_m;
+        if radius_m <= 0.0 {
+            return;
+        }
+        for i in 0..standing.vehicles.len() {
+            let here = at(i);
+            let is_inside = |centre| here.distance_squared(centre) < radius_m * radius_m;
+            let inside = self.own_flags_home(standing, self.team_of[i]).any(is_inside);
+            let boat = &mut standing.vehicles[i];
+            if inside && !boat.in_keepout && boat.in_play {
+                events.push(Event::EnteredKeepout(VehicleId::at(i)));
+            }
+            boat.in_keepout = inside;
+        }
+    }
+
+    /// The homes of those of `team`'s flags that are home.
+    #[inline]
+    fn own_flags_home(&self, standing: &Standing, team: TeamId) -> impl Iterator<Item = Ned> {
+        self.own_flags(team).filter(|(flag, _)| standing.flags[flag.index()].carrier.is_none()).map(|(_, home)| home)
+    }
+}

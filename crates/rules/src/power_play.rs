@@ -1,0 +1,56 @@
+//! Power play: for a while each team is one boat short, never two teams at once.
+
+use super::{Referee, Standing};
+use crate::event::Event;
+use primitives::id::VehicleId;
+use primitives::stream::Stream;
+use primitives::time::SimTime;
+
+impl Referee {
+    /// Draws a boat of each team and when it is out of action. All orders of the teams and all positions
+    /// of the windows that fit into the game without overlapping are equally likely. A game too short for
+    /// all windows shares its time out between them.
+    pub(super) fn draw_power_plays(&self, standing: &mut Standing, stream: &mut Stream) {
+        if self.rules.power_play <= SimTime::ZERO {
+            return;
+        }
+        let mut chosen = Vec::new();
+        for team in 0..self.teams() {
+            let boats: Vec<usize> = (0..self.team_of.len()).filter(|i| self.team_of[*i].index() == team).collect();
+            if !boats.is_empty() {
+                chosen.push(boats[stream.below(boats.len() as u64) as usize]);
+            }
+        }
+        if chosen.is_empty() {
+            return;
+        }
+        stream.shuffle(&mut chosen);
+        let (game, windows) = (self.rules.time_limit.0.max(0), chosen.len() as i64);
+        let length = self.rules.power_play.0.min(game / windows);
+        // Ordered gaps that the windows leave between them are as random as the windows themselves.
+        let spare = (game - length * windows) as u64;
+        let mut gaps: Vec<u64> = chosen.iter().map(|_| stream.below(spare + 1)).collect();
+        gaps.sort_unstable();
+        for (i, (vehicle, gap)) in chosen.into_iter().zip(gaps).enumerate() {
+            let from = SimTime(gap as i64 + length * i as i64);
+            standing.disabled[vehicle] = (from, from + SimTime(length));
+        }
+    }
+
+    /// Takes boats out of action and puts them back, by the windows drawn at the start.
+    pub(super) fn switch_power_plays(&self, standing: &mut Standing, events: &mut Vec<Event>) {
+        if self.rules.power_play <= SimTime::ZERO {
+            return;
+        }
+        for (i, (boat, (from, until))) in standing.vehicles.iter_mut().zip(&standing.disabled).enumerate() {
+            let vehicle = VehicleId::at(i);
+            let disabled = (*from..*until).contains(&standing.now);
+            match (boat.disabled, disabled) {
+                (false, true) => events.push(Event::Disabled(vehicle)),
+                (true, false) => events.push(Event::Enabled(vehicle)),
+                _ => {}
+            }
+            boat.disabled = disabled;
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! Tags: a boat on its own side stops the intruders it can reach.
+
+use super::claim::{Claim, settle};
+use super::{Ability, Acting, Look, Notes, Referee, Standing};
+use crate::event::{Event, TagCause};
+use primitives::id::VehicleId;
+use primitives::near::Pair;
+
+impl Referee {
+    /// Tags intruders. Every boat tags as soon as it can, or asks for it as soon as it believes so.
+    ///
+    /// Each tagger reaches for one intruder; who of several gets the same one, [`super::Resolution`] says. Only
+    /// that one has its tag points and its cooldown: a failed or late tag costs nothing.
+    pub(super) fn tag(&self, standing: &mut Standing, notes: &mut Notes, look: &Look<'_>, events: &mut Vec<Event>) {
+        let reach_squared = self.rules.tag_radius_m * self.rules.tag_radius_m;
+        notes.claims.clear();
+        for &Pair { a, b, distance_squared } in look.near {
+            if distance_squared >= reach_squared {
+                continue;
+            }
+            for (by, on) in [(a, b), (b, a)] {
+                if self.may_tag(standing, usize::from(by), usize::from(on), look) {
+                    notes.claims.push(Claim { by, on, distance_squared });
+                }
+            }
+        }
+        if notes.claims.is_empty() {
+            return;
+        }
+        settle(&mut notes.claims, self.rules.tag_choice, self.rules.resolution);
+        for claim in &notes.claims {
+            let (tagger, target) = (VehicleId(claim.by), VehicleId(claim.on));
+            standing.put_tag(target, TagCause::Opponent(tagger), events);
+            standing.drop_flag(target, events);
+            standing.vehicles[tagger.index()].tag_ready = standing.now + self.rules.tag_cooldown;
+            standing.award(self.team_of[tagger.index()], self.rules.points.tag);
+        }
+    }
+
+    /// Whether `tagger` may tag `target`, apart from their distance.
+    ///
+    /// The tagger is on its own side; the intruder is there too and is not on *its* own side. On the
+    /// scrimmage line, which is everybody's own side, a boat is therefore safe but can tag, and no boat is
+    /// ever both tagger and target.
+    fn may_tag(&self, standing: &Standing, tagger: usize, target: usize, look: &Look<'_>) -> bool {
+        let (by, on) = (&standing.vehicles[tagger], &standing.vehicles[target]);
+        let (own, other) = (self.team_of[tagger], self.team_of[target]);
+        let at = |i: usize| self.side_place(look.legs[i]);
+        let able = own != other && by.in_play && Ability::from(by).may_tag(standing.now);
+        let asks = self.rules.tags_and_grabs == Acting::Automatic || look.asks[tagger].tag;
+        able && asks
+            && on.in_play
+            && !on.tagged
+            && !on.outside
+            && self.is_own_side(own, at(tagger))
+            && self.is_own_side(own, at(target))
+            && !self.is_own_side(other, at(target))
+    }
+}
+
+impl Standing {
+    /// Tags a boat.
+    pub(super) fn put_tag(&mut self, vehicle: VehicleId, cause: TagCause, events: &mut Vec<Event>) {
+        let boat = &mut self.vehicles[vehicle.index()];
+        boat.tagged = true;
+        boat.tagged_at = self.now;
+        events.push(Event::Tagged { vehicle, cause });
+    }
+}

@@ -1,0 +1,149 @@
+//! Scenes told in text: the files in `scenes`, which are read by this test as they are.
+//!
+//! - `## NAME` begins a scene, `# …` is a comment.
+//! - `rules BOOK KEY=VALUE …` comes next: a book of `preset.rs`, rules that differ from it (JSON values, times in
+//!   nanoseconds), and `boats=2` for each team (1 if it is left out), `sides=3` (2), `flag=[TEAM,X,Y]` for another flag.
+//! - `0 at 60 40; 1 at 65 40 -> Tagged 1 Opponent 0, …`: boats are set down at x and y in metres, and at the next look
+//!   exactly this happens, in this order; or `nothing`. Boats keep their places until they are set down elsewhere. `0 goes 60 40` moves a boat
+//!   there from where it is. `0 asks tag` (or `grab`) is a request from then on. `wait 10`
+//!   lets 10 s pass before the look, `clock 0` sets the time. An event is its name, then its vehicle, flag or team.
+//! - `WHAT is VALUE`: a part of the referee's standing as JSON (`vehicles.0.tagged`, `score`, `flags.1.carrier`; a time may
+//!   be `LONG_AGO`), `directive VEHICLE`, or `keepout VEHICLE X Y` with the circle's x, y and radius.
+
+use crate::preset;
+use crate::scene::{Scene, field, flag, teams_of, three_sided};
+use primitives::{Ned, SimTime, VehicleId};
+use rules::Event;
+use serde_json::Value;
+use std::path::Path;
+
+/// What a scene may not do without: it says where it goes wrong.
+type Told<T> = Result<T, String>;
+
+fn read<T: serde::de::DeserializeOwned>(text: &str) -> Told<T> {
+    serde_json::from_str(text).map_err(|e| format!("{text}: {e}"))
+}
+
+/// `vehicles.0.tagged` as a JSON pointer.
+fn pointer(path: &str) -> String {
+    format!("/{}", path.replace('.', "/"))
+}
+
+/// The scene that begins with this line.
+fn opened(line: &str) -> Told<Scene> {
+    let mut words = line.strip_prefix("rules ").ok_or("expected `rules BOOK`")?.split(' ');
+    let book = words.next().and_then(|name| preset::all().into_iter().find(|rules| rules.name == name));
+    let mut rules = serde_json::to_value(book.ok_or("no such book")?).map_err(|e| e.to_string())?;
+    let (mut boats, mut sides, mut extra_flags) = (1, 2, vec![]);
+    for word in words {
+        let (key, value) = word.split_once('=').ok_or("expected KEY=VALUE")?;
+        match key {
+            "boats" => boats = read(value)?,
+            "sides" => sides = read(value)?,
+            "flag" => {
+                let (team, x, y) = read(value)?;
+                extra_flags.push(flag(team, x, y));
+            }
+            key => *rules.pointer_mut(&pointer(key)).ok_or(format!("{key} is no rule"))? = read(value)?,
+        }
+    }
+    let rules = serde_json::from_value(rules).map_err(|e| e.to_string())?;
+    Ok(if sides == 3 { three_sided(rules) } else { Scene::on(rules, field(extra_flags), teams_of(boats, sides)) })
+}
+
+/// An event as scenes tell it: its name, then who and what, as in `Tagged 1 Opponent 0`.
+fn brief(event: &Event) -> String {
+    let text = format!("{event:?}");
+    let is_told = |word: &&str| !word.starts_with(char::is_lowercase) && !word.ends_with("Id") && *word != "Some";
+    let words: Vec<&str> = text.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
+    words.into_iter().filter(is_told).collect::<Vec<_>>().join(" ")
+}
+
+/// What there is where the scene says `WHAT is VALUE`.
+fn asked(scene: &Scene, what: &str) -> Told<String> {
+    let words: Vec<&str> = what.split(' ').collect();
+    Ok(match words[..] {
+        ["directive", vehicle] => format!("{:?}", scene.directive(read(vehicle)?)),
+        ["keepout", vehicle, x, y] => {
+            let at = Ned::from_xy(read(x)?, read(y)?);
+            let circle = scene.referee.keepout(&scene.standing, VehicleId(read(vehicle)?), at);
+            format!("{:?}", circle.map(|(centre, radius_m)| (centre.east, centre.north, radius_m)))
+        }
+        _ => {
+            let standing = serde_json::to_value(&scene.standing).map_err(|e| e.to_string())?;
+            standing.pointer(&pointer(what)).map(Value::to_string).ok_or(format!("the standing has no {what}"))?
+        }
+    })
+}
+
+/// One step before a look.
+fn step(scene: &mut Scene, words: &str) -> Told<()> {
+    match words.split(' ').collect::<Vec<_>>()[..] {
+        [vehicle, "at", x, y] => {
+            scene.put(read(vehicle)?, read(x)?, read(y)?);
+        }
+        [vehicle, "goes", x, y] => {
+            scene.go(read(vehicle)?, read(x)?, read(y)?);
+        }
+        [vehicle, "asks", what] => {
+            let asks = &mut scene.asks[read::<usize>(vehicle)?];
+            match what {
+                "tag" => asks.tag = true,
+                "grab" => asks.grab = true,
+                _ => return Err(format!("nobody asks for {what}")),
+            }
+        }
+        ["wait", seconds] => {
+            scene.wait(read(seconds)?);
+        }
+        ["clock", seconds] => scene.now = SimTime::from_s(read(seconds)?),
+        _ => return Err(format!("{words} is no step")),
+    }
+    Ok(())
+}
+
+/// Does what a line says, and checks what it says of it.
+fn follow(scene: &mut Scene, line: &str) -> Told<()> {
+    let (got, want) = if let Some((what, want)) = line.split_once(" is ") {
+        (asked(scene, what)?, want.replace("LONG_AGO", &SimTime::LONG_AGO.0.to_string()))
+    } else {
+        let (steps, want) = line.split_once("-> ").ok_or("expected `STEPS -> EVENTS` or `WHAT is VALUE`")?;
+        for words in steps.split(';').map(str::trim).filter(|words| !words.is_empty()) {
+            step(scene, words)?;
+        }
+        let events: Vec<String> = scene.look().iter().map(brief).collect();
+        (if events.is_empty() { "nothing".to_owned() } else { events.join(", ") }, want.to_owned())
+    };
+    if got == want { Ok(()) } else { Err(format!("is {got}")) }
+}
+
+/// Plays a scene to its end, or to the first line that does not hold.
+fn played(told: &str) -> Told<()> {
+    let mut lines = told.lines().filter(|line| !line.is_empty() && !line.starts_with("# "));
+    let first = lines.next().unwrap_or_default();
+    let mut scene = opened(first).map_err(|e| format!("{first}: {e}"))?;
+    let mut looks = 0;
+    for line in lines {
+        follow(&mut scene, line).map_err(|e| format!("{line}: {e}"))?;
+        looks += 1;
+    }
+    if looks > 0 { Ok(()) } else { Err("nothing is looked at".to_owned()) }
+}
+
+#[test]
+fn every_scene_goes_as_it_is_told() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/referee/scenes");
+    let mut wrong = vec![];
+    for entry in std::fs::read_dir(folder).expect("the folder is there") {
+        let path = entry.expect("it can be read").path();
+        let (file, text) = (path.display(), std::fs::read_to_string(&path).expect("a text"));
+        let scenes: Vec<&str> = text.split("\n## ").skip(1).collect();
+        let begun = text.lines().filter(|line| line.starts_with("##")).count();
+        assert!(begun > 0 && begun == scenes.len(), "{file}: {} scenes of {begun} can be read", scenes.len());
+        for scene in scenes {
+            let (name, told) = scene.split_once('\n').unwrap_or((scene, ""));
+            wrong.extend(played(told).err().map(|why| format!("{file}: {name}: {why}")));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}

@@ -1,0 +1,201 @@
+//! Actions: what a policy may ask of its boat at a decision.
+
+use primitives::angle::wrap_pi;
+use primitives::math;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
+
+/// What a policy chooses from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ActionSpace {
+    /// The 17 of Pyquaticus: full or half speed, each with eight turns, and a stop.
+    Pyquaticus,
+    /// Two numbers from -1 to 1: the turn from the present heading in half turns clockwise, and the speed, from none to the
+    /// boat's fastest.
+    Continuous,
+    /// The values of a variable of a strategy, to which its rules and modes answer: what a boat is at, not how it steers.
+    Options,
+}
+
+/// What a policy chose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Action {
+    /// One of so many.
+    Discrete(usize),
+    /// Numbers from -1 to 1; what is beyond counts as the limit.
+    Continuous([f32; 2]),
+}
+
+impl Action {
+    /// The discrete action with the largest logit, the first of equals.
+    #[must_use]
+    pub fn likeliest(logits: &[f32]) -> Action {
+        Action::Discrete((1..logits.len()).fold(0, |best, i| if logits[i] > logits[best] { i } else { best }))
+    }
+}
+
+impl ActionSpace {
+    /// What a discrete action asks of a boat: "50 % speed, 45° to port".
+    #[must_use]
+    pub fn words(self, action: usize) -> String {
+        if self == ActionSpace::Options {
+            return format!("option {action}");
+        }
+        let asked = self.set_point(Action::Discrete(action), 0.0, 1.0);
+        let speed = match asked.speed_m_s {
+            0.0 => return "stop".to_owned(),
+            1.0 => "full speed".to_owned(),
+            share => format!("{:.0} % speed", 100.0 * share),
+        };
+        match asked.course_rad.to_degrees().round() {
+            0.0 => format!("{speed}, straight on"),
+            turn_deg if turn_deg.abs() >= 180.0 => format!("{speed}, about"),
+            turn_deg if turn_deg > 0.0 => format!("{speed}, {turn_deg:.0}° to starboard"),
+            turn_deg => format!("{speed}, {:.0}° to port", -turn_deg),
+        }
+    }
+}
+
+/// The probabilities of the actions with these logits.
+#[must_use]
+pub fn probabilities(logits: &[f32]) -> Vec<f32> {
+    let most = logits.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+    let parts: Vec<f64> = logits.iter().map(|logit| math::exp(f64::from(logit - most))).collect();
+    let sum: f64 = parts.iter().sum();
+    parts.iter().map(|part| (part / sum) as f32).collect()
+}
+
+/// A course, rad clockwise from north, and a speed, m/s.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SetPoint {
+    /// Desired course, rad clockwise from north.
+    pub course_rad: f64,
+    /// Desired speed, m/s.
+    pub speed_m_s: f64,
+}
+
+/// How many turns there are at each speed, from half a turn to starboard to nearly half a turn to port.
+const TURNS: usize = 8;
+/// The speeds of the discrete actions, as shares of the fastest.
+const SPEEDS: [f64; 2] = [1.0, 0.5];
+
+impl ActionSpace {
+    /// How many discrete actions there are, if the space says it: not for continuous ones, nor for options, which are a strategy's.
+    #[must_use]
+    pub fn count(self) -> Option<usize> {
+        match self {
+            ActionSpace::Pyquaticus => Some(SPEEDS.len() * TURNS + 1),
+            ActionSpace::Continuous | ActionSpace::Options => None,
+        }
+    }
+
+    /// How many outputs a policy has: a logit for each discrete action, or a number for each dimension. Options are at least so many.
+    #[must_use]
+    pub fn outputs(self) -> usize {
+        self.count().unwrap_or(2)
+    }
+
+    /// Whether an action is one of several.
+    #[must_use]
+    pub fn is_discrete(self) -> bool {
+        self != ActionSpace::Continuous
+    }
+
+    /// The action that asks most nearly for this course and speed, the other way round from [`ActionSpace::set_point`]; none for options.
+    #[must_use]
+    pub fn nearest(self, asked: SetPoint, heading_rad: f64, speed_max_m_s: f64) -> Option<Action> {
+        let turn_rad = wrap_pi(asked.course_rad - heading_rad);
+        let share = (asked.speed_m_s / speed_max_m_s).clamp(0.0, 1.0);
+        if self == ActionSpace::Continuous {
+            return Some(Action::Continuous([turn_rad / PI, 2.0 * share - 1.0].map(|number| number as f32)));
+        }
+        // A turn by a radian is as far off as all the speed; a stop has no turn.
+        let off = |action: usize| {
+            let SetPoint { course_rad, speed_m_s } = self.set_point(Action::Discrete(action), 0.0, 1.0);
+            let by_turn = if speed_m_s == 0.0 { 0.0 } else { wrap_pi(course_rad - turn_rad) };
+            let by_speed = speed_m_s - share;
+            by_turn * by_turn + by_speed * by_speed
+        };
+        (0..self.count()?).min_by(|a, b| off(*a).total_cmp(&off(*b))).map(Action::Discrete)
+    }
+
+    /// The course and the speed that an action asks of a boat with this heading and top speed. An action of another space, or
+    /// one with numbers that are none, is a stop, and so is an option.
+    #[must_use]
+    pub fn set_point(self, action: Action, heading_rad: f64, speed_max_m_s: f64) -> SetPoint {
+        let (turn_rad, share) = match (self, action) {
+            (ActionSpace::Pyquaticus, Action::Discrete(i)) if i < SPEEDS.len() * TURNS => {
+                (PI - (i % TURNS) as f64 * 2.0 * PI / TURNS as f64, SPEEDS[i / TURNS])
+            }
+            (ActionSpace::Continuous, Action::Continuous([turn, speed])) if turn.is_finite() && speed.is_finite() => {
+                let [turn, speed] = [turn, speed].map(|number| f64::from(number).clamp(-1.0, 1.0));
+                (turn * PI, 0.5 * (1.0 + speed))
+            }
+            _ => (0.0, 0.0),
+        };
+        SetPoint { course_rad: wrap_pi(heading_rad + turn_rad), speed_m_s: share * speed_max_m_s }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Action, ActionSpace, SetPoint};
+
+    #[test]
+    fn the_discrete_actions_are_those_of_pyquaticus() {
+        let space = ActionSpace::Pyquaticus;
+        let turns_deg = [180.0, 135.0, 90.0, 45.0, 0.0, -45.0, -90.0, -135.0];
+        let want =
+            [2.0, 1.0].into_iter().flat_map(|speed_m_s| turns_deg.map(|deg| (speed_m_s, deg))).chain([(0.0, 0.0)]);
+        assert_eq!(space.count(), Some(17));
+        for (i, (speed_m_s, turn_deg)) in want.enumerate() {
+            let got = space.set_point(Action::Discrete(i), 1.0, 2.0);
+            let off_rad = primitives::angle::wrap_pi(got.course_rad - 1.0 - f64::to_radians(turn_deg));
+            assert!(off_rad.abs() < 1e-12 && (got.speed_m_s - speed_m_s).abs() < 1e-12, "{i}: {got:?}");
+        }
+    }
+
+    #[test]
+    fn the_nearest_action_is_the_one_that_asked() {
+        let (heading_rad, fastest_m_s) = (2.5, 3.0);
+        let space = ActionSpace::Pyquaticus;
+        for action in (0..17).map(Action::Discrete) {
+            let asked = space.set_point(action, heading_rad, fastest_m_s);
+            assert_eq!(space.nearest(asked, heading_rad, fastest_m_s), Some(action));
+        }
+        let asked = ActionSpace::Continuous.set_point(Action::Continuous([-0.25, 0.5]), heading_rad, fastest_m_s);
+        let Some(Action::Continuous([turn, speed])) = ActionSpace::Continuous.nearest(asked, heading_rad, fastest_m_s)
+        else {
+            panic!("no continuous action")
+        };
+        assert!((turn + 0.25).abs() < 1e-6 && (speed - 0.5).abs() < 1e-6, "{turn} {speed}");
+        // Slowly, 10 degrees to starboard; and next to nothing, anywhere.
+        let slow = |turn_deg: f64, speed_m_s| SetPoint { course_rad: heading_rad + turn_deg.to_radians(), speed_m_s };
+        assert_eq!(space.nearest(slow(10.0, 1.4), heading_rad, fastest_m_s), Some(Action::Discrete(12)));
+        assert_eq!(space.nearest(slow(70.0, 0.1), heading_rad, fastest_m_s), Some(Action::Discrete(16)));
+        assert_eq!(ActionSpace::Options.nearest(asked, heading_rad, fastest_m_s), None);
+    }
+
+    #[test]
+    fn an_action_is_told_in_words() {
+        let words = |action| ActionSpace::Pyquaticus.words(action);
+        assert_eq!(
+            [words(0), words(4), words(9)],
+            ["full speed, about", "full speed, straight on", "50 % speed, 135° to starboard"]
+        );
+        assert_eq!([words(6), words(16), words(99)], ["full speed, 90° to port", "stop", "stop"]);
+    }
+
+    #[test]
+    fn continuous_actions_stay_within_their_limits_and_nonsense_stops_the_boat() {
+        let of = |turn, speed| ActionSpace::Continuous.set_point(Action::Continuous([turn, speed]), 0.5, 3.0);
+        assert!((of(0.0, 1.0).course_rad - 0.5).abs() < 1e-12 && of(0.0, 9.0).speed_m_s == 3.0);
+        assert!((of(0.5, 0.0).course_rad - 0.5 - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
+        assert_eq!(of(0.0, 0.0).speed_m_s, 1.5);
+        assert_eq!(of(f32::NAN, 1.0).speed_m_s, 0.0);
+        assert_eq!(ActionSpace::Pyquaticus.set_point(Action::Discrete(99), 0.5, 3.0).speed_m_s, 0.0);
+        assert_eq!(ActionSpace::Continuous.set_point(Action::Discrete(0), 0.5, 3.0).speed_m_s, 0.0);
+    }
+}

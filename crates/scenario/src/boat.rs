@@ -1,0 +1,387 @@
+//! A kind of boat: its hull, thrusters and front seat.
+//!
+//! Everything is SI, in the boat's own frame with its origin midships (CO): x ahead, y to starboard,
+//! yaw clockwise. The equation that these numbers enter stands in `sim::hull`.
+//!
+//! These types also declare the keys of boat files. Where a key is in another unit, `rename` names the key, its
+//! description gives that unit, and `x-field` names the field.
+
+use crate::sensor::Sensors;
+use primitives::omitted::number_or_nan;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A kind of boat.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Boat {
+    /// The boat file's stem, for example `surveyor_m1_8`.
+    pub name: String,
+    /// Length over all, m.
+    pub length_m: f64,
+    /// Beam, m.
+    pub beam_m: f64,
+    /// Draught, m: the depth over which waves push and beyond which they do not.
+    pub draught_m: f64,
+    /// Inertia and resistance.
+    pub hull: Hull,
+    /// What the wind gets hold of.
+    pub windage: Windage,
+    /// What drives it.
+    pub drive: Drive,
+    /// What it does when it holds. Older recordings are without it.
+    #[serde(default)]
+    pub hold: Hold,
+    /// What it knows of itself.
+    pub sensors: Sensors,
+}
+
+/// What a boat does when it holds: without an order, out of action, or told so by its mind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Hold {
+    /// Its thrusters are at zero: it lies in the water and drifts.
+    #[default]
+    Drifts,
+    /// Its front seat keeps it where it began to hold. When people ashore stop boats, it drifts all the same.
+    KeepsStation,
+}
+
+/// What drives a boat.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Drive {
+    /// Two thrusters on a hull that floats, steered by the front seat: the model we stand for.
+    Thrusters {
+        /// The two thrusters.
+        thruster: Thruster,
+        /// The front seat's heading and speed loops.
+        autopilot: Autopilot,
+    },
+    /// The point boat of MOOS (uSimMarine under pMarinePID), for parity with what others train on. The sea carries it
+    /// along and does nothing else to it.
+    Kinematic(Kinematic),
+}
+
+impl Boat {
+    /// The highest speed its front seat accepts, m/s.
+    #[must_use]
+    pub fn speed_max_m_s(&self) -> f64 {
+        match &self.drive {
+            Drive::Thrusters { autopilot, .. } => autopilot.speed_max_m_s,
+            Drive::Kinematic(kinematic) => kinematic.speed_max_m_s,
+        }
+    }
+}
+
+/// What the wind gets hold of: projected areas and coefficients (Fossen 2021, ch. 10):
+/// X = −½ρ V² C_x A_F cos γ, Y = ½ρ V² C_y A_L sin γ, N = ½ρ V² C_n A_L L sin 2γ, with the relative wind V at the
+/// angle γ off the bow.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Windage {
+    /// Area from ahead, m². Default 0.36 beam².
+    #[serde(deserialize_with = "number_or_nan")]
+    #[schemars(with = "Option<f64>", range(min = 0, max = 1000), extend("x-estimated" = true))]
+    pub frontal_area_m2: f64,
+    /// Area from the side, m². Default 0.16 L².
+    #[serde(deserialize_with = "number_or_nan")]
+    #[schemars(with = "Option<f64>", range(min = 0, max = 5000), extend("x-estimated" = true))]
+    pub lateral_area_m2: f64,
+    /// Height at which the wind is taken, m. Default 0.25 L.
+    #[serde(deserialize_with = "number_or_nan")]
+    #[schemars(with = "Option<f64>", range(min = 0.05, max = 100), extend("x-estimated" = true))]
+    pub height_m: f64,
+    /// C_x.
+    #[schemars(range(min = 0, max = 2), extend("default" = 0.6))]
+    pub surge_coefficient: f64,
+    /// C_y.
+    #[schemars(range(min = 0, max = 2), extend("default" = 0.85))]
+    pub sway_coefficient: f64,
+    /// C_n.
+    #[schemars(range(min = -0.5, max = 0.5), extend("default" = 0.1))]
+    pub yaw_coefficient: f64,
+}
+
+/// The point boat of MOOS (uSimMarine under pMarinePID), with its own constants.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Kinematic {
+    /// Highest speed, m/s.
+    #[schemars(range(min = 0.1, max = 60))]
+    pub speed_max_m_s: f64,
+    /// Thrust in per cent and speed in m/s, both rising, with [0, 0].
+    #[schemars(with = "Vec<ThrustAndSpeed>")]
+    pub thrust_map: Vec<(f64, f64)>,
+    /// Largest thrust, per cent.
+    #[schemars(range(min = 1, max = 100), extend("default" = 100))]
+    pub thrust_max: f64,
+    /// Largest rudder, per cent.
+    #[schemars(range(min = 1, max = 100), extend("default" = 100))]
+    pub rudder_max: f64,
+    /// Degrees a second at full rudder and half thrust.
+    #[schemars(range(min = 0, max = 1000))]
+    pub turn_rate: f64,
+    /// Share of the speed that full rudder costs.
+    #[schemars(range(min = 0, max = 1), extend("default" = 0.85))]
+    pub turn_loss: f64,
+    /// Bias of the turn, rad/s.
+    #[schemars(description = "Bias of the turn, degrees a second.")]
+    #[schemars(rename = "rotate_deg_s", range(min = -90, max = 90), extend("default" = 0, "x-field" = "rotate_rad_s"))]
+    pub rotate_rad_s: f64,
+    /// Acceleration limit, m/s²; the boat does half of it, 0 is none.
+    #[schemars(range(min = 0, max = 100), extend("default" = 0))]
+    pub acceleration_max_m_s2: f64,
+    /// Deceleration limit, m/s²; the boat does half of it, 0 is none.
+    #[schemars(range(min = 0, max = 100), extend("default" = 0.5))]
+    pub deceleration_max_m_s2: f64,
+    /// Thrust over desired speed, per cent per m/s; 0 uses the speed loop.
+    #[schemars(range(min = 0, max = 1000), extend("default" = 0))]
+    pub speed_factor: f64,
+    /// The speed loop. Required, unless speed_factor is given.
+    #[serde(default)]
+    #[schemars(with = "Option<Pid>", !default)]
+    pub speed_pid: Pid,
+    /// The heading loop.
+    pub heading_pid: Pid,
+}
+
+/// Thrust in per cent, and the speed in m/s that it gives.
+#[derive(JsonSchema)]
+#[schemars(inline)]
+#[expect(dead_code, reason = "the schema of a pair")]
+pub(crate) struct ThrustAndSpeed(
+    #[schemars(range(min = -100, max = 100))] f64,
+    #[schemars(range(min = -60, max = 60))] f64,
+);
+
+/// Gains of pMarinePID.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Pid {
+    /// Proportional.
+    #[schemars(range(min = -1000, max = 1000), extend("default" = 0))]
+    pub p: f64,
+    /// Integral.
+    #[schemars(range(min = -1000, max = 1000), extend("default" = 0))]
+    pub i: f64,
+    /// Derivative.
+    #[schemars(range(min = -1000, max = 1000), extend("default" = 0))]
+    pub d: f64,
+    /// Limit of the integral.
+    #[schemars(range(min = 0, max = 1000), extend("default" = 0))]
+    pub i_limit: f64,
+}
+
+/// Inertia and resistance of a hull. What is left out is estimated from length L, beam, mass m and thrust.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Hull {
+    /// Mass with payload, kg.
+    #[schemars(range(min = 0.1, max = 1000000))]
+    pub mass_kg: f64,
+    /// Moment of inertia about midships, kg m². Default m (L/4)² + m x_g².
+    #[serde(deserialize_with = "number_or_nan")]
+    #[schemars(with = "Option<f64>", range(min = 0.0001, max = 1000000000), extend("x-estimated" = true))]
+    pub yaw_inertia_kg_m2: f64,
+    /// Centre of gravity ahead of midships, m, within the hull.
+    #[schemars(range(min = -50, max = 50), extend("default" = 0))]
+    pub x_g_m: f64,
+    /// Added mass in surge A11, kg. Default 2.7 ρ (m/ρ)^(5/3) / L² with ρ = 1000 (Söding).
+    #[serde(deserialize_with = "number_or_nan")]
+    #[schemars(with = "Option<f64>", range(min = 0, max = 1000000), extend("x-estimated" = true))]
+    pub added_surge_kg: f64,
+    /// Added mass in sway A22, kg. Default m.
+    #[serde(deserialize_with = "number_or_nan")]
+    #[schemars(with = "Option<f64>", range(min = 0, max = 10000000), extend("x-estimated" = true))]
+    pub added_sway_kg: f64,
+    /// Added moment of inertia in yaw A66, kg m². Default the moment of inertia.
+    #[serde(deserialize_with = "number_or_nan")]
+    #[schemars(with = "Option<f64>", range(min = 0, max = 1000000000), extend("x-estimated" = true))]
+    pub added_yaw_kg_m2: f64,
+    /// Added coupling of sway and yaw A26, kg m.
+    #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
+    pub added_sway_yaw_kg_m: f64,
+    /// Linear resistance in surge -X_u, kg/s. Default what makes both thrusters full ahead give the autopilot's
+    /// speed_max_m_s, with the quadratic part as given (0 if that alone is more).
+    #[serde(deserialize_with = "number_or_nan")]
+    #[schemars(with = "Option<f64>", range(min = 0, max = 1000000), extend("x-estimated" = true))]
+    pub surge_linear_kg_s: f64,
+    /// Quadratic resistance in surge -X_|u|u, kg/m.
+    #[schemars(range(min = 0, max = 1000000), extend("default" = 0))]
+    pub surge_quadratic_kg_m: f64,
+    /// Linear resistance in sway -Y_v, kg/s. Default (m + A22) / 1 s.
+    #[serde(deserialize_with = "number_or_nan")]
+    #[schemars(with = "Option<f64>", range(min = 0, max = 10000000), extend("x-estimated" = true))]
+    pub sway_linear_kg_s: f64,
+    /// Lift-like resistance in sway -Y_|u|v, kg/m.
+    #[schemars(range(min = 0, max = 1000000), extend("default" = 0))]
+    pub sway_lift_kg_m: f64,
+    /// Linear resistance in yaw -N_r, kg m²/s. Default (inertia + A66) / 1 s.
+    #[serde(deserialize_with = "number_or_nan")]
+    #[schemars(with = "Option<f64>", range(min = 0, max = 1000000000), extend("x-estimated" = true))]
+    pub yaw_linear_kg_m2_s: f64,
+    /// Quadratic resistance in yaw -N_|r|r, kg m².
+    #[schemars(range(min = 0, max = 1000000000), extend("default" = 0))]
+    pub yaw_quadratic_kg_m2: f64,
+    /// Resistance in yaw that grows with speed -N_|u|r, kg m.
+    #[schemars(range(min = 0, max = 10000000), extend("default" = 0))]
+    pub yaw_lift_kg_m: f64,
+    /// Cross-flow drag coefficient of the immersed side (Hoerner); 0 is no cross-flow.
+    #[schemars(range(min = 0, max = 3), extend("default" = 0))]
+    pub crossflow_coefficient: f64,
+    /// Draught that meets the cross-flow, m. Required with a coefficient, else 0.
+    #[serde(deserialize_with = "number_or_nan")]
+    #[schemars(with = "Option<f64>", range(min = 0, max = 20), extend("x-estimated" = true))]
+    pub crossflow_draught_m: f64,
+    /// Length that meets the cross-flow, m. Default L.
+    #[serde(deserialize_with = "number_or_nan")]
+    #[schemars(with = "Option<f64>", range(min = 0, max = 200), extend("x-estimated" = true))]
+    pub crossflow_length_m: f64,
+    /// Share of the Munk moment (A22 - A11) u v that acts, where 1 is the bare hull in ideal flow.
+    #[schemars(range(min = 0, max = 1), extend("default" = 0.5))]
+    pub munk_factor: f64,
+}
+
+/// Two fixed thrusters, one each side.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Thruster {
+    /// Distance of each thruster from the centre line, m.
+    pub arm_m: f64,
+    /// What a setting gives in thrust.
+    pub curve: ThrustCurve,
+    /// Time constant with which a setting is taken up, s; 0 is at once.
+    pub lag_s: f64,
+    /// The fastest change of the commanded setting, in shares of full ahead a second.
+    pub slew_per_s: f64,
+    /// Commands smaller than this share of full ahead give nothing.
+    pub deadband: f64,
+    /// In what it falls short of that.
+    pub flaws: Flaws,
+}
+
+/// What keeps thrusters from doing what they are told. The default is nothing.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Flaws {
+    /// Largest setting that is taken up, as a share of full ahead or astern.
+    #[schemars(range(min = 0.05, max = 1), extend("default" = 1))]
+    pub saturation: f64,
+    /// Factor on the port thruster's thrust, and on the starboard one's.
+    #[schemars(flatten, with = "Gains")]
+    pub gain: (f64, f64),
+    /// Factor on thrust astern. The front seat does not know it.
+    #[schemars(range(min = 0, max = 1), extend("default" = 1))]
+    pub reverse_efficiency: f64,
+    /// Moment at full thrust that nobody asked for, N m clockwise.
+    #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
+    pub bias_newton_m: f64,
+    /// How long a command is on its way to the thrusters, s.
+    #[schemars(range(min = 0, max = 5), extend("default" = 0))]
+    pub latency_s: f64,
+    /// Without a new order for this long the thrusters stop, s. Default never.
+    #[schemars(range(min = 0.1, max = 3600))]
+    pub watchdog_s: Option<f64>,
+    /// A battery that sags. Default one that does not.
+    pub battery: Option<Battery>,
+    /// Propellers that suck air in waves. Default they do not.
+    pub ventilation: Option<Ventilation>,
+}
+
+/// The factors on the thrusters' thrust, by the names that they have in files.
+#[derive(JsonSchema)]
+#[expect(dead_code, reason = "the schema of two keys")]
+struct Gains {
+    /// Factor on the port thruster's thrust. The front seat does not know it.
+    #[schemars(range(min = 0, max = 2), extend("default" = 1, "x-field" = "gain.0"))]
+    port_gain: f64,
+    /// Factor on the starboard thruster's thrust. The front seat does not know it.
+    #[schemars(range(min = 0, max = 2), extend("default" = 1, "x-field" = "gain.1"))]
+    starboard_gain: f64,
+}
+
+impl Default for Flaws {
+    fn default() -> Flaws {
+        Flaws {
+            saturation: 1.0,
+            gain: (1.0, 1.0),
+            reverse_efficiency: 1.0,
+            bias_newton_m: 0.0,
+            latency_s: 0.0,
+            watchdog_s: None,
+            battery: None,
+            ventilation: None,
+        }
+    }
+}
+
+/// A battery whose voltage, and with it the thrust, falls with its charge.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Battery {
+    /// Energy when full, J.
+    #[schemars(description = "Energy when full, W h.")]
+    #[schemars(rename = "capacity_wh", range(min = 1, max = 1000000), extend("x-field" = "capacity_joule"))]
+    pub capacity_joule: f64,
+    /// Charge at the start of a game.
+    #[schemars(range(min = 0, max = 1), extend("default" = 1))]
+    pub charge: f64,
+    /// Power that both thrusters draw at full ahead, W.
+    #[schemars(rename = "full_power_w", range(min = 0, max = 1000000), extend("x-field" = "full_power_watt"))]
+    pub full_power_watt: f64,
+    /// Power that everything else draws, W.
+    #[schemars(rename = "hotel_power_w", range(min = 0, max = 100000))]
+    #[schemars(extend("x-field" = "hotel_power_watt", "default" = 0))]
+    pub hotel_power_watt: f64,
+    /// Share of the thrust that is lost when it is empty.
+    #[schemars(range(min = 0, max = 0.9), extend("default" = 0.15))]
+    pub sag: f64,
+}
+
+/// Propellers near the surface, which suck air as waves bare them.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Ventilation {
+    /// How deep the propellers are in still water, m.
+    #[schemars(range(min = 0.01, max = 10))]
+    pub depth_m: f64,
+}
+
+/// Thrust as a function of the thruster's setting.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum ThrustCurve {
+    /// A propeller: the setting is the shaft speed n, rad/s, and the lag acts on n.
+    Propeller(Propeller),
+    /// A measured table; the setting is the share of full ahead, −1 to 1, and the lag acts on it.
+    Table {
+        /// (setting, thrust in N), both rising strictly, with (0, 0) among them.
+        points: Vec<(f64, f64)>,
+    },
+}
+
+/// A propeller: thrust k n |n| newton at n rad/s.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Propeller {
+    /// k turning ahead, N s²/rad².
+    #[schemars(range(min = 0.00000001, max = 1000))]
+    pub k_ahead: f64,
+    /// k turning astern, N s²/rad². Default k_ahead.
+    #[serde(deserialize_with = "number_or_nan")]
+    #[schemars(with = "Option<f64>", range(min = 0.00000001, max = 1000), extend("x-estimated" = true))]
+    pub k_astern: f64,
+    /// Shaft speed at full ahead, rad/s.
+    #[schemars(range(min = 0.1, max = 10000))]
+    pub n_max_rad_s: f64,
+    /// Shaft speed at full astern, rad/s, a positive number. Default n_max_rad_s.
+    #[serde(deserialize_with = "number_or_nan")]
+    #[schemars(with = "Option<f64>", range(min = 0.1, max = 10000), extend("x-estimated" = true))]
+    pub n_min_rad_s: f64,
+}
+
+/// The front seat: how the boat follows a heading and a speed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Autopilot {
+    /// Highest speed that the front seat accepts, m/s.
+    #[schemars(range(min = 0.1, max = 60))]
+    pub speed_max_m_s: f64,
+    /// Natural frequency of the heading loop, rad/s.
+    #[schemars(range(min = 0.01, max = 10), extend("default" = 1))]
+    pub heading_bandwidth_rad_s: f64,
+    /// Damping ratio of the heading loop.
+    #[schemars(range(min = 0.1, max = 5), extend("default" = 1))]
+    pub heading_damping: f64,
+    /// Time constant of the speed loop, s.
+    #[schemars(range(min = 0.1, max = 60), extend("default" = 2))]
+    pub speed_time_s: f64,
+}

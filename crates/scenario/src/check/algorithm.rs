@@ -1,0 +1,54 @@
+//! The algorithm of a training, checked: there is one, and it chooses from the actions there are.
+
+use crate::diagnostics::Diagnostics;
+use crate::read::Document;
+use crate::training::{Algorithm, CriticInput, Training};
+
+/// The tables of algorithms.
+const TABLES: [&str; 3] = ["ppo", "td3", "dqn"];
+
+/// Notes what is wrong with the algorithm.
+pub(super) fn check(diagnostics: &mut Diagnostics, document: &Document<Training>) {
+    let training = &document.raw;
+    let mut said = TABLES.into_iter().filter(|table| document.has(table));
+    if let (Some(one), Some(other)) = (said.next(), said.next()) {
+        let message = format!("{other} is a second algorithm beside {one}, expected one of {}", TABLES.join(", "));
+        diagnostics.note(document.at(other), message);
+        return;
+    }
+    let algorithm = training.algorithm();
+    let (name, action) = (algorithm.name(), training.action);
+    if document.is_sound("action") && algorithm.is_discrete() != action.is_discrete() {
+        let expected = if algorithm.is_discrete() { "\"pyquaticus\" or \"options\"" } else { "\"continuous\"" };
+        let place = if document.has("action") { "action" } else { name };
+        let found = serde_json::to_string(&action).unwrap_or_default();
+        diagnostics.note(document.at(place), format!("action is {found}, expected {expected} with {name}"));
+    }
+    if !matches!(algorithm, Algorithm::Ppo(_)) {
+        check_ppo_alone(diagnostics, document, name);
+    }
+    let sizes = training.td3.map(|td3| (td3.warm_up, td3.buffer));
+    if let Some((warm_up, buffer)) = sizes.or(training.dqn.map(|dqn| (dqn.warm_up, dqn.buffer)))
+        && warm_up > buffer
+        && document.is_sound(name)
+    {
+        let message = format!("warm_up is {warm_up}, expected at most {buffer}, which is buffer");
+        diagnostics.note(document.at(&format!("{name}.warm_up")), message);
+    }
+}
+
+/// Notes what only PPO can.
+fn check_ppo_alone(diagnostics: &mut Diagnostics, document: &Document<Training>, name: &str) {
+    let critic = "network.critic";
+    if document.is_sound(critic) && document.raw.network.critic != CriticInput::Observation {
+        let message = format!("critic is \"truth\", expected \"observation\" with {name}");
+        diagnostics.note(document.at(critic), message);
+    }
+    for i in 0..document.raw.stage.len() {
+        let teacher = format!("stage.{i}.teacher");
+        if document.has(&teacher) {
+            let message = format!("teacher is here, expected none with {name}: it is imitated with ppo");
+            diagnostics.note(document.at(&teacher), message);
+        }
+    }
+}

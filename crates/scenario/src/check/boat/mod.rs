@@ -1,0 +1,190 @@
+//! A boat file, checked, with what it leaves out estimated.
+
+mod kinematic;
+mod thruster;
+
+pub(super) use kinematic::check_thrust_map;
+
+use crate::boat::{Boat, Drive, Propeller, ThrustCurve};
+use crate::diagnostics::Diagnostics;
+use crate::raw;
+use crate::read::Document;
+use crate::sensor::Gps;
+use kinematic::check_kinematic;
+
+/// The physics takes explicit steps of the game's tick: motions that die out faster than this many times
+/// a tick would grow instead. (Runge-Kutta of order four bears 2.78; the rest is margin.)
+pub(super) const FASTEST_PER_TICK: f64 = 2.0;
+/// The tick a boat file alone is checked against, s.
+const USUAL_TICK_S: f64 = 0.05;
+/// Water for the estimates, kg/m³.
+const RHO_KG_M3: f64 = 1000.0;
+/// Fixes that are under way at once.
+const MOST_PERIODS_LATE: f64 = 12.0;
+
+/// Checks a boat.
+pub(crate) fn boat(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>) -> Option<Boat> {
+    let raw = &document.raw;
+    let hull = &raw.hull;
+    if hull.crossflow_coefficient > 0.0 && !document.has("hull.crossflow_draught_m") {
+        let message = "hull.crossflow_draught_m is missing, expected 0 to 20 with a crossflow_coefficient";
+        diagnostics.note_if_intact(document.at("hull"), message);
+    }
+    if let Some(gps) = &raw.sensors.gps {
+        check_gps(diagnostics, document, gps);
+    }
+    let drive = drive(diagnostics, document);
+    if !document.is_faultless(diagnostics) {
+        return None;
+    }
+    let mut boat = Boat {
+        name: document.name.clone(),
+        length_m: raw.length_m,
+        beam_m: raw.beam_m,
+        draught_m: raw.draught_m.unwrap_or_else(|| match hull.crossflow_draught_m {
+            draught_m if draught_m > 0.0 => draught_m,
+            _ => raw.length_m / 12.0,
+        }),
+        hull: hull.clone(),
+        windage: raw.windage.clone(),
+        drive: drive?,
+        hold: raw.hold,
+        sensors: raw.sensors.clone(),
+    };
+    estimate_rest(&mut boat);
+    check_inertia(diagnostics, document, &boat);
+    check_decay(diagnostics, document, &boat);
+    document.is_faultless(diagnostics).then_some(boat)
+}
+
+fn drive(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>) -> Option<Drive> {
+    let raw = &document.raw;
+    if let Some(kinematic) = &raw.kinematic {
+        if document.has("thruster") || document.has("autopilot") {
+            let message = "kinematic beside thruster or autopilot, expected the one or the other";
+            diagnostics.note(document.at("kinematic"), message);
+        }
+        check_kinematic(diagnostics, document, kinematic);
+        return Some(Drive::Kinematic(kinematic.clone()));
+    }
+    for key in ["thruster", "autopilot"] {
+        if !document.has(key) && !document.has("kinematic") {
+            let message = format!("{key} is missing, expected it, or kinematic in place of thruster and autopilot");
+            diagnostics.note_if_intact(document.at(""), message);
+        }
+    }
+    let thruster = thruster::thruster(diagnostics, document, raw.thruster.as_ref()?)?;
+    Some(Drive::Thrusters { thruster, autopilot: raw.autopilot.clone()? })
+}
+
+/// A fix may be late by so many periods only.
+fn check_gps(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, gps: &Gps) {
+    let (latency_s, most_s) = (gps.latency_s, MOST_PERIODS_LATE * gps.period_s);
+    if latency_s > most_s {
+        let path = if document.has("gps.latency_s") { "gps.latency_s" } else { "gps.period_s" };
+        let message = format!("latency_s is {latency_s}, expected at most {most_s}: {MOST_PERIODS_LATE} periods");
+        diagnostics.note(document.at(path), message);
+    }
+}
+
+/// Gives a number that the file leaves out.
+pub(super) fn estimate(number: &mut f64, estimated: impl FnOnce() -> f64) {
+    if number.is_nan() {
+        *number = estimated();
+    }
+}
+
+/// Estimates what the file leaves out, by the recipes that the keys' descriptions state.
+fn estimate_rest(boat: &mut Boat) {
+    let (thrust_max_newton, speed_max_m_s) = match &boat.drive {
+        Drive::Thrusters { thruster, autopilot } => (2.0 * full_ahead_newton(&thruster.curve), autopilot.speed_max_m_s),
+        Drive::Kinematic(kinematic) => (0.0, kinematic.speed_max_m_s),
+    };
+    let Boat { length_m, beam_m, hull, windage, .. } = boat;
+    let (length_m, beam_m, mass_kg) = (*length_m, *beam_m, hull.mass_kg);
+    estimate(&mut windage.frontal_area_m2, || 0.36 * beam_m * beam_m);
+    estimate(&mut windage.lateral_area_m2, || 0.16 * length_m * length_m);
+    estimate(&mut windage.height_m, || 0.25 * length_m);
+    // A radius of gyration of a quarter of the length, moved from the centre of gravity to midships.
+    estimate(&mut hull.yaw_inertia_kg_m2, || mass_kg * (length_m * length_m / 16.0 + hull.x_g_m * hull.x_g_m));
+    // Söding (1982), as in MSS addedMassSurge.m: 2.7 ρ ∇^(5/3) / L².
+    estimate(&mut hull.added_surge_kg, || {
+        let displaced_m3 = mass_kg / RHO_KG_M3;
+        let cube_root = libm::cbrt(displaced_m3);
+        2.7 * RHO_KG_M3 * displaced_m3 * cube_root * cube_root / (length_m * length_m)
+    });
+    estimate(&mut hull.added_sway_kg, || mass_kg);
+    estimate(&mut hull.added_yaw_kg_m2, || hull.yaw_inertia_kg_m2);
+    estimate(&mut hull.surge_linear_kg_s, || {
+        let quadratic_kg_s = hull.surge_quadratic_kg_m * speed_max_m_s;
+        (thrust_max_newton / speed_max_m_s - quadratic_kg_s).max(0.0)
+    });
+    estimate(&mut hull.sway_linear_kg_s, || mass_kg + hull.added_sway_kg);
+    estimate(&mut hull.yaw_linear_kg_m2_s, || hull.yaw_inertia_kg_m2 + hull.added_yaw_kg_m2);
+    estimate(&mut hull.crossflow_draught_m, || 0.0);
+    estimate(&mut hull.crossflow_length_m, || length_m);
+}
+
+/// A mass matrix with a direction that has no inertia would accelerate without bound.
+fn check_inertia(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, boat: &Boat) {
+    let hull = &boat.hull;
+    let (m, x_g, i_z) = (hull.mass_kg, hull.x_g_m, hull.yaw_inertia_kg_m2);
+    if x_g.abs() > boat.length_m / 2.0 {
+        let half_m = boat.length_m / 2.0;
+        let message = format!("x_g_m is {x_g}, expected -{half_m} to {half_m}, within the hull");
+        diagnostics.note(document.at("hull.x_g_m"), message);
+    } else if i_z <= m * x_g * x_g {
+        let message = format!("yaw_inertia_kg_m2 is {i_z}, expected more than m x_g² = {}", m * x_g * x_g);
+        diagnostics.note(document.at("hull.yaw_inertia_kg_m2"), message);
+    }
+    let coupling = m * x_g + hull.added_sway_yaw_kg_m;
+    if (m + hull.added_sway_kg) * (i_z + hull.added_yaw_kg_m2) <= coupling * coupling {
+        let message = format!(
+            "added_sway_yaw_kg_m is {}, expected a mass matrix that is positive definite: \
+             (m + A22)(I + A66) more than (m x_g + A26)²",
+            hull.added_sway_yaw_kg_m
+        );
+        diagnostics.note(document.at("hull.added_sway_yaw_kg_m"), message);
+    }
+}
+
+/// The usual tick must be short enough for the boat.
+fn check_decay(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, boat: &Boat) {
+    let (motion, rate_per_s) = fastest_decay(boat);
+    let allowed_per_s = FASTEST_PER_TICK / USUAL_TICK_S;
+    if rate_per_s > allowed_per_s {
+        let message = format!(
+            "hull: {motion} dies out at {rate_per_s:.1} 1/s, expected at most {allowed_per_s} 1/s \
+             ({FASTEST_PER_TICK} a tick of {USUAL_TICK_S} s); its resistance is too large for its inertia"
+        );
+        let culprit = match motion {
+            "surge" => "hull.surge_linear_kg_s",
+            "sway" => "hull.sway_linear_kg_s",
+            _ => "hull.yaw_linear_kg_m2_s",
+        };
+        diagnostics.note(document.at(if document.has(culprit) { culprit } else { "hull.mass_kg" }), message);
+    }
+}
+
+/// The motion that dies out fastest and its rate, 1/s, at top speed, 1 m/s of drift and 1 rad/s of turn.
+pub(super) fn fastest_decay(boat: &Boat) -> (&'static str, f64) {
+    let hull = &boat.hull;
+    let u_m_s = boat.speed_max_m_s();
+    let crossflow_kg_s = 1025.0 * hull.crossflow_coefficient * hull.crossflow_draught_m * hull.crossflow_length_m;
+    let surge_kg_s = hull.surge_linear_kg_s + 2.0 * hull.surge_quadratic_kg_m * u_m_s;
+    let sway_kg_s = hull.sway_linear_kg_s + hull.sway_lift_kg_m * u_m_s + crossflow_kg_s;
+    let yaw_kg_m2_s = hull.yaw_linear_kg_m2_s + hull.yaw_lift_kg_m * u_m_s + 2.0 * hull.yaw_quadratic_kg_m2;
+    let rates = [
+        ("surge", surge_kg_s / (hull.mass_kg + hull.added_surge_kg)),
+        ("sway", sway_kg_s / (hull.mass_kg + hull.added_sway_kg)),
+        ("yaw", yaw_kg_m2_s / (hull.yaw_inertia_kg_m2 + hull.added_yaw_kg_m2)),
+    ];
+    rates.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or(("surge", 0.0))
+}
+
+fn full_ahead_newton(curve: &ThrustCurve) -> f64 {
+    match curve {
+        ThrustCurve::Propeller(Propeller { k_ahead, n_max_rad_s, .. }) => k_ahead * n_max_rad_s * n_max_rad_s,
+        ThrustCurve::Table { points } => points.last().map_or(0.0, |(_, thrust_newton)| *thrust_newton),
+    }
+}

@@ -1,0 +1,61 @@
+//! Thrusters, and what they fall short of.
+
+use super::estimate;
+use crate::boat::{ThrustCurve, Thruster};
+use crate::diagnostics::Diagnostics;
+use crate::raw;
+use crate::read::Document;
+
+/// Checks thrusters.
+pub(super) fn thruster(
+    diagnostics: &mut Diagnostics,
+    document: &Document<raw::Boat>,
+    raw: &raw::Thruster,
+) -> Option<Thruster> {
+    let curve = match (&raw.propeller, &raw.table_pct_newton) {
+        (Some(propeller), None) => {
+            let mut propeller = *propeller;
+            estimate(&mut propeller.k_astern, || propeller.k_ahead);
+            estimate(&mut propeller.n_min_rad_s, || propeller.n_max_rad_s);
+            ThrustCurve::Propeller(propeller)
+        }
+        (None, Some(rows)) => table(diagnostics, document, rows),
+        (Some(_), Some(_)) => {
+            let message = "thruster has both, expected either propeller or table_pct_newton";
+            diagnostics.note(document.at("thruster.propeller"), message);
+            return None;
+        }
+        (None, None) => {
+            if document.is_sound("thruster.propeller") && document.is_sound("thruster.table_pct_newton") {
+                let message = "thruster.propeller is missing, expected it or table_pct_newton";
+                diagnostics.note_if_intact(document.at("thruster"), message);
+            }
+            return None;
+        }
+    };
+    let raw::Thruster { arm_m, lag_s, slew_per_s, deadband, .. } = *raw;
+    Some(Thruster { arm_m, curve, lag_s, slew_per_s, deadband, flaws: raw.flaws.clone() })
+}
+
+fn table(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, rows: &[raw::SettingAndThrust]) -> ThrustCurve {
+    let path = "thruster.table_pct_newton";
+    let points: Vec<(f64, f64)> = rows.iter().map(|row| (row.0 / 100.0, row.1)).collect();
+    if document.is_sound(path) {
+        for (i, row) in rows.iter().enumerate().skip(1) {
+            if points[i].0 <= points[i - 1].0 || points[i].1 <= points[i - 1].1 {
+                let message = format!("table_pct_newton has [{}, {}] here, expected both to rise", row.0, row.1);
+                diagnostics.note(document.at(&format!("{path}.{i}")), message);
+            }
+        }
+        let ends = (points.first().map(|first| first.0), points.last().map(|last| last.0));
+        if ends != (Some(-1.0), Some(1.0)) {
+            let message = "table_pct_newton does not span the settings, expected -100 first and 100 last";
+            diagnostics.note(document.at(path), message);
+        }
+        if !points.contains(&(0.0, 0.0)) {
+            let message = "table_pct_newton has no [0, 0], expected it: no setting, no thrust";
+            diagnostics.note(document.at(path), message);
+        }
+    }
+    ThrustCurve::Table { points }
+}

@@ -1,0 +1,470 @@
+//! A game file and all the files it names, checked.
+
+use super::boat::{FASTEST_PER_TICK, fastest_decay};
+use super::file_cache::FileCache;
+use super::start_position;
+use crate::boat::Boat;
+use crate::diagnostics::{Diagnostics, is_name};
+use crate::raw;
+use crate::read::{self, Document};
+use crate::sea::Sea;
+use crate::strategy::Strategy;
+use crate::{Kind, Scenario, Source, StartPosition, Team, Vehicle};
+use primitives::id::TeamId;
+use primitives::time::SimTime;
+use rules::Rules;
+use rules::field::Field;
+use serde::de::DeserializeOwned;
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// The most vehicles of a game.
+const MOST_VEHICLES: usize = 10_000;
+
+/// A vehicle whose start position is not known yet.
+pub(super) struct Entry {
+    pub(super) name: String,
+    /// Where it stands in the files.
+    pub(super) place: usize,
+    pub(super) team: TeamId,
+    pub(super) boat: usize,
+    strategy: usize,
+    /// The start position it states; `None` is the team's line.
+    pub(super) start_position: Option<StartPosition>,
+    pub(super) heading_deg: Option<f64>,
+    source: Source,
+}
+
+/// Who plays, as far as it is known, and the files that they refer to.
+struct Fleet<'a> {
+    document: &'a Document<raw::Game>,
+    field: Option<&'a Field>,
+    boats: FileCache<Boat>,
+    strategies: FileCache<Strategy>,
+    names: BTreeSet<String>,
+    entries: Vec<Entry>,
+}
+
+/// Checks a game.
+pub(crate) fn game(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) -> Option<Scenario> {
+    let raw = &document.raw;
+    let field = referenced(diagnostics, document, Kind::Field, &raw.field.0, super::field);
+    let rules = referenced(diagnostics, document, Kind::Rules, &raw.rules.0, super::rules);
+    let sea = sea(diagnostics, document);
+    let (tick, ticks_per_decision) = clock(diagnostics, document);
+    check_teams(diagnostics, document);
+    let mut fleet = Fleet {
+        document,
+        field: field.as_ref(),
+        boats: FileCache::new(|diagnostics, path, place, owner| {
+            let document = read::document_of(diagnostics, Kind::Boat, path, place, owner)?;
+            super::boat(diagnostics, &document)
+        }),
+        strategies: FileCache::by_owner(super::strategy_file),
+        names: BTreeSet::new(),
+        entries: vec![],
+    };
+    fleet.fill(diagnostics);
+    check_tick(diagnostics, document, tick, &fleet.boats.items);
+    check_looks(diagnostics, document, tick, rules.as_ref());
+    check_reseed(diagnostics, document);
+    let Fleet { boats, strategies, entries, .. } = fleet;
+    let (field, mut rules, sea) = (field?, rules?, sea?);
+    if !document.is_faultless(diagnostics) {
+        return None;
+    }
+    let start_positions = start_position::all(&entries, &field);
+    start_position::check_clear(diagnostics, &entries, &start_positions, &boats.items, &field);
+    check_models(diagnostics, &entries, &strategies.items);
+    check_duration(diagnostics, document);
+    rules.time_limit = raw.duration_s.map_or(rules.time_limit, SimTime::from_s);
+    let vehicles = entries.into_iter().zip(start_positions).map(|(entry, start_position)| Vehicle {
+        name: entry.name,
+        team: entry.team,
+        boat: entry.boat,
+        strategy: entry.strategy,
+        start_position,
+        source: entry.source,
+    });
+    let vehicles: Vec<Vehicle> = vehicles.collect();
+    let faults = super::fault::faults(diagnostics, document, &vehicles, &boats.items);
+    let mut link = raw.link.clone();
+    if !document.has("link.station") {
+        let middle = field.seen_from(TeamId(0), 0.5 * field.plan.width_m, 0.5 * field.plan.depth_m);
+        link.iter_mut().for_each(|link| link.station = middle);
+    }
+    let scenario = Scenario {
+        name: document.name.clone(),
+        seed: raw.seed,
+        reseed: raw.reseed.clone(),
+        tick,
+        ticks_per_decision,
+        patience_s: raw.patience_s,
+        order_ttl_s: raw.order_ttl_s,
+        link,
+        field,
+        rules,
+        sea,
+        teams: raw.team.iter().map(|team| Team { name: team.name.0.clone() }).collect(),
+        boats: boats.items,
+        strategies: strategies.items,
+        vehicles,
+        faults,
+        drawn: vec![],
+        recipe: None,
+    };
+    document.is_faultless(diagnostics).then_some(scenario)
+}
+
+/// A setting of what the game replaces would do nothing.
+fn check_duration(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) {
+    let is_set = |key: &str| diagnostics.overrides.settings.iter().any(|setting| setting.key == key);
+    if document.raw.duration_s.is_some() && is_set("rules.time_limit_s") {
+        let message =
+            "duration_s of the game takes the place of rules.time_limit_s, expected game.duration_s to be set";
+        diagnostics.note(document.at("duration_s"), message);
+    }
+}
+
+/// Seeds take over one after the other.
+fn check_reseed(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) {
+    for (i, pair) in document.raw.reseed.windows(2).enumerate() {
+        if pair[1].after_s <= pair[0].after_s {
+            let place = document.at(&format!("reseed.{}", i + 1));
+            let message =
+                format!("after_s is {}, expected more than {} of the one before", pair[1].after_s, pair[0].after_s);
+            diagnostics.note(place, message);
+        }
+    }
+}
+
+/// The game's sea, or the one that takes its place.
+fn sea(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) -> Option<Sea> {
+    if let Some(path) = diagnostics.overrides.sea.clone() {
+        let document = read::document(diagnostics, Kind::Sea, &path, None)?;
+        return super::sea(diagnostics, &document);
+    }
+    match &document.raw.sea {
+        Some(given) => referenced(diagnostics, document, Kind::Sea, &given.0, super::sea),
+        None if diagnostics.overrides.has_settings(Kind::Sea) => {
+            let path = Path::new("at_rest.toml");
+            let document = read::document_of_text(diagnostics, Kind::Sea, path, "water_density_kg_m3 = 1000")?;
+            super::sea(diagnostics, &document)
+        }
+        None => Some(Sea::at_rest()),
+    }
+}
+
+/// Checks the file of this kind that the key of the same name refers to.
+pub(super) fn referenced<D, R: DeserializeOwned, T>(
+    diagnostics: &mut Diagnostics,
+    document: &Document<D>,
+    kind: Kind,
+    given: impl AsRef<Path>,
+    check: fn(&mut Diagnostics, &Document<R>) -> Option<T>,
+) -> Option<T> {
+    referenced_at(diagnostics, document, kind, kind.name(), given, check)
+}
+
+/// Checks the file of this kind that the value at `key` refers to.
+pub(super) fn referenced_at<D, R: DeserializeOwned, T>(
+    diagnostics: &mut Diagnostics,
+    document: &Document<D>,
+    kind: Kind,
+    key: &str,
+    given: impl AsRef<Path>,
+    check: fn(&mut Diagnostics, &Document<R>) -> Option<T>,
+) -> Option<T> {
+    if !document.is_sound(key) {
+        return None;
+    }
+    let place = document.at(key);
+    let path = diagnostics.sources.resolve(place, given);
+    let document = read::document(diagnostics, kind, &path, Some(place))?;
+    check(diagnostics, &document)
+}
+
+/// The physics tick, and how many of them a decision lasts.
+fn clock(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) -> (SimTime, u32) {
+    let raw::Game { tick_s, decision_s, .. } = document.raw;
+    let (tick, decision) = (SimTime::from_s(tick_s), SimTime::from_s(decision_s));
+    if decision.0 % tick.0 != 0 {
+        let place = document.at(if document.has("decision_s") { "decision_s" } else { "tick_s" });
+        diagnostics.note(place, format!("decision_s is {decision_s}, expected a multiple of tick_s, {tick_s}"));
+    }
+    (tick, (decision.0 / tick.0) as u32)
+}
+
+/// A boat that is stable at the usual tick may not be at a longer one.
+fn check_tick(diagnostics: &mut Diagnostics, document: &Document<raw::Game>, tick: SimTime, boats: &[Boat]) {
+    for boat in boats.iter().filter(|_| document.has("tick_s")) {
+        let (motion, rate_per_s) = fastest_decay(boat);
+        if rate_per_s * tick.as_s() > FASTEST_PER_TICK {
+            let message = format!(
+                "tick_s is {}, expected at most {:.4}: the {motion} of boat {} dies out at {rate_per_s:.1} 1/s",
+                document.raw.tick_s,
+                FASTEST_PER_TICK / rate_per_s,
+                boat.name
+            );
+            diagnostics.note(document.at("tick_s"), message);
+        }
+    }
+}
+
+/// The referee looks at ticks only.
+fn check_looks(diagnostics: &mut Diagnostics, document: &Document<raw::Game>, tick: SimTime, rules: Option<&Rules>) {
+    let Some(rules) = rules else { return };
+    for (key, period) in [("tag_look_period_s", rules.tag_look_period), ("flag_look_period_s", rules.flag_look_period)]
+    {
+        if period.0 % tick.0 != 0 {
+            let (name, period_s, tick_s) = (&rules.name, period.as_s(), tick.as_s());
+            let message = format!("{key} of rules {name} is {period_s}, expected a multiple of tick_s, {tick_s}");
+            diagnostics.note(document.at("rules"), message);
+        }
+    }
+}
+
+/// Models are made for teams of one size, unless they leave room for others.
+fn check_models(diagnostics: &mut Diagnostics, entries: &[Entry], strategies: &[Strategy]) {
+    for Entry { name, place, team, strategy, .. } in entries {
+        let mates = entries.iter().filter(|other| other.team == *team).count() - 1;
+        let enemies = entries.len() - 1 - mates;
+        for model in strategies[*strategy].models() {
+            let (takes, size) = (model.input_size(), model.spec.observation.size(mates, enemies));
+            if takes != size {
+                let message = format!(
+                    "the model {} takes {takes} numbers, expected {size}: {name} has {mates} mates and {enemies} enemies",
+                    model.name
+                );
+                diagnostics.note(*place, message);
+            }
+        }
+    }
+}
+
+fn check_teams(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) {
+    let teams: Vec<&str> = document.raw.team.iter().map(|team| team.name.0.as_str()).collect();
+    for (i, name) in teams.iter().enumerate() {
+        if !name.is_empty() && teams[..i].contains(name) {
+            let place = document.at(&format!("team.{i}.name"));
+            diagnostics.note(place, format!("name is {name:?} again, expected a different one for each team"));
+        }
+    }
+    let is_unknown = |team: &&str| !teams.contains(team);
+    let overrides = &diagnostics.overrides;
+    let (names, replaced) = (teams.join(", "), overrides.strategies.keys().map(String::as_str).find(is_unknown));
+    let message = replaced
+        .map(|team| format!("there is no team {team:?} to give another strategy to, expected one of {names}"))
+        .or_else(|| {
+            let changed = overrides.settings.iter().find(|setting| setting.team().as_ref().is_some_and(is_unknown))?;
+            Some(format!("{}: there is no such team, expected one of {names} after strategy", changed.key))
+        });
+    if let Some(message) = message {
+        diagnostics.note_if_intact(document.at(""), message);
+    }
+}
+
+impl Fleet<'_> {
+    fn fill(&mut self, diagnostics: &mut Diagnostics) {
+        let document = self.document;
+        for (i, vehicle) in document.raw.vehicle.iter().enumerate() {
+            self.add_vehicle(diagnostics, &format!("vehicle.{i}"), vehicle);
+        }
+        for (i, fleet) in document.raw.fleet.iter().enumerate() {
+            self.add_fleet(diagnostics, &format!("fleet.{i}"), fleet);
+        }
+        if document.raw.vehicle.is_empty() && document.raw.fleet.is_empty() && document.is_sound("vehicle") {
+            let message = "vehicle is missing, expected at least one [[vehicle]] or [[fleet]]";
+            diagnostics.note_if_intact(document.at(""), message);
+        }
+        // The teams' strategies are checked even where no boat of theirs follows them.
+        let followed = self.strategies.items.len();
+        for i in 0..document.raw.team.len() {
+            self.strategy_of_team(diagnostics, i);
+        }
+        self.strategies.items.truncate(followed);
+    }
+
+    fn add_vehicle(&mut self, diagnostics: &mut Diagnostics, path: &str, raw: &raw::Vehicle) {
+        let team = self.team(diagnostics, path, &raw.team);
+        let boat = self.boat(diagnostics, path, raw.boat.as_ref(), &raw.name.0);
+        let strategy = self.strategy(diagnostics, path, raw.strategy.as_ref(), team);
+        let stated = team
+            .zip(self.field)
+            .map(|(team, field)| start_position::stated(diagnostics, self.document, path, raw, team, field));
+        let place = self.document.at(path);
+        if self.document.is_sound(&format!("{path}.name"))
+            && self.is_new_name(diagnostics, self.document.at(&format!("{path}.name")), &raw.name.0)
+            && is_room(diagnostics, place, self.entries.len() + 1)
+            && let (Some(team), Some(boat), Some(strategy)) = (team, boat, strategy)
+        {
+            self.entries.push(Entry {
+                name: raw.name.0.clone(),
+                place: if raw.at.is_some() { self.document.at(&format!("{path}.at")) } else { place },
+                team,
+                boat,
+                strategy,
+                start_position: stated.flatten(),
+                heading_deg: raw.heading_deg,
+                source: if diagnostics.overrides.simulate_all { Source::Simulated } else { raw.source },
+            });
+        }
+    }
+
+    fn add_fleet(&mut self, diagnostics: &mut Diagnostics, path: &str, raw: &raw::Fleet) {
+        let team = self.team(diagnostics, path, &raw.team);
+        let strategy = self.strategy(diagnostics, path, raw.strategy.as_ref(), team);
+        let spawn_path = format!("{path}.spawn");
+        let start_position = raw.spawn.as_ref().zip(self.field).and_then(|(spawn, field)| {
+            start_position::somewhere(diagnostics, self.document, &spawn_path, spawn, raw.count, field)
+        });
+        let pattern = raw.name.clone().unwrap_or_else(|| format!("{}_{{}}", raw.team));
+        let boat = self.boat(diagnostics, path, raw.boat.as_ref(), &pattern.replace("{}", "1"));
+        let (Some(team), Some(boat), Some(strategy)) = (team, boat, strategy) else { return };
+        let place = self.document.at(path);
+        let name_path = format!("{path}.name");
+        let name_place = self.document.at(&name_path);
+        if !pattern.contains("{}") {
+            diagnostics.note(name_place, format!("name is {pattern:?}, expected {{}} in it, where the number goes"));
+            return;
+        }
+        if !self.document.is_sound(&format!("{path}.count"))
+            || !is_room(diagnostics, place, self.entries.len() + raw.count)
+        {
+            return;
+        }
+        for number in 1..=raw.count {
+            let name = pattern.replace("{}", &number.to_string());
+            if !self.is_new_name(diagnostics, name_place, &name) {
+                return;
+            }
+            let boat = match number {
+                1 => Some(boat),
+                _ => self.boat(diagnostics, path, raw.boat.as_ref(), &name),
+            };
+            let (Some(boat), start_position) = (boat, start_position.clone()) else { return };
+            let (heading_deg, source) = (None, Source::Simulated);
+            self.entries.push(Entry { name, place, team, boat, strategy, start_position, heading_deg, source });
+        }
+    }
+
+    fn is_new_name(&mut self, diagnostics: &mut Diagnostics, place: usize, name: &str) -> bool {
+        if !is_name(name) {
+            return diagnostics.is_name(place, "name", name);
+        }
+        let is_new = self.names.insert(name.to_owned());
+        if !is_new {
+            diagnostics.note(place, format!("name is {name:?} again, expected a different one for each vehicle"));
+        }
+        is_new
+    }
+
+    /// The team of the vehicle or fleet at `path`.
+    fn team(&self, diagnostics: &mut Diagnostics, path: &str, name: &str) -> Option<TeamId> {
+        let path = format!("{path}.team");
+        let teams = &self.document.raw.team;
+        let index = teams.iter().position(|team| team.name.0 == name);
+        if index.is_none() && self.document.is_sound(&path) {
+            let names = teams.iter().map(|team| team.name.0.as_str()).collect::<Vec<_>>().join(", ");
+            diagnostics.note_if_intact(self.document.at(&path), format!("team is {name:?}, expected one of {names}"));
+        }
+        index.map(|index| TeamId(index as u8))
+    }
+
+    /// The boat of the vehicle `name`, which stands at `path`.
+    fn boat(
+        &mut self,
+        diagnostics: &mut Diagnostics,
+        path: &str,
+        given: Option<&raw::FilePath>,
+        name: &str,
+    ) -> Option<usize> {
+        let own_path = format!("{path}.boat");
+        let (given, path) = match (given, &self.document.raw.boat) {
+            (Some(given), _) => (given, own_path.as_str()),
+            (None, Some(given)) => (given, "boat"),
+            (None, None) => {
+                self.missing(diagnostics, &own_path, "the path of a boat file here or for the game");
+                return None;
+            }
+        };
+        self.boats.index(diagnostics, &given.0, self.document.at(path), name)
+    }
+
+    /// The strategy of the vehicle or fleet at `path`.
+    fn strategy(
+        &mut self,
+        diagnostics: &mut Diagnostics,
+        path: &str,
+        given: Option<&raw::FilePath>,
+        team: Option<TeamId>,
+    ) -> Option<usize> {
+        let path = format!("{path}.strategy");
+        let is_replaced = |diagnostics: &Diagnostics, team: Option<TeamId>| {
+            let name = team.map(|team| &self.document.raw.team[team.index()].name.0);
+            name.is_some_and(|name| diagnostics.overrides.strategies.contains_key(name))
+        };
+        let given = given.filter(|_| !is_replaced(diagnostics, team));
+        if let (Some(given), true) = (given, diagnostics.overrides.exchange_strategies) {
+            let message = format!("strategy is {}, expected none here: the teams exchange theirs", given.0);
+            diagnostics.note(self.document.at(&path), message);
+            return None;
+        }
+        let team = team.map(|team| self.whose_strategy(diagnostics, team));
+        let owner = team
+            .map_or("", |team| diagnostics.overrides.owner_of_strategy(&self.document.raw.team[team.index()].name.0));
+        let is_replaced = is_replaced(diagnostics, team);
+        let states_one = |team: TeamId| self.document.raw.team[team.index()].strategy.is_some();
+        match (given, team) {
+            (Some(given), _) => {
+                self.strategies.index(diagnostics, &strategy_path(&given.0), self.document.at(&path), owner)
+            }
+            (None, Some(team)) if is_replaced || states_one(team) => self.strategy_of_team(diagnostics, team.index()),
+            (None, Some(_)) => {
+                self.missing(diagnostics, &path, "the path of a strategy file here or for the team");
+                None
+            }
+            (None, None) => None,
+        }
+    }
+
+    /// The team whose strategy the boats of a team follow.
+    fn whose_strategy(&self, diagnostics: &Diagnostics, team: TeamId) -> TeamId {
+        let is_exchanged = diagnostics.overrides.exchange_strategies && self.document.raw.team.len() == 2;
+        if is_exchanged { TeamId(1 - team.0) } else { team }
+    }
+
+    /// The strategy that a team states, or the one that takes its place.
+    fn strategy_of_team(&mut self, diagnostics: &mut Diagnostics, team: usize) -> Option<usize> {
+        let raw::Team { name, strategy } = &self.document.raw.team[team];
+        let owner = diagnostics.overrides.owner_of_strategy(&name.0);
+        if let Some(path) = diagnostics.overrides.strategies.get(&name.0).cloned() {
+            return self.strategies.index_at(diagnostics, &path, None, owner);
+        }
+        let place = self.document.at(&format!("team.{team}.strategy"));
+        self.strategies.index(diagnostics, &strategy_path(&strategy.as_ref()?.0), place, owner)
+    }
+
+    /// Notes that a vehicle or fleet lacks a key, which its game or team could give as well.
+    fn missing(&self, diagnostics: &mut Diagnostics, path: &str, expected: &str) {
+        if self.document.is_sound(path) {
+            let key: Vec<&str> = path.split('.').filter(|part| part.parse::<usize>().is_err()).collect();
+            let message = format!("{} is missing, expected {expected}", key.join("."));
+            diagnostics.note_if_intact(self.document.at(path), message);
+        }
+    }
+}
+
+/// Whether a game of so many vehicles is not too large.
+fn is_room(diagnostics: &mut Diagnostics, place: usize, total: usize) -> bool {
+    if total > MOST_VEHICLES {
+        diagnostics.note(place, format!("vehicles are {total} with this one, expected at most {MOST_VEHICLES}"));
+    }
+    total <= MOST_VEHICLES
+}
+
+/// The path of a strategy that is given by a path, or by the name of one in the folder of strategies.
+fn strategy_path(given: &str) -> String {
+    let is_name = !given.contains(['/', '\\', '.']);
+    if is_name { format!("../{}/{given}.toml", Kind::Strategy.folder()) } else { given.to_owned() }
+}

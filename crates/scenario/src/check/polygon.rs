@@ -1,0 +1,32 @@
+//! A polygon of a file, checked.
+
+use primitives::frame::Ned;
+use rules::field::{do_meet, turn};
+
+/// Whether no two sides of a polygon meet but neighbours at their corner; which corner is at fault, and why.
+pub(super) fn check_corners(corners: &[Ned]) -> Result<(), (usize, String)> {
+    let count = corners.len();
+    let side = |i: usize| (corners[i], corners[(i + 1) % count]);
+    for i in 0..count {
+        if corners[i] == side(i).1 {
+            return Err((i, "polygon has two corners in one place, expected different ones".into()));
+        }
+        // Neighbours share a corner; they may only not fold back onto one another.
+        let crossing = (i + 1..count).find(|&j| {
+            let (is_next, is_before) = (j == i + 1, (j + 1) % count == i);
+            match (is_next, is_before) {
+                (true, _) => folds_back(corners[i], corners[j], side(j).1),
+                (_, true) => folds_back(corners[j], corners[i], side(i).1),
+                _ => do_meet(side(i), side(j)),
+            }
+        });
+        if let Some(j) = crossing {
+            return Err((j, format!("polygon's side {} meets its side {}, expected no crossing", i + 1, j + 1)));
+        }
+    }
+    Ok(())
+}
+
+fn folds_back(a: Ned, b: Ned, c: Ned) -> bool {
+    turn(a, b, c) == 0.0 && (a - b).dot(c - b) > 0.0
+}

@@ -1,0 +1,38 @@
+//! A sea file, checked.
+
+mod current;
+mod waves;
+
+use crate::diagnostics::Diagnostics;
+use crate::raw;
+use crate::read::Document;
+use crate::sea::{Gusts, Sea, Wind};
+
+/// Checks a sea.
+pub(crate) fn sea(diagnostics: &mut Diagnostics, document: &Document<raw::Sea>) -> Option<Sea> {
+    let raw = &document.raw;
+    let sea = Sea {
+        name: document.name.clone(),
+        water_density_kg_m3: raw.water_density_kg_m3,
+        depth_m: raw.depth_m,
+        waves: raw.waves.as_ref().and_then(|waves| waves::waves(diagnostics, document, waves)),
+        wind: raw.wind.as_ref().map(wind),
+        current: current::current(diagnostics, document, &raw.current),
+    };
+    document.is_faultless(diagnostics).then_some(sea)
+}
+
+/// The wind of a sea.
+fn wind(raw: &raw::Wind) -> Wind {
+    let raw::Wind { intensity, across_ratio, length_m, .. } = *raw;
+    let gusts = match raw.gusts {
+        raw::Gusts::None => Gusts::None,
+        raw::Gusts::OrnsteinUhlenbeck => Gusts::OrnsteinUhlenbeck { intensity, across_ratio, length_m },
+    };
+    Wind {
+        speed_10m_m_s: raw.speed_m_s,
+        from_rad: raw.from_deg.to_radians(),
+        profile_exponent: raw.profile_exponent,
+        gusts,
+    }
+}

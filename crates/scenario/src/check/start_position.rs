@@ -1,0 +1,162 @@
+//! Where boats start: at a position, at a named point, in the team's line, or somewhere in a rectangle.
+
+use super::field::is_inside;
+use super::game::Entry;
+use crate::StartPosition;
+use crate::boat::Boat;
+use crate::diagnostics::Diagnostics;
+use crate::guess::did_you_mean;
+use crate::raw;
+use crate::read::Document;
+use primitives::angle::rad_from_compass_deg;
+use primitives::frame::{Ned, Pose};
+use primitives::id::TeamId;
+use primitives::near::Near;
+use rules::field::Field;
+
+/// What a default rectangle leaves free at either side, m.
+const MARGIN_M: f64 = 2.0;
+/// Boats drawn one by one jam when their gaps cover about 0.69 of the rectangle as squares; half is easy.
+const FULLEST: f64 = 0.5;
+
+/// The start position that the vehicle at `path` states; `None` is the team's line.
+pub(super) fn stated(
+    diagnostics: &mut Diagnostics,
+    document: &Document<raw::Game>,
+    path: &str,
+    raw: &raw::Vehicle,
+    team: TeamId,
+    field: &Field,
+) -> Option<StartPosition> {
+    let place = |key: &str| document.at(&format!("{path}.{key}"));
+    if let Some(spawn) = &raw.spawn {
+        if raw.at.is_some() {
+            diagnostics.note(place("at"), "vehicle has at and spawn, expected one of them");
+        }
+        if raw.heading_deg.is_some() {
+            diagnostics.note(place("heading_deg"), "heading_deg is given with spawn, expected with at only");
+        }
+        return somewhere(diagnostics, document, &format!("{path}.spawn"), spawn, 1, field);
+    }
+    let at = match raw.at.as_ref()? {
+        raw::Position::At([x, y]) => Ned::from_xy(*x, *y),
+        raw::Position::Point(name) => {
+            is_point(diagnostics, place("at"), "at", name).then_some(())?;
+            field.point(team, name)?
+        }
+    };
+    is_inside(diagnostics, field, place("at"), at);
+    let heading_deg = raw.heading_deg.unwrap_or(field.facing_deg(team));
+    Some(StartPosition::At(Pose { at, psi_rad: rad_from_compass_deg(heading_deg) }))
+}
+
+/// The rectangle that the `spawn` at `path` states, if `count` boats fit into it.
+pub(super) fn somewhere(
+    diagnostics: &mut Diagnostics,
+    document: &Document<raw::Game>,
+    path: &str,
+    raw: &raw::Spawn,
+    count: usize,
+    field: &Field,
+) -> Option<StartPosition> {
+    let (width_m, depth_m, gap_m) = (field.plan.width_m, field.plan.depth_m, raw.gap_m);
+    let mut bounds = |key: &str, given: Option<[f64; 2]>, whole_m: f64, usual_m: f64| {
+        let Some([from_m, to_m]) = given else { return Some((MARGIN_M, usual_m - MARGIN_M)) };
+        let place = document.at(&format!("{path}.{key}"));
+        if let Some(beyond_m) = [from_m, to_m].into_iter().find(|bound_m| *bound_m > whole_m) {
+            diagnostics.note(place, format!("{key} is {beyond_m}, expected 0 to {whole_m}"));
+            return None;
+        }
+        if from_m >= to_m {
+            diagnostics.note(place, format!("{key} is [{from_m}, {to_m}], expected the smaller one first"));
+            return None;
+        }
+        Some((from_m, to_m))
+    };
+    let along_m = bounds("along_m", raw.along_m, width_m, width_m / 2.0);
+    let across_m = bounds("across_m", raw.across_m, depth_m, depth_m);
+    let (along_m, across_m) = (along_m?, across_m?);
+    let area_m2 = (along_m.1 - along_m.0) * (across_m.1 - across_m.0);
+    let wanted_m2 = count as f64 * gap_m * gap_m;
+    if count > 1 && wanted_m2 > FULLEST * area_m2 {
+        let message = format!(
+            "spawn has {area_m2:.0} m² for {count} boats with gap_m {gap_m}, expected at least {:.0} m²",
+            wanted_m2 / FULLEST
+        );
+        diagnostics.note(document.at(path), message);
+        return None;
+    }
+    Some(StartPosition::Somewhere { along_m, across_m, gap_m })
+}
+
+/// The start positions of all entries, in their order; those that state none lie in their team's line: midway
+/// between own flag and scrimmage line, evenly across, from port to starboard, bows to the opponent.
+pub(super) fn all(entries: &[Entry], field: &Field) -> Vec<StartPosition> {
+    let plan = &field.plan;
+    let along_m = (plan.flag_inset_m + plan.width_m / 2.0) / 2.0;
+    let in_line = |team: TeamId| entries.iter().filter(|e| e.team == team && e.start_position.is_none()).count();
+    let in_line: Vec<usize> = (0..2).map(|team| in_line(TeamId(team))).collect();
+    let mut placed = [0_usize; 2];
+    let mut start_position_of = |entry: &Entry| {
+        if let Some(start_position) = &entry.start_position {
+            return start_position.clone();
+        }
+        let team = entry.team.index();
+        placed[team] += 1;
+        let from_port_m = plan.depth_m * placed[team] as f64 / (in_line[team] + 1) as f64;
+        let at = match team {
+            0 => field.at(along_m, plan.depth_m - from_port_m),
+            _ => field.at(plan.width_m - along_m, from_port_m),
+        };
+        let heading_deg = entry.heading_deg.unwrap_or(field.facing_deg(entry.team));
+        StartPosition::At(Pose { at, psi_rad: rad_from_compass_deg(heading_deg) })
+    };
+    entries.iter().map(&mut start_position_of).collect()
+}
+
+/// Notes boats that would start on top of one another, or on an obstacle.
+pub(super) fn check_clear(
+    diagnostics: &mut Diagnostics,
+    entries: &[Entry],
+    start_positions: &[StartPosition],
+    boats: &[Boat],
+    field: &Field,
+) {
+    let mut placed: Vec<(&Entry, Ned, f64)> = vec![];
+    for (entry, start_position) in entries.iter().zip(start_positions) {
+        let StartPosition::At(pose) = start_position else { continue };
+        let length_m = boats[entry.boat].length_m;
+        if field.plan.obstacles.iter().any(|obstacle| obstacle.distance(pose.at) <= length_m / 2.0) {
+            let (x, y) = (pose.at.east, pose.at.north);
+            let message = format!("{} starts at [{x}, {y}], on an obstacle, expected open water", entry.name);
+            diagnostics.note(entry.place, message);
+        }
+        placed.push((entry, pose.at, length_m));
+    }
+    let longest_m = placed.iter().map(|(_, _, length_m)| *length_m).fold(0.1, f64::max);
+    let mut near = Near::default();
+    let mut last = usize::MAX;
+    for pair in near.pairs(|i| placed[i].1, placed.len(), longest_m) {
+        let ((a, _, a_length_m), (b, _, b_length_m)) = (placed[usize::from(pair.a)], placed[usize::from(pair.b)]);
+        let (apart_m, least_m) = (pair.distance_squared.sqrt(), a_length_m.max(b_length_m));
+        // A boat in a crowd is told of once, and a crowded fleet once.
+        if apart_m < least_m && b.place != last {
+            last = b.place;
+            let message =
+                format!("{} starts {apart_m:.2} m from {}, expected a boat's length, {least_m} m", b.name, a.name);
+            diagnostics.note(b.place, message);
+        }
+    }
+}
+
+/// Whether `name` is one of the field's named points; notes it if not.
+fn is_point(diagnostics: &mut Diagnostics, at: usize, key: &str, name: &str) -> bool {
+    let names = Field::point_names();
+    let is_known = names.iter().any(|known| known == name);
+    if !is_known {
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let (points, guess) = (names.join(" "), did_you_mean(name, &names));
+        diagnostics.note(at, format!("{key} is {name:?}, expected a named point, one of {points}{guess}"));
+    }
+    is_known
+}

@@ -1,0 +1,163 @@
+//! Expressions as text: parsed as CEL, with the place of every part in the file.
+
+use crate::diagnostics::Diagnostics;
+use cel::common::ast::{IdedExpr, SourceInfo};
+use cel::parser::PrattParser;
+use std::sync::Arc;
+
+/// The longest expression, characters.
+pub(super) const LONGEST: usize = 1000;
+/// How deep its parts may be nested.
+pub(super) const DEEPEST: usize = 30;
+
+/// An expression, parsed.
+pub(super) struct Parsed {
+    pub(super) root: IdedExpr,
+    places: Option<Arc<SourceInfo>>,
+    /// For every byte of the expression, and its end, where it stands in the virtual text.
+    offsets: Vec<usize>,
+}
+
+impl Parsed {
+    /// Where a part stands in the virtual text.
+    pub(super) fn place(&self, part: &IdedExpr) -> usize {
+        let start = self.places.as_ref().and_then(|places| places.offset_for(part.id)).map_or(0, |(start, _)| start);
+        self.offsets.get(start as usize).or(self.offsets.last()).copied().unwrap_or(0)
+    }
+}
+
+/// Parses the expression given for `key`, which stands at `at`; what is wrong with its syntax is noted.
+pub(super) fn parse(diagnostics: &mut Diagnostics, key: &str, at: usize, text: &str) -> Option<Parsed> {
+    let length = text.chars().count();
+    if length > LONGEST {
+        diagnostics.note(at, format!("{key} is {length} characters long, expected at most {LONGEST}"));
+        return None;
+    }
+    let offsets = offsets(diagnostics.sources.text_from(at), at, text);
+    let parser = || PrattParser::new().max_recursion_depth(DEEPEST as u16);
+    match parser().parse(text) {
+        Ok(root) => {
+            // The parser tells the places of the parts only where the syntax is wrong: a bracket too many makes it so.
+            let places = parser().parse(&format!("{text}\n)")).err();
+            let places = places.and_then(|errors| errors.errors.into_iter().find_map(|error| error.source_info));
+            Some(Parsed { root, places, offsets })
+        }
+        Err(errors) => {
+            let error = errors.errors.first()?;
+            let start = byte_at(text, error.pos);
+            let at = offsets.get(start).or(offsets.last()).copied().unwrap_or(at);
+            let complaint = complaint(&error.msg, text.get(start..).unwrap_or_default());
+            diagnostics.note(at, format!("{key} {complaint}"));
+            None
+        }
+    }
+}
+
+/// The byte of `text` at a line and column, which count characters from 1; 0 and 0 is the start.
+fn byte_at(text: &str, (line, column): (isize, isize)) -> usize {
+    let lines = (line - 1).max(0) as usize;
+    let start: usize = text.split_inclusive('\n').take(lines).map(str::len).sum();
+    let rest = text.get(start..).unwrap_or_default();
+    let columns = (column - 1).max(0) as usize;
+    start + rest.char_indices().nth(columns).map_or(rest.len(), |(byte, _)| byte)
+}
+
+/// The parser's complaint in the words of these files; `rest` is the expression from there on.
+fn complaint(message: &str, rest: &str) -> String {
+    if message.contains("recursion limit") {
+        return format!("is nested too deeply, expected at most {DEEPEST} brackets in each other");
+    }
+    if rest.trim().is_empty() {
+        let wanted = if message.starts_with("expected") { message } else { "expected a value there" };
+        return format!("ends too early, {wanted}");
+    }
+    let token = token(rest);
+    let guess = match token {
+        "=" => " (did you mean ==?)",
+        "and" | "AND" | "&" => " (did you mean &&?)",
+        "or" | "OR" | "|" => " (did you mean ||?)",
+        "not" | "NOT" => " (did you mean !?)",
+        _ => "",
+    };
+    match message {
+        _ if message.contains("expecting <EOF>") => {
+            format!("has {token:?} here, expected an operator or the end{guess}")
+        }
+        "unexpected token" | "unexpected character" => format!("has {token:?} here, expected a value{guess}"),
+        _ if message.starts_with("unexpected single") => format!("has {token:?} here, expected an operator{guess}"),
+        _ if message.starts_with("reserved identifier") => {
+            format!("has {token:?} here, expected a name that CEL does not reserve")
+        }
+        _ if message.starts_with("expected") => format!("has {token:?} here, {message}"),
+        _ => format!("has {token:?} here: {message}"),
+    }
+}
+
+/// The first word or sign of `rest`.
+fn token(rest: &str) -> &str {
+    let is_word = |c: char| c.is_alphanumeric() || c == '_' || c == '.';
+    let end = match rest.chars().next() {
+        Some(first) if is_word(first) => rest.find(|c| !is_word(c)).unwrap_or(rest.len()),
+        Some(first) => first.len_utf8(),
+        None => 0,
+    };
+    &rest[..end]
+}
+
+/// Where each byte of a string value, and its end, stands, if the value as written begins `source`, at `start`.
+fn offsets(source: &str, start: usize, value: &str) -> Vec<usize> {
+    let opening = ["\"\"\"", "'''", "\"", "'"].into_iter().find(|quotes| source.starts_with(quotes)).unwrap_or("");
+    let has_escapes = opening.starts_with('"');
+    let mut at = opening.len();
+    if opening.len() == 3 {
+        let newline = ["\r\n", "\n"].into_iter().find(|newline| source[at..].starts_with(newline));
+        at += newline.map_or(0, str::len);
+    }
+    let mut offsets = vec![];
+    for c in value.chars() {
+        let mut rest = source.get(at..).unwrap_or_default();
+        // A backslash at the end of a line stands for nothing, as does the white space after it.
+        let continued = |escape: &&str| has_escapes && escape.starts_with(char::is_whitespace);
+        while let Some(escape) = rest.strip_prefix('\\').filter(continued) {
+            rest = escape.trim_start();
+        }
+        at = source.len() - rest.len();
+        offsets.extend(std::iter::repeat_n(start + at, c.len_utf8()));
+        at += match rest.as_bytes() {
+            [b'\\', b'u', ..] if has_escapes => 6,
+            [b'\\', b'U', ..] if has_escapes => 10,
+            [b'\\', b'x', ..] if has_escapes => 4,
+            [b'\\', ..] if has_escapes => 2,
+            [b'\r', b'\n', ..] if c == '\n' => 2,
+            _ => c.len_utf8(),
+        };
+    }
+    offsets.push(start + at);
+    offsets
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_byte_of_a_string_is_found_where_it_was_written() {
+        for (source, value, want) in [
+            ("\"ab\" # c", "ab", vec![11, 12, 13]),
+            ("'a\\b'", "a\\b", vec![11, 12, 13, 14]),
+            ("\"\"\"\nab\"\"\"", "ab", vec![14, 15, 16]),
+            ("'''\r\nab'''", "ab", vec![15, 16, 17]),
+            (r#""\"x\u00e9y""#, "\"xéy", vec![11, 13, 14, 14, 20, 21]),
+            ("\"\"\"a \\\n   b\"\"\"", "a b", vec![13, 14, 20, 21]),
+        ] {
+            assert_eq!(offsets(source, 10, value), want, "{source}");
+        }
+    }
+
+    #[test]
+    fn a_line_and_a_column_are_a_byte() {
+        for (pos, want) in [((1, 1), 0), ((1, 3), 3), ((2, 1), 5), ((2, 9), 7), ((0, 0), 0), ((9, 9), 7)] {
+            assert_eq!(byte_at("aéb\ncd", pos), want, "{pos:?}");
+        }
+    }
+}

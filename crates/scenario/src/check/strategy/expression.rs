@@ -1,0 +1,268 @@
+//! Expressions, checked: names become what they stand for, and types must fit.
+
+use super::cel::{DEEPEST, Parsed};
+use super::scope::Scope;
+use crate::guess::did_you_mean;
+use crate::strategy::{Expression, Fact, Join, Kind, Measure, Named, Place};
+use ::cel::common::ast::{CallExpr, Expr, IdedExpr, LiteralValue, operators};
+
+/// Words that CEL keeps for itself.
+const RESERVED: &str = "as break const continue else false for function if import in let loop package namespace null return true \
+                        var void while";
+/// What stands for a call and is no measure.
+pub(super) const CALLS: [&str; 3] = ["min", "max", "mates"];
+
+/// A part of an expression, and of which kind it is. A text that is a constant has itself for its only value.
+type Read = (Expression, Kind);
+
+/// The expression that was parsed for `key`, which must be a truth or a number as `wanted`; what is wrong is noted.
+pub(super) fn read(scope: &mut Scope<'_>, key: &str, parsed: &Parsed, wanted: &Kind) -> Option<Expression> {
+    Reader { scope, key, parsed, among_mates: false, depth: 0 }.of_kind(&parsed.root, wanted)
+}
+
+struct Reader<'a, 'b> {
+    scope: &'a mut Scope<'b>,
+    key: &'a str,
+    parsed: &'a Parsed,
+    /// Within `mates(...)`, where only shared variables are known.
+    among_mates: bool,
+    depth: usize,
+}
+
+impl Reader<'_, '_> {
+    /// Notes what is wrong with a part.
+    fn refuse<T>(&mut self, part: &IdedExpr, message: &str) -> Option<T> {
+        let message = format!("{} {message}", self.key);
+        self.scope.diagnostics.note(self.parsed.place(part), message);
+        None
+    }
+
+    fn of_kind(&mut self, part: &IdedExpr, wanted: &Kind) -> Option<Expression> {
+        let (expression, found) = self.any(part)?;
+        if found == *wanted {
+            return Some(expression);
+        }
+        let wanted = if *wanted == Kind::Truth { "true or false, such as a comparison" } else { "a number" };
+        self.refuse(part, &format!("has {} here, expected {wanted}", in_words(&expression, &found)))
+    }
+
+    fn any(&mut self, part: &IdedExpr) -> Option<Read> {
+        if self.depth > DEEPEST {
+            return self.refuse(part, &format!("is nested too deeply here, expected at most {DEEPEST} levels"));
+        }
+        match &part.expr {
+            Expr::Literal(literal) => self.literal(part, literal),
+            Expr::Ident(name) => self.name(part, name),
+            Expr::Call(call) if call.target.is_none() => {
+                self.depth += 1;
+                let read = self.call(part, call);
+                self.depth -= 1;
+                read
+            }
+            Expr::Call(call) => self.not_allowed(part, &format!("the method {}()", call.func_name)),
+            Expr::Select(select) if select.test => self.not_allowed(part, "has()"),
+            Expr::Select(select) => self.not_allowed(part, &format!("the field .{}", select.field)),
+            Expr::List(_) => self.not_allowed(part, "a list"),
+            Expr::Map(_) | Expr::Struct(_) => self.not_allowed(part, "a map"),
+            Expr::Comprehension(_) => self.not_allowed(part, "a macro"),
+            Expr::Unspecified => self.not_allowed(part, "nothing"),
+        }
+    }
+
+    fn not_allowed<T>(&mut self, part: &IdedExpr, what: &str) -> Option<T> {
+        let allowed = "numbers, texts, true, false, names, ! - + * / < <= > >= == != && || ?:, min(), max(), mates()";
+        let measures = Measure::names().join("(), ");
+        self.refuse(part, &format!("has {what} here, expected only {allowed} and the measures {measures}()"))
+    }
+
+    fn literal(&mut self, part: &IdedExpr, literal: &LiteralValue) -> Option<Read> {
+        let number = |value: f64| Some((Expression::Constant(value), Kind::Number));
+        match literal {
+            LiteralValue::Boolean(is) => Some((Expression::truth(*is.inner()), Kind::Truth)),
+            LiteralValue::Double(value) => number(*value.inner()),
+            LiteralValue::Int(value) => number(*value.inner() as f64),
+            LiteralValue::UInt(value) => number(*value.inner() as f64),
+            LiteralValue::String(text) => Some((Expression::Constant(0.0), Kind::Text(vec![text.inner().to_owned()]))),
+            LiteralValue::Bytes(_) => self.not_allowed(part, "a string of bytes"),
+            LiteralValue::Null => self.not_allowed(part, "null"),
+        }
+    }
+
+    fn name(&mut self, part: &IdedExpr, name: &str) -> Option<Read> {
+        let variables = self.scope.variables;
+        if let Some((index, variable)) = self.scope.variable(name) {
+            if self.among_mates && !variable.shared {
+                return self.refuse_to_mates(part, name, "not shared");
+            }
+            return Some((Expression::Variable(index), variable.kind.clone()));
+        }
+        if let Some(fact) = Fact::by_name(name) {
+            if self.among_mates {
+                return self.refuse_to_mates(part, name, "a fact");
+            }
+            return Some((Expression::Fact(fact), Kind::of(fact.is_truth())));
+        }
+        if Place::by_name(name).is_some() {
+            let message = format!("has the place {name} here, expected it in a measure, as in distance({name})");
+            return self.refuse(part, &message);
+        }
+        let mut known: Vec<&str> = variables.iter().map(|variable| variable.name.as_str()).collect();
+        let listed = if known.is_empty() { String::new() } else { format!(" ({})", known.join(", ")) };
+        known.extend(Fact::names());
+        let message = format!(
+            "has {name:?} here, which is unknown, expected a variable{listed}, a fact such as tagged or time_s, or a call \
+             such as distance(own_flag){}",
+            did_you_mean(name, &known)
+        );
+        self.refuse(part, &message)
+    }
+
+    fn refuse_to_mates<T>(&mut self, part: &IdedExpr, name: &str, what: &str) -> Option<T> {
+        self.refuse(part, &format!("asks mates for {name}, which is {what}, expected a shared variable"))
+    }
+
+    fn call(&mut self, part: &IdedExpr, call: &CallExpr) -> Option<Read> {
+        // CEL calls an infix operator by its sign between underscores.
+        let name = call.func_name.as_str();
+        let sign = name.trim_matches('_');
+        let join = Join::by_name(sign).filter(|_| CALLS.contains(&sign) == (sign == name));
+        match (join, name, call.args.as_slice()) {
+            (Some(join @ (Join::Equal | Join::Unequal)), _, [a, b]) => self.equality(part, join, a, b),
+            (Some(join), _, [a, b]) => {
+                let wanted = Kind::of(matches!(join, Join::And | Join::Or));
+                let (a, b) = (self.of_kind(a, &wanted), self.of_kind(b, &wanted));
+                Some((Expression::Join(join, Box::new((a?, b?))), Kind::of(join.is_truth())))
+            }
+            (_, operators::LOGICAL_NOT, [a]) => {
+                Some((Expression::Not(Box::new(self.of_kind(a, &Kind::Truth)?)), Kind::Truth))
+            }
+            (_, operators::NEGATE, [a]) => {
+                Some((Expression::Minus(Box::new(self.of_kind(a, &Kind::Number)?)), Kind::Number))
+            }
+            (_, operators::CONDITIONAL, [condition, then, otherwise]) => self.choice(condition, then, otherwise),
+            (_, operators::MODULO, _) => self.not_allowed(part, "%"),
+            (_, operators::IN, _) => self.not_allowed(part, "in"),
+            (_, operators::INDEX, _) => self.not_allowed(part, "an index [...]"),
+            (_, "mates", [_]) if self.among_mates => {
+                self.refuse(part, "has mates() within mates(), expected shared variables")
+            }
+            (_, "mates", [condition]) => {
+                self.among_mates = true;
+                let condition = self.of_kind(condition, &Kind::Truth);
+                self.among_mates = false;
+                Some((Expression::Mates(Box::new(condition?)), Kind::Number))
+            }
+            (_, name, arguments) => self.measure(part, name, arguments),
+        }
+    }
+
+    /// A measure, or what is none.
+    fn measure(&mut self, part: &IdedExpr, name: &str, arguments: &[IdedExpr]) -> Option<Read> {
+        let given = format!("gives {} things to {name}(), expected", arguments.len());
+        match (Measure::by_name(name), arguments) {
+            (Some(_), _) if self.among_mates => self.refuse_to_mates(part, &format!("{name}()"), "a measure"),
+            (Some(measure), [place]) => {
+                Some((Expression::Measure(measure, self.place(place, name)?), Kind::of(measure.is_truth())))
+            }
+            (Some(measure), [from, to]) if measure.is_of_two() => {
+                let (from, to) = (self.place(from, name), self.place(to, name));
+                Some((Expression::Between(measure, Box::new((from?, to?))), Kind::of(measure.is_truth())))
+            }
+            (Some(measure), _) if measure.is_of_two() => {
+                self.refuse(part, &format!("{given} one place or boat, or two"))
+            }
+            (Some(_), _) => self.refuse(part, &format!("{given} one place or boat")),
+            _ if name == "mates" => self.refuse(part, &format!("{given} one condition, or none as in mates > 0")),
+            _ if CALLS.contains(&name) => self.refuse(part, &format!("{given} two numbers")),
+            _ => {
+                let known = [&CALLS[..], &Measure::names()].concat();
+                let (all, guess) = (known.join("(), "), did_you_mean(name, &known));
+                self.refuse(part, &format!("calls {name}(), expected one of {all}(){guess}"))
+            }
+        }
+    }
+
+    fn place(&mut self, part: &IdedExpr, measure: &str) -> Option<Place> {
+        let name = match &part.expr {
+            Expr::Ident(name) => name.as_str(),
+            Expr::Literal(LiteralValue::String(name)) => name.inner(),
+            _ => {
+                return self.refuse(part, &format!("has a value in {measure}(), expected the name of a place or boat"));
+            }
+        };
+        Place::by_name(name).or_else(|| {
+            let known = Place::names();
+            let guess = did_you_mean(name, &known.iter().map(String::as_str).collect::<Vec<_>>());
+            let expected = Place::names_in_short();
+            self.refuse(part, &format!("asks for the {measure} of {name:?}, expected {expected}{guess}"))
+        })
+    }
+
+    fn equality(&mut self, part: &IdedExpr, join: Join, a: &IdedExpr, b: &IdedExpr) -> Option<Read> {
+        let (left, right) = (self.any(a), self.any(b));
+        let ((left, left_kind), (right, right_kind)) = (left?, right?);
+        let is_variable = |side: &Expression| side.as_variable().is_some();
+        let sides = match (&left_kind, &right_kind) {
+            (Kind::Text(values), Kind::Text(text)) if is_variable(&left) && !is_variable(&right) => {
+                (left, self.text(a, b, values, &text[0])?)
+            }
+            (Kind::Text(text), Kind::Text(values)) if is_variable(&right) && !is_variable(&left) => {
+                (self.text(b, a, values, &text[0])?, right)
+            }
+            (Kind::Text(_), Kind::Text(_)) => {
+                return self.refuse(part, "compares two texts, expected a text variable and one of its values");
+            }
+            _ if left_kind == right_kind => (left, right),
+            _ => {
+                let (left, right) = (in_words(&left, &left_kind), in_words(&right, &right_kind));
+                return self.refuse(part, &format!("compares {left} with {right}, expected two of one kind"));
+            }
+        };
+        Some((Expression::Join(join, Box::new(sides)), Kind::Truth))
+    }
+
+    /// The place of `text` among the values of a variable.
+    fn text(&mut self, variable: &IdedExpr, part: &IdedExpr, values: &[String], text: &str) -> Option<Expression> {
+        let name = if let Expr::Ident(name) = &variable.expr { name } else { "a text" };
+        let wrong = |allowed| self.refuse(part, &format!("compares {name} with {text:?}, {allowed}"));
+        text_value(values, text).map_or_else(wrong, Some)
+    }
+
+    fn choice(&mut self, condition: &IdedExpr, then: &IdedExpr, otherwise: &IdedExpr) -> Option<Read> {
+        let condition = self.of_kind(condition, &Kind::Truth);
+        let Some((first, kind)) = self.any(then) else {
+            self.any(otherwise);
+            return None;
+        };
+        if let Kind::Text(_) = kind {
+            let found = in_words(&first, &kind);
+            return self.refuse(then, &format!("has {found} here, expected a number, or true or false"));
+        }
+        let second = self.of_kind(otherwise, &kind);
+        Some((Expression::Choose(Box::new((condition?, first, second?))), kind))
+    }
+}
+
+fn in_words(expression: &Expression, kind: &Kind) -> String {
+    match kind {
+        Kind::Truth => "true or false".to_owned(),
+        Kind::Number => "a number".to_owned(),
+        Kind::Text(_) if expression.as_variable().is_some() => "a text".to_owned(),
+        Kind::Text(text) => format!("the text {:?}", text[0]),
+    }
+}
+
+/// Whether CEL keeps `name` for itself.
+pub(super) fn is_reserved(name: &str) -> bool {
+    RESERVED.split(' ').any(|word| word == name)
+}
+
+/// A text as a value of a variable that may have `values`, or else what is allowed and may have been meant.
+pub(super) fn text_value(values: &[String], text: &str) -> Result<Expression, String> {
+    let known: Vec<&str> = values.iter().map(String::as_str).collect();
+    let place = known.iter().position(|value| *value == text);
+    place.map(|place| Expression::Constant(place as f64)).ok_or_else(|| {
+        let guess = did_you_mean(text, &known);
+        format!("expected one of {}{guess}", known.join(", "))
+    })
+}

@@ -1,0 +1,90 @@
+//! A strategy file, checked: the roles that it deals, or the program that it is.
+
+mod behaviour;
+mod cel;
+mod expression;
+mod mode;
+mod program;
+mod reachability;
+mod safety;
+mod scope;
+mod variable;
+
+use crate::Kind;
+use crate::diagnostics::Diagnostics;
+use crate::raw;
+use crate::read::{self, Document};
+use crate::strategy::{Program, Strategy};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Reads and checks the strategy file at `path`, which is referred to from a place, for a team that has values of its own in it, or for
+/// everybody ("").
+pub(crate) fn strategy_file(
+    diagnostics: &mut Diagnostics,
+    path: &Path,
+    asked_at: Option<usize>,
+    owner: &str,
+) -> Option<Strategy> {
+    if let Some(kept) = diagnostics.kept.strategy(path, owner) {
+        return Some(kept.clone());
+    }
+    let document = read::document_of(diagnostics, Kind::Strategy, path, asked_at, owner)?;
+    let strategy = strategy(diagnostics, &document)?;
+    Arc::make_mut(&mut diagnostics.kept).keep_strategy(path, owner, strategy.clone());
+    Some(strategy)
+}
+
+fn strategy(diagnostics: &mut Diagnostics, document: &Document<raw::Strategy>) -> Option<Strategy> {
+    let raw = &document.raw;
+    let roles = match &raw.roles {
+        Some(given) => {
+            refuse_program(diagnostics, document);
+            roles(diagnostics, document, given)
+        }
+        None => {
+            if document.has("assignment") {
+                let message = "assignment is given without roles, expected with them only";
+                diagnostics.note(document.at("assignment"), message);
+            }
+            vec![program::program(diagnostics, document)?]
+        }
+    };
+    let strategy =
+        Strategy { name: document.name.clone(), about: raw.about.clone(), roles, assignment: raw.assignment };
+    document.is_faultless(diagnostics).then_some(strategy)
+}
+
+/// Notes what a program says in a file that deals roles.
+fn refuse_program(diagnostics: &mut Diagnostics, document: &Document<raw::Strategy>) {
+    let keys = ["helm", "unsafe_i_know", "unsafe_because", "variables", "mode", "rule"].map(str::to_owned);
+    let behaviours = document.raw.behaviour.keys().map(|name| format!("behaviour.{name}"));
+    for key in keys.into_iter().chain(behaviours).filter(|key| document.has(key)) {
+        let message = format!("{key} is given with roles, expected in the files that roles names");
+        diagnostics.note(document.at(&key), message);
+    }
+}
+
+/// The programs of the roles that a file names; a file named twice is read once.
+fn roles(diagnostics: &mut Diagnostics, document: &Document<raw::Strategy>, given: &[raw::FilePath]) -> Vec<Program> {
+    let mut read: BTreeMap<PathBuf, Option<Program>> = BTreeMap::new();
+    let mut roles = vec![];
+    for (i, role) in given.iter().enumerate().filter(|(_, role)| !role.0.is_empty()) {
+        let at = document.at(&format!("roles.{i}"));
+        let path = diagnostics.sources.resolve(at, &role.0);
+        let program = read.entry(path.clone()).or_insert_with(|| one_role(diagnostics, at, &role.0, &path));
+        roles.extend(program.clone());
+    }
+    roles
+}
+
+fn one_role(diagnostics: &mut Diagnostics, at: usize, role: &str, path: &Path) -> Option<Program> {
+    let document = read::document::<raw::Strategy>(diagnostics, Kind::Strategy, path, Some(at))?;
+    if document.raw.roles.is_some() {
+        let message = format!("roles names {role:?}, which deals roles itself, expected the file of one program");
+        diagnostics.note(at, message);
+        return None;
+    }
+    program::program(diagnostics, &document)
+}

@@ -1,0 +1,78 @@
+//! Modes of a strategy, checked: a tree, in which every part but the last has a condition.
+
+use super::scope::Scope;
+use super::variable::set;
+use crate::guess::did_you_mean;
+use crate::strategy::Mode;
+
+/// How deep modes may lie in each other.
+const DEEPEST: usize = 20;
+
+/// Checks the modes. Where they make no tree, nothing comes back.
+pub(super) fn modes(scope: &mut Scope<'_>) -> Option<Vec<Mode>> {
+    let given = &scope.document.raw.mode;
+    if given.is_empty() {
+        return Some(vec![Mode { name: "active".to_owned(), parent: None, when: None, enter: vec![] }]);
+    }
+    let faults = scope.diagnostics.faults();
+    let mut modes: Vec<Mode> = vec![];
+    for (i, mode) in given.iter().enumerate() {
+        let name = mode.name.0.clone();
+        if !name.is_empty() && modes.iter().any(|other| other.name == name) {
+            let message = format!("is {name:?} again, expected a different one for each mode");
+            scope.note(&format!("mode.{i}.name"), &message);
+        }
+        let parent = mode.r#in.as_ref().and_then(|parent| self::parent(scope, &modes, i, parent));
+        let enter = set(scope, &format!("mode.{i}.set"), &mode.set);
+        modes.push(Mode { name, parent, when: None, enter });
+    }
+    check_conditions(scope, &modes);
+    let is_tree = scope.document.is_sound("mode") && scope.diagnostics.faults() == faults;
+    for (i, mode) in given.iter().enumerate() {
+        modes[i].when = scope.condition(&format!("mode.{i}.when"), mode.when.as_deref());
+    }
+    is_tree.then_some(modes)
+}
+
+fn parent(scope: &mut Scope<'_>, before: &[Mode], mode: usize, parent: &str) -> Option<usize> {
+    let path = format!("mode.{mode}.in");
+    let Some(found) = before.iter().position(|mode| mode.name == parent) else {
+        let names: Vec<&str> = before.iter().map(|mode| mode.name.as_str()).collect();
+        let message = if scope.document.raw.mode.iter().any(|mode| mode.name.0 == parent) {
+            format!("is {parent:?}, which does not stand before this mode, expected one that does")
+        } else {
+            let known = if names.is_empty() { "of which there are none".to_owned() } else { names.join(", ") };
+            format!("is {parent:?}, expected one of the modes before, {known}{}", did_you_mean(parent, &names))
+        };
+        scope.note(&path, &message);
+        return None;
+    };
+    let depth = std::iter::successors(Some(found), |mode| before[*mode].parent).count();
+    if depth >= DEEPEST {
+        scope.note(&path, &format!("makes {} modes in each other, expected at most {DEEPEST}", depth + 1));
+    }
+    Some(found)
+}
+
+/// Every part but the last needs a condition, the last must have none.
+fn check_conditions(scope: &mut Scope<'_>, modes: &[Mode]) {
+    let given = &scope.document.raw.mode;
+    // With a parent that is unknown nobody can say.
+    let is_known = |mode: usize| given[mode].r#in.is_some() == modes[mode].parent.is_some();
+    for (i, mode) in modes.iter().enumerate().filter(|(i, _)| is_known(*i)) {
+        let next = (i + 1..modes.len()).find(|other| modes[*other].parent == mode.parent && is_known(*other));
+        let (name, path) = (&mode.name, format!("mode.{i}.when"));
+        match (&given[i].when, next) {
+            (None, Some(next)) => {
+                let next = &modes[next].name;
+                scope.note_missing(&path, &format!("a condition: without one for {name} it is never {next}"));
+            }
+            (Some(_), None) => {
+                let part_of = |parent: usize| format!("part of {}", modes[parent].name);
+                let of = mode.parent.map_or_else(|| "mode".to_owned(), part_of);
+                scope.note(&path, &format!("is given for {name}, the last {of}, expected none: it is what remains"));
+            }
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! A program, checked: its parts, then the whole.
+
+use super::behaviour::behaviours;
+use super::mode::modes;
+use super::scope::Scope;
+use super::variable::{set, variables};
+use super::{reachability, safety};
+use crate::diagnostics::Diagnostics;
+use crate::guess::nearest;
+use crate::raw;
+use crate::read::Document;
+use crate::strategy::{Behaviour, FUNCTIONS_MAX, NEAREST_MAX, Named, Program, Rule, Task, Trigger, What, Who};
+
+/// Checks a program.
+pub(super) fn program(diagnostics: &mut Diagnostics, document: &Document<raw::Strategy>) -> Option<Program> {
+    let raw = &document.raw;
+    let faults = diagnostics.faults();
+    let variables = variables(diagnostics, document);
+    let mut scope = Scope { diagnostics, document, variables: &variables };
+    let modes = modes(&mut scope);
+    let behaviours = behaviours(&mut scope, modes.as_deref());
+    let rules = raw.rule.iter().enumerate().map(|(i, given)| rule(&mut scope, i, given)).collect();
+    safety::check_reason(&mut scope);
+    // What is wrong with a part may be all that is wrong with the whole.
+    if scope.diagnostics.faults() > faults || !document.is_sound("") {
+        return None;
+    }
+    let mut program = Program {
+        name: document.name.clone(),
+        about: raw.about.clone(),
+        helm: raw.helm,
+        variables: variables.clone(),
+        modes: modes.unwrap_or_default(),
+        behaviours,
+        rules,
+        unsafe_because: raw.unsafe_because.clone(),
+    };
+    check_functions(&mut scope, &program);
+    reachability::check(&mut scope, &program);
+    safety::check(&mut scope, &mut program);
+    document.is_faultless(scope.diagnostics).then_some(program)
+}
+
+/// Notes modes in which the behaviours could ask for more functions than a helm takes.
+fn check_functions(scope: &mut Scope<'_>, program: &Program) {
+    for leaf in program.leaves() {
+        let most = |behaviour: &Behaviour| match behaviour.task {
+            Task::AvoidCollision(_) | Task::AvoidObstacle(_) => NEAREST_MAX,
+            Task::CutRange(_) => 2,
+            _ => 1,
+        };
+        let functions: usize = program.behaviours.iter().filter(|b| b.modes[leaf]).map(most).sum();
+        if functions > FUNCTIONS_MAX {
+            let message = format!(
+                "could ask for {functions} functions at once, expected at most {FUNCTIONS_MAX}: {NEAREST_MAX} for each \
+                 avoid_collision and avoid_obstacle, 2 for each cut_range, 1 for each other behaviour"
+            );
+            scope.note_mode(program, leaf, &message);
+        }
+    }
+}
+
+fn rule(scope: &mut Scope<'_>, rule: usize, given: &raw::Rule) -> Rule {
+    let path = |key: &str| format!("rule.{rule}.{key}");
+    if given.on.is_none() && given.when.is_none() {
+        scope.note_missing(&path("on"), "it, or when, or both");
+    }
+    if given.set.is_empty() && scope.document.is_sound(&path("set")) {
+        scope.note(&path("set"), "is empty, expected values for variables");
+    }
+    Rule {
+        on: given.on.as_ref().and_then(|on| trigger(scope, &path("on"), on)),
+        when: scope.condition(&path("when"), given.when.as_deref()),
+        set: set(scope, &path("set"), &given.set),
+    }
+}
+
+fn trigger(scope: &mut Scope<'_>, path: &str, on: &str) -> Option<Trigger> {
+    let mut words = on.split_whitespace();
+    let (who, what) = (words.next().unwrap_or_default(), words.next().unwrap_or_default());
+    if let (Some(who), Some(what), None) = (Who::by_name(who), What::by_name(what), words.next()) {
+        return Some(Trigger { who, what });
+    }
+    let guess = nearest(who, &Who::names()).zip(nearest(what, &What::names()));
+    let guess = guess.map(|(who, what)| format!(" (did you mean {who} {what}?)")).unwrap_or_default();
+    let (who, what) = (Who::names().join(", "), What::names().join(", "));
+    scope.note(path, &format!("is {on:?}, expected one of {who}, then one of {what}{guess}"));
+    None
+}

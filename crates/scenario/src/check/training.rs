@@ -1,0 +1,111 @@
+//! A training file and all the files it names, checked.
+
+use super::file_cache::FileCache;
+use super::game::referenced_at;
+use crate::diagnostics::Diagnostics;
+use crate::read::Document;
+use crate::training::{Stage, Training};
+use crate::{Kind, Scenario};
+
+/// Checks a training.
+pub(crate) fn training(diagnostics: &mut Diagnostics, document: &Document<Training>) -> Option<Training> {
+    let mut training = document.raw.clone();
+    let mut strategies = FileCache::new(super::strategy_file);
+    let mut strategy = |diagnostics: &mut Diagnostics, at: &str, path: &mut std::path::PathBuf| {
+        let place = document.at(at);
+        *path = diagnostics.sources.resolve(place, &*path);
+        if document.is_sound(at) {
+            strategies.index_at(diagnostics, path, Some(place), "");
+        }
+    };
+    for (i, path) in training.evaluation.opponents.iter_mut().enumerate() {
+        strategy(diagnostics, &format!("evaluation.opponents.{i}"), path);
+    }
+    super::algorithm::check(diagnostics, document);
+    let mut scenarios = vec![];
+    for (i, stage) in training.stage.iter_mut().enumerate() {
+        let at = format!("stage.{i}");
+        if let Some(helm) = &mut stage.helm {
+            strategy(diagnostics, &format!("{at}.helm"), helm);
+        }
+        if let Some(teacher) = &mut stage.teacher {
+            strategy(diagnostics, &format!("{at}.teacher.strategy"), &mut teacher.strategy);
+        }
+        if let Some(mates) = &mut stage.mates {
+            strategy(diagnostics, &format!("{at}.mates"), mates);
+        }
+        for (k, opponent) in stage.opponent.iter_mut().enumerate() {
+            strategy(diagnostics, &format!("{at}.opponent.{k}.strategy"), &mut opponent.strategy);
+        }
+        scenarios.push(files(diagnostics, document, &at, stage));
+        check_opponents(diagnostics, document, &at, stage, i);
+    }
+    for (i, scenario) in scenarios.iter().enumerate() {
+        let Some(scenario) = scenario else { continue };
+        check_teams(diagnostics, document, &format!("stage.{i}.game"), scenario);
+        let decision_s = scenario.decision().as_s();
+        let times = (training.period_s / decision_s).round();
+        if document.is_sound("period_s") && (times < 1.0 || (times * decision_s - training.period_s).abs() > 1e-9) {
+            let message = format!(
+                "period_s is {}, expected a multiple of {decision_s}, which is decision_s of {}",
+                training.period_s, scenario.name
+            );
+            diagnostics.note(document.at("period_s"), message);
+        }
+    }
+    document.is_faultless(diagnostics).then_some(training)
+}
+
+/// Reads the files that a stage names; gives its game.
+fn files(
+    diagnostics: &mut Diagnostics,
+    document: &Document<Training>,
+    at: &str,
+    stage: &mut Stage,
+) -> Option<Scenario> {
+    let path = format!("{at}.game");
+    let game = referenced_at(diagnostics, document, Kind::Game, &path, &stage.game, super::game);
+    stage.game = diagnostics.sources.resolve(document.at(&path), &stage.game);
+    if let Some(sea) = &mut stage.sea {
+        let path = format!("{at}.sea");
+        referenced_at(diagnostics, document, Kind::Sea, &path, &sea, super::sea);
+        *sea = diagnostics.sources.resolve(document.at(&path), &*sea);
+    }
+    let path = format!("{at}.rewards");
+    referenced_at(diagnostics, document, Kind::Rewards, &path, &stage.rewards, super::rewards);
+    stage.rewards = diagnostics.sources.resolve(document.at(&path), &stage.rewards);
+    game
+}
+
+fn check_opponents(diagnostics: &mut Diagnostics, document: &Document<Training>, at: &str, stage: &Stage, i: usize) {
+    if !document.is_sound(at) {
+        return;
+    }
+    let has_strategies = stage.strategies > 0.0 && !stage.opponent.is_empty();
+    // In the first stage there may be none of the past yet; then it plays against itself.
+    if !has_strategies && stage.self_play == 0.0 && stage.past_selves == 0.0 {
+        let message = format!(
+            "stage {:?} has nobody to play against, expected an opponent, self_play or past_selves",
+            stage.name
+        );
+        diagnostics.note(document.at(at), message);
+    }
+    let names = &document.raw.stage[..i];
+    if names.iter().any(|other| other.name == stage.name) {
+        let message = format!("name is {:?} again, expected a different one for each stage", stage.name);
+        diagnostics.note(document.at(&format!("{at}.name")), message);
+    }
+}
+
+fn check_teams(diagnostics: &mut Diagnostics, document: &Document<Training>, at: &str, scenario: &Scenario) {
+    let count = |team: usize| scenario.vehicles.iter().filter(|vehicle| vehicle.team.index() == team).count();
+    if scenario.teams.len() != 2 || count(0) != count(1) {
+        let sizes: Vec<String> = (0..scenario.teams.len()).map(|team| count(team).to_string()).collect();
+        let message = format!(
+            "game {} has teams of {} boats, expected two of as many: policies play either side",
+            scenario.name,
+            sizes.join(" and ")
+        );
+        diagnostics.note(document.at(at), message);
+    }
+}

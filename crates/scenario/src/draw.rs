@@ -1,0 +1,142 @@
+//! Numbers that are drawn anew for every game: where a file gives a distribution instead of a number.
+//!
+//! A distribution is replaced by a number as the file is read, so that all the rest of a scenario knows numbers
+//! only. Files with distributions are checked at both ends of them as well: what passes there will not be refused in
+//! the middle of a campaign.
+
+use super::diagnostics::Diagnostics;
+use super::kept::Reading;
+use super::overrides::Overrides;
+use super::tree::{Node, Table, Value};
+use primitives::stream::Stream;
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+
+/// Normal and log-normal numbers lie within this many standard deviations: they are drawn until they do.
+const WITHIN_SIGMA: f64 = 3.0;
+
+/// A number that was drawn for a game.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Drawn {
+    /// Whose and which: the vehicle, `sea`, `link` or `sharing`, and the key, as in `blue_one/hull.mass_kg`.
+    pub parameter: String,
+    /// The number, in the file's unit.
+    pub value: f64,
+}
+
+/// All that is needed to draw a game again under another seed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Recipe {
+    /// The game file.
+    pub(super) game: PathBuf,
+    /// The files that take the place of the game's own.
+    pub(super) overrides: Overrides,
+    /// Every file, as read.
+    pub(super) files: Vec<(PathBuf, String)>,
+    /// What was made of them.
+    #[serde(skip)]
+    pub(super) reading: Reading,
+    /// The seed that the numbers at hand were drawn with.
+    pub(super) seed: Option<u64>,
+}
+
+/// Which numbers are taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Drawing {
+    /// The least of each distribution.
+    Least,
+    /// The greatest of each.
+    Greatest,
+    /// Those of the game with this seed.
+    Seed(u64),
+}
+
+/// Who draws numbers.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Owner<'a> {
+    /// The vehicle, `sea`, or the table that all share.
+    pub(super) name: &'a str,
+    /// Where the owner's part of a path begins.
+    pub(super) path_from: usize,
+}
+
+/// The kind of distribution that a table means to be, if it does.
+pub(super) fn distribution_kind(table: &Table) -> Option<&'static str> {
+    ["uniform", "normal", "log_normal", "choice"].into_iter().find(|kind| table.contains_key(*kind))
+}
+
+/// The number that is taken from the distribution at `path`; a bad one is noted.
+pub(super) fn draw(
+    diagnostics: &mut Diagnostics,
+    node: &Node,
+    table: &Table,
+    owner: &Owner<'_>,
+    path: &str,
+) -> Option<Value> {
+    let path = path.get(owner.path_from..).unwrap_or_default();
+    let Some(value) = number(table, diagnostics.drawing, &format!("draw/{}/{path}", owner.name)) else {
+        let key = path.rsplit('.').next().unwrap_or(path);
+        let message = format!(
+            "{key} is not a distribution, expected one of {{ uniform = [low, high] }}, {{ normal = [mean, sigma] }}, \
+             {{ log_normal = [median, sigma] }} with a median above 0, {{ choice = [a, b, ...] }}; \
+             and times = a factor, if wanted"
+        );
+        diagnostics.note(node.at, message);
+        return None;
+    };
+    diagnostics.drawn.push(Drawn { parameter: format!("{}/{path}", owner.name), value });
+    // Whole numbers up to 1e15 are exact, and are what some keys take only.
+    let is_whole = value.fract() == 0.0 && value.abs() < 1e15;
+    Some(if is_whole { Value::Whole(value as i64) } else { Value::Number(value) })
+}
+
+/// The number that is taken from a distribution, by the stream of this name; none if it is a bad one.
+fn number(table: &Table, drawing: Drawing, stream: &str) -> Option<f64> {
+    let kind = distribution_kind(table)?;
+    let finite = |node: &Node| node.as_number().filter(|number| number.is_finite());
+    let Value::List(items) = &table[kind].value else { return None };
+    let numbers: Vec<f64> = items.iter().map(finite).collect::<Option<_>>()?;
+    let times = table.get("times").map_or(Some(1.0), finite)?;
+    if !table.keys().all(|key| key == kind || key == "times") {
+        return None;
+    }
+    let stream = |seed: u64| Stream::new(seed, stream);
+    let sigmas = || match drawing {
+        Drawing::Least => -WITHIN_SIGMA,
+        Drawing::Greatest => WITHIN_SIGMA,
+        Drawing::Seed(seed) => within(&mut stream(seed)),
+    };
+    match (kind, numbers.as_slice()) {
+        ("uniform", &[low, high]) if low <= high => {
+            let (low, high) = ((low * times).min(high * times), (low * times).max(high * times));
+            Some(match drawing {
+                Drawing::Least => low,
+                Drawing::Greatest => high,
+                Drawing::Seed(seed) => stream(seed).between(low, high),
+            })
+        }
+        ("normal", &[mean, sigma]) if sigma >= 0.0 => Some(mean * times + sigmas() * (sigma * times).abs()),
+        ("log_normal", &[median, sigma]) if median * times > 0.0 && (0.0..=10.0).contains(&sigma) => {
+            Some(median * times * libm::exp(sigmas() * sigma))
+        }
+        ("choice", choices) => {
+            let mut scaled = choices.iter().map(|choice| choice * times);
+            match drawing {
+                Drawing::Least => scaled.reduce(f64::min),
+                Drawing::Greatest => scaled.reduce(f64::max),
+                Drawing::Seed(seed) => scaled.nth(stream(seed).below(choices.len().max(1) as u64) as usize),
+            }
+        }
+        _ => None,
+    }
+}
+
+/// A normal number of mean 0 and variance 1, drawn until it is within bounds.
+fn within(stream: &mut Stream) -> f64 {
+    loop {
+        let number = stream.normal();
+        if number.abs() <= WITHIN_SIGMA {
+            return number;
+        }
+    }
+}

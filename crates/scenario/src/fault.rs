@@ -1,0 +1,220 @@
+//! Faults that befall boats in the midst of a game, at a time or again and again.
+//!
+//! They belong to the game and are seeded like everything in it. What fails of itself now and then, a receiver that freezes or a link
+//! that loses messages in bursts, stands with the sensor or the link.
+
+use primitives::id::VehicleId;
+use primitives::reseed::Seeds;
+use primitives::stream::Stream;
+use primitives::time::SimTime;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// What fails.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum FaultKind {
+    /// The agent is dead: the boat holds and reports nothing, and no order of it counts until the fault is over. Then the agent begins
+    /// anew and has forgotten everything.
+    AgentLost,
+    /// No order reaches the boat, and no report of it its team: its orders expire.
+    LinkLost,
+    /// The receiver gives the same fix again and again, with new times.
+    GpsFrozen,
+    /// The receiver gives no fix.
+    GpsLost,
+    /// Fixes are off by `offset_m`, in a direction that is drawn.
+    GpsOffset,
+    /// The compass is off by `offset_deg`.
+    CompassOffset,
+    /// The port thruster stands still.
+    PortLost,
+    /// The starboard thruster stands still.
+    StarboardLost,
+    /// The port thruster goes on as it went.
+    PortStuck,
+    /// The starboard thruster goes on as it went.
+    StarboardStuck,
+}
+
+/// A fault of a game, as files say it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Fault {
+    /// What fails.
+    pub kind: FaultKind,
+    /// The names of the boats that it befalls, each at times of its own where those are drawn. Default all.
+    #[schemars(length(max = 10000))]
+    pub boats: Vec<String>,
+    /// When it begins, s.
+    #[schemars(range(min = 0, max = 86400))]
+    pub at_s: Option<f64>,
+    /// In place of `at_s`: the mean time until it begins, and from its end until it begins again, s; drawn from an exponential
+    /// distribution.
+    #[schemars(range(min = 0.1, max = 1000000))]
+    pub every_s: Option<f64>,
+    /// How long it lasts, s. Default to the end of the game.
+    #[schemars(range(min = 0, max = 86400))]
+    pub for_s: Option<f64>,
+    /// How far fixes are off, m, with the kind `gps_offset`.
+    #[schemars(range(min = 0, max = 10000))]
+    pub offset_m: Option<f64>,
+    /// How far the compass is off, clockwise, degrees, with the kind `compass_offset`.
+    #[schemars(range(min = -180, max = 180))]
+    pub offset_deg: Option<f64>,
+    /// Its name in the file.
+    #[serde(default)]
+    #[schemars(skip)]
+    pub name: String,
+    /// The boats that it befalls.
+    #[serde(default)]
+    #[schemars(skip)]
+    pub vehicles: Vec<VehicleId>,
+}
+
+/// A fault of one boat at one time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FaultSpan {
+    /// What fails.
+    pub kind: FaultKind,
+    /// When it begins.
+    pub from: SimTime,
+    /// When it is over.
+    pub to: SimTime,
+    /// How far fixes are off, m.
+    pub offset_m: f64,
+    /// In which direction, rad.
+    pub direction_rad: f64,
+    /// How far the compass is off, rad.
+    pub offset_rad: f64,
+}
+
+impl FaultSpan {
+    /// Whether it is going on.
+    #[inline]
+    #[must_use]
+    pub fn is_on(&self, now: SimTime) -> bool {
+        self.from <= now && now < self.to
+    }
+}
+
+/// The faults that befall a vehicle of this name in the game that `seeds` choose, which lasts at most until `end`; by beginning.
+#[must_use]
+pub fn fault_spans(
+    faults: &[Fault],
+    (vehicle, name): (VehicleId, &str),
+    seeds: &Seeds,
+    end: SimTime,
+) -> Vec<FaultSpan> {
+    let mut spans = vec![];
+    for fault in faults.iter().filter(|fault| fault.vehicles.contains(&vehicle)) {
+        let stream = |seed: u64| Stream::new(seed, &format!("fault/{}/{name}", fault.name));
+        let (mut later, mut drawn) = (seeds.later().iter().peekable(), stream(seeds.first()));
+        let lasts = fault.for_s.map_or(end, SimTime::from_s);
+        let wait = |stream: &mut Stream| {
+            let mean_s = fault.every_s?;
+            // A unit of 0 would never come to an end.
+            Some(SimTime::from_s((-mean_s * libm::log1p(-stream.unit())).min(1e7)))
+        };
+        let (mut next, mut over) = (fault.at_s.map(SimTime::from_s).or_else(|| wait(&mut drawn)), SimTime::ZERO);
+        while let Some(mut from) = next.filter(|from| *from < end) {
+            while let Some((after, seed)) = later.next_if(|(after, _)| *after < from) {
+                drawn = stream(*seed);
+                // Exponential waits have no memory: what is left of one is as long as a new one.
+                from = wait(&mut drawn).map_or(from, |wait| over.max(*after) + wait);
+            }
+            if from >= end {
+                break;
+            }
+            over = from + lasts;
+            spans.push(FaultSpan {
+                kind: fault.kind,
+                from,
+                to: over,
+                offset_m: fault.offset_m.unwrap_or(0.0),
+                direction_rad: std::f64::consts::TAU * drawn.unit(),
+                offset_rad: fault.offset_deg.unwrap_or(0.0).to_radians(),
+            });
+            // Even faults that last for no time come to the end of the game.
+            next = wait(&mut drawn).map(|wait| over + wait.max(SimTime(1_000_000)));
+        }
+    }
+    spans.sort_by_key(|span| span.from);
+    spans
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use primitives::reseed::Reseed;
+
+    fn fault() -> Fault {
+        Fault {
+            kind: FaultKind::LinkLost,
+            boats: vec![],
+            at_s: None,
+            every_s: None,
+            for_s: None,
+            offset_m: None,
+            offset_deg: None,
+            name: "one".to_owned(),
+            vehicles: vec![VehicleId(0), VehicleId(1)],
+        }
+    }
+
+    const HOUR: SimTime = SimTime(3_600_000_000_000);
+
+    #[test]
+    fn a_fault_with_a_time_happens_then_and_one_without_end_lasts() {
+        let at = Fault { at_s: Some(30.0), ..fault() };
+        let spans = fault_spans(std::slice::from_ref(&at), (VehicleId(0), "a"), &1.into(), HOUR);
+        assert_eq!(spans.len(), 1);
+        let on = |s: f64| spans[0].is_on(SimTime::from_s(s));
+        assert_eq!([29.9, 30.0, 3599.9].map(on), [false, true, true]);
+        let short = fault_spans(&[Fault { for_s: Some(5.0), ..at.clone() }], (VehicleId(1), "b"), &1.into(), HOUR);
+        assert_eq!((short[0].from, short[0].to), (SimTime::from_s(30.0), SimTime::from_s(30.0) + SimTime::from_s(5.0)));
+        assert_eq!(fault_spans(&[at], (VehicleId(2), "c"), &1.into(), HOUR), []);
+    }
+
+    #[test]
+    fn drawn_faults_come_as_often_as_stated_and_at_other_times_for_every_boat_and_seed() {
+        let drawn = Fault { every_s: Some(50.0), for_s: Some(10.0), ..fault() };
+        let of = |vehicle: u16, name, seed: u64| {
+            fault_spans(std::slice::from_ref(&drawn), (VehicleId(vehicle), name), &seed.into(), HOUR)
+        };
+        let count: usize = (0..100).map(|seed| of(0, "a", seed).len()).sum();
+        // 3600 s with one each 60 s, over 100 games: 6000, with a standard deviation of about 65.
+        assert!((5700..6300).contains(&count), "{count}");
+        assert_ne!(of(0, "a", 1)[0].from, of(1, "b", 1)[0].from);
+        assert_ne!(of(0, "a", 1)[0].from, of(0, "a", 2)[0].from);
+        assert!(of(0, "a", 1).windows(2).all(|pair| pair[0].to < pair[1].from));
+    }
+
+    #[test]
+    fn another_seed_changes_what_begins_after_its_time_and_neither_what_was_before_nor_how_often() {
+        let drawn = Fault { every_s: Some(50.0), for_s: Some(10.0), ..fault() };
+        let of = |seeds: &Seeds| fault_spans(std::slice::from_ref(&drawn), (VehicleId(0), "a"), seeds, HOUR);
+        let (half, first) = (SimTime::from_s(1800.0), of(&1.into()));
+        let mut counts = [0, 0];
+        for seed in 2..202 {
+            let again = of(&Seeds::new(1, &[Reseed { after_s: 1800.0, seed }]));
+            let until = |spans: &[FaultSpan]| spans.iter().take_while(|span| span.from <= half).count();
+            assert_eq!(first[..until(&first)], again[..until(&again)]);
+            assert_ne!(first[until(&first)..], again[until(&again)..]);
+            let within =
+                |from_s: f64, to_s: f64| again.iter().filter(|span| (from_s..to_s).contains(&span.from.as_s())).count();
+            counts[0] += within(1800.0, 1860.0);
+            counts[1] += within(2800.0, 2860.0);
+        }
+        // One each 60 s, 200 times, with a standard deviation of about 8 where nothing links the games.
+        assert!((160..240).contains(&counts[1]), "{counts:?}");
+        // All share the past of `first`, whose last span is over before.
+        assert!(first[until_last(&first, half)].to < half, "the seed of this test leaves no span open");
+        // From a time at which none is going on, a minute has 60/50 waits, less what the spans take: 1.03 in the mean.
+        assert!((165..245).contains(&counts[0]), "{counts:?}");
+    }
+
+    /// The last span that begins by then.
+    fn until_last(spans: &[FaultSpan], at: SimTime) -> usize {
+        spans.iter().rposition(|span| span.from <= at).expect("there is one")
+    }
+}

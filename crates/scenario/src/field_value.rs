@@ -1,0 +1,51 @@
+//! From the keys of files and their units to the fields of types, in SI.
+//!
+//! A key of which `x-field` tells another field than its own name goes there: `"gain.0"` is the first entry of the list
+//! `gain`. On the way its unit changes, where the key's name and the field's differ in it, and `[x, y]` becomes a position.
+
+use primitives::frame::Ned;
+use primitives::time::SimTime;
+use serde_json::{Map, Value, json};
+
+/// The mark of a key that has another name or another unit than its field.
+const FIELD: &str = "x-field";
+/// The mark of a number that is estimated where a file leaves it out.
+const ESTIMATED: &str = "x-estimated";
+
+/// A table's values by its fields, from its values by their keys.
+pub(super) fn by_fields(mut values: Map<String, Value>, properties: &Value) -> Value {
+    let keys = || properties.as_object().into_iter().flatten();
+    for (key, _) in keys().filter(|(_, about)| about.get(ESTIMATED).is_some()) {
+        values.entry(key).or_insert(Value::Null);
+    }
+    let marked = keys().filter_map(|(key, about)| Some((key, about.get(FIELD)?.as_str()?)));
+    let moved: Vec<_> = marked.filter_map(|(key, field)| Some((key, field, values.remove(key)?))).collect();
+    let mut table = Value::Object(values);
+    for (key, field, value) in moved {
+        match field.split_once('.') {
+            None => table[field] = of_field(key, field, &value),
+            // The schema has its keys in order, and with them those of a list.
+            Some((list, _)) => match &mut table[list] {
+                Value::Array(items) => items.push(of_field(key, field, &value)),
+                first => *first = json!([of_field(key, field, &value)]),
+            },
+        }
+    }
+    table
+}
+
+/// What a field has where its key has `value`.
+fn of_field(key: &str, field: &str, value: &Value) -> Value {
+    if let Some([x, y]) = value.as_array().map(Vec::as_slice) {
+        return json!(Ned::from_xy(x.as_f64().unwrap_or_default(), y.as_f64().unwrap_or_default()));
+    }
+    let Some(number) = value.as_f64() else { return value.clone() };
+    match key {
+        _ if key.strip_suffix("_s") == Some(field) => json!(SimTime::from_s(number)),
+        _ if key.contains("_per_deg") => number.to_degrees().into(),
+        _ if key.contains("_deg") => number.to_radians().into(),
+        _ if key.ends_with("_wh") => (3600.0 * number).into(),
+        "per_hour" => (number / 3600.0).into(),
+        _ => number.into(),
+    }
+}

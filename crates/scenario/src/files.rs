@@ -1,0 +1,91 @@
+//! The files that scenarios are read from: the disk's, each read once, or those that were kept of it.
+
+use super::built_in::built_in;
+use primitives::input_file;
+use std::collections::BTreeMap;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// The files that scenarios are read from; those that a program has inside of itself stand in for missing ones. What was read once is not read again: all that is read from these files is of one moment.
+#[derive(Debug, Default)]
+pub struct Files {
+    read: Mutex<Read>,
+    /// Whether no other files are read.
+    is_complete: bool,
+}
+
+/// What was read.
+#[derive(Debug, Default)]
+struct Read {
+    /// In the order in which they were asked for.
+    files: Vec<(PathBuf, Arc<[u8]>)>,
+    /// Where each of them is among these.
+    places: BTreeMap<PathBuf, usize>,
+}
+
+impl Read {
+    fn add(&mut self, path: PathBuf, bytes: Arc<[u8]>) {
+        self.places.insert(path.clone(), self.files.len());
+        self.files.push((path, bytes));
+    }
+}
+
+impl Files {
+    /// These files alone, in place of the disk's.
+    #[must_use]
+    pub fn kept(files: Vec<(PathBuf, Vec<u8>)>) -> Files {
+        let mut read = Read::default();
+        files.into_iter().for_each(|(path, bytes)| read.add(path, bytes.into()));
+        Files { read: Mutex::new(read), is_complete: true }
+    }
+
+    /// Those that were read, in the order in which they were asked for.
+    #[must_use]
+    pub fn list(&self) -> Vec<(PathBuf, Arc<[u8]>)> {
+        self.read.lock().unwrap_or_else(PoisonError::into_inner).files.clone()
+    }
+
+    /// Reads one of at most so many bytes.
+    pub(super) fn read(&self, path: &Path, bytes_max: u64) -> Result<Arc<[u8]>, String> {
+        let mut read = self.read.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(&place) = read.places.get(path) {
+            return Ok(Arc::clone(&read.files[place].1));
+        }
+        if self.is_complete {
+            return Err("it is not among the files kept".to_owned());
+        }
+        let bytes: Arc<[u8]> = match (input_file::read(path, bytes_max), built_in(path)) {
+            (Ok(bytes), _) => bytes.into(),
+            (Err(error), Some(bytes)) if error.kind() == ErrorKind::NotFound => bytes.into(),
+            (Err(error), _) => return Err(error.to_string()),
+        };
+        read.add(path.to_owned(), Arc::clone(&bytes));
+        Ok(bytes)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_read_once_and_kept_files_are_all_there_are() {
+        let dir = tempfile::tempdir().expect("a directory");
+        let [first, second] = ["b", "a"].map(|name| dir.path().join(name));
+        std::fs::write(&first, "1").expect("it is written");
+        std::fs::write(&second, "2").expect("it is written");
+        let files = Files::default();
+        assert!(files.read(&dir.path().join("none"), 9).is_err());
+        for path in [&first, &second, &first] {
+            files.read(path, 9).expect("it is there");
+            std::fs::write(path, "changed").expect("it is written");
+        }
+        let list = files.list();
+        let read: Vec<(&Path, &[u8])> = list.iter().map(|(path, bytes)| (path.as_path(), &**bytes)).collect();
+        assert_eq!(read, [(first.as_path(), &b"1"[..]), (second.as_path(), b"2")]);
+        let kept = Files::kept(vec![(first.clone(), b"kept".to_vec())]);
+        assert_eq!(&*kept.read(&first, 9).expect("it is kept"), b"kept");
+        assert_eq!(kept.read(&second, 9), Err("it is not among the files kept".to_owned()));
+    }
+}

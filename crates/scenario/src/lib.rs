@@ -1,0 +1,280 @@
+//! What makes a game: read from TOML files, checked once, believed ever after.
+//!
+//! [`Scenario`] is the checked form, SI and radians, and travels to every process that joins the game.
+//! [`load`] makes one. Its types and those in `raw` declare the keys of files, `schema` makes the JSON Schemas of them.
+//! `read` finds the files and lays them over their bases, `validate` reads them by their schema, `check` makes of them
+//! what the program believes, and `diagnostics` collects every [`Problem`] on the way.
+
+pub mod action;
+pub mod boat;
+mod built_in;
+mod chance;
+mod check;
+mod diagnostics;
+mod draw;
+pub mod fault;
+mod field_value;
+mod files;
+pub mod gateway;
+mod guess;
+mod kept;
+mod kind;
+pub mod link;
+mod load;
+pub mod observation;
+pub mod outcome;
+mod overrides;
+mod packed;
+pub mod policy;
+mod problem;
+mod raw;
+mod read;
+mod real_boats;
+mod reference;
+pub mod rewards;
+mod schema;
+pub mod sea;
+pub mod sensor;
+mod setting;
+mod source;
+pub mod strategy;
+mod sweep;
+mod syntax;
+mod tournament;
+pub mod training;
+mod tree;
+mod validate;
+
+pub use boat::Boat;
+pub use built_in::{BuiltIn, built_in, set_built_in};
+pub use draw::{Drawn, Recipe};
+pub use files::Files;
+pub use guess::did_you_mean;
+pub use kind::Kind;
+pub use load::{
+    check_file, default_gateway, draw_boat, draw_sea, load, load_boat, load_field, load_gateway, load_rewards,
+    load_strategy, load_sweep, load_tournament, load_training, load_with, load_with_files, other_kind,
+};
+pub use outcome::Outcome;
+pub use overrides::Overrides;
+pub use packed::{Packed, UnpackError, digest_of};
+pub use problem::{Problem, Problems};
+pub use real_boats::RealBoats;
+pub use reference::{file_reference, reference};
+pub use schema::schema;
+pub use setting::{Setting, SettingError};
+pub use sweep::{Axis, AxisValue, Design, Sweep};
+pub use tournament::{Entrant, Tournament};
+
+use crate::fault::Fault;
+use crate::link::Link;
+use crate::sea::Sea;
+use crate::strategy::Strategy;
+use primitives::frame::Pose;
+use primitives::id::{TeamId, VehicleId};
+use primitives::reseed::{Reseed, Seeds};
+use primitives::time::SimTime;
+use rules::field::Field;
+use rules::{Event, Rules};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// A game, ready to be played.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Scenario {
+    /// The game file's stem.
+    pub name: String,
+    /// Chooses the game; `--seed` replaces it.
+    pub seed: u64,
+    /// What takes its place in the midst of the game, by rising times.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub reseed: Vec<Reseed>,
+    /// Physics tick.
+    pub tick: SimTime,
+    /// Physics ticks between two decisions of a mind.
+    pub ticks_per_decision: u32,
+    /// In lockstep, how long (wall clock) the sim waits for a mind before it is lost, s.
+    pub patience_s: f64,
+    /// In real time, how old (simulated time) an order may grow before the boat holds, s.
+    pub order_ttl_s: f64,
+    /// Where.
+    pub field: Field,
+    /// By which rules.
+    pub rules: Rules,
+    /// On what water.
+    pub sea: Sea,
+    /// Over which radio links minds and boats talk; `None` is at once and without loss.
+    pub link: Option<Link>,
+    /// What fails in the midst of it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub faults: Vec<Fault>,
+    /// Who against whom.
+    pub teams: Vec<Team>,
+    /// The kinds of boat that occur.
+    pub boats: Vec<Boat>,
+    /// The strategies that occur.
+    pub strategies: Vec<Strategy>,
+    /// Who plays, in the order in which everything is resolved.
+    pub vehicles: Vec<Vehicle>,
+    /// Numbers that were drawn for this game.
+    pub drawn: Vec<Drawn>,
+    /// How to draw others, where there are any.
+    pub recipe: Option<Recipe>,
+}
+
+impl Scenario {
+    /// The vehicle with this name.
+    #[must_use]
+    pub fn vehicle_by_name(&self, name: &str) -> Option<VehicleId> {
+        self.vehicles.iter().position(|vehicle| vehicle.name == name).map(VehicleId::at)
+    }
+
+    /// The vehicle with this name, where a person has said it.
+    ///
+    /// # Errors
+    /// [`UnknownVehicle`] names those there are.
+    pub fn vehicle_named(&self, name: &str) -> Result<VehicleId, UnknownVehicle> {
+        self.vehicle_by_name(name).ok_or_else(|| {
+            let known = self.vehicles.iter().map(|vehicle| vehicle.name.clone()).collect();
+            UnknownVehicle { name: name.to_owned(), known }
+        })
+    }
+
+    /// Whether everything in it refers to something that is there, and names are names: what was loaded from files is so,
+    /// what others made of it need not be.
+    ///
+    /// # Errors
+    /// Says what is not.
+    pub fn check_references(&self) -> Result<(), String> {
+        let within = |what: &str, index: usize, count: usize| {
+            if index < count { Ok(()) } else { Err(format!("{what} is {index}, expected less than {count}")) }
+        };
+        let mut names =
+            self.vehicles.iter().map(|vehicle| &vehicle.name).chain(self.teams.iter().map(|team| &team.name));
+        if let Some(name) = names.find(|name| !diagnostics::is_name(name)) {
+            return Err(format!("{name:?} is no name of a vehicle or a team"));
+        }
+        for Vehicle { name, team, boat, strategy, .. } in &self.vehicles {
+            within(&format!("the team of {name}"), team.index(), self.teams.len())?;
+            within(&format!("the boat of {name}"), *boat, self.boats.len())?;
+            within(&format!("the strategy of {name}"), *strategy, self.strategies.len())?;
+        }
+        let mut flags = self.field.flags.iter().enumerate();
+        flags.try_for_each(|(i, flag)| within(&format!("the team of flag {i}"), flag.team.index(), self.teams.len()))
+    }
+
+    /// Whether everything that an event names is in the game: whoever sends it is not therefore right.
+    #[must_use]
+    pub fn has(&self, event: Event) -> bool {
+        let (flag, team) = (event.flag(), if let Event::Ended { winner } = event { winner } else { None });
+        [event.vehicle(), event.other()].into_iter().flatten().all(|vehicle| vehicle.index() < self.vehicles.len())
+            && flag.is_none_or(|flag| flag.index() < self.field.flags.len())
+            && team.is_none_or(|team| team.index() < self.teams.len())
+    }
+
+    /// The simulated time from one decision to the next.
+    #[must_use]
+    pub fn decision(&self) -> SimTime {
+        self.tick * i64::from(self.ticks_per_decision)
+    }
+
+    /// What the randomness in the midst of this game is drawn by.
+    #[must_use]
+    pub fn seeds(&self) -> Seeds {
+        Seeds::new(self.seed, &self.reseed)
+    }
+
+    /// The team of a vehicle.
+    #[must_use]
+    pub fn team_of(&self, vehicle: VehicleId) -> TeamId {
+        self.vehicles[vehicle.index()].team
+    }
+
+    /// How many mates and enemies a vehicle has.
+    #[must_use]
+    pub fn sides_of(&self, vehicle: VehicleId) -> (usize, usize) {
+        let team = self.team_of(vehicle);
+        let mates = self.vehicles.iter().filter(|other| other.team == team).count() - 1;
+        (mates, self.vehicles.len() - 1 - mates)
+    }
+
+    /// The boat that a vehicle is.
+    #[must_use]
+    pub fn boat_of(&self, vehicle: VehicleId) -> &Boat {
+        &self.boats[self.vehicles[vehicle.index()].boat]
+    }
+
+    /// The strategy that a vehicle follows.
+    #[must_use]
+    pub fn strategy_of(&self, vehicle: VehicleId) -> &Strategy {
+        &self.strategies[self.vehicles[vehicle.index()].strategy]
+    }
+}
+
+/// A name that no vehicle of the game has.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("there is no vehicle {name:?}; there are {}", .known.join(", "))]
+pub struct UnknownVehicle {
+    /// The name.
+    pub name: String,
+    /// Those there are.
+    pub known: Vec<String>,
+}
+
+/// A team.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Team {
+    /// Its name, for example `blue`.
+    pub name: String,
+}
+
+/// A boat that plays.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Vehicle {
+    /// Its name, unique in the game.
+    pub name: String,
+    /// Its team.
+    pub team: TeamId,
+    /// Index into [`Scenario::boats`].
+    pub boat: usize,
+    /// Index into [`Scenario::strategies`].
+    pub strategy: usize,
+    /// Where it starts. Older recordings have it under its former name.
+    #[serde(alias = "berth")]
+    pub start_position: StartPosition,
+    /// Where its motion comes from.
+    pub source: Source,
+}
+
+/// Where a vehicle's motion comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Source {
+    /// The program moves it through the scenario's sea.
+    #[default]
+    #[serde(alias = "Simulated")]
+    Simulated,
+    /// It is a real boat: its gateway reports where it is. Such games are played in real time.
+    #[serde(alias = "External")]
+    External,
+}
+
+/// Where a vehicle starts.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum StartPosition {
+    /// Just here.
+    At(Pose),
+    /// Somewhere in a rectangle of the field, drawn from the game's `spawn` stream, pointing at the
+    /// opponent's end.
+    Somewhere {
+        /// Bounds along the field, m from the vehicle's own end.
+        along_m: (f64, f64),
+        /// Bounds across the field, m from the edge to port as the team looks from its own end at its
+        /// opponent's. For the first team that edge joins corners 1 and 2 (`across` is the field's depth
+        /// less this); for the second it joins corners 0 and 3 (`across` is this).
+        across_m: (f64, f64),
+        /// Smallest distance to any other vehicle and to obstacles, m.
+        gap_m: f64,
+    },
+}

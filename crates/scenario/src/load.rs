@@ -1,0 +1,273 @@
+//! The ways in: a path, and out comes what the file says, or everything that is wrong with it.
+
+use super::diagnostics::Diagnostics;
+use super::draw::{Drawing, Drawn, Recipe};
+use super::files::Files;
+use super::kept::Reading;
+use super::kind::Kind;
+use super::overrides::Overrides;
+use super::problem::Problems;
+use super::read::{self, Document};
+use super::tree::Node;
+use super::{Scenario, Sweep, Tournament, check};
+use crate::boat::Boat;
+use crate::gateway::Gateway;
+use crate::rewards::Rewards;
+use crate::sea::Sea;
+use crate::strategy::Strategy;
+use crate::training::Training;
+use rules::field::Field;
+use serde::de::DeserializeOwned;
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Reads and checks the game file at `path` and every file it names. Where files give distributions, the numbers
+/// are those of the game's own seed; [`Scenario::of_seed`] draws others.
+///
+/// # Errors
+/// Everything that is wrong in any of them, by file, line and column.
+pub fn load(path: &Path) -> Result<Scenario, Problems> {
+    load_with(path, &Overrides::default())
+}
+
+/// Reads and checks a game, with other files in place of its own.
+///
+/// # Errors
+/// Everything that is wrong in any file, by file, line and column; also a strategy for a team that is not in the game.
+pub fn load_with(path: &Path, overrides: &Overrides) -> Result<Scenario, Problems> {
+    load_with_files(path, overrides, &Arc::default())
+}
+
+/// The same, read from these files.
+///
+/// # Errors
+/// Everything that is wrong in any file, as above.
+pub fn load_with_files(path: &Path, overrides: &Overrides, files: &Arc<Files>) -> Result<Scenario, Problems> {
+    let read = |drawing: Drawing| {
+        let mut diagnostics = Diagnostics::new(drawing);
+        diagnostics.overrides = overrides.clone();
+        diagnostics.files = Arc::clone(files);
+        game_of(&mut diagnostics, path).map(|scenario| (scenario, diagnostics))
+    };
+    let (mut least, diagnostics) = read(Drawing::Least)?;
+    if least.drawn.is_empty() {
+        return Ok(least);
+    }
+    read(Drawing::Greatest)?;
+    let files = diagnostics.sources.texts();
+    let reading = Reading::of(diagnostics);
+    least.recipe = Some(Recipe { game: path.to_owned(), overrides: overrides.clone(), files, reading, seed: None });
+    least.of_seed(least.seed)
+}
+
+fn game_of(diagnostics: &mut Diagnostics, path: &Path) -> Result<Scenario, Problems> {
+    let value =
+        read::document(diagnostics, Kind::Game, path, None).and_then(|document| check::game(diagnostics, &document));
+    let mut scenario = diagnostics.close(value)?;
+    scenario.drawn = std::mem::take(&mut diagnostics.drawn);
+    Ok(scenario)
+}
+
+impl Scenario {
+    /// The game of this scenario that `seed` chooses: where files give distributions, their numbers are drawn.
+    ///
+    /// # Errors
+    /// What is wrong with the numbers together, though each alone may be drawn.
+    pub fn of_seed(&self, seed: u64) -> Result<Scenario, Problems> {
+        let Some(recipe) = self.recipe.as_ref().filter(|recipe| recipe.seed != Some(seed)) else {
+            return Ok(Scenario { seed, ..self.clone() });
+        };
+        let mut diagnostics = Diagnostics::new(Drawing::Seed(seed));
+        diagnostics.overrides.clone_from(&recipe.overrides);
+        match &recipe.reading.0 {
+            Some(reading) => (diagnostics.sources, diagnostics.kept) = (**reading).clone(),
+            None => {
+                diagnostics.texts = Some(recipe.files.clone());
+                diagnostics.models = self.strategies.iter().flat_map(Strategy::models).cloned().collect();
+            }
+        }
+        let mut drawn = game_of(&mut diagnostics, &recipe.game)?;
+        drawn.seed = seed;
+        let reading = if recipe.reading.0.is_some() { recipe.reading.clone() } else { Reading::of(diagnostics) };
+        drawn.recipe = Some(Recipe { reading, seed: Some(seed), ..recipe.clone() });
+        Ok(drawn)
+    }
+}
+
+/// Reads and checks the field file at `path`.
+///
+/// # Errors
+/// Everything that is wrong in it and its bases.
+pub fn load_field(path: &Path) -> Result<Field, Problems> {
+    one(Kind::Field, path, check::field, 1).map(|(field, _)| field)
+}
+
+/// Reads and checks the boat file at `path`. Where it gives distributions, the numbers are those of seed 1.
+///
+/// # Errors
+/// Everything that is wrong in it and its bases.
+pub fn load_boat(path: &Path) -> Result<Boat, Problems> {
+    draw_boat(path, 1).map(|(boat, _)| boat)
+}
+
+/// Reads and checks the boat file at `path`, and draws its numbers with this seed.
+///
+/// # Errors
+/// Everything that is wrong in it and its bases.
+pub fn draw_boat(path: &Path, seed: u64) -> Result<(Boat, Vec<Drawn>), Problems> {
+    one(Kind::Boat, path, check::boat, seed)
+}
+
+/// Reads and checks the sea file at `path`, and draws its numbers with this seed: those of a game of that seed.
+///
+/// # Errors
+/// Everything that is wrong in it and its bases.
+pub fn draw_sea(path: &Path, seed: u64) -> Result<(Sea, Vec<Drawn>), Problems> {
+    one(Kind::Sea, path, check::sea, seed)
+}
+
+/// Reads and checks the strategy file at `path` and the files of the roles that it deals.
+///
+/// # Errors
+/// Everything that is wrong in any of them and their bases.
+pub fn load_strategy(path: &Path) -> Result<Strategy, Problems> {
+    let mut diagnostics = Diagnostics::new(Drawing::Seed(1));
+    let strategy = check::strategy_file(&mut diagnostics, path, None, "");
+    diagnostics.close(strategy)
+}
+
+/// Reads and checks the tournament file at `path` and every file it names.
+///
+/// # Errors
+/// Everything that is wrong in any of them.
+pub fn load_tournament(path: &Path) -> Result<Tournament, Problems> {
+    one(Kind::Tournament, path, check::tournament, 1).map(|(tournament, _)| tournament)
+}
+
+/// Reads and checks the gateway file at `path`.
+///
+/// # Errors
+/// Everything that is wrong in it and its bases.
+pub fn load_gateway(path: &Path) -> Result<Gateway, Problems> {
+    one(Kind::Gateway, path, check::gateway, 1).map(|(gateway, _)| gateway)
+}
+
+/// Reads and checks the rewards file at `path`.
+///
+/// # Errors
+/// Everything that is wrong in it and its bases.
+pub fn load_rewards(path: &Path) -> Result<Rewards, Problems> {
+    one(Kind::Rewards, path, check::rewards, 1).map(|(rewards, _)| rewards)
+}
+
+/// Reads and checks the training file at `path` and every file it names.
+///
+/// # Errors
+/// Everything that is wrong in any of them.
+pub fn load_training(path: &Path) -> Result<Training, Problems> {
+    one(Kind::Training, path, check::training, 1).map(|(training, _)| training)
+}
+
+/// Reads and checks the sweep file at `path` and every file it names, and the game with every level of every axis, one at a time.
+///
+/// # Errors
+/// Everything that is wrong in any of them.
+pub fn load_sweep(path: &Path) -> Result<Sweep, Problems> {
+    let (sweep, _) = one(Kind::Sweep, path, check::sweep, 1)?;
+    let teams: Vec<String> = load(&sweep.game)?.teams.into_iter().map(|team| team.name).collect();
+    let nominal: Vec<_> = sweep.axes.iter().map(super::Axis::nominal).collect();
+    let mut problems: Vec<_> = vec![];
+    let mut read = |values: &[super::AxisValue]| {
+        if let Err(Problems(found)) = load_with(&sweep.game, &sweep.overrides(&teams, 0, 0, values)) {
+            problems.extend(found);
+        }
+    };
+    read(&nominal);
+    for (i, axis) in sweep.axes.iter().enumerate() {
+        let ends = axis.values.is_empty().then(|| [0.0, 1.0].map(|share| axis.at(share)));
+        for value in axis.levels().into_iter().chain(ends.into_iter().flatten()) {
+            let values: Vec<_> =
+                nominal.iter().enumerate().map(|(k, other)| if k == i { &value } else { other }).cloned().collect();
+            read(&values);
+        }
+    }
+    problems.sort();
+    problems.dedup();
+    if problems.is_empty() { Ok(sweep) } else { Err(Problems(problems)) }
+}
+
+/// The gateway of a file that says nothing.
+///
+/// # Panics
+/// Never: every key has a default.
+#[must_use]
+pub fn default_gateway() -> Gateway {
+    let path = Path::new("default.toml");
+    let mut diagnostics = Diagnostics::new(Drawing::Least);
+    diagnostics.texts = Some(vec![(path.to_owned(), String::new())]);
+    let document = read::document(&mut diagnostics, Kind::Gateway, path, None);
+    document.and_then(|document| check::gateway(&mut diagnostics, &document)).expect("every key has a default")
+}
+
+/// Reads and checks a scenario file of any kind, and says which kind it is.
+///
+/// The folder it lies in tells (`games`, `fields`, `rules`, `boats`, `seas`, `strategies`, `tournaments`, `gateways`).
+/// In any other folder it is the kind that knows most of its top-level keys, its bases' included; where
+/// several know as many, the first of [`Kind::ALL`].
+///
+/// # Errors
+/// Everything that is wrong in it, its bases and the files it names.
+pub fn check_file(path: &Path) -> Result<Kind, Problems> {
+    let kind = Kind::by_folder(path).unwrap_or_else(|| Kind::by_keys(&top_keys(path)));
+    match kind {
+        Kind::Game => load(path).map(drop),
+        Kind::Field => load_field(path).map(drop),
+        Kind::Rules => one(Kind::Rules, path, check::rules, 1).map(drop),
+        Kind::Boat => load_boat(path).map(drop),
+        Kind::Sea => draw_sea(path, 1).map(drop),
+        Kind::Strategy => load_strategy(path).map(drop),
+        Kind::Tournament => load_tournament(path).map(drop),
+        Kind::Gateway => load_gateway(path).map(drop),
+        Kind::Rewards => load_rewards(path).map(drop),
+        Kind::Training => load_training(path).map(drop),
+        Kind::Sweep => load_sweep(path).map(drop),
+    }?;
+    Ok(kind)
+}
+
+/// The kind of a file by its folder or its keys, if it is clearly another than the one that is expected.
+#[must_use]
+pub fn other_kind(path: &Path, expected: Kind) -> Option<Kind> {
+    match Kind::by_folder(path) {
+        Some(kind) => (kind != expected).then_some(kind),
+        None => expected.other_by_keys(&top_keys(path)),
+    }
+}
+
+/// A file of one kind, and what was drawn for it.
+fn one<R: DeserializeOwned, T>(
+    kind: Kind,
+    path: &Path,
+    check: fn(&mut Diagnostics, &Document<R>) -> Option<T>,
+    seed: u64,
+) -> Result<(T, Vec<Drawn>), Problems> {
+    let read = |drawing: Drawing| {
+        let mut diagnostics = Diagnostics::new(drawing);
+        let value =
+            read::document(&mut diagnostics, kind, path, None).and_then(|document| check(&mut diagnostics, &document));
+        diagnostics.close(value).map(|value| (value, std::mem::take(&mut diagnostics.drawn)))
+    };
+    let (value, drawn) = read(Drawing::Least)?;
+    if drawn.is_empty() {
+        return Ok((value, drawn));
+    }
+    read(Drawing::Greatest)?;
+    read(Drawing::Seed(seed))
+}
+
+/// The top-level keys of a file and its bases; what is wrong with them is found again by the check.
+fn top_keys(path: &Path) -> BTreeSet<String> {
+    let tree = read::tree(&mut Diagnostics::new(Drawing::Least), path, None, &[]);
+    tree.iter().flat_map(Node::entries).map(|(key, _)| key.clone()).collect()
+}

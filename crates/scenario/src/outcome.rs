@@ -1,0 +1,186 @@
+//! How a game ended: what `--json` writes.
+
+use crate::{Scenario, Vehicle};
+use primitives::id::{TeamId, VehicleId};
+use rules::count::{Counts, Tally};
+use rules::event::{Event, Logged, TagCause};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// The result of a game.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Outcome {
+    /// The scenario's name.
+    pub scenario: String,
+    /// The seed that chose the game.
+    pub seed: u64,
+    /// The version of Squall that played it.
+    pub version: String,
+    /// Digest of the final state and of all events, hex.
+    pub digest: String,
+    /// Simulated time played, s.
+    pub duration_s: f64,
+    /// Physics ticks played.
+    pub ticks: u64,
+    /// Numbers that were drawn for this game, under their names, in the units of the files.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty", default)]
+    pub drawn: BTreeMap<String, f64>,
+    /// Whether anything in it depended on the seed.
+    #[serde(default)]
+    pub random: bool,
+    /// Whether wind, waves or current favoured one end of the field: then one game alone does not say who is better.
+    #[serde(default)]
+    pub ends_differ: bool,
+    /// The winning team's name; none is a draw or a game cut short.
+    pub winner: Option<String>,
+    /// The team of each boat.
+    pub boats: BTreeMap<String, String>,
+    /// Points.
+    pub score: Standings<u32>,
+    /// What was done, how often.
+    pub counts: Standings<Counts>,
+    /// Everything that happened, in order.
+    pub events: Vec<EventOutcome>,
+}
+
+/// Something by team and by boat, under their names.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Standings<T> {
+    /// By team.
+    pub teams: BTreeMap<String, T>,
+    /// By boat.
+    pub boats: BTreeMap<String, T>,
+}
+
+/// An event with names in place of numbers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EventOutcome {
+    /// Physics tick.
+    pub tick: u64,
+    /// Simulated time, s.
+    pub at_s: f64,
+    /// What happened, for example `tagged`.
+    pub event: String,
+    /// The boat it happened to.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub vehicle: Option<String>,
+    /// The tagger or the other boat.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub other: Option<String>,
+    /// The team whose flag it is about, or that won.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub team: Option<String>,
+}
+
+impl EventOutcome {
+    /// The event with the scenario's names.
+    #[must_use]
+    pub fn new(scenario: &Scenario, logged: &Logged) -> EventOutcome {
+        let name = |vehicle: VehicleId| scenario.vehicles[vehicle.index()].name.clone();
+        let team = |team: TeamId| scenario.teams[team.index()].name.clone();
+        let word = match logged.event {
+            Event::Tagged { cause: TagCause::Boundary, .. } => "tagged_by_boundary",
+            event => event.into(),
+        };
+        let whose = match logged.event {
+            Event::Ended { winner } => winner,
+            event => event.flag().map(|flag| scenario.field.flags[flag.index()].team),
+        };
+        EventOutcome {
+            tick: logged.tick,
+            at_s: logged.at.as_s(),
+            event: word.to_owned(),
+            vehicle: logged.event.vehicle().map(name),
+            other: logged.event.other().map(name),
+            team: whose.map(team),
+        }
+    }
+
+    /// The event as a sentence for people, without its time.
+    #[must_use]
+    pub fn sentence(&self) -> String {
+        let who = self.vehicle.as_deref().unwrap_or("nobody");
+        let other = self.other.as_deref().unwrap_or("nobody");
+        let team = self.team.as_deref().unwrap_or("nobody");
+        match self.event.as_str() {
+            "grabbed" => format!("{who} grabs the {team} flag"),
+            "captured" => format!("{who} CAPTURES the {team} flag"),
+            "flag_returned" => format!("{who} loses the {team} flag"),
+            "tagged" => format!("{who} is tagged by {other}"),
+            "tagged_by_boundary" => format!("{who} is tagged by the boundary"),
+            "untagged" => format!("{who} is home and plays again"),
+            "left_field" => format!("{who} leaves the field"),
+            "returned_to_field" => format!("{who} is back on the field"),
+            "collided" => format!("{who} and {other} collide"),
+            "entered_keepout" => format!("{who} comes too near its own flag"),
+            "disabled" => format!("{who} is out of action"),
+            "enabled" => format!("{who} is back in action"),
+            "agent_lost" => format!("{who} has LOST ITS AGENT and holds"),
+            "agent_back" => format!("{who} has an agent again"),
+            "quarantined" => format!("{who} is QUARANTINED: its numbers went bad"),
+            "nav_lost" => format!("{who} is LOST: nobody reports where it is"),
+            "nav_back" => format!("{who} is found again"),
+            "e_stopped" => "E-STOP: all boats hold".to_owned(),
+            "released" => "the E-stop is released".to_owned(),
+            "halted" => "all boats hold".to_owned(),
+            "went_on" => "boats go on".to_owned(),
+            "ended" if self.team.is_none() => "the game ends in a draw".to_owned(),
+            "ended" => format!("{team} wins"),
+            other => other.to_owned(),
+        }
+    }
+}
+
+/// What a game leaves behind, before names are put to it.
+pub struct Played<'a> {
+    /// What was played.
+    pub scenario: &'a Scenario,
+    /// Digest of the final state and all events.
+    pub digest: u128,
+    /// Physics ticks played.
+    pub ticks: u64,
+    /// Points, by team.
+    pub score: &'a [u32],
+    /// Everything that happened.
+    pub events: &'a [Logged],
+}
+
+impl Outcome {
+    /// The result of a game that was played.
+    #[must_use]
+    pub fn new(played: &Played<'_>) -> Outcome {
+        let scenario = played.scenario;
+        let mut tally = Tally::new(scenario.vehicles.len());
+        played.events.iter().for_each(|logged| tally.add(logged.event));
+        let team_counts = |team: usize| tally.team(TeamId(team as u8), |i| scenario.vehicles[i].team);
+        let team_names = || scenario.teams.iter().map(|team| team.name.clone());
+        let boats = || scenario.vehicles.iter().map(|vehicle| vehicle.name.clone()).zip(&tally.vehicles);
+        let team_of = |vehicle: &Vehicle| (vehicle.name.clone(), scenario.teams[vehicle.team.index()].name.clone());
+        let winner = played.events.iter().rev().find_map(|logged| match logged.event {
+            Event::Ended { winner } => winner,
+            _ => None,
+        });
+        Outcome {
+            scenario: scenario.name.clone(),
+            seed: scenario.seed,
+            version: primitives::VERSION.to_owned(),
+            digest: format!("{:032x}", played.digest),
+            duration_s: (scenario.tick * played.ticks as i64).as_s(),
+            ticks: played.ticks,
+            drawn: scenario.drawn.iter().map(|drawn| (drawn.parameter.clone(), drawn.value)).collect(),
+            random: scenario.is_random(),
+            ends_differ: !scenario.sea.is_at_rest(),
+            winner: winner.map(|team| scenario.teams[team.index()].name.clone()),
+            boats: scenario.vehicles.iter().map(team_of).collect(),
+            score: Standings {
+                teams: team_names().zip(played.score.iter().copied()).collect(),
+                boats: boats().map(|(name, counts)| (name, scenario.rules.points.of(counts))).collect(),
+            },
+            counts: Standings {
+                teams: team_names().enumerate().map(|(i, name)| (name, team_counts(i))).collect(),
+                boats: boats().map(|(name, counts)| (name, *counts)).collect(),
+            },
+            events: played.events.iter().map(|logged| EventOutcome::new(scenario, logged)).collect(),
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! A plan of many games with all that they need, for a process on another machine.
+
+use super::{Files, Problems, Scenario};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD as BASE64;
+use serde::de::{DeserializeOwned, Error as _};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::path::PathBuf;
+use std::sync::Arc;
+use thiserror::Error;
+
+/// A sweep or a tournament with all that its games need: where it is unpacked no file is read.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Packed {
+    /// The checked file, JSON.
+    pub spec: String,
+    /// Every file that its games need, in the order in which it asks for them: those that name others first. In JSON a file is its path
+    /// and its text, or its bytes in base64.
+    #[serde(serialize_with = "write_files", deserialize_with = "read_files")]
+    pub files: Vec<(PathBuf, Vec<u8>)>,
+    /// The plan's digest.
+    pub digest: String,
+}
+
+/// Why a plan cannot be unpacked.
+#[derive(Debug, Error)]
+pub enum UnpackError {
+    /// The checked file is none.
+    #[error("the packed plan cannot be read: {0}")]
+    Spec(#[from] serde_json::Error),
+    /// The game cannot be read from the packed files.
+    #[error("{0}")]
+    Game(#[from] Problems),
+    /// It is another one here.
+    #[error(
+        "the games are others here than where they were packed: expected digest {expected}, found {found}; \
+         both need the same version of Squall, here it is {}",
+        primitives::VERSION
+    )]
+    Other {
+        /// The digest where it was packed.
+        expected: String,
+        /// The one here.
+        found: String,
+    },
+}
+
+impl Packed {
+    /// Packs the plan of a checked file.
+    ///
+    /// # Panics
+    /// If `spec` is no JSON: its maps have keys that are no texts.
+    #[must_use]
+    pub fn new(spec: &impl Serialize, files: Vec<(PathBuf, Arc<[u8]>)>, digest: String) -> Packed {
+        Packed {
+            spec: serde_json::to_string(spec).expect("it has names for keys"),
+            files: files.into_iter().map(|(path, bytes)| (path, bytes.to_vec())).collect(),
+            digest,
+        }
+    }
+
+    /// The plan that `plan` makes of the checked file and its files; `digest` identifies it.
+    ///
+    /// # Errors
+    /// [`UnpackError`]: it is damaged, or another version of Squall packed it.
+    pub fn unpack<S: DeserializeOwned, P>(
+        self,
+        plan: impl FnOnce(&S, Arc<Files>) -> Result<P, Problems>,
+        digest: impl FnOnce(&P) -> String,
+    ) -> Result<P, UnpackError> {
+        let plan = plan(&serde_json::from_str(&self.spec)?, Arc::new(Files::kept(self.files)))?;
+        let found = digest(&plan);
+        if found == self.digest { Ok(plan) } else { Err(UnpackError::Other { expected: self.digest, found }) }
+    }
+}
+
+/// A file as it stands in JSON.
+#[derive(Serialize, Deserialize)]
+struct PackedFile {
+    path: PathBuf,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    text: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    base64: Option<String>,
+}
+
+fn write_files<S: Serializer>(files: &[(PathBuf, Vec<u8>)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(files.iter().map(|(path, bytes)| {
+        let text = String::from_utf8(bytes.clone()).ok();
+        let base64 = text.is_none().then(|| BASE64.encode(bytes));
+        PackedFile { path: path.clone(), text, base64 }
+    }))
+}
+
+fn read_files<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<(PathBuf, Vec<u8>)>, D::Error> {
+    let files: Vec<PackedFile> = Vec::deserialize(deserializer)?;
+    let unpacked = files.into_iter().map(|PackedFile { path, text, base64 }| match (text, base64) {
+        (Some(text), None) => Ok((path, text.into_bytes())),
+        (None, Some(base64)) => {
+            let bytes = BASE64.decode(base64);
+            Ok((path.clone(), bytes.map_err(|why| D::Error::custom(format!("{}: {why}", path.display())))?))
+        }
+        _ => Err(D::Error::custom(format!("{} has not one of text and base64", path.display()))),
+    });
+    unpacked.collect()
+}
+
+/// Identifies a plan by what its file means and what the files of its games say: hex.
+#[must_use]
+pub fn digest_of(meaning: &str, files: &[(PathBuf, Arc<[u8]>)]) -> String {
+    let contents: Vec<u128> = files.iter().map(|(_, bytes)| xxhash_rust::xxh3::xxh3_128(bytes)).collect();
+    let text = format!("{} {meaning} {contents:x?}", primitives::VERSION);
+    format!("{:032x}", xxhash_rust::xxh3::xxh3_128(text.as_bytes()))
+}
+
+impl Scenario {
+    /// Identifies the games of all seeds that can be played of it with this version of Squall, wherever its files lie: hex.
+    ///
+    /// # Panics
+    /// If it is no JSON: its maps have keys that are no texts.
+    #[must_use]
+    pub fn digest(&self) -> String {
+        let texts: Vec<(PathBuf, Arc<[u8]>)> = match &self.recipe {
+            None => vec![],
+            Some(recipe) => recipe.files.iter().map(|(path, text)| (path.clone(), text.as_bytes().into())).collect(),
+        };
+        let meant = Scenario { seed: 0, recipe: None, ..self.clone() };
+        digest_of(&serde_json::to_string(&meant).expect("it has names for keys"), &texts)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_and_models_go_through_json_and_what_is_neither_is_refused() {
+        let files =
+            vec![(PathBuf::from("a.toml"), b"x = \"1\"\n".to_vec()), (PathBuf::from("b.onnx"), vec![0, 255, 7])];
+        let packed = Packed { spec: "{}".to_owned(), files, digest: "d".to_owned() };
+        let json = serde_json::to_string(&packed).expect("it has names for keys");
+        assert!(json.contains("x = \\\"1\\\"\\n") && json.contains("AP8H"), "{json}");
+        assert_eq!(serde_json::from_str::<Packed>(&json).expect("it is read again"), packed);
+        for (broken, why) in [("\"base64\":\"AP8H\"", "\"base64\":\"?\""), ("\"base64\":\"AP8H\"", "\"bytes\":[]")] {
+            let refused = serde_json::from_str::<Packed>(&json.replace(broken, why)).expect_err("it is refused");
+            assert!(refused.to_string().contains("b.onnx"), "{refused}");
+        }
+    }
+}

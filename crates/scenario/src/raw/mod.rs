@@ -1,0 +1,51 @@
+//! Scenario files as people type them, where what the program believes has another form: `check` makes the one from the other.
+//!
+//! All other types of a scenario stand for themselves. Every key is declared once, here or there; how, is told in
+//! `schema`. The doc comments are the descriptions in the JSON Schemas and the reference, so they are written for people
+//! who write files.
+
+mod boat;
+mod field;
+mod game;
+mod sea;
+mod strategy;
+
+pub(super) use boat::{Boat, SettingAndThrust, Thruster};
+pub(super) use field::{Circle, Field, Flag, Obstacle, Side};
+
+pub(super) use game::Fleet;
+
+pub(super) use game::Game;
+
+pub(super) use game::Spawn;
+
+pub(super) use game::Team;
+
+pub(super) use game::Vehicle;
+pub(super) use sea::{Current, Gusts, Sea, Spectrum, Spreading, Waves, Wind};
+pub(super) use strategy::{Rule, Strategy, Value, Values, Variable, VariableTable};
+
+use super::diagnostics::NAME_PATTERN;
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+/// The path of another file, relative to the one it stands in. Empty where it was wrong or missing.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[schemars(inline, extend("minLength" = 1, "x-expected" = "the path of a file"))]
+pub(crate) struct FilePath(pub(crate) String);
+
+/// A name. Empty where it was wrong or missing.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[schemars(inline, extend("pattern" = NAME_PATTERN))]
+pub(crate) struct Name(pub(crate) String);
+
+/// A position, or the name of one.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+#[schemars(inline, extend("x-expected" = "[x, y] or the name of a point such as \"CH\""))]
+pub(super) enum Position {
+    /// [x east, y north] in metres from the datum.
+    At(#[schemars(inner(range(min = -1000000, max = 1000000)))] [f64; 2]),
+    /// A named point of the own team.
+    Point(String),
+}

@@ -1,0 +1,34 @@
+//! The real boats of a game, which are played in real time only.
+
+use super::{Scenario, Source, Vehicle};
+use primitives::id::VehicleId;
+use thiserror::Error;
+
+/// A game with real boats is to be played where nothing waits for the clock.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error(
+    "{} (source = \"external\") can be played in real time only: run or serve this game with --pace realtime, or with \
+     --rehearse, a rehearsal in which every boat is simulated",
+    .names.join(", ")
+)]
+pub struct RealBoats {
+    /// By name.
+    pub names: Vec<String>,
+}
+
+impl Scenario {
+    /// The vehicles that are real boats, in order.
+    pub fn externals(&self) -> impl Iterator<Item = VehicleId> {
+        let is_external = |(_, vehicle): &(usize, &Vehicle)| vehicle.source == Source::External;
+        self.vehicles.iter().enumerate().filter(is_external).map(|(i, _)| VehicleId::at(i))
+    }
+
+    /// Whether the game can be played without a clock: all its boats are simulated.
+    ///
+    /// # Errors
+    /// [`RealBoats`] names those that are not.
+    pub fn has_no_real_boats(&self) -> Result<(), RealBoats> {
+        let names: Vec<String> = self.externals().map(|v| self.vehicles[v.index()].name.clone()).collect();
+        if names.is_empty() { Ok(()) } else { Err(RealBoats { names }) }
+    }
+}

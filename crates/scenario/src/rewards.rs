@@ -1,0 +1,235 @@
+//! Rewards: what happens in a game, as numbers for boats that learn.
+//!
+//! [`Rewards`] are data, from `scenarios/rewards/*.toml`, whose keys they declare.
+
+mod progress;
+
+pub use progress::{Among, BoatProgress, Placed, progress};
+
+use crate::Scenario;
+use primitives::id::{TeamId, VehicleId};
+use rules::event::{Event, Logged, TagCause};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// What is worth how much to a boat: the sum of all that follows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Rewards {
+    /// What the own boat does, and what happens to it.
+    pub boat: Worth,
+    /// What any boat of the own team does, this one included.
+    pub team: Worth,
+    /// What any boat of the enemies does.
+    pub enemy: Worth,
+    /// The end of the game, for every boat of a team.
+    pub end: End,
+    /// For being on the way: see [`Potential`].
+    pub potential: Potential,
+    /// For coming nearer to a place: see [`Place`].
+    pub place: Place,
+    /// Each second of the game.
+    #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
+    pub second: f64,
+}
+
+/// What events of a boat are worth.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Worth {
+    /// It took the enemies' flag.
+    #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
+    pub grab: f64,
+    /// It brought that home.
+    #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
+    pub capture: f64,
+    /// It tagged an enemy.
+    #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
+    pub tag: f64,
+    /// It tagged an enemy that carried a flag: instead of `tag`.
+    #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
+    pub tag_carrier: f64,
+    /// It was tagged by an enemy.
+    #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
+    pub tagged: f64,
+    /// It was tagged by an enemy while it carried a flag: instead of `tagged`.
+    #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
+    pub tagged_carrying: f64,
+    /// It was untagged.
+    #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
+    pub untagged: f64,
+    /// It left the field.
+    #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
+    pub left_field: f64,
+    /// It came nearer to another boat than the collision distance.
+    #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
+    pub collided: f64,
+}
+
+/// What the end of a game is worth.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct End {
+    /// For a game won; one that is lost costs as much.
+    #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
+    pub win: f64,
+    /// For every point more than the enemies have.
+    #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
+    pub point: f64,
+}
+
+/// Potential-based shaping (Ng, Harada and Russell, ICML 1999): the discounted gain of a potential that depends on the state alone, and
+/// is 0 at the end of a game. It does not change which policy is the best one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Potential {
+    /// At the enemies' flag; 0 where that is a field's width away. A carrier has as much, and again as much when it has brought
+    /// the flag home. A tagged boat has none.
+    #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
+    pub attack: f64,
+    /// Of a tagged boat: less than nothing by this much for a field's width from where it is untagged.
+    #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
+    pub untag: f64,
+}
+
+/// What it is worth to be in a place: in each step a boat gets what that gains, and what it loses is taken from it. Where a reward a step
+/// later is worth γ, it is as if each step in the place were worth (1 - γ) of this, with the place as a potential. Unlike [`Potential`]
+/// it says what a boat is to do: it is for policies that do one thing alone. To a tagged boat all places are worth nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Place {
+    /// At the enemies' flag, or anywhere with it; 0 a field's width away.
+    #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
+    pub flag: f64,
+    /// At home, where a flag is brought and a tagged boat is untagged; 0 a field's width away.
+    #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
+    pub home: f64,
+    /// At the nearest intruder, an untagged enemy on the own side; 0 a field's width away, and where there is none.
+    #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
+    pub intruder: f64,
+    /// An eighth of the field's width before the own flag, towards the untagged enemy that is nearest to it, or where that enemy is, if
+    /// that is nearer; 0 a quarter of the field's width away.
+    #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
+    pub guard: f64,
+    /// The same with an untagged mate on the enemies' side in place of the flag: the one whose nearest untagged enemy is nearest.
+    #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
+    pub shield: f64,
+    /// A quarter of the field's width from every untagged enemy, or more; 0 where one is.
+    #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
+    pub clear: f64,
+}
+
+impl Place {
+    /// Of a boat that is there.
+    #[must_use]
+    pub fn of(&self, boat: &BoatProgress) -> f64 {
+        if boat.tagged {
+            return 0.0;
+        }
+        let among = &boat.among;
+        let near = |away: f64| (1.0 - away).max(0.0);
+        self.flag * if boat.carrying { 1.0 } else { near(boat.from_flag) }
+            + self.home * near(boat.from_home)
+            + self.intruder * among.at_intruder
+            + self.guard * among.on_guard
+            + self.shield * among.at_shield
+            + self.clear * among.clear
+    }
+}
+
+impl Potential {
+    /// Of a boat that has come so far.
+    #[must_use]
+    pub fn of(&self, boat: &BoatProgress) -> f64 {
+        if boat.tagged {
+            -self.untag * boat.from_home
+        } else if boat.carrying {
+            self.attack * (2.0 - boat.from_home).max(1.0)
+        } else {
+            self.attack * (1.0 - boat.from_flag)
+        }
+    }
+}
+
+impl Rewards {
+    /// Whether it matters where boats are among the others: [`Among`].
+    #[must_use]
+    pub fn mind_others(&self) -> bool {
+        let Place { intruder, guard, shield, clear, .. } = self.place;
+        [intruder, guard, shield, clear].iter().any(|worth| *worth != 0.0)
+    }
+
+    /// Adds what events are worth to the boats' rewards. `carrying` says of each boat whether it carried a flag before them.
+    pub fn add_events(&self, scenario: &Scenario, events: &[Logged], carrying: &[bool], rewards: &mut [f64]) {
+        let team_of = |vehicle: VehicleId| scenario.team_of(vehicle);
+        let mut add = |vehicle: VehicleId, worth: fn(&Worth) -> f64| {
+            for (i, reward) in rewards.iter_mut().enumerate() {
+                let other = VehicleId::at(i);
+                if other == vehicle {
+                    *reward += worth(&self.boat);
+                }
+                *reward += worth(if team_of(other) == team_of(vehicle) { &self.team } else { &self.enemy });
+            }
+        };
+        for logged in events {
+            match logged.event {
+                Event::Grabbed { vehicle, .. } => add(vehicle, |worth| worth.grab),
+                Event::Captured { vehicle, .. } => add(vehicle, |worth| worth.capture),
+                Event::Tagged { vehicle, cause: TagCause::Opponent(by) } => {
+                    if carrying[vehicle.index()] {
+                        add(by, |worth| worth.tag_carrier);
+                        add(vehicle, |worth| worth.tagged_carrying);
+                    } else {
+                        add(by, |worth| worth.tag);
+                        add(vehicle, |worth| worth.tagged);
+                    }
+                }
+                Event::Untagged(vehicle) => add(vehicle, |worth| worth.untagged),
+                Event::LeftField(vehicle) => add(vehicle, |worth| worth.left_field),
+                Event::Collided { first, second } => {
+                    add(first, |worth| worth.collided);
+                    add(second, |worth| worth.collided);
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// What the end of a game with this score is worth to a team.
+    #[must_use]
+    pub fn of_end(&self, score: &[u32], team: TeamId) -> f64 {
+        let own = f64::from(score[team.index()]);
+        let ahead = 2.0 * own - score.iter().map(|points| f64::from(*points)).sum::<f64>();
+        let won = if ahead == 0.0 { 0.0 } else { ahead.signum() };
+        self.end.win * won + self.end.point * ahead
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Among, BoatProgress, Place, Rewards};
+
+    #[test]
+    fn a_place_is_worth_the_sum_of_its_parts_and_nothing_to_a_tagged_boat() {
+        let place = Place { flag: 0.1, home: 1.0, intruder: 1e4, guard: 10.0, shield: 100.0, clear: 1000.0 };
+        let among = Among { at_intruder: 0.5, on_guard: 0.5, at_shield: 0.25, clear: 0.75 };
+        let boat = BoatProgress { from_flag: 0.5, from_home: 0.25, among, ..BoatProgress::default() };
+        assert_eq!(place.of(&boat), 0.05 + 0.75 + 5e3 + 5.0 + 25.0 + 750.0);
+        assert_eq!(place.of(&BoatProgress { carrying: true, ..boat }), 0.1 + 0.75 + 5e3 + 5.0 + 25.0 + 750.0);
+        assert_eq!(place.of(&BoatProgress { tagged: true, ..boat }), 0.0);
+        assert_eq!(Place { home: 1.0, ..Place::default() }.of(&BoatProgress { from_home: 1.5, ..boat }), 0.0);
+    }
+
+    #[test]
+    fn others_matter_to_what_depends_on_them() {
+        let mut rewards = Rewards::default();
+        (rewards.place.home, rewards.place.flag) = (1.0, 1.0);
+        rewards.potential.attack = 1.0;
+        assert!(!rewards.mind_others());
+        for change in [
+            |rewards: &mut Rewards| rewards.place.guard = 1.0,
+            |rewards: &mut Rewards| rewards.place.shield = -1.0,
+            |rewards: &mut Rewards| rewards.place.clear = 1.0,
+            |rewards: &mut Rewards| rewards.place.intruder = 1.0,
+        ] {
+            let mut rewards = rewards;
+            change(&mut rewards);
+            assert!(rewards.mind_others(), "{rewards:?}");
+        }
+    }
+}

@@ -1,0 +1,238 @@
+//! How far a boat has come, and where it is among the others: what potentials and places are worth is worked out from this.
+
+use primitives::frame::Ned;
+use primitives::id::TeamId;
+use rules::field::Field;
+
+/// A place is worth something within this share of the field's width from it.
+const REACH: f64 = 0.25;
+/// Whoever guards something stands off it by this share of the field's width, towards the enemy.
+const STAND_OFF: f64 = 0.125;
+
+/// A boat on the field.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placed {
+    /// Where it is.
+    pub at: Ned,
+    /// Its team, one of two.
+    pub team: TeamId,
+    /// Whether it is tagged.
+    pub tagged: bool,
+    /// Whether it carries a flag.
+    pub carrying: bool,
+}
+
+/// How far a boat has come, and where it is among the others.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BoatProgress {
+    /// Whether it is tagged.
+    pub tagged: bool,
+    /// Whether it carries a flag.
+    pub carrying: bool,
+    /// Its distance from the enemies' flag, in widths of the field.
+    pub from_flag: f64,
+    /// Its distance from where a flag is brought and a tagged boat is untagged, in widths of the field.
+    pub from_home: f64,
+    /// Where it is among the others, as far as that is asked for.
+    pub among: Among,
+}
+
+/// Where a boat is among the others, each from 0 to 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Among {
+    /// How near it is to the nearest intruder, an untagged enemy on its side: 1 there, 0 a field's width away, or without one.
+    pub at_intruder: f64,
+    /// How near it is to where the own flag is guarded from: see [`Place::guard`](super::Place::guard).
+    pub on_guard: f64,
+    /// How near it is to where a mate is shielded from: see [`Place::shield`](super::Place::shield).
+    pub at_shield: f64,
+    /// How far it is from the nearest untagged enemy: 0 there, 1 from a quarter of the field's width on.
+    pub clear: f64,
+}
+
+/// How far each boat has come. With `among_others` also where it is among them; else that is 0, and costs nothing.
+///
+/// # Panics
+/// If a team is none of the field's two.
+pub fn progress(field: &Field, boats: &[Placed], among_others: bool, out: &mut [BoatProgress]) {
+    let width_m = field.plan.width_m;
+    for (boat, out) in boats.iter().zip(out.iter_mut()) {
+        let away = |team: usize| boat.at.distance(field.flags[team].home) / width_m;
+        let Placed { tagged, carrying, team, .. } = *boat;
+        let (from_flag, from_home) = (away(1 - team.index()), away(team.index()));
+        *out = BoatProgress { tagged, carrying, from_flag, from_home, among: Among::default() };
+    }
+    if !among_others {
+        return;
+    }
+    let posts = Posts::of(field, boats);
+    out.iter_mut().enumerate().for_each(|(i, out)| out.among = posts.among(field, boats, i));
+}
+
+/// What whoever protects something has to know.
+struct Posts {
+    /// By team, from where its flag is guarded; none where no enemy is untagged.
+    flag: [Option<Ned>; 2],
+    /// Untagged boats on the enemies' side: which, how far its nearest untagged enemy is, m, and from where it is shielded from that.
+    mates: Vec<(usize, f64, Ned)>,
+}
+
+impl Posts {
+    fn of(field: &Field, boats: &[Placed]) -> Posts {
+        let stand_off_m = STAND_OFF * field.plan.width_m;
+        let flag = [0, 1].map(|team| {
+            let home = field.flags[team].home;
+            nearest_enemy(boats, TeamId(team as u8), home).map(|enemy| between(home, enemy, stand_off_m))
+        });
+        let abroad = |boat: &Placed| !boat.tagged && field.zones[1 - boat.team.index()].contains(boat.at);
+        let post = |(i, boat): (usize, &Placed)| {
+            let enemy = nearest_enemy(boats, boat.team, boat.at)?;
+            Some((i, boat.at.distance(enemy), between(boat.at, enemy, stand_off_m)))
+        };
+        let mates = boats.iter().enumerate().filter(|(_, boat)| abroad(boat)).filter_map(post).collect();
+        Posts { flag, mates }
+    }
+
+    fn among(&self, field: &Field, boats: &[Placed], i: usize) -> Among {
+        let (width_m, me) = (field.plan.width_m, &boats[i]);
+        let near = |place: Ned, reach: f64| (1.0 - me.at.distance(place) / (reach * width_m)).max(0.0);
+        let intruders = boats
+            .iter()
+            .filter(|boat| boat.team != me.team && !boat.tagged && field.zones[me.team.index()].contains(boat.at));
+        let of_team = self.mates.iter().filter(|(mate, ..)| *mate != i && boats[*mate].team == me.team);
+        Among {
+            at_intruder: intruders.map(|boat| near(boat.at, 1.0)).fold(0.0, f64::max),
+            on_guard: self.flag[me.team.index()].map_or(0.0, |post| near(post, REACH)),
+            at_shield: of_team.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0.0, |(.., post)| near(*post, REACH)),
+            clear: nearest_enemy(boats, me.team, me.at).map_or(1.0, |enemy| 1.0 - near(enemy, REACH)),
+        }
+    }
+}
+
+/// Where the untagged enemy of a team is who is nearest to a place.
+fn nearest_enemy(boats: &[Placed], team: TeamId, to: Ned) -> Option<Ned> {
+    let enemies = boats.iter().filter(|boat| boat.team != team && !boat.tagged);
+    enemies.map(|boat| boat.at).min_by(|a, b| a.distance(to).total_cmp(&b.distance(to)))
+}
+
+/// The place so far from one towards another, or that one if it is nearer.
+fn between(from: Ned, to: Ned, off_m: f64) -> Ned {
+    let away_m = from.distance(to);
+    if away_m <= off_m { to } else { from + (to - from).scaled(off_m / away_m) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Among, BoatProgress, Placed, progress};
+    use primitives::frame::LatLon;
+    use primitives::id::TeamId;
+    use rules::field::{Field, Plan, Walls};
+
+    /// 160 m by 80 m: flags at (20, 40) and (140, 40), the first team's side up to 80 m.
+    fn field() -> Field {
+        Field::new(Plan {
+            name: "test".to_owned(),
+            datum: LatLon { lat_deg: 41.0, lon_deg: -74.0 },
+            corner: primitives::frame::Ned::default(),
+            along_deg: 90.0,
+            width_m: 160.0,
+            depth_m: 80.0,
+            flag_inset_m: 20.0,
+            extra_flags: vec![],
+            obstacles: vec![],
+            walls: Walls::None,
+        })
+    }
+
+    /// Boats at (m along, m across): the first two of the first team; whether each is tagged.
+    fn seen(boats: [(f64, f64, bool); 4]) -> [BoatProgress; 4] {
+        let field = field();
+        let boats: Vec<Placed> = boats
+            .iter()
+            .enumerate()
+            .map(|(i, (along_m, across_m, tagged))| {
+                let team = TeamId(u8::from(i >= 2));
+                Placed { at: field.at(*along_m, *across_m), team, tagged: *tagged, carrying: false }
+            })
+            .collect();
+        let mut out = [BoatProgress::default(); 4];
+        progress(&field, &boats, true, &mut out);
+        out
+    }
+
+    fn close(got: f64, want: f64) {
+        assert!((got - want).abs() < 1e-12, "{got}, not {want}");
+    }
+
+    #[test]
+    fn distances_are_told_in_widths_of_the_field() {
+        let boats = seen([(60.0, 40.0, false), (20.0, 40.0, true), (140.0, 0.0, false), (100.0, 40.0, false)]);
+        close(boats[0].from_home, 0.25);
+        close(boats[0].from_flag, 0.5);
+        close(boats[2].from_home, 0.25);
+        close(boats[3].from_flag, 0.5);
+        assert!(boats[1].tagged && !boats[0].tagged);
+    }
+
+    #[test]
+    fn the_nearest_untagged_enemy_on_the_own_side_is_an_intruder() {
+        // Of the two on the first team's side one is tagged; the other is 32 m and 40 m away.
+        let boats = seen([(70.0, 72.0, false), (30.0, 40.0, false), (70.0, 40.0, false), (70.0, 72.0, true)]);
+        close(boats[0].among.at_intruder, 0.8);
+        close(boats[1].among.at_intruder, 0.75);
+        close(boats[2].among.at_intruder, 0.0);
+    }
+
+    #[test]
+    fn a_flag_is_guarded_from_an_eighth_of_the_field_before_it_towards_the_nearest_enemy() {
+        // The enemy nearest to the flag at (20, 40) is due ahead: the place is (40, 40), or the enemy's own.
+        for (enemy_along_m, boat_along_m, want) in
+            [(90.0, 40.0, 1.0), (90.0, 50.0, 0.75), (90.0, 85.0, 0.0), (30.0, 40.0, 0.75), (30.0, 30.0, 1.0)]
+        {
+            let boats = seen([
+                (boat_along_m, 40.0, false),
+                (20.0, 70.0, false),
+                (enemy_along_m, 40.0, false),
+                (21.0, 40.0, true),
+            ]);
+            close(boats[0].among.on_guard, want);
+        }
+        let tagged = seen([(40.0, 40.0, false), (20.0, 70.0, false), (90.0, 40.0, true), (21.0, 40.0, true)]);
+        close(tagged[0].among.on_guard, 0.0);
+    }
+
+    #[test]
+    fn a_mate_abroad_is_shielded_from_the_enemy_nearest_to_it() {
+        let shield = |mate: (f64, f64, bool)| {
+            seen([(110.0, 40.0, false), mate, (150.0, 40.0, false), (20.0, 40.0, false)]).map(|boat| boat.among)
+        };
+        // From (100, 40) 20 m towards (150, 40) is (120, 40), 10 m from the boat at (110, 40).
+        close(shield((100.0, 40.0, false))[0].at_shield, 0.75);
+        // Nobody shields itself, and the mate has nobody else abroad but the boat at (110, 40): its place is (130, 40).
+        close(shield((100.0, 40.0, false))[1].at_shield, 0.25);
+        for at_home_or_tagged in [(70.0, 40.0, false), (100.0, 40.0, true)] {
+            close(shield(at_home_or_tagged)[0].at_shield, 0.0);
+        }
+    }
+
+    #[test]
+    fn a_boat_is_clear_of_enemies_from_a_quarter_of_the_field_on() {
+        for (enemy_along_m, tagged, want) in
+            [(80.0, false, 0.5), (100.0, false, 1.0), (60.0, false, 0.0), (60.0, true, 1.0)]
+        {
+            let boats =
+                seen([(60.0, 40.0, false), (20.0, 70.0, false), (enemy_along_m, 40.0, tagged), (159.0, 1.0, false)]);
+            close(boats[0].among.clear, want);
+        }
+    }
+
+    #[test]
+    fn what_is_not_asked_for_is_0() {
+        let field = field();
+        let boat = Placed { at: field.at(20.0, 40.0), team: TeamId(0), tagged: false, carrying: true };
+        let mut out = [BoatProgress::default()];
+        progress(&field, &[boat], false, &mut out);
+        assert_eq!(out[0].among, Among::default());
+        assert!(out[0].carrying && out[0].from_home < 1e-12);
+    }
+}

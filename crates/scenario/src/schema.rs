@@ -1,0 +1,183 @@
+//! The JSON Schema of each kind of scenario file: the single owner of every key's type, range, default and meaning.
+//!
+//! A key is a field of a type, and is declared once, there:
+//!
+//! ```text
+//! /// An intruder is tagged closer than this, m.
+//! #[schemars(range(min = 0.1, max = 1000), extend("default" = 10))]
+//! pub tag_radius_m: f64,
+//! ```
+//!
+//! * Its doc comment is the description, with the unit; a unit is also the end of its name.
+//! * `range` (of numbers), `length` (of lists) and `inner(range(…))` (of the numbers in a list) say what is allowed.
+//! * `extend("default" = …)` is the value of a key that is left out. Without it the key is required, unless the field
+//!   is an `Option`. A list or a table of which nothing is required may be left out too, and is then empty.
+//! * Choices are enums with `rename_all = "snake_case"` and a doc comment for each choice.
+//! * `extend("x-expected" = "…")` says in messages what is expected, where the type alone would not.
+//! * `rename` with `extend("x-field" = "…")` gives the key another name, and with it another unit, than the field has.
+//! * `extend("x-estimated" = true)` leaves the value of a number that is left out to the check of the file.
+//! * `extend("x-drawn" = true)` allows distributions in place of all numbers in a table.
+//!
+//! [`declared`] is the schema in this form, by which files are read (see `validate`); [`schema`] is the one for editors.
+
+use super::kind::Kind;
+use super::{Sweep, Tournament, raw};
+use crate::gateway::Gateway;
+use crate::rewards::Rewards;
+use crate::training::Training;
+use rules::Rules;
+use schemars::{JsonSchema, generate::SchemaSettings};
+use serde_json::{Map, Value, json};
+use std::sync::OnceLock;
+
+/// The schema that files of a kind are read by.
+pub(super) fn declared(kind: Kind) -> &'static Value {
+    static SCHEMAS: [OnceLock<Value>; Kind::ALL.len()] = [const { OnceLock::new() }; Kind::ALL.len()];
+    SCHEMAS[kind as usize].get_or_init(|| match kind {
+        Kind::Game => generated::<raw::Game>(kind),
+        Kind::Field => generated::<raw::Field>(kind),
+        Kind::Rules => generated::<Rules>(kind),
+        Kind::Boat => generated::<raw::Boat>(kind),
+        Kind::Sea => generated::<raw::Sea>(kind),
+        Kind::Strategy => generated::<raw::Strategy>(kind),
+        Kind::Tournament => generated::<Tournament>(kind),
+        Kind::Gateway => generated::<Gateway>(kind),
+        Kind::Rewards => generated::<Rewards>(kind),
+        Kind::Training => generated::<Training>(kind),
+        Kind::Sweep => generated::<Sweep>(kind),
+    })
+}
+
+/// The JSON Schema of a kind of file, for editors.
+///
+/// It asks for required keys only where no base can give them: at the top of a file without one, and in lists.
+///
+/// # Panics
+/// Never: the schema of a distribution is JSON.
+#[must_use]
+pub fn schema(kind: Kind) -> Value {
+    let mut schema = declared(kind).clone();
+    let has_drawn = schema.to_string().contains(DRAWN);
+    schema.as_object_mut().map(|schema| schema.remove("definitions"));
+    publish(&mut schema, false, true);
+    if has_drawn {
+        let distribution: Value = serde_json::from_str(DISTRIBUTION).expect("it is JSON");
+        schema["definitions"] = json!({ "Distribution": distribution });
+    }
+    let required = schema.as_object_mut().and_then(|schema| schema.remove("required"));
+    if let Some(required) = required.filter(|required| *required != json!([])) {
+        schema["if"] = json!({ "not": { "required": ["base"] } });
+        schema["then"] = json!({ "required": required });
+    }
+    schema
+}
+
+/// Whether a list may have no entries, or a table no keys.
+pub(super) fn may_be_empty(schema: &Value) -> bool {
+    let is_optional = |key: &Value| may_be_empty(&schema["properties"][key.as_str().unwrap_or_default()]);
+    match schema["type"].as_str() {
+        Some("array") => schema["minItems"].as_u64().unwrap_or(0) == 0,
+        Some("object") => {
+            schema.get("oneOf").is_none() && schema["required"].as_array().into_iter().flatten().all(is_optional)
+        }
+        _ => false,
+    }
+}
+
+/// The schema of a distribution.
+const DISTRIBUTION: &str = include_str!("distribution.schema.json");
+/// The mark of tables whose numbers may be distributions.
+pub(super) const DRAWN: &str = "x-drawn";
+/// What a table is, where its key has a description too.
+pub(super) const TABLE: &str = "x-table";
+
+/// Makes the schema of a table one for editors: without our own marks, with distributions where they are allowed. Keys are
+/// required in entries of lists only, and not where they may be left out, being then an empty list or a table of defaults.
+fn publish(value: &mut Value, is_drawn: bool, is_item: bool) {
+    let object = match value {
+        Value::Array(items) => return items.iter_mut().for_each(|item| publish(item, is_drawn, is_item)),
+        Value::Object(object) => object,
+        _ => return,
+    };
+    let is_drawn = is_drawn || object.contains_key(DRAWN);
+    object.retain(|key, _| !key.starts_with("x-") && (is_item || key != "required"));
+    if let Some(properties) = object.get("properties").cloned() {
+        object.insert("additionalProperties".into(), false.into());
+        if let Some(Value::Array(required)) = object.get_mut("required") {
+            required.retain(|key| !may_be_empty(&properties[key.as_str().unwrap_or_default()]));
+        }
+    }
+    // A file that is laid over a base need not say again which of several tables this is.
+    if object.get("oneOf").is_some_and(|kinds| kinds[0].get("properties").is_some()) {
+        let kinds = object.remove("oneOf").unwrap_or_default();
+        object.insert("anyOf".into(), kinds);
+    }
+    object.iter_mut().for_each(|(key, value)| publish(value, is_drawn, key == "items"));
+    let is_number = |kind: &Value| kind == "number" || kind == "integer";
+    if is_drawn && object.get("type").is_some_and(is_number) {
+        let keys = ["type", "minimum", "maximum"].into_iter();
+        let number: Map<_, _> = keys.filter_map(|key| object.remove_entry(key)).collect();
+        object.insert("anyOf".into(), json!([number, { "$ref": "#/definitions/Distribution" }]));
+    }
+}
+
+/// The schema that is generated from `T`, with what all files have in common.
+fn generated<T: JsonSchema>(kind: Kind) -> Value {
+    // Draft 7 is what editors' TOML extensions understand.
+    let generator = SchemaSettings::draft07().into_generator();
+    let mut schema = generator.into_root_schema_for::<T>().to_value();
+    let definitions = schema["definitions"].clone();
+    tidy(&mut schema, &definitions);
+    schema["title"] = format!("Squall {kind}").into();
+    let base = format!("Another {kind} file that this one is laid over, relative to this file.");
+    schema["properties"]["base"] = json!({ "type": "string", "description": base });
+    schema
+}
+
+/// Puts definitions in the place of references to them. What has a default is not required, and may not be null, since
+/// TOML has no null.
+fn tidy(value: &mut Value, definitions: &Value) {
+    let is_null = |choice: &Value| *choice == "null" || choice.get("type").is_some_and(|kind| kind == "null");
+    if let Value::Array(items) = value {
+        items.iter_mut().for_each(|item| tidy(item, definitions));
+    }
+    let Value::Object(object) = value else { return };
+    // Draft 7 ignores what stands beside a reference, which is then in a list of one.
+    let reference = object.remove("$ref").or_else(|| object.remove("allOf").map(|mut list| list[0]["$ref"].take()));
+    if let Some(name) = reference.as_ref().and_then(|name| name.as_str()?.rsplit('/').next()) {
+        object.insert(TABLE.into(), definitions[name]["description"].clone());
+        add(object, definitions[name].clone());
+    }
+    object.values_mut().for_each(|value| tidy(value, definitions));
+    object.remove("format");
+    if let Some(Value::Array(types)) = object.get_mut("type") {
+        types.retain(|choice| !is_null(choice));
+        if let [only] = types.as_slice() {
+            let only = only.clone();
+            object.insert("type".into(), only);
+        }
+    }
+    if let Some(Value::Array(choices)) = object.get_mut("anyOf") {
+        choices.retain(|choice| !is_null(choice));
+        if let [only] = choices.as_slice() {
+            let only = only.clone();
+            object.remove("anyOf");
+            add(object, only);
+        }
+    }
+    let has_default: Vec<String> = object.get("properties").and_then(Value::as_object).map_or(vec![], |properties| {
+        properties.iter().filter(|(_, about)| about.get("default").is_some()).map(|(key, _)| key.clone()).collect()
+    });
+    if let Some(Value::Array(required)) = object.get_mut("required") {
+        required.retain(|key| has_default.iter().all(|known| key != known));
+    }
+}
+
+/// Adds what `other` says and `object` does not.
+fn add(object: &mut Map<String, Value>, other: Value) {
+    if let Value::Object(other) = other {
+        for (key, value) in other {
+            object.entry(key).or_insert(value);
+        }
+    }
+}

@@ -1,0 +1,210 @@
+//! The water and the air above it, as a scenario states them: waves, wind and current.
+//!
+//! Checked and in SI. What they do to a boat stands in `sim::sea`. Waves and wind are named by where they come
+//! from, the current by where it goes to.
+
+use primitives::frame::Ned;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The exponent of the wind's mean profile over open water.
+pub const PROFILE_EXPONENT: f64 = 0.12;
+
+/// Standard gravity, m/s².
+pub const GRAVITY_M_S2: f64 = 9.806_65;
+
+/// A sea.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sea {
+    /// The sea file's stem.
+    pub name: String,
+    /// Density of the water, kg/m³.
+    pub water_density_kg_m3: f64,
+    /// Depth of the water, m; `None` is deeper than any wave feels.
+    pub depth_m: Option<f64>,
+    /// Waves, if there are any.
+    pub waves: Option<Waves>,
+    /// Wind, if there is any.
+    pub wind: Option<Wind>,
+    /// The water's own motion.
+    pub current: Current,
+}
+
+impl Sea {
+    /// Whether nothing moves boats here. Elsewhere one end of a field is better than the other.
+    #[must_use]
+    pub fn is_at_rest(&self) -> bool {
+        let Current { mean_m_s, wander, tide, shear, eddies, random_eddies } = &self.current;
+        let stream = *mean_m_s != Ned::default() || wander.is_some() || tide.is_some() || shear.is_some();
+        let calm = self.waves.as_ref().is_none_or(|waves| waves.hs_m <= 0.0);
+        let windless = self.wind.as_ref().is_none_or(|wind| wind.speed_10m_m_s <= 0.0);
+        calm && windless && !stream && eddies.is_empty() && random_eddies.is_none()
+    }
+
+    /// Fresh water at rest, under no wind.
+    #[must_use]
+    pub fn at_rest() -> Sea {
+        Sea {
+            name: "at_rest".into(),
+            water_density_kg_m3: 1000.0,
+            depth_m: None,
+            waves: None,
+            wind: None,
+            current: Current::default(),
+        }
+    }
+}
+
+/// A wave field: a spectrum, and how it spreads over directions.
+///
+/// The spectrum is JONSWAP's with its peak enhancement γ; γ = 1 is that of Pierson and Moskowitz in the two-parameter
+/// form of Bretschneider.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Waves {
+    /// Significant wave height, m.
+    pub hs_m: f64,
+    /// Peak period, s.
+    pub tp_s: f64,
+    /// Peak enhancement, 1 to 7.
+    pub gamma: f64,
+    /// The compass bearing they come from, rad.
+    pub from_rad: f64,
+    /// How they spread around it.
+    pub spreading: Spreading,
+    /// How many components stand for the spectrum.
+    pub components: u32,
+    /// Factor on the second-order (drift) force.
+    pub drift_factor: f64,
+}
+
+/// How wave energy spreads around the mean direction.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Spreading {
+    /// Not at all: long-crested waves.
+    None,
+    /// (2/π) cos² μ within 90° of the mean direction.
+    CosineSquared,
+    /// Proportional to cos^(2s) (μ/2), all round (Longuet-Higgins).
+    Cosine2s {
+        /// s: the larger, the narrower.
+        s: f64,
+    },
+}
+
+/// Wind.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Wind {
+    /// Mean speed 10 m above the water, m/s.
+    pub speed_10m_m_s: f64,
+    /// The compass bearing it comes from, rad.
+    pub from_rad: f64,
+    /// Exponent of the mean profile: U(z) = U10 (z / 10 m)^α.
+    pub profile_exponent: f64,
+    /// How it varies about the mean.
+    pub gusts: Gusts,
+}
+
+/// How the wind varies about its mean. Gusts travel with the mean wind, unchanged (Taylor's hypothesis), so boats feel
+/// the same gust one after the other.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Gusts {
+    /// Not at all.
+    None,
+    /// As an Ornstein-Uhlenbeck process along the wind, and another across it.
+    OrnsteinUhlenbeck {
+        /// Standard deviation along the wind over the mean speed.
+        intensity: f64,
+        /// Standard deviation across the wind over that along it.
+        across_ratio: f64,
+        /// Length scale, m: the time constant is this over the mean speed at the boat.
+        length_m: f64,
+    },
+}
+
+/// The water's own motion: the sum of what is stated.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Current {
+    /// The same everywhere and always, m/s.
+    pub mean_m_s: Ned,
+    /// A wandering speed in the mean direction, the same everywhere.
+    pub wander: Option<Wander>,
+    /// A tide.
+    pub tide: Option<Tide>,
+    /// A linear change across the stream.
+    pub shear: Option<Shear>,
+    /// Eddies at stated places.
+    pub eddies: Vec<Eddy>,
+    /// Eddies at random places of the field.
+    #[serde(alias = "eddies_by_lot")]
+    pub random_eddies: Option<RandomEddies>,
+}
+
+/// A first-order Gauss-Markov process.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Wander {
+    /// The direction it acts in: the unit vector of the mean current, or its bearing where there is no mean.
+    #[serde(default)]
+    #[schemars(skip)]
+    pub toward: Ned,
+    /// Standard deviation, m/s.
+    #[schemars(range(min = 0, max = 5))]
+    pub sigma_m_s: f64,
+    /// Correlation time, s.
+    #[schemars(range(min = 1, max = 86400), extend("default" = 300))]
+    pub time_s: f64,
+    /// What mean and process together are clipped to, m/s.
+    #[schemars(with = "[f64; 2]", inner(range(min = -10, max = 10)), extend("default" = [-10, 10]))]
+    pub speed_m_s: (f64, f64),
+}
+
+/// A tidal stream: a sinusoid of time.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Tide {
+    /// The stream at its strongest, as it floods, m/s.
+    pub flood_m_s: Ned,
+    /// Period, s; that of the moon's principal tide is 12.42 h.
+    pub period_s: f64,
+    /// Where in its period the game begins: 0 is slack water before the flood, 1 is again.
+    pub phase: f64,
+}
+
+/// A current that grows linearly across: V(p) = `per_m` (p − origin) · `across`, along `toward`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Shear {
+    /// The unit vector of the stream.
+    pub toward: Ned,
+    /// The unit vector along which it grows, a quarter turn to starboard of the stream.
+    pub across: Ned,
+    /// Growth, 1/s.
+    pub per_s: f64,
+    /// Where it is nothing, m from the datum.
+    pub origin: Ned,
+}
+
+/// A vortex (Lamb-Oseen): v(r) = Γ / (2 π r) (1 − exp(−r² / a²)).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Eddy {
+    /// Its middle, [x, y] in m from the datum.
+    #[schemars(with = "[f64; 2]", inner(range(min = -1000000, max = 1000000)), extend("x-field" = "centre"))]
+    pub centre: Ned,
+    /// Radius of its core, m. The fastest flow is at 1.121 of it.
+    #[schemars(range(min = 1, max = 1000))]
+    pub radius_m: f64,
+    /// Its fastest flow, m/s; positive turns clockwise.
+    #[schemars(range(min = -5, max = 5))]
+    pub peak_m_s: f64,
+}
+
+/// Vortices at random places.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RandomEddies {
+    /// How many.
+    #[schemars(range(min = 0, max = 100))]
+    pub count: u32,
+    /// Radius of a core, from and to, m.
+    #[schemars(with = "[f64; 2]", inner(range(min = 1, max = 1000)), extend("default" = [10, 40]))]
+    pub radius_m: (f64, f64),
+    /// Fastest flow, from and to, m/s; either way round.
+    #[schemars(with = "[f64; 2]", inner(range(min = 0, max = 5)), extend("default" = [0.1, 0.3]))]
+    pub peak_m_s: (f64, f64),
+}

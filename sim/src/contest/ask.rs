@@ -1,0 +1,26 @@
+//! What boats ask the referee for, where the rules want them to ask.
+
+use messages::Picture;
+use primitives::{Ned, VehicleId};
+use rules::{Asks, Field, Rules};
+
+/// What the boats of a team ask for by its picture, as pRangeEvent of the Aquaticus missions does: whoever believes to be
+/// in reach asks, since a request that is refused costs nothing.
+pub(super) fn asks_of<'a>(
+    rules: &Rules,
+    field: &'a Field,
+    picture: &'a Picture,
+) -> impl Iterator<Item = (VehicleId, Asks)> {
+    let (tag_m, grab_m) = (rules.tag_radius_m, rules.grab_radius_m);
+    picture.own.iter().map(move |boat| {
+        let at = boat.nav.at();
+        let is_near = |other: Ned, reach_m: f64| at.distance_squared(other) < reach_m * reach_m;
+        let opponents = picture.contacts.iter().filter(|contact| contact.team.0 != picture.team && !contact.tagged);
+        let mut flags = field.flags.iter().filter(|flag| flag.team.0 != picture.team);
+        let asks = Asks {
+            tag: opponents.into_iter().any(|other| is_near(Ned { north: other.north_m, east: other.east_m }, tag_m)),
+            grab: flags.any(|flag| is_near(flag.home, grab_m)),
+        };
+        (boat.vehicle, asks)
+    })
+}
