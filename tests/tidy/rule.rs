@@ -67,7 +67,7 @@ pub(crate) const RULES: [Rule; 14] = [
     ("the glossary's terms are in the code", glossary),
     ("one clippy.toml, and every crate under the workspace's lints", lints),
     ("CHANGELOG.md has this version", changelog),
-    ("DESIGN.md gives a reason for every dependency", reasons),
+    ("every dependency has its reason in Cargo.toml", reasons),
     ("tables of what is tested name tests that exist", shown_by),
 ];
 
@@ -243,18 +243,18 @@ fn changelog(tree: &Tree) -> Breaches {
     vec![format!("CHANGELOG.md:1: has no section `{heading}`, the version in Cargo.toml")]
 }
 
+/// A reason is a comment on the entry's line or on the one above it; crates of ours need none.
 fn reasons(tree: &Tree) -> Breaches {
     let manifest = tree.files.get("Cargo.toml").map_or("", String::as_str);
-    let design = tree.files.get("DESIGN.md").map_or("", String::as_str);
-    let rows: Vec<&str> = design.lines().filter(|line| line.starts_with('|')).collect();
-    let cells: Vec<&str> = rows.iter().filter_map(|row| row.split('|').nth(1)).map(str::trim).collect();
-    let named = |name: &str| cells.contains(&format!("`{name}`").as_str());
+    let lines: Vec<&str> = manifest.lines().map(str::trim).collect();
+    let explained = |number: usize| {
+        let above = number.checked_sub(2).map_or("", |above| lines[above]);
+        above.strip_prefix("# ").is_some_and(|reason| !reason.is_empty()) || lines[number - 1].contains(" # ")
+    };
     let foreign = |(_, section, name): &(usize, String, String)| {
         section == "workspace.dependencies" && !MAY_IMPORT.iter().any(|(ours, _)| ours == name)
     };
     let entries = manifest_entries(manifest).into_iter().filter(foreign);
-    let unexplained = entries.filter(|(_, _, name)| !named(name));
-    unexplained
-        .map(|(number, _, name)| format!("Cargo.toml:{number}: DESIGN.md has no table row for `{name}`"))
-        .collect()
+    let unexplained = entries.filter(|(number, _, _)| !explained(*number));
+    unexplained.map(|(number, _, name)| format!("Cargo.toml:{number}: no comment says why `{name}` is here")).collect()
 }
