@@ -54,6 +54,7 @@ struct RecordedStep {
 fn plan_of(text: &str) -> Result<Plan, serde_json::Error> {
     let mut plan: Value = serde_json::from_str(text)?;
     if let Some(gateway) = plan.get_mut("gateway") {
+        // A setting that did not exist when the recording was made had its default in effect.
         complete(gateway, &serde_json::to_value(default_gateway())?);
     }
     serde_json::from_value(plan)

@@ -122,6 +122,8 @@ impl SensorCheck {
 
     /// Takes bytes as they come.
     pub fn take(&mut self, now: SimTime, bytes: &[u8]) {
+        // Counted by name with a framer of its own; what is reported comes from the gateway's
+        // codec, so that the check goes by what the gateway would.
         self.count(now, bytes);
         let mut reports = vec![];
         self.protocol.read(now, bytes, &mut |report| reports.push(report));
@@ -283,6 +285,7 @@ impl SensorCheck {
     }
 
     fn lacks(&self, (kinds, why): Need) -> Option<String> {
+        // By the ending, for talkers differ (GPGGA, GNGGA).
         let best = self.received.iter().filter(|(name, _)| kinds.iter().any(|kind| name.ends_with(kind)));
         let rate_hz = best.filter_map(|(_, received)| received.rate_hz()).fold(0.0, f64::max);
         let name = kinds.join(" or ");

@@ -76,6 +76,8 @@ impl Threads {
         name: &str,
         work: impl FnOnce() + Send + 'static,
     ) -> io::Result<JoinHandle<()>> {
+        // Counted before the thread starts, so that a link that closes right then waits for it
+        // too; dropping the guard undoes it when the spawn fails.
         self.state.lock().running += 1;
         let running = RunningThread(Arc::clone(self));
         thread::Builder::new().name(name.to_owned()).spawn(move || {
@@ -146,6 +148,7 @@ impl Threads {
         self.changed.notify_all();
         self.end_all(&End::Stopped);
         // A thread that still runs hangs in its callback, and ends after that.
+        // With a limit: a callback that hangs must not keep the gateway from ending.
         drop(self.wait(limit, |state| state.running > 0));
     }
 

@@ -33,6 +33,8 @@ impl<'a> Reader<'a> {
 
     /// Reads all fields of a layout.
     pub(super) fn read(mut self, layout: Layout<'_>) -> Result<(), ParseError> {
+        // More fields than known are accepted: drivers of real boats send PSEAC with four to
+        // six.
         let (found, expected) = (self.data.len(), layout.fields_min);
         if found < expected {
             return Err(ParseError::TooFew { address: self.address.to_owned(), found, expected });
@@ -87,6 +89,7 @@ impl<'a> Reader<'a> {
         self.text(self.at + ahead)
     }
 
+    // Real boats send a blank for a field that they have not.
     fn text(&self, at: usize) -> &'a str {
         self.data.get(at - 1).map_or("", |text| text.trim_matches(' '))
     }
@@ -147,6 +150,7 @@ impl<'a> Reader<'a> {
     /// `A` (data valid) or `D` (with differential corrections); `V` and nothing are not valid.
     fn valid(&mut self) -> Result<bool, ParseError> {
         match self.next() {
+            // D (differential) stands in this place on some receivers.
             "A" | "D" => Ok(true),
             "V" | "" => Ok(false),
             _ => Err(self.wrong("A, D, V or nothing")),

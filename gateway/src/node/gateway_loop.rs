@@ -166,6 +166,8 @@ impl GatewayLoop<'_> {
             self.warn(&format!("this machine was suspended for {:.1} s", suspended.as_secs_f64()));
         }
         if let Some(guarded) = &self.guarded {
+            // What stops the boat may change: who commands it, or whether it is in the middle
+            // of an upload.
             guarded.stop_with(&self.bridge.guard_message());
         }
         if self.guarded.as_ref().is_some_and(|guarded| !guarded.beat()) {
@@ -200,6 +202,8 @@ impl GatewayLoop<'_> {
         }
         if self.input.take_stop(Stop::Disarm) {
             self.step(Input::Operator(OperatorCommand::Disarm), None)?;
+            // An arm request that waited behind the disarm would arm the boat again after an
+            // operator has just stopped it.
             self.refuse_earlier()?;
         }
         if let Some(found) = self.input.take_found() {
@@ -246,6 +250,7 @@ impl GatewayLoop<'_> {
             _join: Join::begin(&bus, &self.settings.place, (&game, scenario), name, self.back.calls.clone())?,
             bus,
         };
+        // The link has been served since before: only what needs a field begins here.
         self.in_game = Some(in_game);
         self.clock.set_pace(factor);
         self.encoder.set_vehicle(vehicle);
@@ -410,6 +415,7 @@ impl GatewayLoop<'_> {
                 let surplus = self.counters.writing.len().saturating_sub(WRITING_MAX);
                 self.counters.writing.drain(..surplus);
             }
+            // Sent before anything is published or recorded, which may be slow.
             self.link.send(out.bytes.clone(), self.counters.tag);
         }
         if let Some(nav) = &out.nav {
@@ -458,6 +464,8 @@ impl Drop for GatewayLoop<'_> {
     /// However a gateway ends, except by a kill or a power cut: the boat is sent the shutdown message, three times, before
     /// the link closes.
     fn drop(&mut self) {
+        // Three times, for links that lose bytes; on every way out of the loop, a panic among
+        // them.
         let message = self.bridge.shutdown_message().repeat(3);
         self.link.send_and_wait(&message, SHUTDOWN_MAX);
         self.guarded.iter().for_each(Guarded::end);

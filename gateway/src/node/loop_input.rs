@@ -80,6 +80,7 @@ impl Stop {
 /// Stops that came and that the loop has not carried out. They wait behind nothing, and nothing can displace them.
 #[derive(Default)]
 struct Stops {
+    // Flags and no queue: a stop waits behind nothing, and no flood fills them.
     boat: AtomicBool,
     fleet: AtomicBool,
     disarm: AtomicBool,

@@ -217,6 +217,7 @@ pub fn serve(settings: &Settings, outside: &Outside, notify: &mut dyn FnMut(Node
     };
     let input = loop_input();
     // What is known of the token by now; nothing is waited for.
+    // Looked up for its token; that no game is there yet is no error.
     drop(settings.place.net(settings.game.as_ref()));
     // Until a game says which, the port has a token of its own; in a game with keys that stays so.
     let token = settings.place.token().get().unwrap_or_else(Token::random);
@@ -234,6 +235,7 @@ pub fn serve(settings: &Settings, outside: &Outside, notify: &mut dyn FnMut(Node
 /// The guard, where there is to be one. A boat is not left alone since it cannot be started.
 fn start_guard(settings: &Settings, outside: &Outside, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Option<Guarded> {
     let mut command = Command::new(outside.guard.as_ref()?);
+    // Without the environment it has no token and no address, and needs none.
     command.args(["gateway", "guard"]).env_clear();
     let started = Guarded::start(command, &Protocol::new(&settings.gateway).guard_message());
     if let Err(e) = &started {

@@ -15,6 +15,8 @@ const SCATTER_MAX_M: f64 = 2.5;
 /// For how long they are looked at, s.
 const SCATTER_S: f64 = 25.0;
 /// The boat's clock may be off by so much from this machine's, s: fixes are told a moment after their time.
+// Latencies of half a minute are no latencies: then one of the clocks is wrong, and recordings
+// cannot be laid side by side.
 const CLOCK_BEHIND_S: std::ops::RangeInclusive<f64> = -1.0..=5.0;
 
 /// Where the boat is to play.
@@ -120,6 +122,7 @@ fn control(seen: &SensorCheck, gateway: &Gateway) -> Check {
         seen.mode_in_words(mode),
         seen.mode_in_words(Mode::Standby)
     );
+    // A boat under way is not to be taken over by a check.
     Check::of("control", is_ours && mode == Mode::Standby, found)
 }
 

@@ -49,6 +49,7 @@ impl SetPoints {
 
     pub(super) fn take_attitude(&mut self, now: SimTime, target: &SET_ATTITUDE_TARGET_DATA) {
         let mask = target.type_mask;
+        // Rover drops the whole message when it carries no throttle.
         if mask.contains(AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_THROTTLE_IGNORE) {
             return;
         }
@@ -71,6 +72,7 @@ impl SetPoints {
             | PositionTargetTypemask::POSITION_TARGET_TYPEMASK_VY_IGNORE;
         let position = PositionTargetTypemask::POSITION_TARGET_TYPEMASK_X_IGNORE
             | PositionTargetTypemask::POSITION_TARGET_TYPEMASK_Y_IGNORE;
+        // In the frames of the body the velocity turns with the boat.
         let turned_rad = match target.coordinate_frame {
             MavFrame::MAV_FRAME_LOCAL_NED | MavFrame::MAV_FRAME_LOCAL_OFFSET_NED => 0.0,
             MavFrame::MAV_FRAME_BODY_NED | MavFrame::MAV_FRAME_BODY_OFFSET_NED => psi_rad,
@@ -84,12 +86,16 @@ impl SetPoints {
         let has_rate = !ignores(PositionTargetTypemask::POSITION_TARGET_TYPEMASK_YAW_RATE_IGNORE);
         let (x_m_s, y_m_s) = (f64::from(target.vx), f64::from(target.vy));
         let course = match (has_yaw, has_rate) {
+            // Rover takes one or the other, and nothing when both are given.
             (true, true) => return,
             (true, false) => Course::Heading(f64::from(target.yaw) + turned_rad),
             (false, true) => Course::Turn(f64::from(target.yaw_rate)),
             (false, false) => Course::Heading(math::atan2(y_m_s, x_m_s) + turned_rad),
         };
         // The sign of x is that of the speed, in frames where x is to the north too.
+        // This is the mistake in Rover/GCS_MAVLink_Rover.cpp that sent boats astern on
+        // southward headings. It is imitated so that our closed loops show it if a yaw is ever
+        // sent with a velocity again.
         let sign = if (has_yaw || has_rate) && x_m_s < 0.0 { -1.0 } else { 1.0 };
         self.set(now, course, Speed::MetresPerSecond(sign * math::length(x_m_s, y_m_s)));
     }
@@ -112,6 +118,8 @@ impl SetPoints {
     pub(super) fn nav_bearing(&self, now: SimTime) -> i16 {
         match self.guided {
             Some((at, Course::Heading(heading_rad), _)) if (now - at).as_s() <= HELD_S => {
+                // Rover 4.7 shows whole degrees here, cut off and not rounded; earlier versions
+                // always 0.
                 wrap_pi(heading_rad).to_degrees() as i16
             }
             _ => 0,
@@ -163,6 +171,8 @@ impl SetPoints {
             }
             Course::Turn(rate_rad_s) if speed_m_s < 0.0 => autopilot::astern(speed_m_s, rate_rad_s * TURN_LEAD_S),
             Course::Heading(heading_rad) => autopilot::steer(Some(heading_rad), Some(speed_m_s)),
+            // A set-point of zero is what our gateway stops a boat with: it must rest and not
+            // hold a heading.
             Course::Turn(0.0) if speed_m_s == 0.0 => Order::Hold,
             Course::Turn(rate_rad_s) => {
                 let by_rad = (rate_rad_s * TURN_LEAD_S).clamp(-PI, PI);

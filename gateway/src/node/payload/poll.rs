@@ -66,6 +66,8 @@ impl Questions<'_> {
     }
 
     fn command(&self, sonde: &Sonde) -> Command {
+        // Numbers mean nothing without the codes of their parameters, which a sonde is asked
+        // for first.
         if sonde.told == self.begun.told { Command::Parameters } else { Command::Values }
     }
 }

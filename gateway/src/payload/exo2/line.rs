@@ -38,6 +38,7 @@ impl Lines {
             self.add(byte);
         }
         match self.part {
+            // Chunked bodies are not read: a server at a sonde speaks HTTP/1.0, which has none.
             Part::Chunks => {
                 self.line.clear();
                 None

@@ -124,6 +124,7 @@ impl Conversation {
             Command::Values => {
                 let is_number = |number: &f64| number.is_finite();
                 let values = numbers(answer, |text| text.parse().ok().filter(is_number))?;
+                // A torn line has fewer numbers, and each would get the name of another.
                 if values.len() != sonde.codes.len() {
                     return None;
                 }
