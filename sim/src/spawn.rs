@@ -40,6 +40,8 @@ pub fn start_positions(scenario: &Scenario, seed: u64) -> Result<Vec<Pose>, Spaw
     let mut stream = Stream::new(seed, "spawn");
     let mut taken: Vec<(usize, Pose)> = Vec::new();
     for (i, vehicle) in scenario.vehicles.iter().enumerate() {
+        // Placed boats first: a drawn one must keep clear of them wherever they stand in the
+        // file.
         if let StartPosition::At(pose) = vehicle.start_position {
             taken.push((i, pose));
         }

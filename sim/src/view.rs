@@ -95,6 +95,7 @@ impl Scene<'_> {
     ) {
         let team = TeamId(picture.team);
         picture.stamp = self.stamp::<Picture>();
+        // Refilled and not made anew: a decision of many teams allocates nothing.
         picture.own.clear();
         picture.contacts.clear();
         for (i, vehicle) in self.scenario.vehicles.iter().enumerate() {
@@ -167,6 +168,8 @@ impl Scene<'_> {
 /// Whether an event is about one of the team's boats or its flag, or ends the game.
 fn concerns(scenario: &Scenario, team: TeamId, event: Event) -> bool {
     let ours = |vehicle: VehicleId| scenario.vehicles[vehicle.index()].team == team;
+    // What concerns neither own boats nor the own flag, a team on the water would not learn
+    // either.
     let is_own_flag = event.flag().is_some_and(|flag| scenario.field.flags[flag.index()].team == team);
     let is_own_boat = [event.vehicle(), event.other()].into_iter().flatten().any(ours);
     is_own_flag || is_own_boat || matches!(event, Event::Ended { .. })

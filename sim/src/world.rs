@@ -19,6 +19,7 @@ use game::sea::Sea;
 use game::{Boat, Field, Order, Pose, Scenario, SimTime, VehicleId, math};
 
 /// No boat is faster than this over the ground, m/s; one that is has bad numbers.
+// Far beyond any boat, and far below where squares overflow.
 const ABSURD_M_S: f64 = 1_000.0;
 
 /// Pyquaticus sets boats back by this much more than the radius, m.
@@ -105,6 +106,7 @@ impl World {
         state.points = model.points_at_start(&state.boats);
         let mut world = World { model, state, work: Work::default() };
         world.refresh();
+        // Minds decide before the first tick, by what sensors show at rest.
         world.read_sensors();
         world
     }
@@ -150,6 +152,8 @@ impl World {
         self.work.quarantined.clear();
         self.model.sea.prepare(self.state.now);
         self.drive(commands);
+        // All boats move first as if alone, and then those that touch are changed: who is
+        // listed first gains nothing.
         self.model.contact.resolve(&self.model.hulls, &mut self.work.displacements, &self.work.pairs);
         self.settle();
         self.state.tick += 1;
@@ -183,12 +187,15 @@ impl World {
             let Some((centre, radius_m)) = circle(VehicleId::at(i), boat.pose.at) else { continue };
             let from_centre = boat.pose.at - centre;
             let distance_m = from_centre.length();
+            // At the very centre there is no direction to be set back in.
             if distance_m >= radius_m || distance_m == 0.0 {
                 continue;
             }
             moved = true;
             if let Some((place, _)) = model.point(i) {
                 let came_from = work.displacements.get(i).map_or(boat.pose.at, |displacement| displacement.from.at);
+                // As in Pyquaticus: back where it came in, turned along the circle, with the
+                // part of its way that goes along it.
                 boat.pose.at = way_back((came_from, boat.pose.at), centre, radius_m + POINT_BOAT_SPARE_M);
                 let point = &mut state.points[place];
                 let drift = boat.nu.in_ned(work.rotations[i]) - work.rotations[i].ahead().scaled(point.speed_m_s);
@@ -203,6 +210,7 @@ impl World {
             boat.pose.at = centre + out.scaled(radius_m);
             let out_in_body = frame::body_from_ned(work.rotations[i], out);
             let inward_m_s = (out_in_body.ahead * boat.nu.surge + out_in_body.starboard * boat.nu.sway).min(0.0);
+            // A hull keeps its heading and loses its way inward, as on a soft wall.
             boat.nu.surge -= inward_m_s * out_in_body.ahead;
             boat.nu.sway -= inward_m_s * out_in_body.starboard;
         }
@@ -362,6 +370,7 @@ impl World {
                     state.points[place].divert(boat.pose.psi_rad, boat.nu.surge - drift.ahead);
                 }
             } else if !boat.quarantined {
+                // At its last sound position, where others may bump into it.
                 *boat = BoatState { pose: boat.pose, quarantined: true, ..BoatState::default() };
                 work.quarantined.push(VehicleId::at(i));
             }

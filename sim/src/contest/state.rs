@@ -55,6 +55,7 @@ impl Contest {
         assert!(world.boats.iter().all(|boat| boat.pose.at.is_finite()), "boats are somewhere");
         for (i, boat) in standing.vehicles.iter().enumerate() {
             let Some(flag) = boat.carrying else { continue };
+            // Three rules meet here, and each could break it.
             assert!(boat.in_play && !boat.tagged && !boat.outside, "vehicle {i} carries a flag");
             assert_eq!(
                 standing.flags[flag.index()].carrier,

@@ -59,6 +59,8 @@ impl Membership {
     pub fn join(&mut self, request: &JoinRequest, ticket: u64, now: SimTime) -> JoinReply {
         let role = self.role;
         let refused = |reason: String| JoinReply::Refused { reason };
+        // Exactly the same: two versions may agree on messages and differ in a rounding, and
+        // then in the game.
         if request.version != game::VERSION {
             let (theirs, ours) = (&request.version, game::VERSION);
             return refused(format!("the {role} is Squall {theirs}, the sim is Squall {ours}: use the same version"));
@@ -75,6 +77,7 @@ impl Membership {
             if !place.is_open {
                 return refused(format!("{name} is simulated in this game; {}", self.on_offer()));
             }
+            // The same node may ask again: the reply with its ticket may have been lost.
             if place.present().is_some_and(|holder| holder.node != request.node) {
                 return JoinReply::Busy { vehicle: name.clone() };
             }
@@ -84,6 +87,8 @@ impl Membership {
             vehicles.push(VehicleId::at(i));
         }
         for vehicle in &vehicles {
+            // A new ticket voids the old one, so that an agent that was taken for dead cannot
+            // steer beside its successor.
             let holder = Holder { node: request.node.clone(), ticket, is_present: true, newest: None };
             self.places[vehicle.index()].holder = Some(holder);
         }
@@ -145,6 +150,8 @@ impl Membership {
 
     /// A node is gone: the vehicles it leaves behind. It may come back to those that nobody else takes.
     pub fn gone(&mut self, node: &str) -> Vec<VehicleId> {
+        // By the link that zenoh says is gone, not by a liveliness token: anybody could show
+        // one in another's name.
         self.lose(|holder| holder.node == node)
     }
 

@@ -108,6 +108,7 @@ pub fn serve(
     tell: &mut dyn FnMut(ProgressMessage),
 ) -> Result<Report, NodeError> {
     if settings.pace == Pace::Lockstep {
+        // A real boat does not wait for agents that think.
         scenario.has_no_real_boats().map_err(NoStart::from)?;
     }
     let contest = Contest::new(scenario, seed)?;

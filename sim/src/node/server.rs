@@ -103,6 +103,7 @@ impl<'w> GameServer<'w> {
         let (to_controls, others) = (Arc::clone(&controls), Arc::clone(&messages));
         let inboxes = Inboxes { controls: to_controls, questions: questions_sender, others };
         let game = &settings.game;
+        // A game's inputs cost memory, and nobody would take them.
         if recorder.is_some() {
             contest.keep_inputs();
         }
@@ -114,6 +115,7 @@ impl<'w> GameServer<'w> {
         let speed = if let Pace::Realtime { factor } = settings.pace { Some(factor) } else { settings.speed };
         let teams = (0..scenario.teams.len()).map(|team| topic::picture(game, scenario, TeamId(team as u8)));
         let pictures: Result<Vec<Publisher>, _> = teams.map(|key| bus.publisher(key, Priority::Normal)).collect();
+        // Commands to boats are urgent: they pass everything that waits on a link.
         let to_boat = |v| Ok((v, bus.publisher(topic::external_order(game, scenario, v), Priority::Urgent)?));
         let external_orders: Vec<_> = scenario.externals().map(to_boat).collect::<Result<_, NodeError>>()?;
         let reports = subscriptions::report_publishers(&bus, game, scenario)?;
@@ -229,6 +231,7 @@ impl<'w> GameServer<'w> {
 
     /// Sends observers the truth, if there are any.
     pub(super) fn send_frame(&mut self) -> Result<(), NodeError> {
+        // Lockstep would pay at every decision for encoding what nobody reads.
         if !self.frames.is_heard() {
             return Ok(());
         }
@@ -238,6 +241,8 @@ impl<'w> GameServer<'w> {
 
     /// Sends every team the picture of the open decision, and every real boat its order. Sending them twice does no harm.
     pub(super) fn send_pictures(&mut self) -> Result<(), NodeError> {
+        // Reports of real boats come while a decision is open: their age is laid off from this
+        // moment.
         self.opened = Some(clock::now());
         let is_again = self.asked.replace(self.contest.decision()) == Some(self.contest.decision());
         let pictures: Vec<Vec<u8>> = self.contest.pictures().iter().map(codec::encode).collect();
@@ -255,6 +260,7 @@ impl<'w> GameServer<'w> {
     /// send.
     fn pass_on(&mut self, vehicle: VehicleId) -> Result<(), NodeError> {
         let Some(boat) = self.external_orders.iter().position(|(boat, _)| *boat == vehicle) else { return Ok(()) };
+        // A paused game must not leave a real boat under way on its last order.
         let is_held = self.pacing.is_held();
         self.send_order(boat, if is_held { Order::Hold } else { self.contest.effective_command(vehicle) })
     }
@@ -375,6 +381,8 @@ impl<'w> GameServer<'w> {
         self.is_news = true;
         self.send_run(Phase::Over, 0.0)?;
         let start = clock::now();
+        // The end may be lost on the way: agents that leave show that it was not. With a limit,
+        // since one may hang.
         while !self.agents.is_empty() && clock::since(start) < SHUTDOWN {
             self.listen(Duration::from_millis(20));
         }

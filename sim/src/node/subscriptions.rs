@@ -71,6 +71,7 @@ impl Inboxes {
     ) -> impl Fn(&[u8]) + Send + Sync + use<M> {
         let others = Arc::clone(&self.others);
         move |bytes: &[u8]| {
+            // Decoded in zenoh's thread, so that what is garbage never wakes the loop.
             if let Some(message) = others.decode::<M>(bytes) {
                 others.put(incoming(message, bytes));
             }

@@ -56,6 +56,7 @@ impl Vortex {
         if s == 0.0 {
             return (self.core_rad_s, 0.0);
         }
+        // `expm1` and not `1 - exp`: in the core all digits would cancel.
         let share = if s > FAR { 1.0 } else { -libm::expm1(-s) };
         (self.core_rad_s * share / s, share)
     }

@@ -145,6 +145,7 @@ impl SeaModel {
     /// The index of the boat's propeller submergence, made if it is the first of it, if the propellers can ventilate.
     fn submergence_of(&mut self, boat: &Boat, patches: &mut Made<2, Patches>) -> Option<usize> {
         let (Drive::Thrusters { thruster, .. }, Some(field)) = (&boat.drive, &self.waves) else { return None };
+        // For boats whose propellers never draw air this costs nothing.
         thruster.flaws.ventilation?;
         let size = [boat.length_m, boat.beam_m, boat.draught_m, thruster.arm_m];
         Some(index_of(&mut self.submergences, size, || {
@@ -238,12 +239,16 @@ impl SeaNow<'_> {
     ) {
         let (half_s, shape) = (self.model.half_s, &self.model.shapes[boat.shape].1);
         let velocity_m_s = nu.in_ned(rotation);
+        // In the middle of the tick, once: its rate of change is known there as well, and three
+        // evaluations would triple the largest part of a tick.
         let middle = Pose { at: pose.at + velocity_m_s.scaled(half_s), psi_rad: pose.psi_rad + half_s * nu.yaw };
         let (waves, submergence_change_m) = match boat.submergence.map(|index| &self.model.submergences[index].1) {
             None => (shape.waves.at(middle, self.middle_s), [0.0; 2]),
             Some(submergence) => shape.waves.at_with(submergence, middle, self.middle_s),
         };
         forcing.submergence_change_m = submergence_change_m;
+        // Linear waves carry nothing in the mean. What floats in real ones drifts (Stokes), and
+        // this part of it does not come out of the forces.
         forcing.current_m_s = forcing.current_m_s + shape.rise_drift_m_s;
         forcing.water = forcing.water.plus(1.0, waves.velocity);
         forcing.water_rate = waves.acceleration;

@@ -118,6 +118,7 @@ fn wind_summary(wind: &Wind, boat: &Boat, hull: &HullModel) -> WindSummary {
 /// Where `excess`, which falls, is nothing between 0 and `most`: by bisection.
 fn equilibrium(most: f64, excess: impl Fn(f64) -> f64) -> f64 {
     let (mut low, mut high) = (0.0, most);
+    // Halved sixty times, beyond the last bit: drag is not smooth enough for Newton's method.
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
         if excess(middle) > 0.0 {

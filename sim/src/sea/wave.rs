@@ -51,6 +51,7 @@ impl PlaneWave {
 
     /// How much of the orbital velocity's horizontal part is left at a depth, over a ω: cosh k(z + h) / sinh k h.
     pub(super) fn orbital_at(&self, below_m: f64) -> f64 {
+        // As decaying exponentials: sinh and cosh of deep water overflow.
         self.decay_at(below_m) / (1.0 - libm::exp(-2.0 * self.depth_rad()))
     }
 
@@ -62,6 +63,7 @@ impl PlaneWave {
     /// 2 e^(−k h) cosh k(z + h).
     fn decay_at(&self, below_m: f64) -> f64 {
         let k = self.wavenumber_rad_m;
+        // A boat may be laid over water that is shallower than its draught.
         let below_m = below_m.min(self.depth_m);
         libm::exp(-k * below_m) * (1.0 + libm::exp(-2.0 * k * (self.depth_m - below_m)))
     }
@@ -101,6 +103,7 @@ pub fn wavenumber_rad_m(omega_rad_s: f64, depth_m: f64) -> f64 {
         return deep;
     }
     // Eckart (1952), within 5 %, then Newton's method; its steps become nothing after four or five.
+    // The dispersion relation has no closed solution in finite depth.
     let mut k = deep / libm::tanh(deep * depth_m).sqrt();
     for _ in 0..20 {
         let tanh = libm::tanh(k * depth_m);

@@ -107,6 +107,8 @@ pub(super) fn transfer(natural_rad_s: f64, damping: f64, omega_rad_s: f64) -> (f
     let ratio = omega_rad_s / natural_rad_s;
     let (real, imaginary) = (1.0 - ratio * ratio, 2.0 * damping * ratio);
     let size = real * real + imaginary * imaginary;
+    // A damped spring that is driven by the surface. Peaks of these seas are at half of its
+    // natural frequency or below, so a hull mostly follows the surface.
     (real / size, imaginary / size)
 }
 

@@ -60,6 +60,8 @@ impl WindField {
             profile_exponent: wind.profile_exponent,
             gusts: None,
         };
+        // By the highest boat: the pattern has one speed, or boats would disagree on when a
+        // gust comes.
         let carry_m_s = made.mean_m_s(reference_height_m).max(CARRY_MIN_M_S);
         let along_m = field.corners.map(|corner| corner.dot(downwind));
         let reach_m = (
