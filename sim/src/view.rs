@@ -122,6 +122,8 @@ impl Scene<'_> {
     pub(crate) fn own_boat(&self, i: usize) -> OwnBoat {
         let (vehicle, standing) = (VehicleId::at(i), &self.standing.vehicles[i]);
         let (nav, fix_ns, imu) = match self.world.reading(vehicle) {
+            // What the boat's sensors say, also to its own team: nothing that agents see is the
+            // truth unless the boat's file leaves its sensors out.
             Some(reading) => (reading.nav, reading.fix_at, reading.imu),
             None => (self.nav(i), self.world.state().now, ImuReading::of(&self.world.truth(vehicle))),
         };

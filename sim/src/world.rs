@@ -116,6 +116,8 @@ impl World {
     /// # Errors
     /// [`NoStart`] where the boats do not fit into their spawn area, or randomised numbers do not go together.
     pub fn of_game(scenario: &Scenario, seed: u64) -> Result<World, NoStart> {
+        // The seed first: a file may draw numbers, and everything below is asked of the game
+        // that was drawn.
         let scenario = scenario.of_seed(seed)?;
         let starts = spawn::start_positions(&scenario, seed)?;
         let seeds = scenario.seeds();
@@ -150,6 +152,8 @@ impl World {
     pub fn step(&mut self, commands: &[Order]) -> &[VehicleId] {
         assert_eq!(commands.len(), self.state.boats.len(), "one command a vehicle");
         self.work.quarantined.clear();
+        // Wind and current are processes in time: their values of this tick are worked out
+        // once, for all boats.
         self.model.sea.prepare(self.state.now);
         self.drive(commands);
         // All boats move first as if alone, and then those that touch are changed: who is
@@ -309,7 +313,11 @@ impl World {
     }
 
     fn find_pairs(&mut self) {
+        // One search for both, over the longer of the two reaches: among many boats the search
+        // is what grows.
         let reach_m = self.model.contact.reach_m().max(self.model.pairs_within_m);
+        // At the end of a tick, for the next one and for the referee: both look for boats near
+        // each other, at the same places.
         let boats = &self.state.boats;
         let pairs = self.work.near.pairs(|i| boats[i].pose.at, boats.len(), reach_m);
         self.work.pairs.clear();

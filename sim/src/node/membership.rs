@@ -65,6 +65,8 @@ impl Membership {
             let (theirs, ours) = (&request.version, game::VERSION);
             return refused(format!("the {role} is Squall {theirs}, the sim is Squall {ours}: use the same version"));
         }
+        // Nobody can have joined with nothing: lockstep would wait for a node that has nothing
+        // to answer.
         if request.vehicles.is_empty() {
             return refused(format!("the {role} names no vehicle"));
         }
@@ -77,10 +79,11 @@ impl Membership {
             if !place.is_open {
                 return refused(format!("{name} is simulated in this game; {}", self.on_offer()));
             }
-            // The same node may ask again: the reply with its ticket may have been lost.
             if place.present().is_some_and(|holder| holder.node != request.node) {
                 return JoinReply::Busy { vehicle: name.clone() };
             }
+            // A name given twice is a slip of the command line, and the count of boats would be
+            // wrong.
             if vehicles.contains(&VehicleId::at(i)) {
                 return refused(format!("the {role} names {name:?} twice"));
             }

@@ -97,6 +97,7 @@ impl<'w> GameServer<'w> {
         settings: &Settings,
         recorder: Option<&'w mut GameRecorder>,
     ) -> Result<GameServer<'w>, NodeError> {
+        // The scenario goes to the hub, whose rules spell out every topic by team and boat.
         let bus = Bus::hub(&settings.net, &settings.game, contest.scenario())?;
         let (questions_sender, questions) = inbox(QUESTIONS);
         let (controls, messages) = (Arc::new(ControlInbox::default()), Arc::new(MessageInbox::default()));
@@ -193,6 +194,8 @@ impl<'w> GameServer<'w> {
             self.listen(Duration::from_millis(100));
         }
         self.last_report = (clock::now(), SimTime::ZERO);
+        // Agents that came first have waited for the last: their silence until now tells
+        // nothing.
         self.heard.fill(self.time.worked());
         Ok(())
     }
@@ -244,6 +247,7 @@ impl<'w> GameServer<'w> {
         // Reports of real boats come while a decision is open: their age is laid off from this
         // moment.
         self.opened = Some(clock::now());
+        // Pictures are sent again until they are answered, but recorded once.
         let is_again = self.asked.replace(self.contest.decision()) == Some(self.contest.decision());
         let pictures: Vec<Vec<u8>> = self.contest.pictures().iter().map(codec::encode).collect();
         for (i, bytes) in pictures.into_iter().enumerate() {
@@ -273,6 +277,8 @@ impl<'w> GameServer<'w> {
         }
         let (valid_ns, seq) = (self.contest.now(), self.contest.decision());
         let stamp = Stamp { valid_ns, seq, version: ExternalOrder::VERSION };
+        // The time of the picture that it answers: by that a gateway judges how old an order
+        // is, however often it is repeated.
         let given_ns = self.contest.given_at(vehicle);
         let order = ExternalOrder { stamp, given_ns, order: VehicleOrder::new(vehicle, order) };
         let bytes = codec::encode(&order);
@@ -292,6 +298,8 @@ impl<'w> GameServer<'w> {
 
     /// Gives up on agents that have not been heard for as long as the scenario's patience.
     pub(super) fn lose_silent(&mut self) {
+        // By the time at work, not by the clock: a sim that was suspended blames nobody for the
+        // silence meanwhile.
         let patience = Duration::from_secs_f64(self.contest.scenario().patience_s);
         for i in 0..self.heard.len() {
             if self.time.worked().saturating_sub(self.heard[i]) > patience {
@@ -327,6 +335,7 @@ impl<'w> GameServer<'w> {
         if passed < REPORT_EVERY && !self.is_news {
             return Ok(());
         }
+        // Over no time at all a rate would be infinite, and the page could not draw it.
         let rate = (self.contest.now() - then_sim).as_s() / passed.as_secs_f64().max(1e-3);
         self.last_report = (clock::now(), self.contest.now());
         self.reporter.progress(&self.contest, (rate, self.refusals().total()), tell);

@@ -94,6 +94,7 @@ impl Inboxes {
             Some((ticket, message)) => {
                 others.put(Incoming::Report { ticket, vehicle, what, message: message.to_vec() });
             }
+            // Counted with everything that is refused, which the result and the page show.
             None => others.refuse(Refusal::Garbage),
         }
     }
@@ -139,6 +140,8 @@ pub(super) fn open(
         }
     };
     let mut declarations = vec![
+        // One subscription for all agents: their names are in the key for access control, and
+        // the ticket says who it is.
         bus.subscribe(topic::all_orders(game), inboxes.take(|orders, _| Incoming::Orders(orders)))?,
         bus.subscribe(topic::control(game), stop)?,
         bus.answer(topic::control(game), control)?,

@@ -114,6 +114,8 @@ impl SeaModel {
     #[must_use]
     pub fn new(sea: &Sea, boats: &[Boat], field: &Field, tick: SimTime, seeds: &Seeds) -> SeaModel {
         let waves = sea.waves.as_ref().map(|waves| WaveField::new(waves, sea.depth_m, seeds.first()));
+        // No lower than half a metre: the profile of the wind is a power of the height, and has
+        // no sense at the water itself.
         let highest = boats.iter().map(|boat| boat.windage.height_m).fold(0.5, f64::max);
         // Wind of no speed is no wind, whatever the boat makes by its own way.
         let wind = sea.wind.as_ref().filter(|wind| wind.speed_10m_m_s > 0.0);
@@ -147,6 +149,8 @@ impl SeaModel {
         let (Drive::Thrusters { thruster, .. }, Some(field)) = (&boat.drive, &self.waves) else { return None };
         // For boats whose propellers never draw air this costs nothing.
         thruster.flaws.ventilation?;
+        // By size and not by name: tables take most of the time in which a game is made, and
+        // strategies often differ where hulls do not.
         let size = [boat.length_m, boat.beam_m, boat.draught_m, thruster.arm_m];
         Some(index_of(&mut self.submergences, size, || {
             let ahead = -PROPELLER_ASTERN * boat.length_m;
@@ -197,6 +201,8 @@ impl SeaModel {
     #[inline]
     #[must_use]
     pub fn at_time(&self, now: SimTime) -> SeaNow<'_> {
+        // In whole nanoseconds: the time of a wave has the same bits whether the game has come
+        // here or was set here.
         let middle_s = (now + self.half_tick).as_s();
         SeaNow { model: self, current: self.current.at_time(now), now, middle_s }
     }
@@ -216,6 +222,7 @@ impl SeaNow<'_> {
             ..SeaForcing::default()
         };
         if let Some(wind) = &self.model.wind {
+            // At the beginning of the tick: gusts last for seconds, a tick for hundredths.
             let air_m_s = wind.at(pose.at, boat.wind_mean_m_s, self.now);
             let past = windage::wind_past_boat(rotation, air_m_s, nu);
             forcing.force = windage::wind_force(&boat.windage, boat.length_m, windage::AIR_DENSITY_KG_M3, past);
@@ -284,6 +291,8 @@ impl SeaNow<'_> {
     /// The velocity of the air 10 m above the water, m/s.
     #[must_use]
     pub fn wind_at(&self, at: Ned) -> Ned {
+        // At ten metres, the height for which winds are told and Beaufort numbers are defined,
+        // not at a boat's.
         self.model.wind.as_ref().map_or_else(Ned::default, |wind| wind.at(at, wind.mean_m_s(10.0), self.now))
     }
 

@@ -74,6 +74,7 @@ impl Summary {
 }
 
 fn wave_summary(field: &WaveField, (tp_s, from_rad): (f64, f64), boat: &Boat, density_kg_m3: f64) -> WaveSummary {
+    // From ahead and from abeam, the two extremes of a hull that is longer than wide.
     let headings_rad = [from_rad, from_rad + std::f64::consts::FRAC_PI_2];
     let on_hull = |heading_rad: f64| {
         let velocities = field

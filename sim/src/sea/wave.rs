@@ -71,6 +71,8 @@ impl PlaneWave {
     /// The group's speed over half the phase's: 1 in deep water, 2 in shallow. 1 + 2kh / sinh 2kh.
     fn group_factor(&self) -> f64 {
         let twice = 2.0 * self.depth_rad();
+        // From there on the quotient is nothing to the last bit, and somewhat later the
+        // hyperbolic sine overflows.
         if twice > 40.0 { 1.0 } else { 1.0 + twice / libm::sinh(twice) }
     }
 
@@ -230,6 +232,8 @@ impl WaveField {
     /// The field of these components: a regular wave, or a sea measured elsewhere.
     #[must_use]
     pub fn of(components: &[Component], depth_m: Option<f64>, drift_factor: f64) -> WaveField {
+        // Infinite and not merely deep: every formula above has its limit there, and no case is
+        // needed.
         let depth_m = depth_m.unwrap_or(f64::INFINITY);
         let waves: Vec<PlaneWave> = components.iter().map(|c| PlaneWave::new(*c, depth_m)).collect();
         let block = |waves: &[PlaneWave]| SurfaceBlock {

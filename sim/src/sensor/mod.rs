@@ -125,6 +125,8 @@ impl SensorModel {
                 (fix.position, body_from_ned(Rotation::from_heading(psi_rad), fix.velocity_m_s), fix.at)
             }
         };
+        // Without an inertial unit the rate is the true one: a boat whose file leaves a sensor
+        // out is meant to have a perfect one.
         let yaw_rate_rad_s = if self.imu.is_some() { imu.gyro_rad_s[2] } else { truth.nu.yaw };
         let nav = Nav {
             north_m: at.north,
