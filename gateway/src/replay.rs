@@ -54,7 +54,6 @@ struct RecordedStep {
 fn plan_of(text: &str) -> Result<Plan, serde_json::Error> {
     let mut plan: Value = serde_json::from_str(text)?;
     if let Some(gateway) = plan.get_mut("gateway") {
-        // A setting that did not exist when the recording was made had its default in effect.
         complete(gateway, &serde_json::to_value(default_gateway())?);
     }
     serde_json::from_value(plan)
@@ -115,6 +114,8 @@ pub fn replay(bag: &Bag) -> Result<Replay, RecordingError> {
 
 fn differing(step: &RecordedStep, out: &Output) -> Option<Difference> {
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).replace("\r\n", " ").trim_end().to_owned();
+    // Bytes to the boat first, then what was said: a difference in the second often follows
+    // from the first.
     let said = |events: &[Event]| format!("{events:?}");
     let pairs = [(text(&step.out), text(&out.bytes)), (said(&step.events), said(&out.events))];
     let (recorded, replayed) = pairs.into_iter().find(|(recorded, replayed)| recorded != replayed)?;

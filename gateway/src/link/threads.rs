@@ -120,6 +120,8 @@ impl Threads {
         let bytes = Arc::new(bytes);
         // Held to the end, so that all peers see the same order.
         let peers = self.peers.lock();
+        // For as many peers as there are now: one that comes later did not get this, and nobody
+        // waits for it.
         let completion = Completion::new(tag, peers.len());
         let displaced =
             peers.iter().filter(|peer| peer.outbox.put(WriteRequest::new(&bytes, &completion, priority))).count();
@@ -148,7 +150,6 @@ impl Threads {
         self.changed.notify_all();
         self.end_all(&End::Stopped);
         // A thread that still runs hangs in its callback, and ends after that.
-        // With a limit: a callback that hangs must not keep the gateway from ending.
         drop(self.wait(limit, |state| state.running > 0));
     }
 

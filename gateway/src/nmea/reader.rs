@@ -45,6 +45,7 @@ impl<'a> Reader<'a> {
     fn read_field(&mut self, field: Field<'_>) -> Result<(), ParseError> {
         match field {
             Field::Address(_) => {}
+            // Any talker: the same sentence comes as GP, GN or II, by who made the receiver.
             Field::Standard(talker, _) => *talker = Talker::split(self.address).map_or(*talker, |(talker, _)| talker),
             Field::Constant(_) => self.at += 1,
             Field::Unit(letter) => self.unit(letter)?,
@@ -109,6 +110,8 @@ impl<'a> Reader<'a> {
 
     /// The whole number in the next field, if any.
     fn whole<T: FromStr>(&mut self) -> Result<Option<T>, ParseError> {
+        // The parser of the library takes a plus sign, which no sentence has: that is a field
+        // that was shifted.
         let whole = |text: &str| text.parse().ok().filter(|_| text.bytes().all(|byte| byte.is_ascii_digit()));
         self.parsed(whole, "a small whole number or nothing")
     }

@@ -97,6 +97,7 @@ pub fn emulate(settings: &EmulatorSettings, notify: &mut dyn FnMut(NodeEvent<'_>
     let incoming = Arc::new(Watched::new(Incoming::default()));
     let pictures = Arc::clone(&incoming);
     let _subscription = bus.subscribe(topic::picture(&game, scenario, scenario.team_of(vehicle)), move |bytes| {
+        // The newest only: a boat does not act on how it was.
         pictures.visit(|incoming| incoming.picture = Some(bytes.to_vec()));
     })?;
     let back_seat = open(&settings.listen, Port::Secondary, &incoming)?;

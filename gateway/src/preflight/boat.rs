@@ -71,6 +71,7 @@ fn scatter(seen: &SensorCheck) -> Check {
     let fixes = seen.fixes();
     let lasted_s = fixes.first().zip(fixes.last()).map_or(0.0, |(first, last)| (last.0 - first.0).as_s());
     let places: Vec<LatLon> = fixes.iter().map(|(_, at)| *at).collect();
+    // Drift of a fix shows over tens of seconds; a few good fixes say nothing of it.
     match FixScatter::of(&places).filter(|_| lasted_s >= SCATTER_S) {
         None => Check::not_done("scatter", format!("{lasted_s:.0} s of fixes, expected {SCATTER_S}: --for-s 30")),
         Some(FixScatter { radius_95_m, drift_m }) => {
@@ -113,6 +114,8 @@ fn compass(seen: &SensorCheck) -> Check {
 fn control(seen: &SensorCheck, gateway: &Gateway) -> Check {
     let Some(control) = seen.control() else {
         let found = "the boat does not say who commands it";
+        // The file may vouch for it, for boats without such a sentence: then it is a person who
+        // answers for who has control.
         return Check::of("control", gateway.control.assumed, format!("{found}; expected PSEAD, or control.assumed"));
     };
     let (mode, is_ours) = (control.shown.mode, control.operator.is_none_or(|operator| operator == Operator::Secondary));

@@ -112,6 +112,7 @@ impl Upload {
     /// The boat asks for an item.
     pub(super) fn take_request(&mut self, seq: u16, now: SimTime) -> Option<MavMessage> {
         let item = self.items.get(usize::from(seq)).filter(|_| self.phase == Phase::Items)?;
+        // Each request shows that the boat is still at it: the tries begin anew.
         (self.tries, self.due) = (1, now + SimTime::from_s(AGAIN_S));
         Some(MavMessage::MISSION_ITEM_INT(item.clone()))
     }

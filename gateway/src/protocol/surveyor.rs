@@ -40,6 +40,8 @@ impl Surveyor {
         framer.push(bytes, &mut |body| match Sentence::parse(body) {
             Ok(sentence) => report(&sentence, take),
             Err(ParseError::Unknown { address }) => {
+                // Names come off a wire that may carry noise: without a limit they would fill
+                // the memory.
                 let room = unknown.len() < UNKNOWN_MAX;
                 let name = if room || unknown.contains_key(&address) { address } else { "others".to_owned() };
                 *unknown.entry(name).or_default() += 1;

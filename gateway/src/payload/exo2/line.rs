@@ -78,10 +78,12 @@ impl Lines {
         if std::mem::take(&mut self.is_overlong) || line.is_empty() {
             return None;
         }
+        // Noise on a serial line is no text, and no answer.
         String::from_utf8(line).ok()
     }
 
     fn add(&mut self, byte: u8) {
+        // Dropped as a whole: a line that was cut would be read as one with fewer values.
         self.is_overlong |= self.line.len() >= LINE_MAX;
         if self.is_overlong {
             self.line.clear();

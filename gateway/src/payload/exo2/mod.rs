@@ -111,6 +111,8 @@ impl Conversation {
             self.asked = Command::of(line);
             return None;
         }
+        // Without a question before it a line is not known to be an answer: the sonde also
+        // prompts, and may be set to talk by itself.
         let asked = self.asked?;
         let answer = line.trim_start_matches(['#', ' ', '\t']);
         // The echo may be in the same line.
@@ -136,6 +138,8 @@ impl Conversation {
                 Some(Measurement { values: named.collect() })
             }
         };
+        // Only after an answer that was understood: its echo comes before it, in a line of its
+        // own.
         self.asked = None;
         measurement
     }
