@@ -307,9 +307,7 @@ impl<const N: usize> Row<N> {
         let (v_2, s_2, half_2) = (v * v, s * s, half * half);
         let same_side = (s.abs(), v.abs());
         let from = v / where_at_most(same_side, number(1.0), r);
-        // Strip theory integrates |v + x r| (v + x r) along the hull. With constant draught
-        // that is a polynomial where the flow keeps its side, and two that meet where it
-        // changes; strips would be slower, and the result would depend on their number.
+        // Strips would be slower, and the result would depend on their number.
         let side = self.crossflow.with_signs_of(where_at_most(same_side, v, r));
         let sway = where_at_most(
             same_side,

@@ -53,6 +53,8 @@ pub fn start_positions(scenario: &Scenario, seed: u64) -> Result<Vec<Pose>, Spaw
                 taken.iter().all(apart) && clear_of_obstacles(&scenario.field, at, gap_m)
             };
             let mut draw = || seen_from(&scenario.field, vehicle.team, (along_m, across_m), &mut stream);
+            // Drawn and rejected, not placed on a grid: every free place is as likely, and a
+            // field that is too full is an error.
             let at = (0..TRIES).map(|_| draw()).find(|at| free(*at));
             let at = at.ok_or_else(|| SpawnError { vehicle: vehicle.name.clone() })?;
             let psi_rad = wrap_pi(scenario.field.facing_deg(vehicle.team).to_radians());

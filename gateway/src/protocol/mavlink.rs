@@ -182,8 +182,6 @@ impl Mavlink {
     /// Asks for a mode, armed, until the boat shows it.
     fn engage(&mut self, now: SimTime, mode: RoverMode, out: &mut Vec<u8>) {
         let before = self.asked.filter(|asked| asked.mode == mode && asked.is_armed);
-        // Once shown, a mode is never asked for again: who takes the boat out of GUIDED has a
-        // reason, and keeps it.
         if before.is_some_and(|asked| asked.is_shown || (now - asked.at).as_s() < AGAIN_S) {
             return;
         }

@@ -34,8 +34,6 @@ pub(super) fn sin_cos_turns(turns: Lanes<f64>) -> (Lanes<f32>, Lanes<f32>) {
     // in single, which takes half the time.
     let r = (turns - ((turns + rounder) - rounder)).single();
     let x = r * r;
-    // Of half the angle: the polynomial need only reach a quarter turn, and doubling costs two
-    // products.
     let sin_half = quartic(SIN, x) * r;
     let cos_half = quartic(COS, x);
     let sin_twice = sin_half + sin_half;
@@ -47,7 +45,6 @@ pub(super) fn sin_cos_turns(turns: Lanes<f64>) -> (Lanes<f32>, Lanes<f32>) {
 fn quartic(c: [f32; 5], x: Lanes<f32>) -> Lanes<f32> {
     let c = c.map(Lanes::<f32>::splat);
     let x2 = x * x;
-    // Estrin's scheme: less of it depends on what comes before than in Horner's.
     (c[0] + c[1] * x) + ((c[2] + c[3] * x) + c[4] * x2) * x2
 }
 

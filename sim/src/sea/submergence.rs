@@ -55,7 +55,6 @@ impl Submergence {
 pub(super) fn add(change_m: &mut Lanes<f32>, line: Lanes<f32>, sin: Lanes<f32>, cos: Lanes<f32>) {
     const HALF: usize = LANES / 2;
     for i in 0..HALF {
-        // Both propellers in one line, cosines in the first half and sines in the second.
         change_m.0[i] += line.0[i] * cos.0[i] + line.0[HALF + i] * sin.0[HALF + i];
     }
 }

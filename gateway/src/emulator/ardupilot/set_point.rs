@@ -72,7 +72,6 @@ impl SetPoints {
             | PositionTargetTypemask::POSITION_TARGET_TYPEMASK_VY_IGNORE;
         let position = PositionTargetTypemask::POSITION_TARGET_TYPEMASK_X_IGNORE
             | PositionTargetTypemask::POSITION_TARGET_TYPEMASK_Y_IGNORE;
-        // In the frames of the body the velocity turns with the boat.
         let turned_rad = match target.coordinate_frame {
             MavFrame::MAV_FRAME_LOCAL_NED | MavFrame::MAV_FRAME_LOCAL_OFFSET_NED => 0.0,
             MavFrame::MAV_FRAME_BODY_NED | MavFrame::MAV_FRAME_BODY_OFFSET_NED => psi_rad,

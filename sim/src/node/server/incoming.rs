@@ -159,8 +159,6 @@ impl GameServer<'_> {
 
     /// Lets a node join that asks at the place of its team or boat: with keys, access control lets it ask at no other.
     fn join_at(&mut self, key: &str, request: &JoinRequest) -> JoinReply {
-        // With keys, access control allows a node to ask only at the place of its own team or
-        // boat.
         let place = topic::join(&self.game, self.contest.scenario(), request.role, &request.vehicles);
         match request.role {
             _ if place != key => {
