@@ -63,6 +63,8 @@ impl Pilot {
     pub fn direct(scenario: &Scenario, vehicle: VehicleId, spaces: Spaces) -> Pilot {
         let program = role_of(scenario, vehicle);
         let model = GameModel::new(scenario, vehicle, program);
+        // With the drift estimated: it is part of what a policy is given, also where nothing
+        // makes up for it.
         let motion = OwnMotion::new(scenario.boat_of(vehicle), model.speed_max_m_s, true);
         let team_messages = TeamMessages::new(program, &model.mates);
         let situation = Box::new(Situation::new(model, motion, program, team_messages));
@@ -110,6 +112,8 @@ impl Pilot {
         if let Ok(chosen) = policy.chosen() {
             self.follow(chosen);
         } else {
+            // A model that gives no number lets the boat lie still: the last action would go on
+            // for ever.
             self.set_point = SetPoint::default();
         }
     }
@@ -166,6 +170,8 @@ impl Teacher {
     }
 
     fn steered(&self, order: Order, actions: ActionSpace) -> Option<Action> {
+        // A teacher that holds has done nothing that a policy could have chosen: such a
+        // decision is left out of what is imitated.
         let Order::Steer { heading_rad, speed_m_s } = order else { return None };
         let situation = self.helm.situation();
         let asked = SetPoint { course_rad: heading_rad, speed_m_s };

@@ -63,6 +63,7 @@ impl BoardPolicy {
         let period = SimTime::from_s(self.model.spec.period_s);
         // From decision to decision, not from picture to picture: lost ones move nothing.
         let next = self.due.map_or(situation.now, |due| due) + period;
+        // After a long gap the decisions that fell into it are not made up for.
         self.due = Some(if next > situation.now { next } else { situation.now + period });
         self.chosen = self.choose(situation);
     }
@@ -74,6 +75,8 @@ impl BoardPolicy {
 
     fn choose(&mut self, situation: &Situation) -> Result<Chosen, PolicyFault> {
         let spec = self.model.spec;
+        // Not before: how many numbers there are depends on the teams, which are known from the
+        // situation.
         let observer = self.observer.get_or_insert_with(|| Observer::new(spec.observation, situation));
         let observation = observer.observe(situation);
         if observation.len() != self.model.input_size() {
@@ -120,6 +123,8 @@ impl Chosen {
 
 /// The action that a network's output makes: the likeliest of the discrete ones.
 fn action_of(model: &PolicyModel, output: &[f32]) -> Result<Action, PolicyFault> {
+    // Checked on each output: a network may overflow on numbers that it was never trained on,
+    // and of NaN the likeliest action would be the first.
     if !output.iter().all(|number| number.is_finite()) {
         return Err(PolicyFault::NotFinite);
     }

@@ -16,6 +16,8 @@ pub(crate) fn helm_of(scenario: &Scenario, vehicle: VehicleId, program: &Program
     let is_killed =
         |fault: &scenario::fault::Fault| fault.kind == FaultKind::AgentLost && fault.vehicles.contains(&vehicle);
     let helm = HelmMind::new(scenario, vehicle, program);
+    // Only where a fault says so: a copy of the scenario for each boat would cost a fleet too
+    // much.
     if !scenario.faults.iter().any(is_killed) {
         return Box::new(helm);
     }
@@ -37,6 +39,8 @@ impl Mind for Restarted {
         let is_back =
             |record: &EventRecord| record.logged().is_some_and(|logged| logged.event == Event::AgentBack(self.vehicle));
         if picture.events.iter().any(is_back) {
+            // In the arena nothing is killed, and the result must be the one that processes
+            // come to: so the mind forgets what a process would.
             self.helm = (self.begin)();
             self.helm.show(self.shown);
         }

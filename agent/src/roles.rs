@@ -34,6 +34,8 @@ fn dealt<'a>(
     let mut roles: Vec<usize> = (0..strategy.roles.len()).cycle().take(boats.len()).collect();
     if strategy.assignment == Assignment::Seeded {
         let team = &scenario.teams[team.index()].name;
+        // A stream of its own by the team's name: a second team, or other draws, do not change
+        // how this one is dealt.
         Stream::new(scenario.seed, &format!("roles/{team}")).shuffle(&mut roles);
     }
     let place = boats.iter().position(|i| *i == vehicle.index()).expect("a vehicle is one of those that follow");

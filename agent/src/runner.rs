@@ -79,6 +79,8 @@ impl<M: Mind + ?Sized> MindRunner<M> {
         self.decided = Some(stamp);
         let mut sent = std::mem::take(&mut self.sent);
         sent.clear();
+        // After all have decided: what one boat tells is known to its mates at the next
+        // decision, in one process as across several, whatever the order of the minds.
         self.boats.iter().for_each(|boat| boat.mind.send(&mut sent));
         self.receive(&sent);
         self.sent = sent;
@@ -105,6 +107,7 @@ impl<M: Mind + ?Sized> MindRunner<M> {
     /// again. None before the first decision.
     #[must_use]
     pub fn answer(&self, ticket: u64) -> Option<Orders> {
+        // With the picture's own time and number: the sim tells by it which tick is answered.
         let stamp = Stamp { version: Orders::VERSION, ..self.decided? };
         Some(Orders { stamp, ticket, orders: self.orders().map(|(v, order)| VehicleOrder::new(v, order)).collect() })
     }

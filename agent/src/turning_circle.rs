@@ -17,6 +17,7 @@ use std::collections::BTreeSet;
 #[must_use]
 pub fn warnings(scenario: &Scenario) -> Vec<String> {
     let boats = (0..scenario.vehicles.len()).map(VehicleId::at);
+    // Boats of one role have the same warning: said once, in a fixed order.
     let warnings: BTreeSet<String> = boats.flat_map(|vehicle| of_boat(scenario, vehicle)).collect();
     warnings.into_iter().collect()
 }

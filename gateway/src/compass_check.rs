@@ -73,10 +73,14 @@ impl CompassCheck {
     /// Takes what the compass shows, rad, the velocity over the ground and the speed ahead that is ordered.
     pub(crate) fn take(&mut self, now: SimTime, psi_rad: f64, velocity: Ned, ordered_m_s: f64) {
         let gap_s = self.began.map_or(f64::INFINITY, |(_, last)| (now - last).as_s());
+        // The sums of a piece assume steady flow: across a gap the boat may have turned.
         if gap_s > GAP_MAX_S {
             self.interrupt();
             self.speed_m_s = ordered_m_s;
         } else {
+            // The log of a Surveyor is the GPS, so the speed through the water is not measured.
+            // The order, delayed as the boat follows it, stands in; its scale does not matter,
+            // only its direction.
             self.speed_m_s += (ordered_m_s - self.speed_m_s) * (gap_s / SPEED_LAG_S).min(1.0);
         }
         let (began, _) = self.began.unwrap_or((now, now));
@@ -109,6 +113,8 @@ impl CompassCheck {
         let first_rad = angle_rad(self.pieces[0].ahead);
         let is_straight =
             self.pieces.iter().all(|piece| wrap_pi(angle_rad(piece.ahead) - first_rad).abs() < STRAIGHT_RAD);
+        // After a turn the boat still slides: the first 1.5 s would show as leeway that turns
+        // with the heading, which is what an offset looks like.
         let settled = self.pieces.iter().skip(1);
         let [mut ordered, mut velocity] = [Ned::default(); 2];
         let count = settled.fold(0.0, |count, piece| {
@@ -118,6 +124,8 @@ impl CompassCheck {
         let run = Run { at: now, ordered: ordered.scaled(1.0 / count), velocity: velocity.scaled(1.0 / count) };
         if is_straight && run.ordered.length() >= SPEED_FROM_M_S {
             // The last piece of this run is the first of the next.
+            // A piece in two runs would count twice; the last piece only serves as the lead-in
+            // of the next.
             self.pieces.drain(..PIECES - 1);
             self.runs.push_back(run);
         }
@@ -135,12 +143,15 @@ impl CompassCheck {
         let mean =
             |of: fn(&Run) -> Ned| self.runs.iter().fold(Ned::default(), |sum, run| sum + of(run)).scaled(1.0 / count);
         let heading = mean(|run| run.ordered.scaled(1.0 / run.ordered.length()));
+        // On one heading an offset and a current across are the same. A plain limit for the
+        // angle between heading and course either misses 30 degrees or fails in a current.
         if heading.length() > MEAN_HEADING_MAX {
             return None;
         }
         let (ordered, velocity) = (mean(|run| run.ordered), mean(|run| run.velocity));
         let (mut share, mut spread) = (Ned::default(), 0.0);
         for run in &self.runs {
+            // Subtracting the means removes the drift c, whatever it is.
             let (z, v) = (run.ordered - ordered, run.velocity - velocity);
             share = share + over(v, z);
             spread += z.dot(z);
@@ -153,6 +164,7 @@ impl CompassCheck {
         });
         // Of two components each, four numbers were fitted.
         let scatter_m_s = (rest.sum::<f64>() / (2.0 * count - 4.0)).sqrt().max(SCATTER_MIN_M_S);
+        // To first order the error of the angle of k is its error across, over its length.
         let sigma_rad = scatter_m_s / (spread.sqrt() * share.length());
         (share.length() >= SHARE_MIN && sigma_rad.is_finite()).then(|| (angle_rad(share), sigma_rad))
     }
@@ -160,6 +172,8 @@ impl CompassCheck {
     /// How far the compass is off, rad, if that is a fault.
     pub(crate) fn fault_rad(&self) -> Option<f64> {
         let (offset_rad, sigma_rad) = self.offset_rad()?;
+        // Deviations of up to 14 degrees count as none: a boat with them can be driven, and a
+        // compass swing finds them.
         (offset_rad.abs() - SIGMAS * sigma_rad > OFFSET_MAX_RAD).then_some(offset_rad)
     }
 }

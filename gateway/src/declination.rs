@@ -13,6 +13,8 @@ use world_magnetic_model::uom::si::f32::{Angle, Length};
 use world_magnetic_model::uom::si::length::meter;
 
 /// Years of WMM2025, both included.
+// The field changes from year to year, and the model is made for five: a later date is refused
+// rather than extrapolated. The file can state the declination instead.
 const YEARS: (u16, u16) = (2025, 2029);
 
 /// Why there is no declination.

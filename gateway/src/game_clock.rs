@@ -45,6 +45,9 @@ impl GameClock {
     /// The boat, which asked at the time `asked` of our own, has joined a game whose time was `since` at some moment after
     /// that.
     pub fn join(&mut self, asked: SimTime, since: SimTime) {
+        // The answer was made after it was asked for, so the game cannot be further ahead of
+        // our clock than this; how long the answer travelled is unknown, and only makes the
+        // bound safer.
         let most = SimTime(since.0.saturating_sub(asked.0));
         self.joined = Some(Joined { since, most, seen: None });
     }
@@ -59,9 +62,13 @@ impl GameClock {
         // Anybody may have sent it, with any number.
         let difference = SimTime(stamp.0.saturating_sub(now.0));
         let known = joined.seen.unwrap_or(joined.most);
+        // An order far in the future would count as newer than all real ones that follow, and
+        // silence the sim until then.
         if given > stamp || stamp >= SimTime::NEVER || difference.0.saturating_sub(known.0) > self.ahead_max.0 {
             return OrderTime::Ahead;
         }
+        // Only the largest difference is kept: a game that pauses or slows down falls behind
+        // our clock, which makes nothing suspicious.
         joined.seen = Some(joined.seen.map_or(difference, |seen| seen.max(difference)));
         OrderTime::Plausible
     }

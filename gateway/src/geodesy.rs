@@ -22,6 +22,8 @@ impl LocalFrame {
     /// The map around `datum`.
     #[must_use]
     pub fn new(datum: LatLon) -> LocalFrame {
+        // By geographiclib and not by a tangent plane of our own, which would do for a field
+        // but be one more thing to test.
         LocalFrame { datum, earth: Geodesic::wgs84() }
     }
 

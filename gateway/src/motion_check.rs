@@ -15,6 +15,8 @@ const WINDOW_MIN_S: f64 = 2.0;
 /// The most positions that are kept: 20 a second.
 const FIXES_MAX: usize = 80;
 /// A reported speed may be this much less than that of the positions, m/s, for this long, s: a fix may step by some metres.
+// The limits are those at which no sea, wind or step of a fix alone triggers them: a false
+// alarm stops a boat in a game.
 const SPEED_GAP_M_S: f64 = 1.2;
 const SPEED_GAP_S: f64 = 2.5;
 /// A boat has a course from this speed on, m/s.
@@ -63,6 +65,8 @@ impl MotionCheck {
         let is_like = |at: SimTime, reported: bool| (now - at).as_s() <= COURSE_GAP_MAX_S && reported == is_reported;
         let before = self.course.filter(|(at, reported, _)| is_like(*at, *reported));
         if let (Some((_, turned_rad)), Some((.., before_rad)), Some(now_rad)) = (&mut self.shown, before, course_rad) {
+            // Summed with its sign: waves swing the course to and fro by more than 60 degrees
+            // in all, a turn leads away.
             *turned_rad += wrap_pi(now_rad - before_rad);
         }
         self.course = course_rad.map(|course_rad| (now, is_reported, course_rad));
@@ -70,6 +74,7 @@ impl MotionCheck {
 
     /// Takes what the compass shows, rad.
     pub(crate) fn take_heading(&mut self, psi_rad: f64) {
+        // Exactly the same value: a compass that works changes its last digit all the time.
         if self.shown.is_none_or(|(shown_rad, _)| shown_rad != psi_rad) {
             self.shown = Some((psi_rad, 0.0));
         }
@@ -87,6 +92,8 @@ impl MotionCheck {
         if (*last - *first).as_s() < WINDOW_MIN_S {
             return None;
         }
+        // The means of both halves and not the first and last fix: one step of the receiver
+        // would be a speed.
         let half = self.fixes.len() / 2;
         let middle = |fixes: &mut dyn Iterator<Item = &(SimTime, Ned)>| {
             let (mut count, mut time_s, mut place) = (0.0, 0.0, Ned::default());

@@ -169,6 +169,8 @@ impl NavEstimator {
         let still_s = self.known.still_since.map_or(0.0, |since| (now - since).as_s());
         self.known
             .doubt
+            // In this order, since an operator is shown one cause: what the receiver itself
+            // says, then what is old, then what contradicts.
             .or(jump.map(|(_, by_m)| NavFault::Jump(by_m)))
             .or((fix_age_s > self.watch.age_max_s).then_some(NavFault::FixStale(fix_age_s)))
             .or((heading_age_s > self.watch.age_max_s).then_some(NavFault::HeadingStale(heading_age_s)))
@@ -216,15 +218,20 @@ impl NavEstimator {
         if let Some(before) = self.known.fix {
             let since_s = (now - before.at).as_s();
             let moved = place - before.place;
+            // The fix itself is used from here on: the new place may be the right one. The
+            // fault lasts until positions have agreed for two seconds.
             if moved.length() > self.speed_max_m_s * since_s + self.watch.jump_m {
                 self.known.jumped = Some((now, moved.length()));
+                // A velocity from before belongs to another place.
                 self.known.velocity = None;
                 self.known.motion.jump();
                 self.known.compass.interrupt();
+            // Fixes that come as a burst would divide their noise by nearly nothing.
             } else if !self.is_velocity_reported(now) && since_s > 0.05 {
                 self.known.velocity = Some((None, moved.scaled(1.0 / since_s)));
             }
             let pushed = self.known.thrust_at.is_some_and(|at| (now - at).as_s() < THRUST_MEMORY_S);
+            // The same to the last digit. Without thrust a boat may well lie still.
             self.known.still_since = (before.raw == at && pushed).then(|| self.known.still_since.unwrap_or(before.at));
         }
         let reported = self.is_velocity_reported(now).then(|| self.velocity_m_s());
@@ -248,6 +255,7 @@ impl NavEstimator {
         }
         let psi_rad = match heading.north {
             North::True => rad_from_compass_deg(heading.deg),
+            // Headings of a Surveyor are magnetic, courses of its receiver true.
             North::Compass => wrap_pi(rad_from_compass_deg(heading.deg) + self.compass_to_true_rad),
         };
         self.known.motion.take_heading(psi_rad);

@@ -62,6 +62,8 @@ impl StepEncoder {
     /// The entries of a step at `at` by the gateway's clock, `game_now` being the game's time as last received.
     pub fn step(&mut self, at: SimTime, game_now: SimTime, input: &Input, out: &Output) -> Vec<Entry> {
         let mut entries = match input {
+            // As CDR on a topic of its own, since nearly all of a recording is bytes of the
+            // link; JSON would be several times as long.
             Input::Bytes(bytes) => vec![self.link_bytes(at, game_now, false, bytes)],
             other => vec![json(INPUT, at, &RecordedInput { input: other.clone() })],
         };

@@ -114,6 +114,8 @@ pub fn replay(bag: &Bag) -> Result<Replay, RecordingError> {
 
 fn differing(step: &RecordedStep, out: &Output) -> Option<Difference> {
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).replace("\r\n", " ").trim_end().to_owned();
+    // Bytes to the boat first, then what was said: a difference in the second often follows
+    // from the first.
     let said = |events: &[Event]| format!("{events:?}");
     let pairs = [(text(&step.out), text(&out.bytes)), (said(&step.events), said(&out.events))];
     let (recorded, replayed) = pairs.into_iter().find(|(recorded, replayed)| recorded != replayed)?;

@@ -62,6 +62,7 @@ impl Received {
     pub fn rate_hz(&self) -> Option<f64> {
         let (first, last) = self.between?;
         let span_s = (last - first).as_s();
+        // Intervals, not messages: of two that came within a second there is one interval.
         (span_s > 0.0).then(|| (self.count - 1) as f64 / span_s)
     }
 }
@@ -121,6 +122,8 @@ impl SensorCheck {
 
     /// Takes bytes as they come.
     pub fn take(&mut self, now: SimTime, bytes: &[u8]) {
+        // Counted by name with a framer of its own; what is reported comes from the gateway's
+        // codec, so that the check goes by what the gateway would.
         self.count(now, bytes);
         let mut reports = vec![];
         self.protocol.read(now, bytes, &mut |report| reports.push(report));
@@ -223,6 +226,8 @@ impl SensorCheck {
                 .date
                 .map_or("it sends no date".to_owned(), |d| format!("date {}-{:02}-{:02}", d.year, d.month, d.day));
             let side = if behind_s < 0.0 { "AHEAD of" } else { "behind" };
+            // A fix is some time on its way, so a little behind is as it should be; ahead can
+            // only be a clock that is wrong.
             let note = if (-1.0..=5.0).contains(&behind_s) { "" } else { ": one of the two is wrong" };
             let off_s = behind_s.abs();
             found.push(format!("clock: fixes are {off_s:.2} s {side} this host's clock{note}; {date}"));
@@ -266,6 +271,8 @@ impl SensorCheck {
         };
         let mut missing: Vec<String> = needs.iter().filter_map(|need| self.lacks(*need)).collect();
         if let Some(operator) = self.control.as_ref().and_then(|control| control.operator)
+            // Everything else may be there: a boat that somebody else commands follows nothing
+            // that we send.
             && operator != Operator::Secondary
         {
             missing.push(match self.framer {
@@ -275,6 +282,7 @@ impl SensorCheck {
                 }
             });
         }
+        // A receiver without a fix still sends its sentences, at the full rate.
         if let Some(Fix { at: None, quality: Some(quality), .. }) = self.fix {
             missing.push(format!("a position: its fix is of quality {quality}"));
         }
@@ -282,6 +290,7 @@ impl SensorCheck {
     }
 
     fn lacks(&self, (kinds, why): Need) -> Option<String> {
+        // By the ending, for talkers differ (GPGGA, GNGGA).
         let best = self.received.iter().filter(|(name, _)| kinds.iter().any(|kind| name.ends_with(kind)));
         let rate_hz = best.filter_map(|(_, received)| received.rate_hz()).fold(0.0, f64::max);
         let name = kinds.join(" or ");
@@ -322,6 +331,8 @@ impl SensorCheck {
             // RMC says no more than whether there is one.
             Report::Fix(fix) if fix.quality.is_some() => {
                 if let Some(at) = fix.at
+                    // The first ones are kept: their scatter is judged over the time from the
+                    // first to the last.
                     && self.fixes.len() < FIXES_MAX
                 {
                     self.fixes.push((now, at));

@@ -79,6 +79,8 @@ impl SetPointMapper {
             }
             Order::Thrust { port, starboard } => {
                 self.integral_pct = 0.0;
+                // By the manufacturer's algebra: thrust is half the sum, and the difference
+                // half the difference.
                 (50.0 * (port + starboard), 50.0 * (port - starboard))
             }
             Order::Steer { heading_rad, speed_m_s } => {
@@ -96,6 +98,7 @@ impl SetPointMapper {
     /// The set-point for a heading, which is so far clockwise from the boat's, and a speed.
     fn steered(&mut self, now: SimTime, (heading_rad, turn_rad, speed_m_s): (f64, f64, f64), nav: &Nav) -> SetPoint {
         let speed_m_s = speed_m_s.min(self.limits.speed_max_m_s);
+        // The boat's own loops are not published, so this is an option and not the default.
         if self.drive == Drive::Speed {
             let heading_deg = self.compass_deg(heading_rad);
             return SetPoint::Speed { heading_deg, speed_m_s };
@@ -130,10 +133,13 @@ impl SetPointMapper {
     /// Our own loops: thrust by the map and by the speed error, difference by the heading error, which comes first.
     fn steer(&mut self, step_s: f64, turn_rad: f64, speed_m_s: f64, nav: &Nav) -> (f64, f64) {
         let Loops { speed_pct_per_m_s, speed_integral_s, heading_pct_per_rad, turn_pct_per_rad_s, .. } = self.loops;
+        // P on the heading and D on the rate of turn that is measured, as pMarinePID on these
+        // boats has it.
         let difference = heading_pct_per_rad * turn_rad - turn_pct_per_rad_s * nav.yaw_rate_rad_s;
         let difference = difference.clamp(-self.limits.difference_max_pct, self.limits.difference_max_pct);
         let error_m_s = speed_m_s - nav.surge_m_s;
         let asked = thrust_for(&self.loops.thrust_map, speed_m_s) + speed_pct_per_m_s * error_m_s + self.integral_pct;
+        // Turning comes first: a boat that cannot turn cannot keep clear.
         let room = (100.0 - difference.abs()).min(self.limits.thrust_max_pct);
         // Anti-windup: the integral only grows while the thrust is not at its limit, and not at rest.
         if asked.abs() < room && speed_m_s > 0.0 {
@@ -163,6 +169,7 @@ fn thrust_for(map: &[(f64, f64)], speed_m_s: f64) -> f64 {
 
 /// `to`, or as far towards it as `growth` allows; towards zero there is no limit.
 fn slewed(from: f64, to: f64, growth: f64) -> f64 {
+    // Growth is limited, decay is not: zero is always within reach, so a stop is never slewed.
     let (least, most) = (from.min(0.0) - growth, from.max(0.0) + growth);
     to.clamp(least, most)
 }

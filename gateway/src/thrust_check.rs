@@ -106,6 +106,8 @@ impl Turn {
             return None;
         }
         let (x, y) = (self.difference, self.turned_rad / self.piece_s);
+        // Exponential memory in six sums: the same regression over a window would keep hundreds
+        // of pieces.
         let keep = 1.0 - (self.piece_s / TURN_MEMORY_S).min(1.0);
         for (sum, new) in self.sums.iter_mut().zip([1.0, x, y, x * x, x * y, y * y]) {
             *sum = keep * *sum + new;
@@ -161,12 +163,16 @@ impl ThrustCheck {
         let Nav { psi_rad, surge_m_s: ahead_m_s, .. } = *nav;
         let before = self.last.replace((now, psi_rad)).filter(|(at, _)| (now - *at).as_s() <= GAP_MAX_S);
         let Some((before, before_rad)) = before else {
+            // After a gap nobody knows what the boat did meanwhile.
             *self = ThrustCheck { last: self.last, ..ThrustCheck::default() };
             return;
         };
         let turned_rad = wrap_pi(psi_rad - before_rad);
         let known = self.turn.take(0.01 * ordered.turn_pct, (now - before).as_s(), turned_rad);
         if let Some((slope, sigma)) = known
+            // No plain limit such as "full difference for 8 s and no turn": in a gale a
+            // simulated Surveyor was held so, or turned the other way, for 15 s 28 times in two
+            // hours of four boats.
             && slope + SIGMAS * sigma < TURN_MIN_RAD_S
         {
             self.fault = Some(ThrustFault::NoTurn((0.5 * slope).to_degrees()));
@@ -181,6 +187,8 @@ impl ThrustCheck {
         self.turn_rad_s += (turned_rad - step_s * self.turn_rad_s) / step_s.max(TURN_LAG_S);
         let unrest = self.sway.take(step_s, sway_m_s);
         let heading_rad = ordered.heading_rad.filter(|_| ordered.ahead_m_s >= AGAINST_FROM_M_S);
+        // Along the bow: a boat that turns about moves against its ordered heading, but never
+        // astern.
         let astern_m = self.astern_m - (surge_m_s + ASTERN_DRIFT_M_S) * step_s;
         self.astern_m = if ordered.ahead_m_s < AGAINST_FROM_M_S { 0.0 } else { astern_m.max(0.0) };
         let is_held =
@@ -216,6 +224,8 @@ impl ThrustCheck {
         held.ordered += ordered_m_s;
         held.seen += ahead_m_s;
         if (now - held.since).as_s() >= WAY_S {
+            // A boat that gets weaker is not found: at 40 s and a tenth no current or gale
+            // alone does this.
             if held.seen < WAY_SHARE_MIN * held.ordered {
                 self.fault = Some(ThrustFault::NoWay(held.seen / held.count));
             }

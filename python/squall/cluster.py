@@ -147,6 +147,9 @@ def play_all(
         raise ValueError(f"the files of the games have {size} bytes, expected at most {PACKED_BYTES_MAX}")
     cpus, looked = cpus_of(ray), time.monotonic()
     games = batch or batch_of(plan.games - study.done, cpus)
+    # A task's answer is the very lines of the tables, so that the same bytes come out: Arrow between workers
+    # and driver would have to be turned into them again. One driver takes 100,000 games a second; who has more
+    # CPUs cuts the sweep.
     # What a task itself raises is raised again by every retry.
     remote = ray.remote(num_cpus=1, max_retries=RETRIES, retry_exceptions=False)(task)
     reference = ray.put(packed)

@@ -32,6 +32,7 @@ pub fn afloat(scenario: &Scenario, seed: u64, names: &[String]) -> Result<Scenar
     for name in names {
         scenario.vehicle_named(name)?;
     }
+    // With all boats of the game, so that those afloat start where the game expects them.
     let poses = spawn::start_positions(&scenario, seed).map_err(NoStart::from)?;
     let mut water = scenario.clone();
     for (vehicle, pose) in water.vehicles.iter_mut().zip(poses) {
@@ -39,6 +40,7 @@ pub fn afloat(scenario: &Scenario, seed: u64, names: &[String]) -> Result<Scenar
     }
     water.vehicles.retain(|vehicle| names.contains(&vehicle.name));
     water.name = format!("{}_afloat", scenario.name);
+    // The game's own link already delays what its agents send; twice would be wrong.
     water.link = None;
     water.rules = without_consequences(&scenario.rules);
     // Its numbers are drawn: it must not be made anew from the files.

@@ -28,6 +28,8 @@ impl AutopilotModel {
     #[must_use]
     pub fn new(autopilot: &Autopilot, hull: &HullModel, dt_s: f64) -> AutopilotModel {
         let (inertia, omega) = (hull.m_yaw, autopilot.heading_bandwidth_rad_s);
+        // Pole placement for a second-order system: what the hull damps by itself need not come
+        // from the thrusters.
         let wanted_damping = 2.0 * autopilot.heading_damping * omega * inertia;
         let surge_per_m_s = hull.m_surge / autopilot.speed_time_s;
         AutopilotModel {
@@ -53,6 +55,8 @@ impl AutopilotModel {
         let (hull, thruster) = boat;
         let wanted_m_s = speed_m_s.min(self.speed_max_m_s);
         let error_m_s = wanted_m_s - nu.surge;
+        // Feed-forward first: the loop only corrects what the calibrated resistance misses, so
+        // a step of the order does not wait for the integral.
         let surge = hull.surge_resistance_newton(wanted_m_s) + self.surge_per_m_s * error_m_s + *integral_newton;
         let yaw = self.yaw_per_rad * turn_rad - self.yaw_per_rad_s * nu.yaw;
 
@@ -61,6 +65,7 @@ impl AutopilotModel {
         let difference = (0.5 * yaw / thruster.arm_m).clamp(-reach, reach);
         let (least, most) = (thruster.newton_min + difference.abs(), thruster.newton_max - difference.abs());
         let each = (0.5 * surge).clamp(least, most);
+        // Anti-windup: at the limit of the thrusters the integral would grow without effect.
         if each == 0.5 * surge {
             *integral_newton += self.surge_integral * error_m_s;
         }

@@ -39,8 +39,10 @@ impl BatteryModel {
     /// Takes a tick's energy out, with the thrusters at these shares (0 to 1) of full thrust.
     #[inline]
     pub fn draw(&self, charge: &mut f64, shares: [f64; 2]) {
+        // Not `powf`: its last bit differs between platforms.
         let [port, starboard] = shares.map(|share| share * share.sqrt());
         let spent = self.hotel_per_tick + self.full_per_tick * 0.5 * (port + starboard);
+        // An empty battery goes on: what is lost is thrust, by the sag.
         *charge = (*charge - spent).max(0.0);
     }
 }

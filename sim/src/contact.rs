@@ -26,6 +26,7 @@ const CLOSING_MAX_M_S: f64 = 8.0;
 /// Hulls nearer than rapier's look-ahead and this are handed to it, m.
 const SPARE_M: f64 = 0.05;
 /// Thickness of a wall, and how far it reaches beyond the corners, m.
+// Thick, so that no boat is pushed out on the far side in one tick.
 const WALL_M: f64 = 10.0;
 /// Restitution and friction of hull on hull: fendered glass fibre, wet.
 const RESTITUTION: f64 = 0.1;
@@ -130,6 +131,8 @@ impl ContactModel {
         dt_s: f64,
     ) -> ContactModel {
         let hull = |(length_m, beam_m): (f64, f64)| {
+            // A capsule: rapier resolves it at about half the cost of a box, and a bow is round
+            // rather than square.
             let radius = 0.5 * beam_m.min(length_m);
             let capsule = SharedShape::capsule_x(0.5 * length_m - radius, radius);
             HullShape { capsule, half_length_m: 0.5 * length_m }
@@ -141,6 +144,8 @@ impl ContactModel {
                 fixed.push(wall(field.corners[i], field.corners[(i + 1) % 4], inward));
             }
         }
+        // Without prediction rapier sees a contact only after hulls overlap, and pushes them
+        // apart with a velocity that nobody had.
         let look_ahead_m = CLOSING_MAX_M_S * dt_s;
         let (hulls, close_m) = (hulls.map(hull).collect(), look_ahead_m + SPARE_M);
         ContactModel { hulls, fixed, hulls_are_solid, dt_s, look_ahead_m, close_m }
@@ -185,6 +190,8 @@ impl ContactModel {
             if let Some((distance_m, normal)) =
                 self.close(&displacements[a], shape_a, displacements[b].start(), shape_b)
             {
+                // The direction counts and not its sign: the mass along a line is the same both
+                // ways.
                 touches.push(Touch { boat: a, distance_m, normal });
                 touches.push(Touch { boat: b, distance_m, normal });
             }
@@ -218,6 +225,8 @@ impl ContactModel {
     }
 
     fn hand_to_rapier(&self, models: &[HullModel], displacements: &mut [Displacement], touches: &[Touch]) {
+        // Warm starting is lost with the old world. Boats that bump rather than pile up do not
+        // need it.
         let mut world = PhysicsWorld::new();
         world.gravity = Vector::ZERO;
         world.integration_parameters.dt = self.dt_s;
@@ -257,19 +266,25 @@ impl ContactModel {
         let velocity = vector(moved) / self.dt_s;
         let spin_rad_s = wrap_pi(displacement.to.psi_rad - displacement.from.psi_rad) / self.dt_s;
         let normal = frame::body_from_ned(displacement.rotation, Ned { north: touch.normal.x, east: touch.normal.y });
+        // rapier knows one mass for all directions. It gets the one with which the hull answers
+        // a push along this contact's normal, 1 / (n_u²/m_u + n_v²/m_v).
         let mass_kg = model.mass_along_kg(normal.ahead, normal.starboard);
         let body = match displacement.role {
             ContactRole::Dynamic => RigidBodyBuilder::dynamic(),
             ContactRole::Fixed => RigidBodyBuilder::fixed(),
+            // A real boat pushes others and is not pushed: where it is, only its reports say.
             ContactRole::Kinematic => RigidBodyBuilder::kinematic_velocity_based(),
         };
         let body = body
             .pose(displacement.start())
             .linvel(velocity)
             .angvel(spin_rad_s)
+            // A body that lies still for some steps would be put to sleep; here each world
+            // lives for one step only.
             .can_sleep(false)
             .additional_mass_properties(MassProperties::new(Vector::ZERO, mass_kg, model.m_yaw));
         let collider = ColliderBuilder::new(self.hulls[displacement.kind].capsule.clone())
+            // Otherwise the collider adds a mass of its own.
             .density(0.0)
             .friction(FRICTION)
             .restitution(RESTITUTION)
@@ -346,6 +361,8 @@ fn leave(world: &PhysicsWorld, entry: &Entry, model: &HullModel, displacement: &
     let mut colliders = body.colliders().iter();
     let touched =
         colliders.any(|c| world.narrow_phase.contact_pairs_with(*c).any(|pair| pair.has_any_active_contact()));
+    // A boat that was only near keeps our own motion to the last bit, not rapier's integration
+    // of it.
     if !touched || displacement.role != ContactRole::Dynamic {
         return;
     }

@@ -76,6 +76,7 @@ impl Track {
         let since = now - at;
         let nu = Planar { surge: nav.surge_m_s, sway: nav.sway_m_s, yaw: nav.yaw_rate_rad_s };
         // A fix may have been taken after the tick that the world stands at; then it goes back a little.
+        // After a second the boat is taken to lie where it would be then.
         let span = since.clamp(SimTime::ZERO - DEAD_RECKONING_MAX, DEAD_RECKONING_MAX);
         let pose = dead_reckoned(nav.pose(), nu, span.as_s());
         Some((pose, if since < DEAD_RECKONING_MAX { nu } else { Planar::default() }))
@@ -116,6 +117,8 @@ pub(crate) fn sound(nav: Nav) -> Result<Nav, BadReport> {
     // A NaN fails every comparison.
     let is_sound = nav.north_m.abs() <= ABSURD_M
         && nav.east_m.abs() <= ABSURD_M
+        // Not wrapped yet, and no more turns than that: reducing a huge angle loses all its
+        // digits.
         && nav.psi_rad.abs() <= 1e3
         && nav.speed_m_s() <= ABSURD_M_S
         && nav.yaw_rate_rad_s.abs() <= ABSURD_RAD_S;

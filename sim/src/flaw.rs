@@ -35,6 +35,7 @@ impl FlawModel {
     pub(crate) fn new(flaws: &Flaws, dt_s: f64) -> Option<FlawModel> {
         // The watchdog is none of the thrusters' business: it sits where orders arrive.
         if (Flaws { watchdog_s: None, ..flaws.clone() }) == Flaws::default() {
+            // No model at all for a perfect thruster: the usual case must not pay for this.
             return None;
         }
         let gain = |side: f64| (side, side * flaws.reverse_efficiency);
@@ -80,6 +81,7 @@ impl FlawState {
     /// Sends `settings` off; gives those that arrive.
     #[inline]
     pub(crate) fn pass(&mut self, settings: [f64; 2]) -> [f64; 2] {
+        // A queue as long as the latency: pushed and popped in the same tick, it never grows.
         self.under_way.push_back(settings);
         self.under_way.pop_front().unwrap_or(settings)
     }

@@ -71,6 +71,7 @@ struct Loop {
 impl Loop {
     /// The output for `error`, within ±`limit`.
     fn answer(&mut self, gains: Pid, error: f64, limit: f64, dt_s: f64) -> f64 {
+        // No kick of the derivative in the first step, as in PIDEngine.
         let rate = self.error.map_or(0.0, |before| (error - before) / dt_s);
         self.error = Some(error);
         self.integral = (self.integral + gains.i * error * dt_s).clamp(-gains.i_limit, gains.i_limit);
@@ -172,12 +173,16 @@ impl KinematicModel {
             Order::Turn { by_rad, speed_m_s } => (speed_m_s.min(boat.speed_max_m_s), by_rad.to_degrees()),
             Order::Hold => (0.0, 0.0),
         };
+        // pMarinePID has both: a map from speed to thrust, or a loop that adds to the thrust
+        // before.
         let thrust = if boat.speed_factor > 0.0 {
             wanted_m_s * boat.speed_factor
         } else {
             let error_m_s = wanted_m_s - state.speed_m_s;
             state.thrust + state.speed_loop.answer(boat.speed_pid, error_m_s, boat.thrust_max, dt_s)
         };
+        // Never astern: the reference clips at zero, so a point boat brakes by its deceleration
+        // alone.
         state.thrust = if thrust < THRUST_MIN { 0.0 } else { thrust.min(boat.thrust_max) };
         // Without thrust the heading loop is not asked, and remembers nothing of the meantime.
         state.rudder = if state.thrust > 0.0 {
@@ -202,6 +207,7 @@ impl KinematicModel {
     fn turn_deg(&self, state: &KinematicState, v_next_m_s: f64, dt_s: f64) -> f64 {
         let rudder = if v_next_m_s == 0.0 { 0.0 } else { state.rudder };
         let side = if state.thrust < 0.0 { -1.0 } else { 1.0 };
+        // More thrust turns faster: at 100 % twice as fast as at 50 %.
         let more = 1.0 + (state.thrust.abs() - 50.0) / 50.0;
         side * rudder * (self.boat.turn_rate / 100.0) * dt_s * more + self.rotate_deg_s * dt_s
     }
@@ -219,6 +225,7 @@ fn wrap_180(angle_deg: f64) -> f64 {
 }
 
 /// The unit vector half-way between two headings.
+// Not half the sum: across south that points north.
 fn circular_mean(a_deg: f64, b_deg: f64) -> Ned {
     let [a, b] = [a_deg, b_deg].map(|deg: f64| Rotation::from_heading(deg.to_radians()));
     Rotation::from_heading(math::atan2(a.sin + b.sin, a.cos + b.cos)).ahead()

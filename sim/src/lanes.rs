@@ -6,6 +6,8 @@
 use std::ops::{Add, AddAssign, Div, Mul, Sub};
 
 /// As many single numbers as the widest registers hold: components of waves side by side.
+// Crates such as `wide` decide on the registers when they are compiled; plain arrays leave it
+// to the machine that runs.
 pub(crate) const LANES: usize = 16;
 
 /// Components of a row. Sums over the components are kept by their place in the row, so that these do not wait for each other.
@@ -17,6 +19,7 @@ pub(crate) const FOLD: usize = LANES / ROW;
 /// Numbers side by side. Sixteen are one for each of sixteen components, or four for each component of a row, all of the first
 /// number before all of the second.
 #[derive(Clone, Copy, Debug)]
+// A cache line, and the width of the widest registers: loads never straddle two lines.
 #[repr(align(64))]
 pub(crate) struct Lanes<T, const N: usize = LANES>(pub(crate) [T; N]);
 
@@ -120,6 +123,8 @@ impl Lanes<f32> {
     #[inline(always)]
     pub(crate) fn sum(&self, number: usize) -> f64 {
         let at = |place: usize| f64::from(self.0[ROW * number + place]);
+        // In this order on every machine: a sum of four parts, however many lanes the processor
+        // has.
         (at(0) + at(1)) + (at(2) + at(3))
     }
 }

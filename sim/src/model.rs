@@ -82,8 +82,12 @@ impl Model {
         let shapes = plan.kinds.iter().map(|boat| (boat.length_m, boat.beam_m));
         let drives: Vec<Drive> =
             plan.kinds.iter().zip(&hulls).map(|(boat, hull)| Drive::new(boat, hull, dt_s)).collect();
+        // A real boat has no state of a point boat, whatever its file says: its gateway tells
+        // where it is.
         let points = plan.vehicles.iter().map(|v| !v.is_external && matches!(drives[v.kind], Drive::Point(_)));
         let sensors = |kind: usize| &plan.kinds[kind].sensors;
+        // Boats without sensors keep no readings at all: large fleets of perfect boats would
+        // carry them for nothing.
         let is_sensed = plan.vehicles.iter().map(|v| !v.is_external && *sensors(v.kind) != Sensors::default());
         let sensed = numbered(is_sensed).into_iter().zip(&plan.vehicles).map(|(place, vehicle)| {
             let model = || {
@@ -161,6 +165,7 @@ impl Model {
                 FaultKind::StarboardLost => failing[1] = Some(Failing::Lost),
                 FaultKind::PortStuck => failing[0] = Some(Failing::Stuck),
                 FaultKind::StarboardStuck => failing[1] = Some(Failing::Stuck),
+                // Faults of sensors, radio and agents are others' affair.
                 _ => {}
             }
         }
@@ -183,12 +188,16 @@ impl Model {
         let Drive::Thrusters(thruster, autopilot) = &self.drives[kind] else {
             return (Forcing::default(), Ned::default());
         };
+        // A boat whose state stopped being numbers lies where it is, so that one mistake does
+        // not end the game of all others.
         if boat.quarantined || self.external[vehicle] {
             return (Forcing::default(), Ned::default());
         }
         let hull = &self.hulls[kind];
         let mut settings = settings(boat, heading_error_rad, (hull, thruster, autopilot), command);
         for (side, shaft) in [&boat.port, &boat.starboard].into_iter().enumerate() {
+            // The front seat does not know of the fault, and steers as if both thrusters
+            // worked: that is what the fault is for.
             let Some(failing) = failing[side] else { continue };
             settings[side] = if failing == Failing::Lost { 0.0 } else { shaft.command };
             // What is under way to it does not count either.
@@ -223,9 +232,13 @@ impl Model {
         if boat.quarantined {
             return (still, Planar::default());
         }
+        // Wrapped at each tick: an angle that grew with each turn would lose digits in a long
+        // game.
         let psi_rad = wrap_pi(from.psi_rad + motion.turn_rad);
         let rotation_half = rotation.turned(small_rotation(motion.turn_half_rad));
         let rotation_to = Rotation::from_heading(psi_rad);
+        // Simpson's rule for the way over the ground: velocities along the boat's axes are
+        // known at the beginning, the middle and the end of the tick, while the axes turn.
         let start = forcing.nu_r.in_ned(rotation);
         let middle = motion.nu_r_half.in_ned(rotation_half);
         let end = motion.nu_r.in_ned(rotation_to);

@@ -37,6 +37,7 @@ impl PiecewiseLinear {
         let (first, last) = (points[0], points[points.len() - 1]);
         let width = last.0 - first.0;
         let narrowest = pieces.iter().map(|piece| piece.end - piece.at.0).fold(width, f64::min);
+        // As fine as the narrowest piece, so that a cell holds one border at most.
         let cells = ((width / narrowest).ceil() as usize).clamp(1, CELLS_MAX);
         let piece_at = |x: f64| pieces[..pieces.len() - 1].iter().take_while(|piece| piece.end <= x).count();
         let index = (0..cells).map(|cell| piece_at(first.0 + width * cell as f64 / cells as f64) as u16).collect();

@@ -60,6 +60,8 @@ impl Reporter {
     /// The events since last time, then how the game stands.
     pub fn progress(&mut self, contest: &Contest, (rate, refused): (f64, u64), tell: &mut dyn FnMut(ProgressMessage)) {
         let scenario = contest.scenario();
+        // Events before the progress: a line that says who has scored is shown before the score
+        // that it changes.
         let news = self.reported.read(contest.events()).iter();
         news.for_each(|logged| tell(ProgressMessage::Event(EventOutcome::new(scenario, logged))));
         let teams = scenario.teams.iter().map(|team| team.name.clone());

@@ -75,6 +75,8 @@ enum Direction {
 
 fn send<T>(under_way: &mut VecDeque<Sent<T>>, sent: Sent<T>, most: usize) {
     // What would arrive after this one is overtaken by it.
+    // As a sender that only ever keeps its newest message: an older one that arrives later
+    // would be worth nothing.
     while under_way.pop_back_if(|earlier| earlier.arrival >= sent.arrival).is_some() {}
     assert!(under_way.len() < most, "one message a decision, and none takes longer than the longest");
     under_way.push_back(sent);
@@ -130,6 +132,8 @@ impl Radio {
         state.decision += 1;
         let now = model.decision * state.decision as i64;
         for (line, noise) in state.lines.iter_mut().zip(&model.noises) {
+            // Gilbert and Elliott's model: losses on radio come in bursts, which single ones do
+            // not teach anybody.
             line.is_bad = model.bursts.next(line.is_bad, noise.at(now).unit(DRAWS * state.decision));
         }
     }
@@ -177,6 +181,8 @@ impl Radio {
         let draw = DRAWS * decision + way as u64;
         let share = if self.state.lines[vehicle].is_bad { link.loss.bad } else { link.loss.good };
         let is_out_of_range = link.range_m.is_some_and(|range_m| at.distance(link.station) > range_m);
+        // Looked up by vehicle and decision and not drawn in turn: another boat's messages, or
+        // a lost one, shift no number.
         if is_out_of_range || noise.unit(draw) < share {
             return None;
         }

@@ -55,8 +55,12 @@ impl GameRecorder {
         self.begin(contest);
         let inputs = contest.take_inputs();
         let Stage::Recording(recorder) = &self.stage else { return };
+        // Over the network pictures are recorded as the bytes that were sent; here they were
+        // never bytes.
         let shows = !self.pictures_are_sent && inputs.contains(&Input::Pictured);
         let pictures = if shows { contest.last_pictures().to_vec() } else { vec![] };
+        // Handed over as it is: encoding and writing are another thread's, and a game is never
+        // held up by the disk.
         recorder.record(Entry::Decision(Box::new(Decision { frame, pictures, inputs })));
     }
 

@@ -84,6 +84,7 @@ impl Sightings {
         while let Some(past) = self.state.past.pop_front_if(|past| past.decision < oldest) {
             self.spare.push(past.boats);
         }
+        // Used again: a tick allocates nothing.
         let mut now = self.spare.pop().unwrap_or_default();
         now.clear();
         now.extend(boats);
@@ -100,6 +101,8 @@ impl Sightings {
         let boats = &past[place].boats;
         let (own, teams) = (&boats[seer], known.len() as u64);
         let known = &mut known[own.team.index()];
+        // By team and not by seer: two boats that see the same one do not average its noise
+        // away.
         let draw = 4 * (decision * teams + own.team.index() as u64);
         for (seen, known) in boats.iter().zip(known).filter(|(seen, _)| seen.team != own.team) {
             // Another boat may have reported as much already, or a later sighting.

@@ -41,6 +41,8 @@ pub fn start_positions(scenario: &Scenario, seed: u64) -> Result<Vec<Pose>, Spaw
     let mut stream = Stream::new(seed, "spawn");
     let mut taken: Vec<(usize, Pose)> = Vec::new();
     for (i, vehicle) in scenario.vehicles.iter().enumerate() {
+        // Placed boats first: a drawn one must keep clear of them wherever they stand in the
+        // file.
         if let StartPosition::At(pose) = vehicle.start_position {
             taken.push((i, pose));
         }
@@ -52,6 +54,8 @@ pub fn start_positions(scenario: &Scenario, seed: u64) -> Result<Vec<Pose>, Spaw
                 taken.iter().all(apart) && clear_of_obstacles(&scenario.field, at, gap_m)
             };
             let mut draw = || seen_from(&scenario.field, vehicle.team, (along_m, across_m), &mut stream);
+            // Drawn and rejected, not placed on a grid: every free place is as likely, and a
+            // field that is too full is an error.
             let at = (0..TRIES).map(|_| draw()).find(|at| free(*at));
             let at = at.ok_or_else(|| SpawnError { vehicle: vehicle.name.clone() })?;
             let psi_rad = wrap_pi(scenario.field.facing_deg(vehicle.team).to_radians());

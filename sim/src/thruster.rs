@@ -165,6 +165,7 @@ impl ThrusterModel {
         })
     }
 
+    // Apart from the usual path, in which thrusters have no flaws.
     #[cold]
     #[inline(never)]
     fn drive_flawed(
@@ -185,6 +186,7 @@ impl ThrusterModel {
             let nominal = self.respond(shaft, arrived[side].max(least).min(most));
             given[side] = nominal.map(|newton| newton * factors[side] * flaws.gain(side, newton));
             taken[side] = self.share(nominal[1] * factors[side]);
+            // What observers are shown is what acts on the hull.
             shaft.newton = given[side][2];
         }
         if let Some(battery) = flaws.battery {
@@ -207,11 +209,15 @@ impl ThrusterModel {
     /// and at the end, N.
     #[inline]
     pub fn respond(&self, shaft: &mut Shaft, wanted: f64) -> [f64; 3] {
+        // The slew limits the command and the lag follows it: motor controllers ramp,
+        // propellers have inertia.
         let change = (wanted - shaft.command).clamp(-self.slew, self.slew);
         shaft.command += change;
         let target = if shaft.command.abs() < self.deadband { 0.0 } else { shaft.command };
         let from = shaft.newton;
         let difference = shaft.setting - target;
+        // A first-order lag has an exact solution, so thrust is known half-way and at the end
+        // without integrating it.
         let half = self.newton(target + difference * self.lag.0);
         shaft.setting = target + difference * self.lag.1;
         shaft.newton = self.newton(shaft.setting);

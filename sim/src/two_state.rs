@@ -18,6 +18,8 @@ impl TwoStateChain {
 
     /// The chain of these rates, 1/s, sampled every `period`.
     pub(crate) fn new(on_per_s: f64, off_per_s: f64, period: SimTime) -> TwoStateChain {
+        // In continuous time, so that the period of a receiver changes how often it is looked
+        // at and not how often it fails.
         let either = -libm::expm1(-(on_per_s + off_per_s) * period.as_s()) / (on_per_s + off_per_s);
         TwoStateChain { turns_on: on_per_s * either, turns_off: off_per_s * either }
     }

@@ -96,6 +96,7 @@ impl Scene<'_> {
     ) {
         let team = TeamId(picture.team);
         picture.stamp = self.stamp::<Picture>();
+        // Refilled and not made anew: a decision of many teams allocates nothing.
         picture.own.clear();
         picture.contacts.clear();
         for (i, vehicle) in self.scenario.vehicles.iter().enumerate() {
@@ -122,6 +123,8 @@ impl Scene<'_> {
     pub(crate) fn own_boat(&self, i: usize) -> OwnBoat {
         let (vehicle, standing) = (VehicleId::at(i), &self.standing.vehicles[i]);
         let (nav, fix_ns, imu) = match self.world.reading(vehicle) {
+            // What the boat's sensors say, also to its own team: nothing that agents see is the
+            // truth unless the boat's file leaves its sensors out.
             Some(reading) => (reading.nav, reading.fix_at, reading.imu),
             None => (self.nav(i), self.world.state().now, ImuReading::of(&self.world.truth(vehicle))),
         };
@@ -168,6 +171,8 @@ impl Scene<'_> {
 /// Whether an event is about one of the team's boats or its flag, or ends the game.
 fn concerns(scenario: &Scenario, team: TeamId, event: Event) -> bool {
     let ours = |vehicle: VehicleId| scenario.vehicles[vehicle.index()].team == team;
+    // What concerns neither own boats nor the own flag, a team on the water would not learn
+    // either.
     let is_own_flag = event.flag().is_some_and(|flag| scenario.field.flags[flag.index()].team == team);
     let is_own_boat = [event.vehicle(), event.other()].into_iter().flatten().any(ours);
     is_own_flag || is_own_boat || matches!(event, Event::Ended { .. })

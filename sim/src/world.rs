@@ -20,6 +20,7 @@ use scenario::sea::Sea;
 use scenario::{Boat, Scenario, Source};
 
 /// No boat is faster than this over the ground, m/s; one that is has bad numbers.
+// Far beyond any boat, and far below where squares overflow.
 const ABSURD_M_S: f64 = 1_000.0;
 
 /// Pyquaticus sets boats back by this much more than the radius, m.
@@ -106,6 +107,7 @@ impl World {
         state.points = model.points_at_start(&state.boats);
         let mut world = World { model, state, work: Work::default() };
         world.refresh();
+        // Minds decide before the first tick, by what sensors show at rest.
         world.read_sensors();
         world
     }
@@ -115,6 +117,8 @@ impl World {
     /// # Errors
     /// [`NoStart`] where the boats do not fit into their spawn area, or randomised numbers do not go together.
     pub fn of_game(scenario: &Scenario, seed: u64) -> Result<World, NoStart> {
+        // The seed first: a file may draw numbers, and everything below is asked of the game
+        // that was drawn.
         let scenario = scenario.of_seed(seed)?;
         let starts = spawn::start_positions(&scenario, seed)?;
         let seeds = scenario.seeds();
@@ -149,8 +153,12 @@ impl World {
     pub fn step(&mut self, commands: &[Order]) -> &[VehicleId] {
         assert_eq!(commands.len(), self.state.boats.len(), "one command a vehicle");
         self.work.quarantined.clear();
+        // Wind and current are processes in time: their values of this tick are worked out
+        // once, for all boats.
         self.model.sea.prepare(self.state.now);
         self.drive(commands);
+        // All boats move first as if alone, and then those that touch are changed: who is
+        // listed first gains nothing.
         self.model.contact.resolve(&self.model.hulls, &mut self.work.displacements, &self.work.pairs);
         self.settle();
         self.state.tick += 1;
@@ -184,12 +192,15 @@ impl World {
             let Some((centre, radius_m)) = circle(VehicleId::at(i), boat.pose.at) else { continue };
             let from_centre = boat.pose.at - centre;
             let distance_m = from_centre.length();
+            // At the very centre there is no direction to be set back in.
             if distance_m >= radius_m || distance_m == 0.0 {
                 continue;
             }
             moved = true;
             if let Some((place, _)) = model.point(i) {
                 let came_from = work.displacements.get(i).map_or(boat.pose.at, |displacement| displacement.from.at);
+                // As in Pyquaticus: back where it came in, turned along the circle, with the
+                // part of its way that goes along it.
                 boat.pose.at = way_back((came_from, boat.pose.at), centre, radius_m + POINT_BOAT_SPARE_M);
                 let point = &mut state.points[place];
                 let drift = boat.nu.in_ned(work.rotations[i]) - work.rotations[i].ahead().scaled(point.speed_m_s);
@@ -204,6 +215,7 @@ impl World {
             boat.pose.at = centre + out.scaled(radius_m);
             let out_in_body = frame::body_from_ned(work.rotations[i], out);
             let inward_m_s = (out_in_body.ahead * boat.nu.surge + out_in_body.starboard * boat.nu.sway).min(0.0);
+            // A hull keeps its heading and loses its way inward, as on a soft wall.
             boat.nu.surge -= inward_m_s * out_in_body.ahead;
             boat.nu.sway -= inward_m_s * out_in_body.starboard;
         }
@@ -302,7 +314,11 @@ impl World {
     }
 
     fn find_pairs(&mut self) {
+        // One search for both, over the longer of the two reaches: among many boats the search
+        // is what grows.
         let reach_m = self.model.contact.reach_m().max(self.model.pairs_within_m);
+        // At the end of a tick, for the next one and for the referee: both look for boats near
+        // each other, at the same places.
         let boats = &self.state.boats;
         let pairs = self.work.near.pairs(|i| boats[i].pose.at, boats.len(), reach_m);
         self.work.pairs.clear();
@@ -363,6 +379,7 @@ impl World {
                     state.points[place].divert(boat.pose.psi_rad, boat.nu.surge - drift.ahead);
                 }
             } else if !boat.quarantined {
+                // At its last sound position, where others may bump into it.
                 *boat = BoatState { pose: boat.pose, quarantined: true, ..BoatState::default() };
                 work.quarantined.push(VehicleId::at(i));
             }

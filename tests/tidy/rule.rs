@@ -56,13 +56,16 @@ const ALL: &[&str] = &[
 /// Crates whose network shell, `node`, is the only place that may use `bus`; everything else in them is pure.
 const SHELLS: [&str; 3] = ["sim", "agent", "gateway"];
 
+/// Where the questions of readers are.
+const QUESTIONS: &str = "tests/tidy/questions.txt";
+
 /// A breach of a rule: `file:line: what is wrong, what is allowed`.
 pub(crate) type Breaches = Vec<String>;
 
 /// A name, and what finds its breaches.
 type Rule = (&'static str, fn(&Tree) -> Breaches);
 
-pub(crate) const RULES: [Rule; 14] = [
+pub(crate) const RULES: [Rule; 15] = [
     ("crates depend only on what lies below them", dependencies),
     ("only node shells use the bus", bus_in_shells),
     ("only bus names zenoh", zenoh_in_bus),
@@ -71,11 +74,12 @@ pub(crate) const RULES: [Rule; 14] = [
     ("libraries do not print", quiet_libraries),
     ("nothing is left undone", nothing_undone),
     ("no unwrap outside of tests", no_unwrap),
-    ("ARCHITECTURE.md names what exists", architecture),
+    ("documents for developers name what exists", architecture),
+    ("readers find answers where they look first", questions),
     ("the glossary's terms are in the code", glossary),
     ("one clippy.toml, and every crate under the workspace's lints", lints),
     ("CHANGELOG.md has this version", changelog),
-    ("DESIGN.md gives a reason for every dependency", reasons),
+    ("every dependency has its reason in Cargo.toml", reasons),
     ("tables of what is tested name tests that exist", shown_by),
 ];
 
@@ -189,19 +193,48 @@ fn no_unwrap(tree: &Tree) -> Breaches {
     )
 }
 
+/// What is written for those who change the code, and names its files.
+fn is_for_developers(path: &str) -> bool {
+    ["ARCHITECTURE.md", "docs/estop.md"].contains(&path) || path.starts_with("docs/decisions/")
+}
+
 fn architecture(tree: &Tree) -> Breaches {
-    let Some(text) = tree.files.get("ARCHITECTURE.md") else { return vec!["ARCHITECTURE.md: is missing".to_owned()] };
-    let missing = |(number, path): (usize, String)| {
-        (!tree.has(&path)).then(|| format!("ARCHITECTURE.md:{number}: `{path}` does not exist"))
+    let documents: Vec<_> = tree.files.iter().filter(|(path, _)| is_for_developers(path)).collect();
+    if !documents.iter().any(|(path, _)| *path == "ARCHITECTURE.md") {
+        return vec!["ARCHITECTURE.md: is missing".to_owned()];
+    }
+    let missing = |document: &str, (number, path): (usize, String)| {
+        (!tree.has(&path)).then(|| format!("{document}:{number}: `{path}` does not exist"))
     };
-    let paths = quoted(text).into_iter().filter(|(_, word)| is_path(word));
-    paths.filter_map(missing).collect()
+    let paths_in = |text: &str| quoted(text).into_iter().filter(|(_, word)| is_path(word)).collect::<Vec<_>>();
+    let breaches = |(document, text): (&String, &String)| {
+        paths_in(text).into_iter().filter_map(|path| missing(document, path)).collect::<Breaches>()
+    };
+    documents.into_iter().flat_map(breaches).collect()
+}
+
+/// The questions that a reader asks, each with the file where they look first and a text that it must contain: a file that is
+/// renamed or loses its subject is found before a reader misses it.
+fn questions(tree: &Tree) -> Breaches {
+    let Some(text) = tree.text(QUESTIONS) else { return vec![format!("{QUESTIONS}: is missing")] };
+    let guesses = text.lines().enumerate().filter(|(_, line)| line.starts_with(' '));
+    let wrong = |(i, line): (usize, &str)| {
+        let Some((path, item)) = line.trim().split_once(": ") else {
+            return Some(format!("{QUESTIONS}:{}: expected `file: text`, found {:?}", i + 1, line.trim()));
+        };
+        match tree.text(path) {
+            None => Some(format!("{QUESTIONS}:{}: {path} does not exist", i + 1)),
+            Some(file) if file.contains(item) => None,
+            Some(_) => Some(format!("{QUESTIONS}:{}: {path} does not contain {item:?}", i + 1)),
+        }
+    };
+    guesses.filter_map(wrong).collect()
 }
 
 /// The terms are the first cells of the table below the heading `Glossary`. Code spells `set-point` as `set_point` or
 /// `SetPoint`, so case and separators do not count.
 fn glossary(tree: &Tree) -> Breaches {
-    let text = tree.files.get("ARCHITECTURE.md").map_or("", String::as_str);
+    let text = tree.files.get("docs/glossary.md").map_or("", String::as_str);
     let lines = text.lines().enumerate().skip_while(|(_, line)| *line != "## Glossary").skip(1);
     let rows = lines.take_while(|(_, line)| !line.starts_with("## ")).filter(|(_, line)| line.starts_with('|'));
     // The heading of the table and the line below it are no terms.
@@ -210,10 +243,10 @@ fn glossary(tree: &Tree) -> Breaches {
     let code: String = tree.sources().filter(|(path, _)| path.contains("src/")).map(|(_, text)| plain(text)).collect();
     let found: Vec<(usize, &str)> = terms.collect();
     if found.is_empty() {
-        return vec!["ARCHITECTURE.md:1: has no table below a heading `## Glossary`".to_owned()];
+        return vec!["docs/glossary.md:1: has no table below a heading `## Glossary`".to_owned()];
     }
     let missing = found.into_iter().filter(|(_, term)| !code.contains(&plain(term)));
-    missing.map(|(number, term)| format!("ARCHITECTURE.md:{number}: no code has the term {term:?}")).collect()
+    missing.map(|(number, term)| format!("docs/glossary.md:{number}: no code has the term {term:?}")).collect()
 }
 
 fn lints(tree: &Tree) -> Breaches {
@@ -251,18 +284,18 @@ fn changelog(tree: &Tree) -> Breaches {
     vec![format!("CHANGELOG.md:1: has no section `{heading}`, the version in Cargo.toml")]
 }
 
+/// A reason is a comment on the entry's line or on the one above it; crates of ours need none.
 fn reasons(tree: &Tree) -> Breaches {
     let manifest = tree.files.get("Cargo.toml").map_or("", String::as_str);
-    let design = tree.files.get("DESIGN.md").map_or("", String::as_str);
-    let rows: Vec<&str> = design.lines().filter(|line| line.starts_with('|')).collect();
-    let cells: Vec<&str> = rows.iter().filter_map(|row| row.split('|').nth(1)).map(str::trim).collect();
-    let named = |name: &str| cells.contains(&format!("`{name}`").as_str());
+    let lines: Vec<&str> = manifest.lines().map(str::trim).collect();
+    let explained = |number: usize| {
+        let above = number.checked_sub(2).map_or("", |above| lines[above]);
+        above.strip_prefix("# ").is_some_and(|reason| !reason.is_empty()) || lines[number - 1].contains(" # ")
+    };
     let foreign = |(_, section, name): &(usize, String, String)| {
         section == "workspace.dependencies" && !MAY_IMPORT.iter().any(|(ours, _)| ours == name)
     };
     let entries = manifest_entries(manifest).into_iter().filter(foreign);
-    let unexplained = entries.filter(|(_, _, name)| !named(name));
-    unexplained
-        .map(|(number, _, name)| format!("Cargo.toml:{number}: DESIGN.md has no table row for `{name}`"))
-        .collect()
+    let unexplained = entries.filter(|(number, _, _)| !explained(*number));
+    unexplained.map(|(number, _, name)| format!("Cargo.toml:{number}: no comment says why `{name}` is here")).collect()
 }

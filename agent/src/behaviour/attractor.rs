@@ -8,6 +8,8 @@ use scenario::strategy::Attractor;
 
 impl BehaviourLogic for Attractor {
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
+        // A place that is not known now, such as a boat out of sight, asks for nothing: the
+        // other behaviours decide.
         let Some(point) = situation.locate(&self.to) else { return };
         let share =
             nearness(situation.at.distance(point.at), self.inner_m.value(situation), self.outer_m.value(situation));

@@ -24,10 +24,18 @@ impl BehaviourLogic for AvoidCollision {
         let near = near.filter(|(_, other)| situation.at.distance_squared(other.at) <= far_m2);
         let near = near.map(|(i, other)| (situation.at.distance(other.at), i));
         let meant = |i: usize| is_meant(self.contacts, situation, &situation.others[i]);
+        // Both boats are taken to turn on: two that evade as if the other went straight on can
+        // turn to the same side, again and again, until they touch. Without this hulls touched
+        // 0.44 times a boat-hour, with it 0.35, and with an agreed side as well 0.03 (random
+        // strategies in calm water, `crates/arena/examples/safety.rs`).
         let own = situation.turning_on();
         for (distance_m, i) in Nearest::of(near.filter(|(distance_m, i)| *distance_m < outer_m && meant(*i))).iter() {
             let other = &situation.others[i];
             let contact = other.turning_on();
+            // The idea of reciprocal velocity obstacles (van den Berg, Lin and Manocha, ICRA
+            // 2008), for boats that turn along arcs. Both give way: the roles of the COLREGs,
+            // stand-on and give-way, would need that either knows how the other is now, and
+            // what it sees may be old.
             let leave_to = side(own, contact);
             let function = keep_clear(situation, contact, 0.0, (min_m, max_m), horizon_s, leave_to);
             let share = graded(self.grade, nearness(distance_m, inner_m, outer_m));
@@ -44,6 +52,8 @@ fn side(own: MovingPoint, contact: MovingPoint) -> Option<Side> {
     if past_m_s < PASSING_MIN_M_S || line.dot(past) >= 0.0 {
         return None;
     }
+    // The sign of the line of sight's rotation, which both boats compute alike from opposite
+    // ends: so they agree without a word.
     let to_starboard_m = (line.north * past.east - line.east * past.north) / past_m_s;
     Some(if to_starboard_m < PORT_TO_PORT_M { Side::Port } else { Side::Starboard })
 }
@@ -52,6 +62,8 @@ fn side(own: MovingPoint, contact: MovingPoint) -> Option<Side> {
 fn graded(grade: Grade, nearness: f64) -> f64 {
     match grade {
         Grade::Linear => nearness,
+        // The three shapes that MOOS-IvP's AvoidCollision has for the weight between its outer
+        // and inner distance.
         Grade::Quasi => nearness * nearness.sqrt(),
         Grade::Quadratic => nearness * nearness,
     }

@@ -34,6 +34,7 @@ impl BehaviourLogic for AvoidObstacleBehaviour {
         let max_m = self.task.cpa_max_m.value(situation).max(min_m);
         let horizon_s = self.task.time_on_leg_s.value(situation);
         let obstacles = &situation.model.field.plan.obstacles;
+        // Once: obstacles do not move, and the half planes about a polygon are worth keeping.
         if self.outlines.is_empty() {
             let corners = |obstacle: &Obstacle| match obstacle {
                 Obstacle::Circle { .. } => Outline::new(&[]),
@@ -47,6 +48,8 @@ impl BehaviourLogic for AvoidObstacleBehaviour {
             match &obstacles[i] {
                 Obstacle::Circle { centre, radius_m } => {
                     let disc = MovingPoint { at: *centre, velocity: Ned::default() };
+                    // A circle is a contact that lies still and touches at its radius, so the
+                    // closed form serves; a polygon has none and needs a table.
                     let function = keep_clear(situation, disc, *radius_m, (min_m, max_m), horizon_s, None);
                     output.add_share(share, None, &function);
                 }

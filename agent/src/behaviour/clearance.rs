@@ -62,6 +62,8 @@ impl Kernel for Clearance<'_> {
 impl Clearance<'_> {
     /// An edge as it is seen from the boat.
     fn seen(&self, (normal, inside_m): (Ned, f64)) -> Edge {
+        // Everything below is told relative to an edge's outward normal: then four edges are
+        // one formula, and out is a cosine.
         let from_rad = wrap_pi(self.heading_rad - math::atan2(normal.east, normal.north));
         let (sin_from, cos_from) = math::sin_cos(from_rad);
         let start_m = (inside_m - self.handling.reaction_s * self.surge_m_s * cos_from) as f32;
@@ -74,6 +76,8 @@ impl Clearance<'_> {
     fn may_be_low(&self, courses: &Courses, turns: &Turns, edge: &Edge) -> bool {
         let least_m = self.save_m + f64::from(edge.drift_m).max(0.0) + f64::from(ROUNDING_M);
         // At the larger of the old and the fastest speed.
+        // Courses that lead away from an edge, or cannot reach it, are passed over 16 at a
+        // time: most are, even near an edge.
         let out_s = (f64::from(edge.start_m) - least_m) / self.surge_m_s.max(self.grid.speed_max_m_s());
         let mut may_be_low = false;
         for i in 0..LANES {
@@ -91,6 +95,7 @@ impl Clearance<'_> {
     fn lower(&mut self, first: usize, ways: &Ways) {
         let (worth, old_m_s) = (((50.0 / self.save_m) as f32, self.bend as f32), self.surge_m_s as f32);
         let most_m_s = larger(old_m_s, self.grid.speed_max_m_s() as f32);
+        // Bits, so that the courses that need work are found without a branch for each.
         let mut low = ways.low(most_m_s, self.save_m as f32);
         while low != 0 {
             let i = low.trailing_zeros() as usize;
@@ -99,6 +104,8 @@ impl Clearance<'_> {
                 return;
             }
             let (way, speeds) = (ways.at(i), self.grid.speeds_side_by_side());
+            // Lowered, not set: the boat is near two edges in a corner, and the worse of them
+            // counts.
             for (row, speed_m_s) in self.table.lowered_mut(first + i).iter_mut().zip(speeds) {
                 for i in 0..LANES {
                     row.0[i] = smaller(row.0[i], way.utility(old_m_s, speed_m_s.0[i], worth));
@@ -211,6 +218,8 @@ impl Outward {
     /// angles to the normal.
     #[inline(always)]
     fn new(turn: &Turn, (from_rad, sin_from): (f64, f64), sin_to: f64) -> Outward {
+        // Mirrored, so that one formula serves turns to either side, and a mirrored scene has
+        // the same bits.
         let side = if turn.by_rad < 0.0 { -1.0 } else { 1.0 };
         let end_s = side * (sin_to - sin_from) / turn.turn_rad_s;
         let to_parallel_rad = (side * FRAC_PI_2 - from_rad) * side;
@@ -222,6 +231,8 @@ impl Outward {
         let ends_out = end_s > 0.0;
         let (end_out_s, end_after_s) =
             (if ends_out { end_s } else { 0.0 }, if ends_out { turn.duration_s } else { 0.0 });
+        // A turn goes farthest out where the boat is parallel to the edge, if it passes that on
+        // the way; otherwise at its beginning or end.
         let is_parallel = (to_parallel_rad < turn.by_rad.abs()) & (parallel_s > end_s);
         Outward {
             farthest_s: if is_parallel { parallel_s } else { end_out_s },
@@ -254,10 +265,14 @@ impl Way {
     #[inline(always)]
     fn utility(&self, old_m_s: f32, new_m_s: f32, (per_m, bend): (f32, f32)) -> f32 {
         let [out, back, straight] = self.within;
+        // The arc is run at the mean of old and new speed, the rest at the new one, both within
+        // what the boat can gain or lose by then.
         let farthest_m = self.start_m - self.out_s * held(0.5 * (old_m_s + new_m_s), out);
         let end_m =
             farthest_m - self.drift_m + self.back_s * held(new_m_s, back) - self.straight_s * held(new_m_s, straight);
         let least_m = smaller(farthest_m, end_m);
+        // The nearest point and the end count half each: of two courses that come as near, the
+        // one that then leads away is better, also for a boat that is out already.
         kept(least_m * per_m, bend) + kept(end_m * per_m, bend)
     }
 }

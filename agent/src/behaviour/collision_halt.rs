@@ -33,8 +33,12 @@ impl HaltingAvoidance {
         let value = |parameter: &Option<Parameter>| parameter.as_ref().map(|parameter| parameter.value(situation));
         let AvoidCollision { halt_m, release_m, release_s, .. } = &self.avoidance;
         let Some(halt_m) = value(halt_m) else { return Halt::Clear };
+        // Three times the distance by default: a halt that ends where it began would begin
+        // again at once.
         let (release_m, release_s) = (value(release_m).unwrap_or(3.0 * halt_m), value(release_s));
         let distances = situation.others.iter().map(|other| situation.at.distance(other.at));
+        // All boats, also those that `contacts` leaves out: the halt is about hulls, not about
+        // tags.
         let nearest_m = distances.fold(f64::INFINITY, f64::min);
         let is_clear = nearest_m >= release_m.max(halt_m);
         match self.halt {
@@ -54,6 +58,8 @@ impl BehaviourLogic for HaltingAvoidance {
     }
 
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
+        // The avoidance runs while halted, so that its functions are seen, and are there when
+        // the halt ends.
         self.avoidance.run(situation, output);
         self.halt = self.next(situation);
         if matches!(self.halt, Halt::Halted { .. }) {

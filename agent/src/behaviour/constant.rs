@@ -24,6 +24,8 @@ impl BehaviourLogic for ConstantHeading {
 impl BehaviourLogic for ConstantSpeed {
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
         output.add(&Objective::Speed(Peak {
+            // A summit beyond the fastest speed would make the fastest worth less than it could
+            // be, and the course would outweigh it.
             summit: self.speed_m_s.value(situation).min(situation.model.speed_max_m_s),
             peak_width: self.peak_width_m_s.value(situation),
             base_width: self.base_width_m_s.value(situation),

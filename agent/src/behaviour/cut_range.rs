@@ -22,11 +22,15 @@ impl BehaviourLogic for CutRange {
             velocity,
             horizon_s: self.time_on_leg_s.value(situation),
             min_m: 0.0,
+            // What counts is to be nearer than now: so the utility is scaled by the present
+            // distance.
             max_m: distance_m.max(1.0),
             touch_m: 0.0,
             approach: Approach::Seek,
             lag: None,
         };
+        // MOOS-IvP's CutRange: with no patience it closes in as fast as it can now, with all of
+        // it it heads for where they will meet.
         output.add_share(1.0 - patience, Some(contact.vehicle), &Objective::Closing(closing));
         output.add_share(patience, Some(contact.vehicle), &Objective::Closest(closest));
     }

@@ -7,6 +7,8 @@ use scenario::strategy::FullStop;
 
 impl BehaviourLogic for FullStop {
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
+        // A preference, not a command: a boat that lies still cannot keep clear of one that
+        // comes, so safety may outweigh it. It asks for no course.
         output.add(&Objective::Speed(Peak::tent(0.0, situation.model.speed_max_m_s)));
     }
 }

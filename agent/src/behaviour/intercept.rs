@@ -26,6 +26,8 @@ impl BehaviourLogic for Intercept {
 /// if it never does.
 pub(super) fn meeting_point(from: Ned, speed_m_s: f64, contact: MovingPoint) -> Ned {
     let time_s = meeting_time_s(contact.at - from, contact.velocity, speed_m_s);
+    // A contact that cannot be met, being faster and going away, is steered for where it is: it
+    // may turn.
     contact.at + contact.velocity.scaled(time_s.unwrap_or(0.0))
 }
 

@@ -40,6 +40,8 @@ impl LoiterBehaviour {
         let count = self.corners.len();
         let distance = |i: usize| situation.at.distance_squared(self.corners[i]);
         let nearest = (1..count).fold(0, |best, i| if distance(i) < distance(best) { i } else { best });
+        // The corner after the nearest: the nearest itself may be behind the boat, which would
+        // turn round for it.
         self.target = Some(self.after(nearest));
         self.arrival = self.arrival.next();
     }
@@ -64,6 +66,8 @@ impl BehaviourLogic for LoiterBehaviour {
         if self.corners.len() < 3 {
             return;
         }
+        // A boat that was driven off, by an evasion or a tag, goes to the nearest part of the
+        // way again, not to the corner that it had in mind.
         let far = distance_to_outline(&self.corners, situation.at) > self.task.acquire_m.value(situation);
         if self.target.is_none() || far {
             self.choose(situation);
@@ -104,6 +108,7 @@ pub(crate) fn corners_of(shape: &Shape, situation: &Situation, corners: &mut Vec
             }));
         }
     }
+    // Files may list corners either way round; `turn` says how to go round them.
     if turns_clockwise(corners) < 0.0 {
         corners.reverse();
     }

@@ -28,6 +28,7 @@ impl MemoryTurnLimitBehaviour {
         let (mut sum_sin, mut sum_cos) = (0.0, 0.0);
         for (_, heading_rad) in &self.headings {
             let (sin, cos) = math::sin_cos(*heading_rad);
+            // Of directions, not of angles: the mean of 359 and 1 degrees is north.
             (sum_sin, sum_cos) = (sum_sin + sin, sum_cos + cos);
         }
         math::atan2(sum_sin, sum_cos)

@@ -18,6 +18,8 @@ impl Nearest {
         let mut nearest = Nearest { entries: [(f64::INFINITY, 0); NEAREST_MAX], count: 0 };
         for entry in those {
             let place = nearest.entries[..nearest.count].partition_point(|known| known.0 <= entry.0);
+            // At most sixteen, so that the cost of a decision is bounded whatever the fleet;
+            // the nearest, so that nothing is dropped for its place in a list.
             if place < NEAREST_MAX {
                 nearest.count = (nearest.count + 1).min(NEAREST_MAX);
                 nearest.entries[place..nearest.count].rotate_right(1);
@@ -49,6 +51,9 @@ pub(super) fn is_meant(contacts: Contacts, situation: &Situation, other: &OtherB
         Contacts::All => true,
         Contacts::Enemies => other.is_enemy,
         Contacts::Mates => !other.is_enemy,
+        // Boats that keep clear of enemies by more than the distance of a tag never tag
+        // anybody, and all strategies score alike: so a boat may ask to avoid only those with
+        // whom no tag is possible.
         Contacts::NoTag => !other.is_enemy || other.tagged || situation.own.tagged,
         Contacts::Opponent => {
             let opponent = situation.boat(Boat::Opponent).map(|opponent| opponent.vehicle);

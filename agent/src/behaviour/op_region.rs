@@ -52,6 +52,8 @@ impl OpRegionBehaviour {
             return;
         }
         let since = *self.crossed.get_or_insert(situation.now);
+        // Seconds are rounded, nanoseconds are not: without this a wait may last one decision
+        // more.
         if (situation.now - since).as_s() + 1e-9 >= wait_s {
             self.side = if self.side == Side::In { Side::Out } else { Side::In };
             self.crossed = None;
@@ -86,14 +88,22 @@ impl BehaviourLogic for OpRegionBehaviour {
             return;
         }
         let (lookahead_s, save_m) = (self.task.lookahead_s.value(situation), self.task.save_m.value(situation));
+        // With the spread of the drift, boats left the field a quarter to a half less often in
+        // wind and waves.
         let gust_m = GUST_S * situation.motion.spread_m_s();
         let save_m = (save_m + gust_m).max(0.1);
+        // Farther inside no course within sight can lead out, and the table is not worked out
+        // at all.
         let reach_m = region.reach_m(situation, lookahead_s, save_m);
         if inside_m > reach_m {
             return;
         }
         self.table.clear(output.grid());
         let nav = &situation.own.nav;
+        // A straight line from the boat's place predicts that turning round at full speed
+        // clears the edge; a Surveyor at 2 m/s needs 7 s and 9 m for it. The arc brought
+        // departures from 6.2 a boat-hour down to 0.2 (200 games of 120 s, calm water,
+        // `crates/arena/examples/safety.rs`).
         self.instructions.run(Clearance {
             table: &mut self.table,
             grid: output.grid(),
@@ -135,6 +145,8 @@ impl Region {
                 (minus(field.across), y - margin_m),
                 (field.across, depth_m - margin_m - y),
             ],
+            // The drift as it is now where it is not estimated: what carries a boat over the
+            // edge is not a matter of taste.
             drift: situation.motion.drift_now(&situation.own.nav),
             handling: situation.motion.handling(),
             margin_m,
@@ -158,6 +170,8 @@ impl Region {
     fn nearest_inside(&self, situation: &Situation) -> Ned {
         let field = &situation.model.field;
         let (x, y) = field.along_across(situation.at);
+        // At most half of the field: in a field narrower than twice the margin the target is
+        // its middle, and `clamp` panics where its limits cross.
         let within = |v: f64, extent_m: f64| {
             let in_m = (self.margin_m + WELL_IN_M).min(0.5 * extent_m);
             v.clamp(in_m, extent_m - in_m)

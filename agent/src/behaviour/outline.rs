@@ -102,8 +102,12 @@ impl Outline {
         let mut half_planes: Vec<HalfPlane> = Vec::new();
         for side in &sides {
             let unit = side.along.scaled(side.per_m2.sqrt());
+            // Half planes on both sides of each side's line: which one the polygon lies behind
+            // is not asked, since a half plane that reaches over all corners is a bound in any
+            // case, also of a concave polygon.
             for out in [1.0, -1.0] {
                 let normal = Ned { north: out * unit.east, east: -out * unit.north };
+                // Parallel sides have the same half plane, and each is tried for all courses.
                 if half_planes.iter().all(|known| known.normal.dot(normal) < 1.0 - 1e-9) {
                     let reach_m = corners.iter().map(|corner| corner.dot(normal)).fold(f64::NEG_INFINITY, f64::max);
                     half_planes.push(HalfPlane { normal, reach_m });
@@ -148,6 +152,7 @@ impl Outline {
                 let (off_north, off_east) = (north - after_s * run_north, east - after_s * run_east);
                 let squared_m2 = off_north * off_north + off_east * off_east;
                 foot.after_s.0[i] = after_s;
+                // A corner that is behind is passed by no run, however long.
                 foot.squared_m2.0[i] = if after_s >= 0.0 { squared_m2 } else { f64::INFINITY };
                 // Where the lines cross, by Cramer's rule; parallel ones have their corners.
                 let per = 1.0 / (run_north * side.along.east - run_east * side.along.north);
@@ -203,6 +208,8 @@ impl Kernel for Passes<'_> {
 
     #[inline(always)]
     fn run(mut self) {
+        // Inside there is no distance to keep: all courses are as bad, and the others decide
+        // how to get out.
         if is_within(&self.outline.corners, self.at) {
             for k in 0..self.grid.courses() {
                 self.table.lowered_mut(k).fill(Lanes::splat(0.0));
@@ -231,6 +238,9 @@ impl Passes<'_> {
         let fastest_m = self.grid.speed_max_m_s() * self.horizon_s;
         let end = begin.after(&along, &Lanes::splat(fastest_m));
         let mut before_m2 = Lanes::splat(f64::INFINITY);
+        // Near an obstacle two thirds of a helm's time went into distances between a polygon
+        // and each of 36 legs on each of 360 courses. Half planes rule out most courses at
+        // once: games with obstacles take 0.34 to 0.53 of the time, with the same digests.
         match self.clear_of(&start, &begin, &end) {
             Clear::AllTheWay => return,
             Clear::WhileItTurns => {}
@@ -249,6 +259,8 @@ impl Passes<'_> {
             if last < 100.0 {
                 let row = self.table.lowered_mut(first + i);
                 row.fill(Lanes::splat(last));
+                // By rising speed: first those that come no nearer than the turn did, then
+                // those that were worked out, then the last for all faster ones.
                 let known = std::iter::repeat_n(before.0[i], least);
                 let known = known.chain(self.outline.utilities.iter().map(|by_course| by_course.0[i]));
                 for (j, utility) in known.enumerate() {
@@ -313,6 +325,7 @@ impl Passes<'_> {
             let least_m2 = self.outline.passed_m2(&runs, &Lanes::splat(run_m), before_m2);
             self.outline.utilities.push(self.worth(&least_m2));
             // All corners are behind.
+            // A longer run adds nothing: from here on all speeds have the utility of the last.
             if run_m >= last_m {
                 break;
             }

@@ -68,6 +68,8 @@ impl<'a> BehaviourOutput<'a> {
         self.active = true;
         self.functions.problem.add(weight, objective);
         let mut utilities = Vec::new();
+        // A decision with its functions is a hundred thousand numbers, ten times a second and
+        // boat, and most of the time nobody looks.
         if self.functions.shown {
             let grid = self.grid();
             let points = (0..grid.courses()).flat_map(|k| (0..grid.speeds()).map(move |j| (k, j)));

@@ -32,6 +32,8 @@ impl PolicyBehaviour {
             },
             None => {
                 let proposal = situation.proposed?;
+                // A proposal holds for `ttl_s` and no longer: a program that dies leaves a boat
+                // that its other behaviours keep safe.
                 let is_fresh = (situation.now - proposal.at).as_s() <= self.task.ttl_s.value(situation);
                 is_fresh.then_some(SetPoint { course_rad: proposal.course_rad, speed_m_s: proposal.speed_m_s })
             }
@@ -59,6 +61,8 @@ impl BehaviourLogic for PolicyBehaviour {
             return;
         }
         let Some(SetPoint { course_rad, speed_m_s }) = self.proposed(situation) else { return };
+        // A policy proposes and the helm decides: what comes from outside is only weighed, and
+        // within what the boat can do.
         let speed_m_s = speed_m_s.clamp(0.0, situation.model.speed_max_m_s);
         let (heading_rad, speed_m_s) = situation.motion.steer(course_rad, speed_m_s);
         output.add(&Objective::Coupled {

@@ -14,6 +14,8 @@ impl BehaviourLogic for Shield {
         let Some(enemy) = situation.boat(self.against).copied() else { return };
         let line = enemy.at - guarded.at;
         let range_m = line.length();
+        // At most half way, so that the station does not lie behind an enemy that has come
+        // close.
         let ahead_m = self.distance_m.value(situation).min(0.5 * range_m);
         let station = if range_m > 1e-6 { guarded.at + line.scaled(ahead_m / range_m) } else { guarded.at };
         let distance_m = situation.at.distance(station);

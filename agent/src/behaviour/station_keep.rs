@@ -46,6 +46,8 @@ impl BehaviourLogic for StationKeepBehaviour {
         let speed_m_s = self.speed_m_s(situation, distance_m).min(situation.model.speed_max_m_s);
         // At the station itself every heading is as good as the present one.
         let (heading_rad, speed_m_s) = if speed_m_s > 0.0 {
+            // Through the water against the drift: seen from the station the boat may have to
+            // go full ahead to stay.
             situation.motion.steer(situation.at.bearing_rad(point.at), speed_m_s)
         } else {
             (situation.own.nav.psi_rad, 0.0)

@@ -18,6 +18,8 @@ impl BehaviourLogic for Trail {
         let contact_m_s = contact.velocity().length();
         let distance_m = situation.at.distance(place);
         let fastest_m_s = self.speed_m_s.value(situation);
+        // Within the radius it goes as the contact goes: to steer for the place itself would
+        // turn the boat at each small error.
         let (course_rad, speed_m_s) = if distance_m <= self.radius_m.value(situation) {
             (contact.psi_rad, contact_m_s)
         } else {

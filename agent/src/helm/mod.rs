@@ -107,12 +107,17 @@ impl HelmMind {
     fn apply_rules(&mut self, picture: &Picture) {
         for rule in &self.program.rules {
             if is_due(rule, &self.situation, picture) {
+                // At once, unlike what behaviours post: rules are read from top to bottom, and
+                // a later one sees what an earlier one has set.
                 set(&mut self.situation, &rule.set, &mut self.posted);
             }
         }
     }
 
     fn choose_mode(&mut self) {
+        // Of the parts of a mode the first whose condition holds is active, and the last has
+        // none, so exactly one leaf is active. In MOOS the last that holds is, and none may
+        // hold.
         let mode = self.program.leaf(&self.situation);
         let before = self.mode.replace(mode);
         if before == Some(mode) {
@@ -175,6 +180,8 @@ impl HelmMind {
         if problem.is_empty() {
             return Decided::Hold("no behaviour asks for anything");
         }
+        // A decision with no opinion of a course would be the first on the grid, which is
+        // north.
         if !problem.decides_course() {
             return Decided::Hold("no behaviour asks for a course");
         }
@@ -185,10 +192,14 @@ impl HelmMind {
             Decided::Steer(choice) => Some(choice.decision),
             Decided::Hold(_) => None,
         };
+        // A share of all weights, at most a tenth (checked when a file is loaded): it can hold
+        // up a change of mind, not safety.
         let weights: f64 = self.functions.list.iter().map(|function| function.weight).sum();
         let steadiness = last.and_then(|last| Steadiness::new(problem, last, self.program.helm.hysteresis * weights));
         let nav = &self.situation.own.nav;
         let speed_m_s = nav.surge_m_s - self.situation.motion.drift().dot(self.situation.ahead);
+        // Of equal sums the one nearest to how the boat goes now is taken, so that nothing
+        // depends on where the grid begins.
         let choice = problem.solve(Preference { course_rad: nav.psi_rad, speed_m_s });
         Decided::Steer(steadiness.map_or(choice, |steadiness| steadiness.without(problem.grid(), choice)))
     }
@@ -196,6 +207,8 @@ impl HelmMind {
     fn order(&mut self) -> Order {
         match self.decided {
             Decided::Hold(_) => {
+                // What was ordered before a hold tells nothing of how the boat lies beside its
+                // heading now.
                 self.situation.motion.hold();
                 Order::Hold
             }
@@ -270,6 +283,8 @@ fn set(situation: &mut Situation, values: &[(u16, Expression)], scratch: &mut Ve
 }
 
 fn is_due(rule: &Rule, situation: &Situation, picture: &Picture) -> bool {
+    // By events of the picture, not by comparing facts with the last one: a picture may be
+    // lost, and its events come with the next.
     let happened = rule.on.is_none_or(|trigger| {
         let events = picture.events.iter().filter_map(|record| record.logged());
         events

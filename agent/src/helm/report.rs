@@ -19,6 +19,7 @@ impl HelmMind {
             contact: function.contact,
             weight: function.weight,
             utility: utility(&function.utilities),
+            // Empty unless somebody looks, so a report of a boat nobody looks into is small.
             utilities: function.utilities.clone(),
         });
         let behaviours =

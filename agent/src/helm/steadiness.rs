@@ -22,9 +22,12 @@ pub(super) struct Steadiness {
 impl Steadiness {
     /// Adds it to a problem, of half this weight for course and half for speed; nothing without a weight.
     pub(super) fn new(problem: &mut Problem, last: Decision, weight: f64) -> Option<Steadiness> {
+        // A full problem has no room for it; a checked program never asks for so many.
         if weight <= 0.0 || problem.len() >= FUNCTIONS_MAX {
             return None;
         }
+        // What is near the last decision, not the decision itself: holding that made a boat lag
+        // behind whatever moves.
         let near = |summit, peak_width| Peak { summit, peak_width, base_width: STEP, summit_delta: 0.0, height: 100.0 };
         let grid = problem.grid();
         let objective = Objective::Coupled {

@@ -35,6 +35,8 @@ impl Cell {
     #[inline(always)]
     pub(super) fn corners(&self) -> [(f32, f32); 4] {
         let at = |(north, east): (f32, f32), speed: f32| (speed * north, speed * east);
+        // Of a disc the corners lie on both sides of the middle: the square is made of the same
+        // four products as a ring's piece, so that no lane takes another branch.
         let (slow, fast) = (if self.is_disc() { -self.slow } else { self.slow }, self.stretch * self.fast);
         [at(self.first, slow), at(self.last, slow), at(self.first, fast), at(self.last, fast)]
     }
@@ -96,6 +98,8 @@ impl CellSize {
             north: part(4),
             east: part(5),
             half: self.half_rad.unwrap_or(std::f64::consts::PI) as f32,
+            // The chord between two corners at the fastest speed lies within the arc by this
+            // factor: pushed out, no velocity of the cell is beyond it.
             stretch: self.half_rad.map_or(1.0, |half_rad| 1.0 / primitives::math::sin_cos(half_rad).1) as f32,
             is_disc: self.half_rad.is_none(),
         }
@@ -110,6 +114,8 @@ impl CellSize {
 
     /// First, last and middle course; beyond the grid as its last one.
     fn course(self, grid: &Grid, number: usize) -> [f32; 6] {
+        // A grid need not be a multiple of the cells: places beyond it repeat the last course,
+        // which no bound gets wrong, and their sums mark them as not there.
         let of = |i: usize| (self.side * number + i).min(grid.courses() - 1);
         let (first, last) = (of(0), of(self.side - 1));
         if self.half_rad.is_none() {

@@ -98,12 +98,15 @@ impl Closest {
         let sound = vectors.as_flattened().iter().chain(&limits).all(|x| x.is_finite() && x.abs() < 1e7)
             && self.horizon_s >= 0.0
             && lag.is_none_or(Lag::is_sound);
+        // Pictures are checked when they come in, so this is a mistake of ours: tests stop, a
+        // boat on the water goes on without this function.
         debug_assert!(sound, "{self:?}");
         if !sound {
             return None;
         }
         let at_min = at_min.clamp(0.0, 100.0);
         let width_m = self.max_m - self.min_m;
+        // Least and largest distance may be the same, which divides by nothing.
         let slope = |rise: f64, width_m: f64| if width_m > 0.0 { (rise / width_m).min(STEP) } else { STEP };
         let contact_m_s = self.velocity.length();
         let own_m_s = lag.map_or(0.0, |lag| lag.velocity.length()).max(speed_max_m_s);
@@ -118,9 +121,14 @@ impl Closest {
             Some(Side::Starboard) => ((-offset.1, offset.0), OTHER_SIDE),
             None => ((0.0, 0.0), 1.0),
         };
+        // The mean speed depends on when the contact is met, and that on the speed. The time as
+        // both go now is taken for it, once for all candidates: solved for each, the distance
+        // would be no parabola any more.
         let meeting_s = f64::from(time(offset, present, self.horizon_s as f32)).max(MEETING_MIN_S);
         Some(Ready {
             start: (offset.0 + present.0 * reaction, offset.1 + present.1 * reaction),
+            // No candidate can change what happens within the reaction time, so it is worked
+            // out once.
             least_before: square(offset, present, time(offset, present, reaction)),
             velocity: single(self.velocity),
             speed: contact_m_s as f32 * (1.0 + ROUNDING as f32),
@@ -135,6 +143,9 @@ impl Closest {
             mean_speed: MeanSpeed::new(lag, meeting_s),
             beside,
             other_side,
+            // Bounds and points are worked out by different formulas in single precision. A
+            // bound that is short by a rounding would pass over the best point, so all are
+            // widened by what rounding can do.
             margin: (ROUNDING * scale_m) as f32,
             group: 0,
         })
@@ -202,6 +213,8 @@ impl Ready {
     /// Utility of a course, a unit vector, at a speed.
     pub(super) fn utility(&self, north: f32, east: f32, speed: f32) -> f32 {
         let course = (north, east);
+        // Reports and tests take the same arithmetic as the search, lane by lane: the value
+        // shown is the one that decided.
         let distance = self.distance(&self.turning.to(course), course, speed);
         if self.seek { self.worth_near(distance) } else { self.worth_far(distance) }
     }
@@ -215,6 +228,8 @@ impl Ready {
     pub(super) fn has_distances_of(&self, other: &Ready) -> bool {
         let ways = |ready: &Ready| (ready.start, ready.least_before, ready.velocity, ready.horizon, ready.seek);
         let sides = |ready: &Ready| (ready.beside, ready.other_side);
+        // Two behaviours may keep clear of the same boats at different distances: the distances
+        // are the costly part, and what they are worth is not.
         ways(self) == ways(other)
             && sides(self) == sides(other)
             && self.turning == other.turning
@@ -229,7 +244,10 @@ impl Ready {
         let turning = square(self.start, past, time(self.start, past, 1.0));
         let t = time(at, w, self.horizon);
         let straight = square(at, w, t);
+        // Where the contact is when it is nearest: whether the line of sight turned to the
+        // wrong side until then.
         let share = if dot(self.beside, (at.0 + w.0 * t, at.1 + w.1 * t)) < 0.0 { self.other_side } else { 1.0 };
+        // One root for all three legs: of squares the smallest is that of the smallest.
         smaller(smaller(straight, turning), self.least_before).sqrt() * share
     }
 
@@ -319,6 +337,7 @@ impl Ready {
 #[inline(always)]
 fn time(p: Vector, w: Vector, longest: f32) -> f32 {
     // With hardly any motion past each other any time will do.
+    // Not a branch on zero: it would not be done side by side.
     let time = -dot(p, w) / larger(dot(w, w), 1e-20);
     smaller(larger(time, 0.0), longest)
 }

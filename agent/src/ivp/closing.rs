@@ -31,6 +31,7 @@ impl Closing {
             if range_m > 0.0 { (self.offset.north / range_m, self.offset.east / range_m) } else { (0.0, 0.0) };
         let contact_m_s = self.velocity.length();
         let towards_m_s = -(sight_north * self.velocity.north + sight_east * self.velocity.east);
+        // Both at their fastest, so that the utility uses its range whoever the contact is.
         let slope = 50.0 / (speed_max_m_s + contact_m_s);
         Some(Ready {
             north: sight_north as f32,

@@ -34,7 +34,10 @@ impl Weight {
     /// The weight brought into 0 to [`WEIGHT_MAX`]; a non-finite one counts 0.
     pub(super) fn new(weight: f64) -> Weight {
         debug_assert!(weight.is_finite(), "weight {weight}");
+        // Weights may be expressions of a strategy, so what they come to is known only now.
         let weight = if weight.is_finite() { weight.clamp(0.0, WEIGHT_MAX) } else { 0.0 };
+        // In single precision here and in the bounds: rounded twice in different ways, a bound
+        // could fall short of its points.
         Weight((weight / QUANTUM) as f32)
     }
 

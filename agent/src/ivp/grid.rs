@@ -40,6 +40,7 @@ impl Grid {
     /// number.
     #[must_use]
     pub fn new(courses: usize, speeds: usize, speed_max_m_s: f64) -> Grid {
+        // A decision holds its place as two `u16`.
         assert!((1..=1 << 16).contains(&courses), "{courses} courses, allowed are 1 to 65536");
         assert!((2..=1 << 16).contains(&speeds), "{speeds} speeds, allowed are 2 to 65536");
         assert!(speed_max_m_s.is_finite() && speed_max_m_s > 0.0, "a fastest speed of {speed_max_m_s} m/s");
@@ -151,6 +152,8 @@ fn course_rad(k: usize, n: usize) -> f64 {
 
 /// The unit vector of course `k` of `n`, made of one in the first octant by mirroring.
 fn direction(k: usize, n: usize) -> (f32, f32) {
+    // By mirroring, not by the library for each course: cosines of angles that are mirror
+    // images may differ in the last bit, and then a mirrored game would take another course.
     if 2 * k > n {
         let (north, east) = direction(n - k, n);
         return (north, -east);

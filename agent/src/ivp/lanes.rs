@@ -1,6 +1,8 @@
 //! Numbers side by side, as they lie in the widest registers.
 
 /// How many.
+// Sixteen `f32` are one register of AVX-512. With less the compiler takes two or four, and the
+// results are the same to the bit: no lane ever depends on how many there are.
 pub(crate) const LANES: usize = 16;
 
 /// Courses of a tile, and speeds of one: a tile is so many courses and so many speeds, and so many tiles by as many are a
@@ -11,6 +13,7 @@ const _: () = assert!(SIDE * SIDE == LANES);
 
 /// Numbers side by side. Plain loops over all of them become single instructions.
 #[derive(Clone, Copy, Debug)]
+// A cache line and the widest register: loads that straddle two lines cost twice.
 #[repr(align(64))]
 pub(crate) struct Lanes<T>(pub(crate) [T; LANES]);
 
@@ -33,6 +36,8 @@ impl<T: Copy> Lanes<T> {
     pub(crate) fn reduced(&self, of_two: impl Fn(T, T) -> T) -> T {
         let mut halves = self.0;
         let mut width = LANES / 2;
+        // In halves, always the same pairs: sums and comparisons have one order on every
+        // machine.
         while width > 0 {
             for i in 0..width {
                 halves[i] = of_two(halves[i], halves[i + width]);
@@ -75,6 +80,7 @@ impl Lanes<i32> {
 /// The larger of two numbers, as processors compare them: the second where they do not compare.
 #[inline(always)]
 pub(crate) fn larger<T: PartialOrd>(a: T, b: T) -> T {
+    // Not `f32::max`: that asks for NaN, and a processor's own instruction does not.
     if a > b { a } else { b }
 }
 

@@ -28,6 +28,8 @@ impl SpeedLimit {
         let near = 100.0 * (1.0 - beyond_m_s / self.base_m_s);
         let beyond = if beyond_m_s < self.base_m_s { near } else { 0.0 };
         let any = if beyond_m_s <= 0.0 { 100.0 } else { beyond };
+        // NaN fails every comparison, and would be taken for a speed far beyond the limit in
+        // silence.
         let is_unknown = beyond_m_s.is_nan() || self.base_m_s.is_nan();
         fixed::utility(if is_unknown { f64::NAN } else { any })
     }

@@ -47,10 +47,14 @@ impl<'a> Distances<'a> {
     /// On courses, as unit vectors' parts north and east, at speeds.
     #[inline(always)]
     pub(super) fn measure(&mut self, ready: &'a Ready, (north, east, speed): (&Lanes<f32>, &Lanes<f32>, &Lanes<f32>)) {
+        // Functions of a group are kept one after the other, so only the last distances have to
+        // be remembered.
         if self.known.is_some_and(|known| ready.group == known.group) {
             return;
         }
         let turning = ready.turning();
+        // The own ship's turns are the same for all contacts: they cost a root each, and are
+        // worked out once.
         if self.known.is_none_or(|known| turning != known.turning()) {
             for i in 0..LANES {
                 self.turns.set(i, &turning.to((north.0[i], east.0[i])));

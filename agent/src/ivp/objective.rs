@@ -68,6 +68,8 @@ impl Objective<'_> {
         match self.parts(grid) {
             Parts::Separable => {
                 let (course, speed, share) = (self.of_course(grid, k), self.of_speed(grid, j), self.course_share());
+                // For display: the search adds the two parts as integers, each with its own
+                // weight, as `contribution` does.
                 (f64::from(course) * share + f64::from(speed) * (1.0 - share)) as f32
             }
             Parts::Field(field) => {
@@ -139,6 +141,8 @@ impl Objective<'_> {
             Objective::Closing(closing) => field(closing.ready(fastest_m_s).map(Field::Closing)),
             Objective::Table(table) => {
                 let size = (grid.courses(), grid.speeds());
+                // A mistake of the caller, not of a file: a table of another grid would be read
+                // beyond its end.
                 assert!(table.size() == size, "a table of {:?} courses and speeds, not {size:?}", table.size());
                 Parts::Table(table)
             }

@@ -51,6 +51,8 @@ impl Peak {
     /// The peak as a function of course, with what is the same for all courses done once.
     pub(super) fn on_courses(&self, grid: &Grid) -> CoursePeak {
         // A summit that is not finite must not be taken for one to the north.
+        // In ticks: the angle between a summit and a course is then an integer, the same in a
+        // scene that is turned or mirrored.
         let summit = if self.summit.is_finite() { grid.ticks_of(self.summit) } else { f64::NAN };
         CoursePeak { peak: *self, summit, tick_rad: grid.tick_rad() }
     }

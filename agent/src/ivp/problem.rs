@@ -99,6 +99,8 @@ impl Problem {
         assert!(self.functions < FUNCTIONS_MAX, "more than {FUNCTIONS_MAX} functions");
         let weight = Weight::new(weight);
         self.functions += 1;
+        // Counted all the same: whether a helm has asked for anything does not depend on
+        // weights that are nothing just now.
         if weight.is_zero() {
             return;
         }
@@ -151,6 +153,8 @@ impl Problem {
             sums: &self.sums,
             bounds: &mut self.bounds,
             present: Present { course: self.grid.ticks_of(preference.course_rad), speed_m_s: preference.speed_m_s },
+            // A good first guess lets most cells be passed over at once. It changes how many
+            // points are looked at, never which is found.
             guess: self.found.map(|found| (found.course.into(), found.speed.into())),
         };
         let (best, evaluated) = self.instructions.run(search);

@@ -72,6 +72,8 @@ impl Kernel for Search<'_> {
     fn run(mut self) -> (Best, usize) {
         self.bound_lists();
         self.bound_sectors();
+        // Above what is marked as done, so that no such place is ever taken, and below every
+        // sum.
         let mut best = Best { value: DONE + 1, course: 0, speed: 0 };
         let mut evaluated = 0;
         if let Some((k, j)) = self.guess {
@@ -101,6 +103,8 @@ fn take_most(list: &mut [Lanes<i32>], least: i32) -> Option<usize> {
         }
     }
     let most = side_by_side.most();
+    // Not where it is equal: a cell with an equal sum may hold the point that is nearer to how
+    // the boat goes now.
     if most < least {
         return None;
     }
@@ -166,6 +170,8 @@ impl Search<'_> {
         let sector = speed_tile / SIDE * self.cells.sector_courses + course_tile / SIDE;
         let sums = self.sums.tile(self.cells, (course_tile, speed_tile), self.clear(sector));
         let value = sums.most();
+        // Most tiles end here, by one comparison; only equal or better ones are looked at point
+        // by point.
         if value >= best.value {
             self.take(&sums, value, (SIDE * course_tile, SIDE * speed_tile), best);
         }
@@ -186,6 +192,7 @@ impl Search<'_> {
     fn is_nearer(&self, point: &Best, other: &Best) -> bool {
         let turn = |k: usize| {
             let ticks = self.grid.ticks_between(self.present.course, k) as i64;
+            // Some rule there must be, or the choice would hang on the order of the search.
             (ticks.abs(), ticks < 0)
         };
         let away_m_s = |j: usize| (self.grid.speed_m_s(j) - self.present.speed_m_s).abs();
@@ -220,6 +227,8 @@ impl Sums {
         }
         for i in 0..LANES {
             let is_there = most_courses[i % SIDE] >= 0 && most_speeds[i / SIDE] >= 0;
+            // Places beyond the grid have sums far below zero, but the bounds of functions
+            // could lift them: they are marked again at the end.
             tiles.0[i] = if is_there { tiles.0[i] } else { DONE };
         }
         tiles
@@ -247,6 +256,8 @@ impl Sums {
     #[inline(always)]
     fn bound_sectors(&self, mut sums: Lanes<i32>, cells: (&CourseSpans, &SpeedSpans), clear: &mut [u16]) -> Lanes<i32> {
         let mut bounded = Bounded::new();
+        // A contact that cannot come near in a whole sector adds its full weight there: most
+        // contacts do, and their points need no distance.
         for ((weight, field), clear) in self.fields.iter().zip(clear) {
             *clear = 0;
             match field {

@@ -52,6 +52,7 @@ impl Sums {
             Parts::Separable => instructions.run(AddSeparable { sums: self, grid, weight, objective }),
             Parts::Field(field) => self.add_field(weight, field),
             Parts::Table(table) => {
+                // The first table makes room for all; later decisions allocate nothing.
                 self.table.resize(self.speeds.len() * LANES * self.courses.len(), Lanes::splat(0));
                 instructions.run(AddTable { sums: self, grid, weight, table });
             }
@@ -68,6 +69,8 @@ impl Sums {
                 if let Field::Closest(other) = other
                     && ready.has_distances_of(other)
                 {
+                    // Beside those of the same distances: sums are of integers, so their order
+                    // is free.
                     (place, ready.group) = (i + 1, other.group);
                 }
             }
@@ -178,8 +181,13 @@ impl Kernel for AddTable<'_> {
             let first = LANES * across;
             let count = (grid.courses() - first).min(LANES);
             for (i, sum) in sums.courses[across].0.iter_mut().enumerate().take(count) {
+                // Courses that nothing lowers are worth 100 at all speeds: most of 360 courses
+                // by 36 speeds need no work. A game of `surveyor_2v2` went from 1,220 to 2,600
+                // times real time when they were left out.
                 *sum += if lowered >> i & 1 == 0 { weight.quanta(100.0) } else { 0 };
             }
+            // Cleared when it is first used in a decision, not before each: most of the table
+            // never is.
             if *lowered != 0 && !sums.lowered[across] {
                 sums.lowered[across] = true;
                 for rows in sums.table.chunks_mut(LANES * sums.courses.len()) {

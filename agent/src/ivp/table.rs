@@ -44,6 +44,7 @@ impl Table {
         let lanes = self.lanes();
         let (row, lowered) = (&mut self.rows[k * lanes..][..lanes], &mut self.lowered[k / LANES]);
         if *lowered >> (k % LANES) & 1 == 0 {
+            // Filled when it is first asked for: so `clear` costs nothing for each course.
             *lowered |= 1 << (k % LANES);
             row.fill(Lanes::splat(100.0));
         }

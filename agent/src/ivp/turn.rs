@@ -103,6 +103,8 @@ impl Turning {
 
     pub(super) fn new(lag: Option<&Lag>) -> Turning {
         lag.map_or(Turning::NONE, |lag| Turning {
+            // The arc is worked out from chord and middle of two unit vectors, without an
+            // angle: inverse functions are slow side by side, and differ between machines.
             heading: (lag.heading.north as f32, lag.heading.east as f32),
             s_per_rad: (1.0 / lag.turn_rad_s) as f32,
             radius: (lag.ahead_m_s() / lag.turn_rad_s) as f32,
@@ -118,6 +120,8 @@ impl Turning {
         let arc_of_chord = 1.0 + x2 * (1.0 / 6.0) + 0.36 * x4 * x4;
         let (middle_north, middle_east) = (self.heading.0 + north, self.heading.1 + east);
         let middle = (middle_north * middle_north + middle_east * middle_east).sqrt();
+        // To the course straight back the middle of both headings is nothing, and its direction
+        // open.
         let scale = self.radius * chord / larger(middle, 1e-3);
         Turn { duration: chord * arc_of_chord * self.s_per_rad, by: (scale * middle_north, scale * middle_east) }
     }
@@ -134,6 +138,9 @@ impl Turning {
         let (mut off, mut off_s) = (bend + ROUNDING_RAD, 2.4 * bend + ROUNDING_RAD);
         let cosine = self.heading.0 * cell.north + self.heading.1 * cell.east;
         let within = 1.0 - larger(cosine, -cosine) < 0.55 * (cell.half + ROUNDING_RAD) * (cell.half + ROUNDING_RAD);
+        // Between two courses on either side of the bow the arcs bend to both sides, and near
+        // straight back they end far apart: there the four corners do not enclose them, and the
+        // bound is widened by as much as they can be off.
         let (at_bow, at_back) = (within & (cosine > 0.0), within & (cosine <= 0.0));
         off += if at_bow { 1.1 * cell.half } else { 0.0 } + if at_back { 4.0 } else { 0.0 };
         off_s += if at_bow { 1.3 * cell.half } else { 0.0 } + if at_back { 3.2 } else { 0.0 };

@@ -60,6 +60,9 @@ impl AgentLoop {
         // A name that is unknown the sim will refuse.
         let known = settings.vehicles.iter().filter_map(|name| scenario.vehicle_by_name(name));
         let runner = MindRunner::new(known.map(|vehicle| (vehicle, mind(vehicle))));
+        // The sim waits for `patience_s` before it takes an agent for lost: whoever waits for
+        // others uses at most half of it, or a mate that is late would cost this agent the
+        // game.
         let half_patience = Duration::from_secs_f64(0.5 * scenario.patience_s);
         let is_lockstep = info.pace == "lockstep";
         let limit = |wait: Duration| if is_lockstep { wait.min(half_patience) } else { Duration::ZERO };
@@ -86,6 +89,8 @@ impl AgentLoop {
         scenario: &Scenario,
         joined: Joined,
     ) -> Result<(), NodeError> {
+        // Orders are told apart by vehicle: with others than were asked for the minds would
+        // steer boats they know nothing of.
         if !self.runner.minds().map(|(vehicle, _)| vehicle).eq(joined.vehicles) {
             return Err(NodeError::Refused("it granted other boats than those that were asked for".to_owned()));
         }
@@ -110,9 +115,13 @@ impl AgentLoop {
                 if self.pictures[cell].as_ref().is_some_and(|picture| picture.over) {
                     return Ok(());
                 }
+                // The newest picture only: a queue would make a slow agent work on stale ones.
+                // What was skipped gives its events to the next.
                 decided |= self.decide()?;
             }
             if let Some(queries) = &mut self.helm_queries {
+                // After the orders are out: whoever looks inside slows a lockstep game down,
+                // but changes none of its decisions.
                 queries.answer(&mut self.runner, decided);
             }
             match self.subscriptions.sim.state() {
@@ -143,9 +152,13 @@ impl AgentLoop {
     fn decide(&mut self) -> Result<bool, NodeError> {
         let stamp_of = |team: &TeamId| self.pictures[team.index()].as_ref().map(|picture| picture.stamp);
         let Some(stamp) = self.subscriptions.teams.first().and_then(stamp_of) else { return Ok(false) };
+        // Boats of several teams decide on one moment: with the pictures of different ones the
+        // result would depend on which came first.
         if self.subscriptions.teams.iter().any(|team| stamp_of(team) != Some(stamp)) {
             return Ok(false);
         }
+        // The sim repeats pictures whose answers it misses, every 250 ms: they are answered
+        // with the same orders, since to decide again would change what minds remember.
         let is_new = self.runner.decided() != Some(stamp.seq);
         if is_new {
             self.talk.hear(&mut self.runner, stamp.seq);

@@ -100,6 +100,7 @@ impl HelmQueries {
     }
 
     fn postpone(&mut self, asked: Asked) {
+        // One more is dropped unanswered: whoever asks asks again.
         if self.waiting.len() < INBOX {
             self.waiting.push(asked);
         }

@@ -78,6 +78,8 @@ pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), 
     tell(News::Joined { game: game.as_str() });
     let played = agent.play(&settings.stop);
     tell(News::Left { refused: agent.refusals() });
+    // A link that is closed tells the sim at once that the agent has left; its boats hold with
+    // the next decision.
     bus.close();
     played
 }

@@ -65,6 +65,8 @@ impl PolicyInbox {
             return;
         }
         let is_complete =
+            // In real time nobody waits for a policy. In lockstep not to wait would make the
+            // game depend on who is faster.
             self.patience.is_zero() || self.proposals.wait(self.patience, |proposals| proposals.is_for(stamp.seq));
         self.proposals.visit(|proposals| {
             proposals.refusals.add(Refusal::ProposalMissing, u64::from(!is_complete));
@@ -81,6 +83,8 @@ impl PolicyInbox {
 impl Proposals {
     fn take(&mut self, i: usize, bytes: &[u8]) {
         let Some(proposal) = self.refusals.decode::<PolicyProposal>(bytes) else { return };
+        // Access control goes by the key, so the key counts, and a message that says otherwise
+        // is refused.
         if proposal.vehicle != self.boats[i].vehicle {
             self.refusals.count(Refusal::NotYours);
         } else if !is_sound(&proposal) {

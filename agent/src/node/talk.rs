@@ -46,6 +46,8 @@ impl Talk {
         talking.sort_unstable();
         talking.dedup();
         let own: Vec<VehicleId> = runner.minds().map(|(vehicle, _)| vehicle).collect();
+        // By the scenario's strategies: a mate that was given another one with `--strategy` may
+        // be waited for once, and then no more.
         let talks = |vehicle| roles::role_of(scenario, vehicle).variables.iter().any(|variable| variable.shared);
         let boats =
             teams.iter().enumerate().map(|(i, team)| (*team, talking.contains(team) && talks(VehicleId::at(i))));
@@ -54,6 +56,9 @@ impl Talk {
         for team in talking {
             let inbox = Arc::clone(&team_inbox);
             let take = move |bytes: &[u8]| inbox.visit(|team_inbox| team_inbox.take(team, bytes));
+            // From agent to agent, past the sim's loop: it neither needs nor checks them, as
+            // part of orders they would make lockstep slower for everybody, and on the water
+            // there is no sim to pass them on.
             declarations.push(bus.subscribe_remote(topic::say(game, scenario, team), take)?);
             let publisher = bus.publisher(topic::say(game, scenario, team), Priority::Normal)?;
             outgoing.push(Outgoing { team, publisher, last: None });
@@ -84,6 +89,8 @@ impl Talk {
         for to in &mut self.outgoing {
             let ours = |word: &&Word| self.teams.get(word.vehicle.index()) == Some(&to.team);
             let words: Vec<Word> = said.iter().filter(ours).copied().collect();
+            // Kept, since a repeated picture is answered with the same messages: whatever was
+            // lost is said again.
             to.last = (!words.is_empty()).then_some(Say { stamp: Stamp { version: Say::VERSION, ..stamp }, words });
         }
     }

@@ -55,6 +55,8 @@ impl TeamInbox {
     pub fn take(&mut self, team: TeamId, bytes: &[u8]) {
         let Some(say) = self.refusals.decode::<Say>(bytes) else { return };
         for word in say.words {
+            // Messages are about boats, not from processes: a boat that another process takes
+            // over keeps its name.
             let sender = self.senders.get_mut(word.vehicle.index());
             let Some(sender) = sender.filter(|sender| sender.is_mate && sender.team == team) else {
                 self.refusals.count(Refusal::NotYours);
@@ -88,6 +90,7 @@ impl TeamInbox {
                 None => sender.before.take_if(|sent| sent.seq < seq),
             };
             let on_time = sent.as_ref().is_some_and(|sent| sent.seq + 1 == seq);
+            // Counted, and the values of before stay: a boat goes on with what it last heard.
             missed += u64::from(awaited && !on_time);
             if !self.has_begun && sender.talks {
                 sender.awaited_at = Some(seq.saturating_add(1));
@@ -106,6 +109,7 @@ impl Sender {
     /// Keeps a word sent after decision `seq`, if there is room for it.
     fn note(&mut self, seq: u64, word: Word) -> bool {
         let Some(newest) = self.newest.as_mut().filter(|newest| newest.seq == seq) else {
+            // By arrival, not by stamp: a wrong stamp displaces one message, no more.
             self.before = self.newest.replace(Sent { seq, words: vec![word] });
             return true;
         };

@@ -12,6 +12,8 @@ impl<'a> Numbers<'a> {
 
     /// Writes the next one.
     pub(super) fn push(&mut self, number: f64) {
+        // Spaces tell trainers their size before anything is written: a writer that disagrees
+        // is a mistake of ours.
         let (next, left) = std::mem::take(&mut self.left).split_first_mut().expect("there is room for every number");
         *next = number as f32;
         self.left = left;

@@ -73,6 +73,7 @@ fn toward(situation: &Situation, place: Ned, out: &mut Numbers<'_>) {
 fn is_own_side(situation: &Situation, at: Ned, team: usize) -> bool {
     let field = &situation.model.field;
     let beyond_m = (at - field.middle()).dot(field.along);
+    // On the line a boat is on its own side for both.
     if team == 0 { beyond_m <= 0.0 } else { beyond_m >= 0.0 }
 }
 

@@ -39,6 +39,8 @@ pub(super) fn write(situation: &Situation, (mates, enemies): (usize, usize), out
     slots(situation, others(false), mates, out);
     let mut nearest: Vec<&OtherBoat> = others(true).collect();
     let distance = |other: &OtherBoat| situation.at.distance_squared(other.at);
+    // Enemies by distance: which of them is which means nothing to a policy, and fewer slots
+    // than enemies show those that matter. Mates stay in their places.
     nearest.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
     slots(situation, nearest.into_iter(), enemies, out);
 }
@@ -147,9 +149,13 @@ fn toward(situation: &Situation, place: Ned, out: &mut Numbers<'_>) {
     let line = place - situation.at;
     let [ahead_m, starboard_m] = along_axes(situation, line);
     let distance_m = math::length(ahead_m, starboard_m);
+    // A direction as two parts, not as an angle, which jumps from half a turn to minus half a
+    // turn astern.
     let per_m = if distance_m > 1e-6 { 1.0 / distance_m } else { 0.0 };
     out.extend([ahead_m * per_m, starboard_m * per_m]);
     out.push((distance_m / LENGTH_M).min(LENGTHS_MAX));
+    // Beside the distance in hundreds of metres: the last ten metres, in which boats tag and
+    // touch, would be a tenth of a number.
     out.push(NEAR_M / (NEAR_M + distance_m));
 }
 

@@ -68,6 +68,7 @@ impl DriftEstimate {
             return;
         }
         let (north, east, both) = self.variance;
+        // Bounded, so that a heading not sailed for an hour is not learned from a single wave.
         let grown = |variance: f64| (variance + WALK_M2_S3 * step_s).min(UNKNOWN_M2_S2);
         let (north, east) = (grown(north), grown(east));
         let (sin, cos) = math::sin_cos(nav.psi_rad);

@@ -94,7 +94,11 @@ fn of_thrusters(hull: &Hull, thruster: &Thruster, autopilot: &Autopilot) -> Hand
             (newton(points.last()), newton(points.first()))
         }
     };
+    // Full ahead on one side and full astern on the other, as a front seat steers that has two
+    // thrusters and no rudder.
     let moment_newton_m = thruster.arm_m * (ahead_newton + astern_newton);
+    // At half of the top speed: a hull under way resists turning more, and boats turn on the
+    // way, not at rest.
     let linear = hull.yaw_linear_kg_m2_s + 0.5 * hull.yaw_lift_kg_m * autopilot.speed_max_m_s;
     let quadratic = hull.yaw_quadratic_kg_m2;
     let steady_rad_s = if quadratic > 0.0 {

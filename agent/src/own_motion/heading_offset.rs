@@ -37,6 +37,7 @@ impl HeadingOffset {
         let model_rad = self.model_rad.get_or_insert(heading_rad);
         let error_rad = wrap_pi(ordered_rad - *model_rad);
         let surprise_rad = wrap_pi(heading_rad - *model_rad - self.offset_rad);
+        // The model never turns beyond the order, whatever the length of a decision.
         let turn_rad = (handling.yaw_rate_rad_s(error_rad) * step_s).clamp(-error_rad.abs(), error_rad.abs());
         *model_rad = wrap_pi(*model_rad + turn_rad + (MODEL_GAIN_PER_S * step_s).min(1.0) * surprise_rad);
         if error_rad.abs() < TURNING_RAD {

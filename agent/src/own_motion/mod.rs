@@ -60,6 +60,8 @@ pub(crate) struct OwnMotion {
 
 impl OwnMotion {
     pub(crate) fn new(boat: &Boat, speed_max_m_s: f64, compensates: bool) -> OwnMotion {
+        // Front seats steer by speed over the ground, from a satellite receiver; point boats by
+        // speed through the water, as MOOS has them.
         let reference = match boat.drive {
             Drive::Thrusters { .. } => SpeedReference::Ground,
             Drive::Kinematic(_) => SpeedReference::Water,
@@ -96,6 +98,8 @@ impl OwnMotion {
         }
         // A velocity that has been seen already tells nothing new.
         if own.fix_ns > self.fix_at {
+            // At most a second: after a gap in navigation one velocity must not count like
+            // many.
             self.drift.observe(&own.nav, &self.file, (own.fix_ns - self.fix_at).as_s().min(1.0));
             self.fix_at = own.fix_ns;
         }
@@ -147,7 +151,12 @@ impl OwnMotion {
         let course = Ned { north, east };
         let along_m_s = drift.dot(course);
         let across = drift - course.scaled(along_m_s);
+        // The triangle of velocities: the drift across the course takes some of the boat's
+        // speed, and what is left goes along it.
         let room = self.speed_max_m_s * self.speed_max_m_s - across.dot(across);
+        // A grid of courses over the ground would need the heading of each point for its turn,
+        // and would take a boat that is told to stand still for one that does. So a behaviour
+        // that asks for a course gets its crab angle here, once.
         let fastest_m_s = along_m_s + room.max(0.0).sqrt();
         let way = course.scaled(speed_m_s.min(fastest_m_s)) - drift;
         let through_m_s = way.length();

@@ -57,6 +57,8 @@ impl GameModel {
         };
         let mut points: Vec<(String, Ned)> =
             Field::point_names().into_iter().filter_map(|name| field.point(team, &name).map(|at| (name, at))).collect();
+        // Sorted once and searched by halves: expressions ask for points by name at every
+        // decision.
         points.sort_by(|a, b| a.0.cmp(&b.0));
         let speed_m_s = |i: usize| scenario.boat_of(VehicleId::at(i)).speed_max_m_s();
         let boat_speeds_m_s: Vec<f64> = (0..scenario.vehicles.len()).map(speed_m_s).collect();
@@ -126,6 +128,7 @@ impl GameModel {
     }
 
     fn inside_own_corner(&self, at: Ned, radius_m: f64) -> Ned {
+        // A point inside of both edges, not the corner itself, which lies on the boundary.
         let inside = self.field.inside_own_corner(self.team, at, corner_inset_m(radius_m));
         inside.expect("a checked field has corners for every team")
     }

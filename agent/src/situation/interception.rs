@@ -40,6 +40,8 @@ pub(super) struct Pair {
 
 /// Gives each intruder, in their order, the boat that is left and meets it soonest; of equally quick ones the first.
 pub(super) fn assign(interceptors: &[Interceptor], intruders: &[Intruder], before: &[Pair]) -> Vec<Pair> {
+    // One after the other, not the best sum over all pairs: the intruder that is nearest to the
+    // flag is what matters, and the result does not change for a boat far off.
     let mut left: Vec<&Interceptor> = interceptors.iter().collect();
     let mut pairs = Vec::with_capacity(intruders.len().min(left.len()));
     for intruder in intruders {
@@ -52,6 +54,8 @@ pub(super) fn assign(interceptors: &[Interceptor], intruders: &[Intruder], befor
         let (mut soonest_s, mut soonest) = (f64::INFINITY, None);
         for (i, interceptor) in left.iter().enumerate() {
             // With many boats most are too far off to be sooner, even straight towards each other.
+            // The time to meet of every boat with every intruder took a quarter of a game of
+            // 100 against 100.
             let reach_m = (interceptor.speed_m_s + intruder_m_s) * (soonest_s + KEPT_S) * ROUNDING;
             if interceptor.at.distance_squared(intruder.at) > reach_m * reach_m {
                 continue;

@@ -172,6 +172,8 @@ impl Situation {
     fn take_now(&mut self, picture: &Picture) -> bool {
         let Some(own) = picture.own(self.model.me) else { return false };
         let now = picture.stamp.valid_ns;
+        // By the pictures' own time, so that a lost one is a longer step and a repeated one
+        // none.
         self.step_s = if self.begun { (now - self.now).as_s().max(0.0) } else { 0.0 };
         (self.now, self.begun) = (now, true);
         self.own = *own;
@@ -187,6 +189,8 @@ impl Situation {
                 vehicle: mate.vehicle,
                 is_enemy: false,
                 at,
+                // In games of 20 against 20 and more, turning all of them into the field's
+                // frame showed in the time of a decision, and hardly any is asked for.
                 velocity: Velocity::Body(Body { ahead: mate.nav.surge_m_s, starboard: mate.nav.sway_m_s }),
                 psi_rad: mate.nav.psi_rad,
                 yaw_rate_rad_s: mate.nav.yaw_rate_rad_s,
@@ -226,6 +230,7 @@ impl Situation {
         let ours = picture.score.get(self.model.team.index()).copied();
         self.score = f64::from(ours.unwrap_or(0));
         self.enemy_score = picture.score.iter().copied().map(f64::from).sum::<f64>() - self.score;
+        // With two limits: at one alone noise of the position would turn the boat to and fro.
         let from_home = self.at.distance(self.model.untag_centre(self.at)) / self.model.untag_radius_m;
         self.leaving = own.tagged && (from_home < WELL_INSIDE || self.leaving && from_home <= WELL_OUTSIDE);
         true
@@ -296,6 +301,8 @@ impl Situation {
     fn intercepted(&self) -> Vec<Pair> {
         let home = self.model.own_flag();
         let mut intruders: Vec<Intruder> = self.intruders().map(Intruder::from).collect();
+        // By how near they are to the flag, from what the whole team sees: so that every mate
+        // comes to the same pairs.
         intruders.sort_by(|a, b| home.distance_squared(a.at).total_cmp(&home.distance_squared(b.at)));
         let boat = |vehicle: VehicleId, at: Ned, tag_ready: SimTime| Interceptor {
             vehicle,
@@ -438,6 +445,8 @@ impl From<&OtherBoat> for Intruder {
 fn between(measure: Measure, from: Option<MovingPoint>, to: Option<MovingPoint>) -> f64 {
     let points = from.zip(to);
     match measure {
+        // Far away, not infinite: expressions may subtract, and infinity less infinity is no
+        // number.
         Measure::Distance => points.map_or(NOWHERE_M, |(from, to)| from.at.distance(to.at)),
         Measure::Closing => points.map_or(0.0, |(from, to)| closing_m_s(from, to)),
         _ => 0.0,

@@ -73,6 +73,8 @@ fn key_of(variable: &Variable) -> u64 {
         Kind::Number => "number".to_owned(),
         Kind::Text(values) => values.join(","),
     };
+    // A hash in place of the name: two strategies of one team need not list the same variables,
+    // and a word on the wire has a fixed size.
     xxh3_64(format!("{} {kind}", variable.name).as_bytes())
 }
 

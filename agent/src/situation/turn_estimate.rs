@@ -26,6 +26,8 @@ impl TurnEstimate {
     pub(super) fn seen(before: Option<TurnEstimate>, contact: &Contact) -> TurnEstimate {
         let (seen, psi_rad) = (contact.seen_ns, contact.psi_rad);
         let Some(before) = before else { return TurnEstimate { seen, psi_rad, yaw_rate_rad_s: 0.0 } };
+        // A contact that is shown again unchanged was not seen again: it would look as if it
+        // had stopped turning.
         if seen <= before.seen {
             return before;
         }
@@ -51,6 +53,8 @@ pub(super) fn turning_on(boat: MovingPoint, yaw_rate_rad_s: f64) -> MovingPoint 
     let turn_rad = (yaw_rate_rad_s * TURNS_ON_S).clamp(-TURN_MAX_RAD, TURN_MAX_RAD);
     let half_rad = 0.5 * turn_rad;
     let half = Rotation::from_heading(half_rad);
+    // The chord of an arc by its length: the sine of half the angle by half the angle, which is
+    // 1 where it is straight.
     let chord = if half_rad.abs() > 1e-6 { half.ahead().east / half_rad } else { 1.0 };
     let clockwise = |by| ned_from_body(by, Body { ahead: boat.velocity.north, starboard: boat.velocity.east });
     let velocity = clockwise(Rotation::from_heading(turn_rad));

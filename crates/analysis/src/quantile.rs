@@ -22,6 +22,8 @@ impl Quantile {
     /// Adds a value; what is no number is more than all.
     pub(crate) fn add(&mut self, value: f64) {
         let value = if value.is_nan() { f64::INFINITY } else { value };
+        // Statistics are sums, made decision by decision: the series of 40 boats in a recording
+        // of 1.3 GB were 500 MB.
         let (count, largest) = self.bins.entry(value.clamp(RANGE.0, RANGE.1).to_bits() >> LEFT_AWAY).or_default();
         (*count, *largest) = (*count + 1, largest.max(value));
         self.count += 1;

@@ -24,13 +24,19 @@ struct Rights {
 /// Anybody who reaches a hub without keys.
 const ANYBODY: Rights = Rights {
     publishes: &[
+        // Everything below, not one level: without keys the team in the key says nothing, and
+        // the sim checks the ticket of each order anyway.
         "order/**",
         "say/{team}",
         "policy/{boat}",
         "nav/{boat}",
+        // Reports go to the sim with the gateway's ticket, and on from there: without keys
+        // anybody can publish as a gateway, but nobody can publish what the sim does.
         "report/status/{boat}",
         "report/link/{boat}",
         "control",
+        // Whoever sees danger must not look for a secret first, so everybody may stop boats:
+        // without a token and, with keys, by any part of the game.
         "stop/{boat}",
     ],
     hears: &[
@@ -73,12 +79,16 @@ const GATEWAY: Rights = Rights {
     asks: &["scenario", "join/gateway/{boat}"],
     answers: &["operate/{boat}"],
 };
+// It sees all that is published, and what helms decide, but changes nothing: only stops are
+// open to it, as to everybody.
 const OBSERVER: Rights = Rights {
     publishes: &["control", "stop/{boat}"],
     asks: &["scenario", "events", "water", "helm/{boat}"],
     answers: &[],
     ..ANYBODY
 };
+// The only part that is let through to `operate`: with keys no token is asked for as well,
+// since it would be a second secret for the same right.
 const OPERATOR: Rights = Rights {
     publishes: &["control", "stop/{boat}", "policy/{boat}"],
     asks: &["scenario", "events", "water", "helm/{boat}", "control", "operate/{boat}"],
@@ -98,6 +108,8 @@ fn rights(identity: &Identity) -> &'static Rights {
 
 /// Whether somebody may ask at `key` at all: no answer comes where it may not.
 pub(crate) fn may_ask(identity: &Identity, key: &str) -> bool {
+    // By the kind alone: this check only spares a node that may not ask the wait for an answer.
+    // What binds is the rule at the hub, which is spelled out.
     let kind = key.split('/').nth(2);
     rights(identity).asks.iter().any(|pattern| pattern.split('/').next() == kind)
 }
@@ -113,6 +125,9 @@ struct Subject {
 impl Subject {
     /// Topics of these patterns.
     fn keys(&self, game: &GameName, patterns: &[&str]) -> Vec<String> {
+        // A rule that denies `frame` does not deny `*`, which means `frame` among others; a
+        // rule that allows `order/*` does not allow `**`. So there are only rules that allow,
+        // and none has a wildcard where something goes out.
         let spelled_out = |pattern: &&str| -> Vec<String> {
             if pattern.contains("{team}") {
                 self.teams.iter().map(|team| pattern.replace("{team}", team)).collect()
@@ -140,6 +155,8 @@ impl Subject {
             (&["query"], &["egress"], self.keys(game, answers)),
             // That somebody subscribes or answers here is no secret: publishers must know it.
             (&["declare_subscriber", "declare_queryable"], &["egress"], vec![topic::matching(game, "**")]),
+            // Only outward: a token that others show in the sim's name would be believed.
+            // Agents and gateways have none for the same reason; the hub sees their links.
             (&["liveliness_token"], &["egress"], vec![topic::all_alive(game)]),
             (&["liveliness_query", "declare_liveliness_subscriber"], &["ingress", "egress"], tokens),
         ];
@@ -176,6 +193,7 @@ fn subjects(scenario: &Scenario, has_keys: bool) -> Vec<Subject> {
         let own = names(scenario.vehicles.iter().filter(|boat| boat.team.index() == i).collect());
         subjects.push(subject(Identity::Team(team.clone()), std::slice::from_ref(team), &own));
     }
+    // Keys may be made for one gateway on each boat, or for one machine that has all of them.
     let externals = names(scenario.externals().map(|boat| &scenario.vehicles[boat.index()]).collect());
     for boat in &externals {
         subjects.push(subject(Identity::Gateway(Some(boat.clone())), &[], std::slice::from_ref(boat)));
@@ -202,6 +220,8 @@ pub(crate) fn control(game: &GameName, scenario: &Scenario, has_keys: bool) -> V
         }
     };
     json!({
+        // Deny by default: what a later zenoh adds, or somebody makes up, is closed until it is
+        // written down above.
         "enabled": true, "default_permission": "deny", "rules": rules,
         "subjects": all.iter().map(subject).collect::<Vec<Value>>(), "policies": policies,
     })

@@ -46,6 +46,8 @@ pub(crate) fn begin(session: &Session, numbers: Vec<u16>, files: OpenFiles, wait
         let Some(ends) = linger::ends(event.link()) else { return };
         match event.kind() {
             SampleKind::Put => links.lock().insert(ends),
+            // By both addresses, since descriptors are reused: the same number may be another
+            // connection by now.
             SampleKind::Delete => links.lock().remove(&ends),
         };
     };
@@ -55,6 +57,7 @@ pub(crate) fn begin(session: &Session, numbers: Vec<u16>, files: OpenFiles, wait
     // What the system has accepted already is to find room among the files that are kept, beside those that are lent still.
     let queue_max = i32::try_from(files.kept() / 4).unwrap_or(i32::MAX);
     for listener in &listeners {
+        // `listen` on a socket that listens already only changes the length of its queue.
         descriptor::with_socket(*listener, |socket| socket.listen(queue_max))?;
     }
     let slots = BTreeMap::new();
@@ -73,6 +76,8 @@ pub(crate) fn begin(session: &Session, numbers: Vec<u16>, files: OpenFiles, wait
 impl Port {
     /// Finds who waits, ends those that are too many, and says when to look again.
     fn look(&mut self, links: &Links) -> Duration {
+        // Listing descriptors needs a descriptor itself. Where even that fails, the files that
+        // are kept are lent first.
         let listed = descriptor::all().or_else(|_| {
             self.close(true);
             descriptor::all()
@@ -100,6 +105,8 @@ impl Port {
         found.retain(|ends, _| !links.contains(ends));
         self.slots.retain(|ends, _| found.contains_key(ends));
         for (ends, descriptor) in found {
+            // Mapped IPv4 addresses count as what they are, or one host would have two shares
+            // of the port.
             let admit = || self.waiting.admit(ends.1.ip().to_canonical(), move || descriptor::end(descriptor, ends));
             self.slots.entry(ends).or_insert_with(admit);
         }

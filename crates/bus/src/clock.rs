@@ -27,6 +27,9 @@ pub fn suspended() -> Duration {
         let read = |id| Duration::try_from(clock_gettime(id)).unwrap_or_default();
         // In this order the difference is never too large.
         let boot_time = read(ClockId::Boottime);
+        // `CLOCK_MONOTONIC` stands still while a machine is suspended, `CLOCK_BOOTTIME` does
+        // not: the difference is the time that a closed lid has cost, for which a sim blames
+        // nobody.
         return boot_time.saturating_sub(read(ClockId::Monotonic));
     }
     Duration::ZERO

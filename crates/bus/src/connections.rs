@@ -54,6 +54,8 @@ impl Connections {
         let number = open.count;
         open.connections.insert(number, Entry { from, used: number, close: Box::new(close) });
         drop(open);
+        // Outside of the lock: closing calls into whoever owns the connection, which may drop
+        // its slot, and that takes the lock.
         surplus.into_iter().for_each(|entry| (entry.close)());
         Slot { open: Arc::clone(&self.open), number }
     }
@@ -71,6 +73,9 @@ impl Open {
         self.connections.values().for_each(|entry| *by_address.entry(entry.from).or_insert(0) += 1);
         let share = |entry: &Entry| by_address.get(&entry.from).copied().unwrap_or(0);
         let most_idle =
+            // The address with the most connections first: a host that opens thousands makes
+            // room at its own cost, and one that has a single connection keeps it however long
+            // it idles.
             |(_, a): &(&u64, &Entry), (_, b): &(&u64, &Entry)| share(b).cmp(&share(a)).then(a.used.cmp(&b.used));
         self.connections.iter().min_by(most_idle).map(|(number, _)| *number)
     }

@@ -27,6 +27,9 @@ type Answered = Watched<Option<Result<ControlReply, BusError>>>;
 pub fn control(bus: &Bus, game: &GameName, control: Control) -> Result<(), BusError> {
     let key = topic::control(game);
     let reply: Option<ControlReply> =
+        // Pausing or ending a game can wait for a question and its challenge; a stop is
+        // published at once and asked for besides, since nothing that is published is sure to
+        // arrive.
         if control.stops() { stop(bus, &key, control)? } else { bus.request(&key, &control, ANSWER)? };
     match reply {
         Some(Ok(())) => Ok(()),
@@ -58,6 +61,8 @@ fn stop(bus: &Bus, key: &str, control: Control) -> Result<Option<ControlReply>, 
 /// Asks the sim. On a long way the next question goes out before the answer to this one is back.
 fn ask(bus: &Bus, key: &str, control: Control, limit: Duration, answered: &Arc<Answered>) {
     let (bus, key, answered) = (bus.clone(), key.to_owned(), Arc::clone(answered));
+    // In a thread of its own, since a question blocks until it is answered or given up, and the
+    // stop must be said again meanwhile.
     let asked = start_thread("stop-question", move || {
         if let Some(reply) = bus.request(&key, &control, limit).transpose() {
             answered.visit(|answered| *answered = Some(reply));

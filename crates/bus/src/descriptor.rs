@@ -24,6 +24,8 @@ pub(crate) enum Kind {
 /// # Errors
 /// If the system lists none, or there is no descriptor left to read the list with.
 pub(crate) fn all() -> io::Result<Vec<RawFd>> {
+    // Linux has the first, macOS and the BSDs the second. Where there is neither, links keep
+    // their linger time, and the port its limits of zenoh.
     let folder = std::fs::read_dir(FOLDERS[0]).or_else(|_| std::fs::read_dir(FOLDERS[1]))?;
     Ok(folder.flatten().filter_map(|entry| entry.file_name().to_str()?.parse().ok()).collect())
 }
@@ -44,6 +46,7 @@ pub(crate) fn kind(descriptor: RawFd) -> Kind {
     let Some(local) = socket.local_addr().ok().and_then(|address| address.as_socket()) else { return Kind::Other };
     match socket.peer_addr() {
         Ok(peer) => peer.as_socket().map_or(Kind::Other, |peer| Kind::Connection((local, peer))),
+        // A listener has no peer; nor has a datagram socket, which is told apart by its type.
         Err(_) if socket.r#type().is_ok_and(|kind| kind == Type::STREAM) => Kind::Listener(local.port()),
         Err(_) => Kind::Other,
     }

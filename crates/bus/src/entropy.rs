@@ -15,6 +15,8 @@ pub fn random_number() -> u64 {
 #[must_use]
 pub fn random_bytes<const N: usize>() -> [u8; N] {
     let mut bytes = [0; N];
+    // Challenges, tickets and names of sessions are drawn here: without this, no simulated game
+    // could be repeated by its seed.
     if simulated::is_inside() {
         let numbers = std::iter::from_fn(simulated::random_number).flat_map(u64::to_le_bytes);
         bytes.iter_mut().zip(numbers).for_each(|(byte, drawn)| *byte = drawn);

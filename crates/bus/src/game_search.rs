@@ -52,10 +52,14 @@ impl From<BusError> for Missing {
     fn from(error: BusError) -> Missing {
         match error {
             BusError::NeedsToken
+            // No waiting makes these better; a person has to do something. All others may pass:
+            // a sim that begins later, a cable that is plugged in.
             | BusError::WrongToken
             | BusError::Keys(_)
             | BusError::NeedsKeys(_)
             | BusError::NotAllowed { .. } => Missing::Forever(Refusal::Refused(error.to_string())),
+            // An answer that cannot be read comes from another version, and waiting does not
+            // change that.
             BusError::Request { .. } => Missing::Forever(Refusal::Version(error.to_string())),
             other => Missing::Yet(other.to_string()),
         }
@@ -131,6 +135,8 @@ pub fn find_game(
     let bus = place.session(named, session)?;
     let (game, info) = choose_game(&bus, named)?;
     // Its sim may have come after the session was opened.
+    // Looked up again with the game's name: without a name, the registry was asked for any
+    // game.
     let token = place.net(Some(&game))?.token;
     Ok((bus.with_token(token), game, info))
 }
@@ -149,6 +155,8 @@ pub fn choose_game(bus: &Bus, named: Option<&GameName>) -> Result<(GameName, Gam
 fn only_game(bus: &Bus) -> Result<GameName, Missing> {
     let games = games(bus)?;
     match games.as_slice() {
+        // One game is the usual case, and asking for its name would be a nuisance; with
+        // several, a guess could join boats to somebody else's game.
         [game] => Ok(game.clone()),
         [] => Err(Missing::Yet("no sim is on the network".to_owned())),
         several => {
@@ -189,6 +197,8 @@ fn understood(answer: &[u8]) -> Result<GameInfo, Refusal> {
     }
     let not_understood = |e: String| Refusal::Version(format!("the sim's scenario is not understood: {e}"));
     let info: GameInfo = serde_json::from_slice(answer).map_err(|e| not_understood(e.to_string()))?;
+    // The rest of the program indexes teams and boats by what the scenario says, and this one
+    // comes from the network.
     info.scenario.check_references().map_err(not_understood)?;
     Ok(info)
 }
@@ -217,8 +227,12 @@ pub fn join(
     role: Role,
     vehicles: &[String],
 ) -> Result<Joined, Missing> {
+    // The hub would only drop what these keys do not allow: the node would wait for an answer
+    // that never comes, without a reason.
     check_keys(bus, scenario, role, vehicles)?;
     let bus = bus.clone().with_token(place.net(Some(game))?.token);
+    // The node's session is told, so that the sim believes the end of that link at once: a
+    // process that is killed closes its socket, and its boats hold in the same decision.
     let (version, node, asked) = (primitives::VERSION.to_owned(), bus.id(), clock::now());
     let request = JoinRequest { version, role, node, vehicles: vehicles.to_vec() };
     match bus.request(&topic::join(game, scenario, role, vehicles), &request, ANSWER)? {

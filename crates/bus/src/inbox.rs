@@ -43,6 +43,8 @@ impl<T> InboxSender<T> {
     pub fn offer(&self, item: T) -> bool {
         let Queue { items, capacity, .. } = &*self.0;
         let surplus = items.visit(|items| {
+            // The newest is refused, not the oldest: what was accepted is acted upon in its
+            // order, and a flood loses its own messages.
             if items.len() >= *capacity {
                 return Some(item);
             }

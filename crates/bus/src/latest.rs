@@ -30,6 +30,8 @@ impl<T> Latest<T> {
     /// Waits up to `limit` for an item; takes what is there, by cell. All `None` means that nothing came.
     pub fn take(&self, limit: Duration) -> Vec<Option<T>> {
         self.0.wait(limit, |cells| cells.iter().any(Option::is_some));
+        // All cells at once: an agent with boats of several teams works on the newest picture
+        // of each.
         self.0.visit(|cells| cells.iter_mut().map(Option::take).collect())
     }
 }

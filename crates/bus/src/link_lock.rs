@@ -45,6 +45,8 @@ impl LinkLock {
         let path = path(link).map_err(failed)?;
         let options = OpenOptions::new().read(true).write(true).create(true).mode(0o600).clone();
         let mut file = options.open(path).map_err(failed)?;
+        // A lock of the system and not a file that exists: it is gone when its process is,
+        // however that ended.
         match file.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => {

@@ -55,6 +55,8 @@ fn folder() -> PathBuf {
 /// Whether nobody but this user can have put something into the folder, or can read what is there.
 fn is_private(folder: &Path) -> bool {
     fs::symlink_metadata(folder).is_ok_and(|about| {
+        // `symlink_metadata`, so that a link that somebody else put into `/tmp` is not
+        // followed. The files hold tokens.
         about.is_dir() && about.uid() == rustix::process::geteuid().as_raw() && about.mode() & 0o077 == 0
     })
 }
@@ -113,6 +115,8 @@ impl Registration {
         let unfinished = self.0.with_added_extension("new");
         let mut file = fs::OpenOptions::new().write(true).create(true).truncate(true).mode(0o600).open(&unfinished)?;
         file.write_all(&serde_json::to_vec(entry)?)?;
+        // Renamed when it is complete: others read the folder at any time, and half a file
+        // would be no game.
         fs::rename(&unfinished, &self.0)
     }
 }
@@ -163,6 +167,7 @@ fn live_entry<E: DeserializeOwned>(path: &Path) -> Option<E> {
     // Where there is no /proc we cannot tell, and believe the file.
     let dead = Path::new("/proc/self").exists() && !Path::new(&format!("/proc/{pid}")).exists();
     if dead {
+        // A process that was killed leaves its file behind; whoever finds it tidies up.
         drop(fs::remove_file(path));
         return None;
     }

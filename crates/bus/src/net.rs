@@ -20,6 +20,8 @@ pub const DEFAULT_PORT: u16 = 7447;
 /// long; a link that cannot take even those is closed. A batch has up to 64 kB: answers of a megabyte, and as many urgent
 /// messages as anybody can ask for at once, find room. A message that is put together from fragments has a limit.
 const LINKS: [(&str, &str); 5] = [
+    // zenoh would wait a millisecond for room before it drops. It waits in a thread that serves
+    // everybody, so one stopped observer would slow all down.
     ("transport/link/tx/queue/congestion_control/drop/wait_before_drop", "0"),
     ("transport/link/tx/queue/congestion_control/block/wait_before_close", "100000"),
     ("transport/link/tx/queue/size/real_time", "16"),
@@ -82,6 +84,8 @@ impl Net {
         if config.get_json("access_control/enabled").ok().as_deref() != Some("true") {
             set(&mut config, "access_control", &access::control(game, scenario, self.keys.is_some()).to_string())?;
         }
+        // A star, no mesh: in lockstep everybody talks with the sim only, and a client needs no
+        // open port.
         set(&mut config, "mode", "\"router\"")?;
         let listen: Vec<String> = self.endpoints(&self.listen).into_iter().map(with_handshake_time).collect();
         set(&mut config, "listen/endpoints", &json!(listen).to_string())?;
@@ -105,6 +109,8 @@ impl Net {
         set(&mut config, "mode", "\"client\"")?;
         // Without an endpoint, a leaf on a local network scouts for a hub.
         set(&mut config, "connect/endpoints", &self.list(&self.connect))?;
+        // One attempt: the search for a game looks up where it is before each, since the next
+        // sim may be elsewhere and has another token.
         set(&mut config, "connect/timeout_ms", "0")?;
         set(&mut config, "connect/exit_on_failure", "true")?;
         Ok(config)
@@ -120,6 +126,8 @@ impl Net {
                 Config::from_file(path).map_err(|e| refused(reason(&e)))?
             }
         };
+        // Two runs on one machine must never meet, and nobody joins by accident: both happen
+        // with zenoh's defaults.
         set(&mut config, "scouting/multicast/enabled", if self.lan { "true" } else { "false" })?;
         set(&mut config, "scouting/gossip/enabled", "false")?;
         for (key, value) in LINKS {
@@ -129,6 +137,9 @@ impl Net {
             check_threads_for_keys()?;
             let [authority, certificate, key] = keys.files();
             let tls = json!({
+                // Names stay checked although addresses on a dock change: zenoh (1.10.2) trusts
+                // the public authorities beside ours, and none of them certifies `localhost` or
+                // a private address.
                 "root_ca_certificate": authority, "enable_mtls": true, "verify_name_on_connect": true,
                 "listen_certificate": certificate, "listen_private_key": key,
                 "connect_certificate": certificate, "connect_private_key": key,
@@ -165,6 +176,9 @@ fn with_handshake_time(endpoint: String) -> String {
         return endpoint;
     }
     let separator = if endpoint.contains('#') { ';' } else { '#' };
+    // The TLS listener has a time of its own beside `accept_timeout`. It also waits 0.1 s after
+    // each handshake that fails, in which nobody gets in; `.cargo/config.toml` sets that to
+    // nothing when zenoh is compiled.
     format!("{endpoint}{separator}tls_handshake_timeout_ms={ACCEPT_MS}")
 }
 
@@ -183,6 +197,8 @@ fn limit_strangers(config: &mut Config, game: &GameName, nodes: usize) -> Result
         // zenoh would refuse the newcomer: we end somebody else first (`crate::admission`).
         ("transport/unicast/accept_pending", (2 * nodes).to_string()),
         ("transport/unicast/accept_timeout", ACCEPT_MS.to_string()),
+        // Smaller than a leaf's: the fragments of a message are kept until it is complete, for
+        // each link.
         ("transport/link/rx/max_message_size", MESSAGE_MAX.to_string()),
         ("low_pass_filter", filters.to_string()),
     ] {

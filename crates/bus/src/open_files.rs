@@ -19,6 +19,8 @@ impl OpenFiles {
     pub(crate) fn reserve(wanted: u64) -> OpenFiles {
         let limits = getrlimit(Resource::Nofile);
         let [current, maximum] = [limits.current, limits.maximum].map(|limit| limit.unwrap_or(u64::MAX));
+        // The limit is lowered by what is kept, so that the system itself refuses the files:
+        // `accept` in zenoh cannot be asked to leave some.
         let kept = KEPT.min(maximum / 8);
         let most = maximum.min(current.max(wanted).saturating_add(kept));
         let files = OpenFiles { usual: most - kept, most };

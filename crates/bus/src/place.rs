@@ -50,6 +50,8 @@ impl Place {
     pub(crate) fn session(&self, game: Option<&GameName>, session: &mut PlacedSession) -> Result<Bus, Missing> {
         let net = self.net(game)?;
         match session {
+            // Opening a session costs five round trips, so it is kept as long as it leads to
+            // the same place.
             Some((there, bus)) if *there == net => return Ok(bus.clone()),
             Some((_, bus)) => bus.close(),
             None => {}

@@ -80,6 +80,10 @@ impl Bus {
         let Some(token) = self.token.as_ref().filter(|_| self.keys.is_none()) else {
             return self.ask_at(priority, key, Parcel::new(payload), limit, |_| true);
         };
+        // Any node may declare that it answers for a boat's gateway, and zenoh gives a question
+        // to the first that claims completeness: a stranger could swallow an E-stop and answer
+        // "safed". So all are asked, and only a sealed answer counts. A relay in the sim would
+        // have made each command depend on the sim's loop.
         let question = Parcel::question(payload);
         let mut refused = false;
         let answer = self.ask_at(priority, key, question.clone(), limit, |answer| {
@@ -109,6 +113,8 @@ impl Bus {
         // All who answer are asked, and each answer is seen when it comes: one that says nothing holds up nobody.
         let query = query.target(QueryTarget::All).consolidation(ConsolidationMode::None);
         let query = query.attachment((!question.attachment.is_empty()).then_some(question.attachment));
+        // `express`: not held back to fill a batch. A question is small, and somebody waits for
+        // its answer.
         let query = query.congestion_control(CongestionControl::Drop).priority(priority).express(true);
         let replies = query.wait().map_err(failed("ask at", key))?;
         let answers = std::iter::from_fn(|| replies.recv().ok()).filter_map(|reply| reply.into_result().ok());
@@ -189,6 +195,8 @@ impl Query {
         let answer = self.question.answer(self.key(), json, token);
         match self.asker {
             Asker::Zenoh(query) => {
+                // Unlike published messages, answers are JSON: they are rare, and read by
+                // people.
                 let reply = query.reply(query.key_expr().clone(), answer.bytes).encoding(Encoding::APPLICATION_JSON);
                 let reply = reply.attachment((!answer.attachment.is_empty()).then_some(answer.attachment));
                 // Whoever asked may be gone by now; then nobody misses the answer.

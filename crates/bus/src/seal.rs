@@ -32,11 +32,15 @@ impl Parcel {
 
     /// A question whose answers are to be sealed.
     pub(crate) fn question(bytes: Vec<u8>) -> Parcel {
+        // 128 bits: no two questions ever share one, so an answer that was recorded fits no
+        // later question.
         Parcel { bytes, attachment: random_bytes::<16>().to_vec() }
     }
 
     /// The answer of a node that knows `token`, if it knows one, to this question at `key`.
     pub(crate) fn answer(&self, key: &str, bytes: Vec<u8>, token: Option<&Token>) -> Parcel {
+        // A question without a nonce is from a node without the token, which could not check a
+        // seal.
         let token = token.filter(|_| !self.attachment.is_empty());
         let attachment = token.map(|token| token.hmac(&self.sealed(key, &bytes))).unwrap_or_default();
         Parcel { bytes, attachment }

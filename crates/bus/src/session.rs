@@ -150,6 +150,9 @@ impl Bus {
             Network::Zenoh(session) => session,
             Network::Simulated(session) => return Ok(Publisher(Sender::Simulated(session.publisher(&key)))),
         };
+        // What must arrive is said again by whoever said it: in lockstep the sim repeats
+        // pictures and agents repeat answers, and in real time a newer message follows. A
+        // message that waits would hold up the thread that serves all links.
         let builder = session.declare_publisher(key.clone()).congestion_control(CongestionControl::Drop);
         let builder = match priority {
             Priority::Urgent => builder.priority(qos::Priority::RealTime).express(true),
@@ -247,6 +250,8 @@ impl Bus {
             Network::Zenoh(session) => session,
             Network::Simulated(session) => return Ok(Declaration(Box::new(session.watch_links(take)))),
         };
+        // The link, not a liveliness token: anybody could show a token in the name of an agent,
+        // and a link that ends is known at once where the process died.
         let callback = move |event: zenoh::session::TransportEvent| {
             if event.kind() == SampleKind::Delete {
                 take(event.transport().zid().to_string());

@@ -97,6 +97,9 @@ impl SimLiveness {
         }
         self.missed_at = if self.is_there() == Some(false) { self.missed_at.or(Some(now)) } else { None };
         let Patience { silence, missing, unheard } = self.patience;
+        // What came first decides. A sim that dies is heard until its token goes; where the
+        // link was cut, silence came first, zenoh gives the link up after 10 s, and an agent
+        // that left then would be missing when the cable is back.
         let is_cut_off = |missed: Instant| missed.saturating_duration_since(self.heard_at) > missing;
         let limit = match self.missed_at {
             Some(_) if !self.is_heard => silence.min(unheard),

@@ -18,6 +18,7 @@ impl Bus {
         let name = vehicle.to_owned();
         self.subscribe(topic::status(game, vehicle), move |bytes| {
             let status = serde_json::from_slice::<GatewayStatus>(bytes).ok();
+            // Operators read the name in the status: one that does not fit its key is nobody's.
             status.filter(|status| status.vehicle == name).into_iter().for_each(&take);
         })
     }

@@ -48,6 +48,7 @@ impl NodeThread {
 
 impl Drop for NodeThread {
     fn drop(&mut self) {
+        // `join` alone would block the one thread that may run in a simulation.
         self.is_done.wait(std::time::Duration::MAX, |is_done| *is_done);
         // A thread that panicked has nothing to give back.
         self.handle.take().map(JoinHandle::join).into_iter().for_each(drop);

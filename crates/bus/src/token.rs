@@ -56,6 +56,8 @@ impl Token {
         let mut mac = Hmac::<Sha256>::new_from_slice(&self.0).expect("a key of any length will do");
         for part in parts {
             // With its length, so that no two lists of parts look alike.
+            // A password in a message could be read and used again; a number used once, and a
+            // MAC under the secret, cannot.
             mac.update(&(part.len() as u64).to_le_bytes());
             mac.update(part);
         }
@@ -69,6 +71,8 @@ impl Token {
 
     /// Whether `mac` is the HMAC-SHA256 of these parts under the token; takes the same time for every wrong one.
     pub(crate) fn verifies(&self, parts: &[&[u8]], mac: &[u8]) -> bool {
+        // `verify_slice` takes the same time wherever the difference is; `==` would tell an
+        // attacker, byte by byte.
         self.mac(parts).verify_slice(mac).is_ok()
     }
 
@@ -254,6 +258,8 @@ impl Guard {
         if let Some(proof) = proof
             && let Some(i) = self.open.iter().position(|(challenge, _)| *challenge == proof.challenge)
         {
+            // Before the proof is looked at: a challenge is good for one attempt, right or
+            // wrong.
             self.open.remove(i);
             if token.is_proven(&proof, key, body.get().as_bytes()) {
                 return Checked::Granted(request);

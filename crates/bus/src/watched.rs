@@ -22,6 +22,8 @@ impl<T> Watched<T> {
     pub fn visit<R>(&self, visit: impl FnOnce(&mut T) -> R) -> R {
         let result = visit(&mut self.state.lock());
         self.changed.notify_all();
+        // Woken by address: a condition variable would wake threads of which the simulation
+        // knows nothing.
         simulated::wake(self.address());
         result
     }

@@ -9,6 +9,11 @@ use scenario::rewards::Rewards;
 use scenario::training::CriticInput;
 use std::path::Path;
 
+// On one core, all four boats shown at every decision: 192,000 decisions of games a second in
+// calm water, 75,000 with sea and sensors, 26,000 of these against strategy 4. A new game takes
+// 0.03 ms in calm water and 0.41 ms with a sea, a step of it included: more than half of that
+// are the sea's tables for each boat, a quarter is checking the scenario files again for the
+// numbers drawn.
 const GAMES: usize = 64;
 
 fn setup(game: &str, opponent: Player) -> Setup {

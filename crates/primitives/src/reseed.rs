@@ -73,6 +73,9 @@ impl TimedNoise {
     #[inline]
     #[must_use]
     pub fn at(&self, now: SimTime) -> Noise {
+        // Another key from a time on, and no snapshot. The past is played again, at most twice
+        // the time of a branch; for that a branch is a game like any other, with a seed and a
+        // key on the command line, minds included.
         let begun = |(after, _): &&(SimTime, Noise)| *after < now;
         self.later.iter().rev().find(begun).map_or(self.first, |(_, noise)| *noise)
     }

@@ -3,6 +3,8 @@
 use primitives::codec::ENCAPSULATION;
 
 /// The message that holds it.
+// Foxglove would plot JSON by itself, but rosbag tools refuse a file in which topics are
+// encoded in different ways, or one without a schema.
 pub(crate) const SCHEMA: &str = "std_msgs/msg/String";
 /// Its definition.
 pub(crate) const DEFINITION: &str = "string data\n";

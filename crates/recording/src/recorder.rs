@@ -121,6 +121,9 @@ impl Recorder {
         let queue = Queue { jobs: sender, waiting_max, shared: Arc::default() };
         let (theirs, size_of) = (Arc::clone(&queue.shared), path.clone());
         let thread = std::thread::Builder::new().name("recorder".to_owned());
+        // In the sim's process, not as an observer on the network, which would have to be
+        // waited for or would miss messages. The game hands over copies; `benches/recording.rs`
+        // measures what that costs.
         let thread = thread.spawn(move || write(writer, &jobs, &theirs, &size_of))?;
         Ok(Recorder { path, queue, thread: Some(thread) })
     }
@@ -192,6 +195,8 @@ impl Queue {
         let size = entry.size();
         let bytes = self.shared.waiting_bytes.fetch_add(size, Ordering::Relaxed) + size;
         let entries = self.shared.waiting.fetch_add(1, Ordering::Relaxed) + 1;
+        // What the disk is too slow for is dropped and counted: a game is never held up by it.
+        // `--check` names the gaps, and does not take them for a game that diverged.
         let has_room = entries <= entries_max && bytes <= bytes_max;
         let is_taken = has_room && self.jobs.try_send(Job::Write(entry, utc::now_ns())).is_ok();
         if !is_taken {

@@ -93,12 +93,16 @@ impl<W: Write + Seek> Writer<W> {
     pub fn begin(file: W, opening: &Opening) -> Result<Writer<W>, RecordError> {
         let options = mcap::WriteOptions::new().profile("ros2").library(format!("squall {}", primitives::VERSION));
         // A chunk is written when it is whole: what is on the disk is then never in need of mending.
+        // Compressed (zlib), a 2v2 game would be a quarter to half as long. But that needs C,
+        // and a file that was cut would lose everything from the cut chunk on.
         let options = options.compression(None).chunk_size(Some(CHUNK)).disable_seeking(true);
         let mut mcap = options.create(file)?;
         let Opening { kind, began_utc_ns, facts, more, teams } = opening.clone();
         let mut header = facts;
         header.entry(VERSION.to_owned()).or_insert_with(|| primitives::VERSION.to_owned());
         header.insert(BEGAN.to_owned(), began_utc_ns.to_string());
+        // A checksum of the header's own: the one over the whole file is missing where the file
+        // is cut, and a header is believed as a whole or not at all.
         header.insert(CHECKSUM.to_owned(), checksum(&header));
         for (name, facts) in std::iter::once((kind.header(), header)).chain(more) {
             mcap.write_metadata(&Metadata { name: name.to_owned(), metadata: facts })?;
@@ -153,6 +157,8 @@ impl<W: Write + Seek> Writer<W> {
         }
         let stamp = Stamp { version: Inputs::VERSION, ..decision.frame.stamp };
         let inputs = decision.inputs.iter().map(|input| (*input).into()).collect();
+        // Inputs and not only what came of them: so a game can be simulated again, with another
+        // version or a debugger beside it, and a field game with real boats too.
         self.put_message(INPUTS, &Inputs { stamp, inputs }, stamp, utc_ns)?;
         self.put_message(FRAME, &*decision.frame, stamp, utc_ns)
     }
@@ -179,6 +185,8 @@ impl<W: Write + Seek> Writer<W> {
                 (id, 0)
             }
         };
+        // Simulated time, over which tools plot: a lockstep game of ten minutes that took a
+        // second and a half would be a spike otherwise. The clock's time is `publish_time`.
         let log_time = self.began_utc_ns.saturating_add(u64::try_from(at.0).unwrap_or(0));
         let header = MessageHeader { channel_id, sequence, log_time, publish_time: utc_ns };
         Ok(self.mcap.write_to_known_channel(&header, bytes)?)

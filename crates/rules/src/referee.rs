@@ -91,12 +91,17 @@ impl Referee {
         let flags = is_due(look.now, self.rules.flag_look_period);
         self.switch_power_plays(standing, events);
         if tags {
+            // First: a boat that has left is out of the taggers' reach, and loses its flag all
+            // the same.
             self.watch_boundary(standing, at, events);
         }
         if flags && self.rules.resolution == Resolution::InTurn {
             self.grab(standing, notes, look, events);
         }
         if tags {
+            // Before grabs: a boat that is tagged at the flag does not take it. In turn, as
+            // Pyquaticus has it, whoever is listed first has more tags; so that is for
+            // comparison only.
             self.tag(standing, notes, look, events);
         }
         if flags && self.rules.resolution == Resolution::AtOnce {

@@ -57,6 +57,8 @@ impl Files {
         }
         let bytes: Arc<[u8]> = match (input_file::read(path, bytes_max), built_in(path)) {
             (Ok(bytes), _) => bytes.into(),
+            // A file on the disk always wins, and names work in any folder. Unpacking the
+            // program's files into a folder of the user would have left old copies behind.
             (Err(error), Some(bytes)) if error.kind() == ErrorKind::NotFound => bytes.into(),
             (Err(error), _) => return Err(error.to_string()),
         };

@@ -70,6 +70,7 @@ impl Packed {
     ) -> Result<P, UnpackError> {
         let plan = plan(&serde_json::from_str(&self.spec)?, Arc::new(Files::kept(self.files)))?;
         let found = digest(&plan);
+        // The digest of plan and files says whether two versions mean the same games.
         if found == self.digest { Ok(plan) } else { Err(UnpackError::Other { expected: self.digest, found }) }
     }
 }

@@ -36,6 +36,9 @@ pub(super) fn declared(kind: Kind) -> &'static Value {
     SCHEMAS[kind as usize].get_or_init(|| match kind {
         Kind::Game => generated::<raw::Game>(kind),
         Kind::Field => generated::<raw::Field>(kind),
+        // The type that the program believes, wherever it has the same form as in files: two
+        // types for everything were twice the text, and the copying between them hid the few
+        // values that really change.
         Kind::Rules => generated::<Rules>(kind),
         Kind::Boat => generated::<raw::Boat>(kind),
         Kind::Sea => generated::<raw::Sea>(kind),

@@ -38,6 +38,10 @@ struct Validator<'a> {
 impl<'a> Validator<'a> {
     /// The value of `node`, if it fits the schema.
     fn value(&mut self, node: &'a Node, schema: &'a Json) -> Option<Json> {
+        // Not by the crate `jsonschema`: it checks JSON values, which have no places and cannot
+        // be NaN, says of a table that fits none of several kinds only that, and brings regular
+        // expressions, host names and big fractions. What our types use of JSON Schema is this
+        // file.
         if let Some(branches) = schema.get("anyOf").and_then(Json::as_array) {
             return match branches.iter().find(|branch| self.fits(node, branch)) {
                 Some(branch) => self.value(node, branch),

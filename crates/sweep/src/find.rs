@@ -196,6 +196,8 @@ pub fn find(
     let (density, reseed, samples) = (nominal.clone(), scenario.reseed, vec![]);
     let mut searched =
         Searched { plan, condition, reseed, journal, jobs, stop, tell: &mut tell, nominal, density, samples };
+    // How many games split and how often is settled before the first is played: a search that
+    // stopped when it liked what it saw would be biased.
     let per_round = (games / (2 * ROUNDS)).max(1);
     searched.learn(per_round, learns)?;
     let left = games.saturating_sub(searched.samples.len()).max(1);

@@ -106,6 +106,9 @@ fn play_each<E>(
         let (mut waiting, mut due) = (BTreeMap::new(), 0);
         for (i, played) in receiver {
             waiting.insert(i, played);
+            // Written in order, and a report is made of the table alone: a sweep that was cut
+            // off, or was played by other processes, gives the same bytes. What waits takes
+            // less than a kilobyte a game.
             while let Some(played) = waiting.remove(&due) {
                 due += 1;
                 take(played).inspect_err(|_| refused.store(true, Ordering::Relaxed))?;
@@ -152,6 +155,8 @@ fn one(plan: &Plan, job: Job, loaded: &mut Loaded, is_stopped: &dyn Fn() -> bool
         boats: vec![],
         approaches: Default::default(),
     };
+    // An axis puts its value into the tree of a file before that is read by its schema: so
+    // every key can be an axis, and the command beside a number plays that very game.
     let scenario = match loaded.scenario(plan, &job) {
         Ok(scenario) => scenario.of_seed(job.seed).map_err(|problems| problems.to_string()),
         Err(why) => Err(why.clone()),

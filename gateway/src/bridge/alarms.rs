@@ -91,14 +91,20 @@ impl Alarms {
         events: &mut Vec<Event>,
     ) {
         let ordered = command.and_then(ordered_pct);
+        // An alarm and no failsafe: how exact these currents are is not published, and a boat
+        // that is stopped for a wrong sensor drifts. They can become failsafes when boats have
+        // shown what is normal.
         for wrong in WRONGS {
             for side in [0, 1] {
                 let amps = self.found(wrong, side, power, ordered);
                 let alarm = &mut self.currents[wrong as usize][side];
+                // The time of the first report is kept and the current of the newest, so that
+                // the text follows the pump while the debounce runs.
                 alarm.since = amps.map(|amps| (alarm.since.map_or(now, |(since, _)| since), amps));
                 let lasts = alarm.since.is_some_and(|(since, _)| (now - since).as_s() >= self.watch.debounce_s);
                 match (std::mem::replace(&mut alarm.is_told, lasts), alarm.since) {
                     (false, Some((_, amps))) if lasts => events.push(Event::Warning(text(wrong, side, amps))),
+                    // The end is a remark: nobody has to act on it.
                     (true, None) => events.push(Event::Remark(format!("over: {}", name(wrong, side)))),
                     _ => {}
                 }
@@ -115,6 +121,8 @@ impl Alarms {
             Wrong::TooLittle => {
                 // Boats that measure nothing report zeros: the other side shows that this one does.
                 let is_measured = there.is_some_and(|amps| amps.abs() > watch.thruster_min_a);
+                // In a turn one side may be ordered nothing, which draws nothing; only with
+                // both ordered does a silent side mean something.
                 let is_ordered = ordered.is_some_and(|sides| sides.iter().all(|pct| pct.abs() >= ORDERED_MIN_PCT));
                 here.filter(|amps| amps.abs() < watch.thruster_min_a && is_measured && is_ordered)
             }

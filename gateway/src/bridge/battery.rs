@@ -30,10 +30,14 @@ impl BatteryLog {
     }
 
     pub(super) fn take(&mut self, now: SimTime, volts: Option<f64>) {
+        // Any battery sentence ends the silence, even one without a voltage: the boat reports,
+        // and that is what the warning is about.
         self.silence = (now, false);
         if let Some(volts) = volts {
             self.volts = Some((now, volts));
             let low = volts < self.watch.volts_min;
+            // Voltage sags under thrust: the debounce keeps a burst of full power from ending
+            // the game.
             self.low_since = low.then(|| self.low_since.unwrap_or(now));
         }
     }
@@ -50,6 +54,8 @@ impl BatteryLog {
     /// Whether a battery that is watched has become silent: once.
     pub(super) fn falls_silent(&mut self, now: SimTime) -> bool {
         let (since, said) = self.silence;
+        // Who has switched the watch off by a limit of zero need not hear that nothing is
+        // watched.
         let silent = self.watch.volts_min > 0.0 && (now - since).as_s() > SILENCE_S;
         self.silence.1 |= silent;
         silent && !said

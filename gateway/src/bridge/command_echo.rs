@@ -24,6 +24,8 @@ const SENT_MAX: usize = 640;
 impl Shown {
     /// Whether a boat that was sent this would show that. What a boat does not show cannot differ.
     fn agrees(&self, shown: &Shown, thrust_pct: f64) -> bool {
+        // What is not shown cannot disagree: stand-ins and ArduPilot show fewer fields than a
+        // Surveyor.
         let within = |sent: Option<f64>, shown: Option<f64>, apart: f64| {
             sent.zip(shown).is_none_or(|(sent, shown)| (sent - shown).abs() <= apart)
         };
@@ -32,6 +34,8 @@ impl Shown {
         self.mode == shown.mode
             && match self.mode {
                 Mode::Thruster => {
+                    // The heading does not count in mode T: a boat that steers no heading
+                    // reports the one it has.
                     within(self.thrust, shown.thrust, thrust_pct)
                         && within(self.difference, shown.difference, thrust_pct)
                 }
@@ -76,6 +80,8 @@ impl CommandEcho {
 
     /// The boat was sent what it should show as this.
     pub(super) fn note_sent(&mut self, now: SimTime, shown: Shown) {
+        // Repeats of the same command are one: sent at 10 Hz for a minute they would displace
+        // the change that the boat may still be showing.
         if self.sent.back().is_none_or(|(_, last)| *last != shown) {
             self.sent.push_back((now, shown));
         }
@@ -109,6 +115,9 @@ impl CommandEcho {
         }
         // How a boat shows set-points must have been seen before one of them can be called foreign.
         let knows = if is_same_mode { self.has_shown_set_point } else { self.has_shown };
+        // A set-point of others moves the boat, so one is enough. Standby that we did not send
+        // may be the boat's own doing (a button, a failsafe), so it takes a repetition: a boat
+        // that falls back to standby once is found by the mode that it does not show.
         if shown.mode.is_set_point() {
             if is_new && knows {
                 self.foreign_at = Some(now);

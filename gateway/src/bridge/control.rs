@@ -43,6 +43,8 @@ impl ControlLog {
         if operator.is_none_or(|operator| operator == Operator::Secondary) {
             self.echo.take(now, shown);
         } else {
+            // Under another operator the boat shows that one's commands, rightly; what was
+            // learned about ours ends.
             self.echo = CommandEcho::new(self.watch);
         }
         let mismatch = self.sent.is_some_and(|sent| sent != shown.mode);
@@ -56,6 +58,9 @@ impl ControlLog {
         if self.sent != Some(mode) {
             self.sent = Some(mode);
             let matches = self.mode() == Some(mode);
+            // The clock starts when the mode is ordered, not when the boat first shows another
+            // one: a boat that reports once in a while must not get a second echo time for
+            // free.
             self.mismatch_since = (!matches).then_some(now);
         }
     }
@@ -90,13 +95,18 @@ impl ControlLog {
 
     /// Who commands the boat now.
     pub(super) fn control(&self, now: SimTime) -> Control {
+        // Some boats report no operator. Their owner says in the file that the gateway commands
+        // them; without that word silence means that somebody else may.
         let silent = if self.watch.assumed { Control::Granted } else { Control::Unknown };
         let Some(report) = self.reported else { return silent };
+        // An assumption covers a boat that never reports, not one that has stopped to.
         if (now - report.at).as_s() > self.watch.age_max_s {
             return Control::Unknown;
         }
         let is_ours = report.operator.map_or(self.watch.assumed, |operator| operator == Operator::Secondary);
         match (report.operator, self.mode_mismatch(now)) {
+            // Foreign orders come first: a boat with two masters also disobeys and looks deaf,
+            // and the operator has to know that there is another gateway.
             _ if is_ours && self.echo.is_foreign(now) => Control::Foreign,
             (_, None) if is_ours && self.echo.is_deaf(now) => Control::Deaf,
             (Some(Operator::Secondary), None) => Control::Granted,

@@ -83,11 +83,15 @@ pub enum Input {
     /// The link is down.
     LinkDown,
     /// Bytes from the boat.
+    // Recorded apart, as messages of the link with their direction: as JSON numbers they would
+    // take four times the room.
     #[serde(skip)]
     Bytes(Vec<u8>),
     /// The sim has let the boat join: earlier orders do not count.
     Joined,
     /// An order, and the time of the picture that it answers.
+    // With the time of the picture that it answers: that, and not the message, makes an order
+    // fresh. A sim that repeats itself keeps no boat moving.
     Order(Order, SimTime),
     /// An order that could not be read.
     BadOrder,

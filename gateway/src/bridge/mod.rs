@@ -146,6 +146,8 @@ impl Bridge {
             Input::Bytes(bytes) => self.read(now, bytes, out),
             Input::Site(site) => self.on_site = Some(OnSite::new(&self.plan.gateway, site)),
             Input::Hung(seconds) => self.hung_s = Some(*seconds),
+            // The order of the sim before may answer a picture of another game; the boat stops
+            // until the new one orders something.
             Input::Joined => self.order = None,
             Input::Order(order, given) => self.take_order(now, *order, *given),
             Input::BadOrder => self.counters.bad_orders += 1,
@@ -166,6 +168,8 @@ impl Bridge {
             Input::Tick => {}
         }
         if request.is_some() && !matches!(input, Input::Operator(OperatorCommand::Mission(_))) {
+            // Anything else that is asked ends an upload, an E-stop above all: a boat that
+            // waits for more lines might take the next command for one.
             self.cancel_upload(now, out);
         }
         self.advance(now, request, out);
@@ -210,6 +214,8 @@ impl Bridge {
         self.alarms.forget();
         self.recovery_point = RecoveryPoint::default();
         self.last_sent = None;
+        // The boat may be under way on the last command of whoever was connected before: the
+        // first thing it is sent is thrust zero, and then standby.
         self.under_way = true;
     }
 
@@ -251,6 +257,8 @@ impl Bridge {
             return;
         };
         // No order can answer a picture before the first.
+        // Fresh is what answers a newer picture, not what arrives: a sim that repeats itself
+        // must keep no boat moving.
         let newer = given > self.order.map_or(SimTime::ZERO, |current| current.given);
         if newer {
             self.counters.orders += 1;
@@ -274,6 +282,8 @@ impl Bridge {
             _ if self.plan.dry_run => Err("a dry run sends the boat nothing but standby, and so no mission".to_owned()),
             _ if !unfit.is_empty() => Err(Refusal::NotReady(unfit).to_string()),
             (_, Some(outside)) => Err(outside),
+            // The state is left to the supervisor by a disarm: an upload takes seconds, in
+            // which the boat must rest.
             _ => self.protocol.begin_upload(now, mission),
         };
         match begun {
@@ -314,6 +324,8 @@ impl Bridge {
         if matches!(conditions.control, Control::Foreign | Control::Other(_)) {
             self.recovery_point = RecoveryPoint::default();
         }
+        // A change goes out at once, between two repetitions: at 10 Hz a stop would wait 100 ms
+        // otherwise.
         let urgent = before.is_some() || request.is_some() || self.last_sent.is_none() || changed;
         if !self.link_up {
             self.protocol.abort_upload();
@@ -379,6 +391,7 @@ impl Bridge {
             command
         };
         // Thrust goes to zero before any command that is not our own set-point.
+        // What a Surveyor does with its last thrust when it leaves mode T is not published.
         let is_set_point = matches!(action, Action::Follow | Action::Zero);
         if !is_set_point && std::mem::replace(&mut self.under_way, false) && !self.plan.dry_run {
             self.protocol.write(now, Command::Zero, &mut out.bytes);
@@ -439,6 +452,8 @@ impl Bridge {
         let Some(site) = &self.on_site else { return };
         let Some((nav, age_s)) = site.estimator.nav(now) else { return };
         let is_new = std::mem::take(&mut self.nav_is_new);
+        // Invalid navigation is reported too: the sim must learn at once that the position is
+        // not to be extrapolated, and operators see where the boat was last.
         let valid = self.link_up && site.estimator.fault(now).is_none();
         let (reported_at, reported_valid) = self.nav_reported;
         let overdue = !valid && (now - reported_at).as_s() >= INVALID_NAV_EVERY_S;
@@ -458,6 +473,9 @@ impl Bridge {
             let OnSite { estimator, geofence, bow, .. } = site;
             (nav_fault, thrust_fault) = (estimator.fault(now), estimator.thrust_fault(now));
             if let Some((nav, _)) = estimator.nav(now) {
+                // By the faster of the reported and the measured speed, at once: a log that
+                // sticks at zero would otherwise let the boat run into the fence before the
+                // check of instruments finds it.
                 inside = geofence.is_inside(now, nav.at(), estimator.fastest_velocity_m_s());
                 blocked = bow.is_blocked(now, &nav, known);
             }
@@ -473,6 +491,8 @@ impl Bridge {
             inside,
             battery_low: self.battery.is_low(now),
             blocked,
+            // The age counts from arrival by our own clock, since the clocks of sim and gateway
+            // are not synchronised.
             order_fresh: self.order.is_some_and(|current| (now - current.came).as_s() <= ttl_s),
         }
     }

@@ -48,6 +48,8 @@ impl OnSite {
             return Some("a place of it is outside of the geofence".to_owned());
         }
         let boat = self.estimator.nav(now).map(|(nav, _)| nav.at());
+        // The way from the boat to the first waypoint is a leg as well: the boat goes there by
+        // itself, whatever lies between.
         let way: Vec<Ned> = boat.into_iter().chain(mission.waypoints.iter().filter(on_globe).map(place)).collect();
         let first = usize::from(boat.is_none());
         let leg = way.windows(2).position(|leg| !area.contains_way(leg[0], leg[1]))? + first;
@@ -59,6 +61,8 @@ impl OnSite {
     pub(super) fn is_way_to(&self, now: SimTime, [lat_deg, lon_deg]: [f64; 2]) -> bool {
         let erp = self.estimator.place(lat_deg, lon_deg);
         let from = self.estimator.nav(now).map_or(erp, |(nav, _)| nav.at());
+        // From outside the fence the way in is allowed: that is when a recovery point is needed
+        // most.
         self.geofence.area().leads_in(from, erp)
     }
 

@@ -13,6 +13,8 @@ pub(super) fn request_from(command: &OperatorCommand) -> Option<OperatorRequest>
         OperatorCommand::Release => Some(OperatorRequest::Release(Scope::Boat)),
         OperatorCommand::StationKeep => Some(OperatorRequest::Delegate(Task::StationKeep)),
         OperatorCommand::GoToErp => Some(OperatorRequest::Delegate(Task::GoToErp)),
+        // A mission arms nothing until its upload has ended, and a mode has numbers to be
+        // checked against the file's limits.
         OperatorCommand::Status | OperatorCommand::Mission(_) | OperatorCommand::Mode(_) => None,
     }
 }

@@ -30,8 +30,13 @@ impl RecoveryPoint {
         let RecoveryPoint::Uploading(erp, shown) = *self else { return };
         let is_ours = report.operator.is_none_or(|operator| operator == Operator::Secondary);
         *self = match report.shown.mode {
+            // Another operator may upload a mission of their own, and a boat does not say which
+            // one it has.
             _ if !is_ours => RecoveryPoint::Unknown,
             Mode::FileDownload => RecoveryPoint::Uploading(erp, true),
+            // No sentence acknowledges an upload. What can be seen is that the boat went into
+            // mode F for the lines and then into W by our command; over TCP no line is lost on
+            // the way.
             Mode::Waypoint if shown && !is_uploading => RecoveryPoint::Taken(erp),
             _ => *self,
         };

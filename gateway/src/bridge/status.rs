@@ -55,6 +55,7 @@ impl Bridge {
     pub fn state_in_words(&self) -> String {
         match self.supervisor.state() {
             State::EStopped => format!("e-stopped (by an E-stop of {})", self.supervisor.stopped_by()),
+            // The state keeps its first word: stops go by it, and readers outside may.
             state if self.protocol.is_uploading() => format!("{state}, uploading a mission"),
             state => state.to_string(),
         }

@@ -10,11 +10,14 @@ impl Bridge {
     #[must_use]
     pub fn shutdown_message(&self) -> Vec<u8> {
         let mut message = Vec::new();
+        // A copy: what the shutdown would send is asked for again and again, for the guard, and
+        // must change nothing.
         let mut protocol = self.protocol.clone();
         if self.plan.dry_run {
             protocol.write(SimTime::ZERO, Command::Standby, &mut message);
             return message;
         }
+        // A boat in the middle of a download might take the stop for one of its lines.
         if protocol.abort_upload() {
             protocol.write(SimTime::ZERO, Command::EndOfUpload, &mut message);
         }
@@ -31,6 +34,9 @@ impl Bridge {
     /// Standby, with the next start-up word where the boat listens to us.
     pub(super) fn standby(&mut self) -> Command {
         let listens = self.conditions.control == Control::Granted && !self.under_way && !self.plan.dry_run;
+        // Words such as THR_ON switch outputs of the boat and are sent once. They ride on
+        // standby sentences, one at a time, and only when the boat reports us in control, so
+        // that none is lost on a boat that ignores us.
         let word = if listens { self.words.pop_front() } else { None };
         word.map_or(Command::Standby, Command::Switch)
     }

@@ -86,6 +86,7 @@ impl Autopilot {
 
     /// A mission as a whole, with the speed that it names, m/s; the recovery point stays.
     pub(super) fn set_mission(&mut self, waypoints: Vec<Ned>, speed_m_s: Option<f64>) {
+        // Place 0 is the home, which a mission does not replace.
         self.places.retain(|index, _| *index == 0);
         self.places.extend((1..).zip(waypoints));
         (self.speed_m_s, self.next) = (speed_m_s, 1);
@@ -101,6 +102,8 @@ impl Autopilot {
     /// The upload ends; returns a message. With a line missing there is no mission.
     pub(super) fn end_download(&mut self) -> Option<String> {
         let upload = self.upload.take()?;
+        // What a real Surveyor does with a short upload is not known. The strictest answer lets
+        // our own uploads be tested for completeness.
         if f64::from(upload.lines) != upload.announced {
             return Some(format!(
                 "mission refused: {} lines were announced, {} could be read",
@@ -146,6 +149,8 @@ impl Autopilot {
             if let Some(order) = go(pose, place, self.speed_m_s()) {
                 return order;
             }
+            // A reached waypoint becomes the station, so that the boat stays where the mission
+            // ended.
             self.next = self.next.max(1) + 1;
             self.station = Some(place);
         }
@@ -165,6 +170,8 @@ fn go(pose: Pose, place: Ned, speed_m_s: f64) -> Option<Order> {
     }
     let heading_rad = pose.at.bearing_rad(place);
     let (_, ahead) = math::sin_cos(wrap_pi(heading_rad - pose.psi_rad));
+    // A boat that points elsewhere turns first and drives then: with full thrust it would
+    // circle its station.
     let share = ahead.max(0.0) * ahead.max(0.0);
     let limit_m_s = (APPROACH_PER_S * distance_m).min(speed_m_s);
     Some(Order::Steer { heading_rad, speed_m_s: limit_m_s * share })

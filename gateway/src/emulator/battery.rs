@@ -83,8 +83,12 @@ impl Battery {
         if self.drains {
             self.left = (self.left - drawn_ah / self.pack.capacity_ah).max(0.0);
         }
+        // Empty, it turns no propeller, but goes on reporting: a boat's electronics outlast its
+        // thrusters.
         let order = if self.left > 0.0 { order } else { Order::Hold };
         let rest_v = self.rest_v();
+        // By the voltage at rest and not under load: a loop through the resistance would need
+        // iterations for a few per cent.
         self.thruster_a = powers(order).map(|share| share * self.pack.thruster_w / rest_v);
         order
     }
@@ -139,6 +143,8 @@ fn powers(order: Order) -> [f64; 2] {
     let full_m_s = speed_of_thrust(100.0);
     let of_speed = |speed_m_s: f64| {
         let share = (speed_m_s / full_m_s).clamp(0.0, 1.0);
+        // Power goes with the cube of the speed that the thrust gives: propellers at 40 % of
+        // thrust last far longer than 2.5 times.
         share * share * share
     };
     match order {

@@ -109,6 +109,7 @@ impl Emulator {
 
     /// Takes bytes from a port.
     pub fn take(&mut self, now: SimTime, port: Port, bytes: &[u8]) {
+        // Taken out while it is used: sentences change the rest of the emulator.
         let mut framer = std::mem::take(self.framer(port));
         framer.push(bytes, &mut |body| {
             // Unknown sentences are ignored.
@@ -150,6 +151,8 @@ impl Emulator {
     pub fn order(&mut self, now: SimTime) -> Order {
         let watchdog = self.plan.watchdog_s.map(SimTime::from_s);
         let silent = watchdog.is_some_and(|limit| now - self.commanded_at > limit);
+        // Only where a file asks for it: whether Surveyors have a watchdog is not published,
+        // and a gateway that is safe without one is safe with it.
         if silent && self.command.mode != Mode::Standby {
             self.command = Command::default();
         }
@@ -208,6 +211,8 @@ impl Emulator {
             Port::Secondary => self.operator == Operator::Secondary,
         };
         match sentence {
+            // Counted and ignored, without a word to the sender: so a back seat that does not
+            // watch who is in control learns nothing of it.
             Sentence::Command(_) if !in_control => self.ignored += 1,
             Sentence::Command(command) => {
                 self.followed += 1;
@@ -247,6 +252,8 @@ impl Emulator {
                 }
             }
             mode => {
+                // Another mode ends mode T: its thrust must not come back with the next command
+                // that leaves a field empty.
                 (self.thrust_pct, self.difference_pct) = (0.0, 0.0);
                 // A command of the same mode goes on with what is under way.
                 if let (true, Some(own)) = (mode != self.command.mode, &self.sensed.own) {

@@ -4,6 +4,7 @@ use messages::picture::OwnBoat;
 use primitives::SimTime;
 
 /// A receiver that has no newer fix than this reports none, s.
+// The period of a receiver that measures once a second.
 const FIX_AGE_MAX_S: f64 = 1.0;
 
 /// What its sensors measured last.

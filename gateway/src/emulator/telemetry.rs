@@ -39,6 +39,8 @@ pub(super) fn burst(boat: &Emulator, now: SimTime, out: &mut Vec<u8>) {
     }
     Sentence::Battery(battery(&boat.battery, now)).write(out);
     Sentence::ControlState(control_state(boat)).write(out);
+    // The one code that is known, by the driver of West Point: anything else is a warning
+    // there.
     Sentence::BoatError(BoatError { code: "N".to_owned() }).write(out);
 }
 
@@ -66,6 +68,8 @@ impl FixReport {
             time: began.later(seen),
             at: boat.sensed.has_fix(now).then(|| boat.frame.lat_lon(nav.at())),
             psi_rad: nav.psi_rad,
+            // Blank and not zero: a reader that takes a missing course for north would send a
+            // resting boat's velocity the wrong way.
             course_rad: (speed_m_s >= COURSE_FROM_M_S).then(|| math::atan2(velocity.east, velocity.north)),
             speed_m_s,
         }
@@ -76,6 +80,8 @@ impl FixReport {
             talker: Talker::GP,
             time: Some(self.time),
             at: self.at,
+            // Surveyors show DGPS (2) with some eleven satellites in the samples that are
+            // public.
             quality: if self.at.is_some() { 2 } else { 0 },
             satellites: Some(if self.at.is_some() { 11 } else { 0 }),
             hdop: self.at.map(|_| 0.98),
@@ -157,6 +163,7 @@ fn battery(battery: &super::battery::Battery, now: SimTime) -> Battery {
 
 fn control_state(boat: &Emulator) -> ControlState {
     // Where it steers no heading, it reports the one it has.
+    // Seen in public samples of PSEAD: mode T shows the boat's own heading.
     let steers = matches!(boat.command.mode, Mode::Heading | Mode::Speed);
     let has = || boat.sensed.own.as_ref().map(|own| compass_deg_from_rad(own.nav.psi_rad - boat.plan.declination_rad));
     // As the boat follows it: no more than all, but for a speed.

@@ -48,6 +48,8 @@ impl GeofenceArea {
     /// # Errors
     /// [`GeofenceError`] says what is outside.
     pub fn check(&self, scenario: &Scenario, vehicle: VehicleId) -> Result<(), GeofenceError> {
+        // A keep-out that touches nothing is a mistyped coordinate, and the shoal that it was
+        // for lies unprotected.
         let is_apart = |keep_out: &Vec<Ned>| {
             sides(keep_out).all(|(a, b)| !is_within(&self.outline, a) && met(&self.outline, a, b) == 0)
         };
@@ -57,6 +59,7 @@ impl GeofenceArea {
         let boat = &scenario.vehicles[vehicle.index()];
         let starts = match &boat.start_position {
             StartPosition::At(pose) => vec![pose.at],
+            // A drawn position may be in any corner, so all of them have to be inside.
             StartPosition::Somewhere { along_m, across_m, .. } => {
                 let ends = [along_m.0, along_m.1].into_iter();
                 let corners = ends.flat_map(|along| [across_m.0, across_m.1].map(|across| (along, across)));
@@ -84,6 +87,8 @@ impl GeofenceArea {
     /// outside, or in a keep-out, comes back by it.
     #[must_use]
     pub fn leads_in(&self, from: Ned, to: Ned) -> bool {
+        // From the wrong side exactly one crossing leads in; a second one would lead out again
+        // in between.
         let crosses_once = |polygon: &[Ned], wrong: bool| met(polygon, from, to) == usize::from(wrong);
         self.contains(to)
             && crosses_once(&self.outline, !is_within(&self.outline, from))
@@ -109,6 +114,8 @@ fn with_margin(corners: &[Ned; 4], margin_m: f64) -> Vec<Ned> {
     if margin_m <= 0.0 {
         return corners.to_vec();
     }
+    // Round corners, since a margin is a distance: square ones would allow 1.4 times as much at
+    // the corners.
     let round = |[before, corner, after]: [Ned; 3]| {
         // From the normal of the side that ends here to that of the side that begins, a quarter turn clockwise.
         let [first, second] = [(before, corner), (corner, after)].map(|(a, b)| {

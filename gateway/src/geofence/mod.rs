@@ -36,11 +36,14 @@ impl GeofenceWatch {
     /// Whether a boat here with this velocity over the ground is inside and can stop inside. A breach counts after the
     /// debounce time.
     pub fn is_inside(&mut self, now: SimTime, at: Ned, velocity_m_s: Ned) -> bool {
+        // The whole way is checked and not its end: the end alone could lie beyond a keep-out
+        // or an inward corner.
         if self.area.contains_way(at, at + self.stopping_way(velocity_m_s)) {
             self.since = None;
             return true;
         }
         let since = *self.since.get_or_insert(now);
+        // A fix that scatters across the line once is no breach.
         (now - since).as_s() < self.rules.debounce_s
     }
 
@@ -48,6 +51,8 @@ impl GeofenceWatch {
     #[must_use]
     pub fn stopping_way(&self, velocity_m_s: Ned) -> Ned {
         let speed_m_s = velocity_m_s.length();
+        // v t + v²/2a. From 3 m/s a Surveyor needs some 18 m at the 0.25 m/s² that is estimated
+        // for it, which is more than most people expect.
         velocity_m_s.scaled(self.rules.reaction_s + speed_m_s / (2.0 * self.rules.deceleration_m_s2))
     }
 }

@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use thiserror::Error;
 
 /// The speeds a serial line may have, baud.
+// Which speed and format a Surveyor's serial line has is not published: the usual ones of NMEA
+// devices, 8N1.
 pub const BAUDS: [u32; 6] = [4800, 9600, 19_200, 38_400, 57_600, 115_200];
 
 /// The default speed of a serial line: NMEA 0183-HS.
@@ -124,12 +126,14 @@ fn parse(text: &str, side: Side) -> Result<LinkAddress, Fault> {
         "udp" => Ok(LinkAddress::Udp(side, host_and_port(rest, side)?)),
         "serial" => serial(rest),
         "pty" if listens => Ok(LinkAddress::Pty { link: Some(absolute(rest)?) }),
+        // Whoever connects to somebody else's terminal does so by its path, as a serial line.
         "pty" => Err(("a pty can only be listened on".to_owned(), forms)),
         _ => Err((format!("the scheme is {scheme:?}"), forms)),
     }
 }
 
 fn host_and_port(text: &str, side: Side) -> Result<HostPort, Fault> {
+    // From the right, for IPv6 addresses; one without a port ends in a bracket.
     let Some((host, port)) = text.rsplit_once(':').filter(|(_, port)| !port.ends_with(']')) else {
         return Err(("it has no port".to_owned(), "HOST:PORT"));
     };

@@ -25,6 +25,8 @@ impl Backoff {
     /// The wait before the next attempt.
     pub(super) fn wait(&mut self) -> Duration {
         let wait = self.next;
+        // At most a second between attempts: a boat that is under way without us drives two or
+        // three metres in that.
         self.next = wait.saturating_mul(2).min(self.longest);
         wait
     }

@@ -18,9 +18,13 @@ use std::time::Duration;
 const CONNECT: Duration = Duration::from_secs(2);
 
 /// How often an attempt is polled.
+// Polled, since a blocking connect cannot be interrupted: a gateway that is asked to end would
+// wait for an address that does not answer.
 const POLL: Duration = Duration::from_millis(5);
 
 /// How many bytes TCP may hold unacknowledged before the connection counts as dead, and for how long.
+// A half-open connection takes bytes until the buffer is full. What it holds are old commands,
+// so it is as small as systems allow.
 const SEND_BUFFER: usize = 4096;
 const UNACKNOWLEDGED: Duration = Duration::from_secs(2);
 
@@ -108,11 +112,16 @@ fn connect_to(threads: &Threads, address: SocketAddr) -> io::Result<TcpStream> {
 
 /// Sets the options of a TCP connection that carries commands: no delay, and early detection of a dead peer.
 pub(super) fn tune(socket: Socket) -> io::Result<TcpStream> {
+    // A sentence is a packet: Nagle's algorithm would hold the second one back for the
+    // acknowledgement of the first.
     socket.set_tcp_nodelay(true)?;
     socket.set_tcp_keepalive(
         &TcpKeepalive::new().with_time(UNACKNOWLEDGED).with_interval(Duration::from_secs(1)).with_retries(2),
     )?;
+    // Keepalive works on an idle connection only. With unacknowledged bytes under way Linux
+    // retransmits for a quarter of an hour unless this limit is set.
     socket.set_tcp_user_timeout(Some(UNACKNOWLEDGED))?;
+    // Linux doubles what it is given, for its own bookkeeping.
     socket.set_send_buffer_size(SEND_BUFFER)?;
     socket.set_read_timeout(Some(TICK))?;
     socket.set_write_timeout(Some(TICK))?;
@@ -124,6 +133,8 @@ fn connect_udp(at: &HostPort) -> io::Result<(Port, String)> {
     let Some(address) = addresses.next() else {
         return Err(io::Error::new(ErrorKind::NotFound, "the host has no address"));
     };
+    // A socket of the family of its peer: on some systems an IPv6 socket does not reach IPv4
+    // addresses.
     let any: SocketAddr = if address.is_ipv4() { ([0, 0, 0, 0], 0).into() } else { (Ipv6Addr::UNSPECIFIED, 0).into() };
     let socket = UdpSocket::bind(any)?;
     socket.connect(address)?;

@@ -59,6 +59,7 @@ impl Connection {
 
     fn read_on(&self, received_at: &mut Instant) -> End {
         let mut buffer = vec![0; CHUNK];
+        // A pseudo-terminal has nobody at its other end for hours, and that is no fault.
         let silence = self.threads.settings.silence.filter(|_| self.peer.port.can_fall_silent());
         loop {
             if let Some(end) = self.peer.is_to_end() {
@@ -92,6 +93,7 @@ impl Connection {
         self.threads.remove(&self.peer);
         self.peer.end(end.clone());
         match end {
+            // What a lost connection still holds are commands for a moment that has passed.
             End::Lost(_) => self.peer.port.reset(),
             End::Asked | End::Stopped => self.peer.port.finish(),
         }
@@ -118,6 +120,7 @@ fn write_on(peer: &Peer, threads: &Threads) {
         match peer.port.write(request.bytes(), || peer.is_over()) {
             Ok(Wrote::All) => {
                 let at = clock::now();
+                // Reported after the last byte is with the system, for the latency of orders.
                 if let Some(tag) = request.take() {
                     threads.emit(LinkEvent::Written { tag, at });
                 }

@@ -35,6 +35,7 @@ use threads::Threads;
 const PEERS_MAX: usize = 8;
 
 /// How long dropping a link waits for its threads.
+// Several ticks of 25 ms for threads to notice, and the graceful close of 80 ms.
 const CLOSE_MAX: Duration = Duration::from_millis(190);
 
 /// The timeouts of a link.
@@ -52,8 +53,11 @@ pub struct LinkSettings {
 impl Default for LinkSettings {
     fn default() -> LinkSettings {
         LinkSettings {
+            // A boat sends at least once a second. TCP alone notices a pulled cable after
+            // minutes, UDP and serial lines never.
             silence: Some(Duration::from_secs(3)),
             retry_first: Duration::from_millis(100),
+            // An E-stop may be waiting for the connection: no longer back-off.
             retry_max: Duration::from_secs(1),
         }
     }
@@ -210,6 +214,8 @@ impl Link {
     /// Queues bytes for all peers that are up; never blocks. What was queued before and has not been begun is
     /// displaced, at each peer separately.
     pub fn send(&self, bytes: Vec<u8>, tag: u64) {
+        // Nobody waits here: if the boat does not read, the next command takes the place of
+        // this one.
         drop(self.threads.enqueue(bytes, Some(tag), Priority::Normal));
     }
 

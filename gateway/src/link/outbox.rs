@@ -108,8 +108,10 @@ impl Outbox {
         if request.priority == Priority::Normal
             && state.queued.as_ref().is_some_and(|queued| queued.priority == Priority::Shutdown)
         {
+            // Nothing may displace the last words to a boat.
             return true;
         }
+        // Depth one: a slow line gets the newest command late, not all the old ones in order.
         let displaced = state.queued.replace(request).is_some();
         self.changed.notify_one();
         displaced

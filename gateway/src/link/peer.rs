@@ -41,6 +41,7 @@ impl Peer {
 
     /// Ends the connection, for the first reason that was given.
     pub(super) fn end(&self, end: End) {
+        // The first reason is the cause; the errors of the other thread follow from it.
         self.end.lock().get_or_insert(end);
         self.outbox.shut();
     }

@@ -14,6 +14,7 @@ use std::time::Duration;
 pub(super) const STALL: Duration = Duration::from_secs(2);
 
 /// How long a graceful close waits for the peer's.
+// A round trip over radio, and well within the time that a closing link has.
 const LINGER: Duration = Duration::from_millis(80);
 
 /// A socket, a serial line or a pseudo-terminal. Reads and writes may happen at once, in two threads.
@@ -52,6 +53,8 @@ impl Port {
             Port::Tcp(stream) => Some(stream.as_fd()),
             Port::Udp(socket) => Some(socket.as_fd()),
             Port::Serial { line, .. } => Some(line.as_fd()),
+            // The guard needs a descriptor on which a plain write reaches the boat; these are
+            // for emulated boats, which need no guard.
             Port::UdpTo(..) | Port::Pty(_) => None,
         }
     }
@@ -150,7 +153,10 @@ impl Port {
     /// already need not be reset.
     pub(super) fn reset(&self) {
         match self {
+            // A reset: whatever the peer has not read is thrown away instead of being delivered
+            // later.
             Port::Tcp(stream) => drop(SockRef::from(stream).set_linger(Some(Duration::ZERO))),
+            // A serial driver goes on sending after the descriptor is closed.
             Port::Serial { line, .. } => drop(line.discard_output_buffer()),
             _ => {}
         }
@@ -172,6 +178,8 @@ impl Port {
 fn is_pause(error: &io::Error) -> bool {
     match error.kind() {
         ErrorKind::WouldBlock | ErrorKind::Interrupted => true,
+        // With a number of the system it is ETIMEDOUT of a dead TCP connection; without one it
+        // is a time-out that we set.
         ErrorKind::TimedOut => error.raw_os_error().is_none(),
         _ => false,
     }

@@ -44,6 +44,8 @@ struct ReaderState {
 impl Pty {
     /// Opens one, raw, with a symlink to it if wanted.
     pub(super) fn open(link: Option<&Path>) -> Result<Pty, LinkError> {
+        // The slave stays open here as well: a master whose last slave closes reports an error
+        // on Linux until somebody opens it again.
         let (master, slave, path) = pair().map_err(|e| LinkError::Pty { reason: e.to_string() })?;
         // Made before the symlink is, so that a refusal leaves nothing behind.
         let mut pty = Pty { master, slave, path, link: None, reader: Mutex::default(), flushes: AtomicU64::new(0) };
@@ -95,6 +97,7 @@ impl Pty {
 
     /// For how long there has always been something to read.
     fn unread_for(&self, reader: &mut ReaderState) -> io::Result<Duration> {
+        // No event tells that somebody reads; the fill of the slave's queue does.
         let is_unread = rustix::io::ioctl_fionread(&self.slave)? > 0;
         let since = reader.unread_since.filter(|_| is_unread);
         reader.unread_since = since.or_else(|| is_unread.then(clock::now));
@@ -127,6 +130,7 @@ fn pair() -> io::Result<(SerialPort, OwnedFd, PathBuf)> {
     let path = PathBuf::from(OsStr::from_bytes(name.as_bytes()));
     let slave = rustix::fs::open(&path, OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC, Mode::empty())?;
     let mut settings = rustix::termios::tcgetattr(&slave)?;
+    // Otherwise the line discipline echoes what the back seat writes and turns CR into LF.
     settings.make_raw();
     rustix::termios::tcsetattr(&slave, OptionalActions::Now, &settings)?;
     rustix::fs::fcntl_setfl(&master, OFlags::NONBLOCK)?;
@@ -139,6 +143,8 @@ fn pair() -> io::Result<(SerialPort, OwnedFd, PathBuf)> {
 /// Makes `link` point to `target`, over an old symlink but over nothing else.
 fn make_symlink(link: &Path, target: &Path) -> Result<(), LinkError> {
     let refused = |reason: String| LinkError::Symlink { path: link.to_owned(), reason };
+    // Symlinks are replaced, since a killed process leaves its own behind; anything else may be
+    // somebody's file.
     match fs::symlink_metadata(link) {
         Ok(found) if !found.is_symlink() => {
             return Err(refused("something else is there, allowed: nothing, or an old symlink".to_owned()));

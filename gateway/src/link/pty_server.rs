@@ -15,6 +15,7 @@ pub(super) fn run(threads: &Arc<Threads>, pty: &Arc<Pty>) {
         let port = Port::Pty(Arc::clone(pty));
         match Connection::open(threads, port, pty.path().display().to_string()).map(Connection::serve) {
             // There is no connection to break: a reconnect asks for a clean start.
+            // Whoever reconnects expects to see nothing of before.
             Ok(Served { end: End::Asked, .. }) => drop(pty.flush()),
             Ok(_) => {}
             Err(e) => threads.emit(LinkEvent::Failed { reason: e.to_string(), retry_in }),

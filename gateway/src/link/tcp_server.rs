@@ -36,6 +36,7 @@ pub(super) fn run(threads: &Arc<Threads>, listener: &TcpListener) {
 }
 
 fn serve_peer(threads: &Arc<Threads>, stream: TcpStream, from: SocketAddr) {
+    // Dropping the stream closes it: the peer sees at once that there is no room.
     if threads.count() >= PEERS_MAX {
         return;
     }

@@ -76,6 +76,8 @@ impl Threads {
         name: &str,
         work: impl FnOnce() + Send + 'static,
     ) -> io::Result<JoinHandle<()>> {
+        // Counted before the thread starts, so that a link that closes right then waits for it
+        // too; dropping the guard undoes it when the spawn fails.
         self.state.lock().running += 1;
         let running = RunningThread(Arc::clone(self));
         thread::Builder::new().name(name.to_owned()).spawn(move || {
@@ -118,6 +120,8 @@ impl Threads {
         let bytes = Arc::new(bytes);
         // Held to the end, so that all peers see the same order.
         let peers = self.peers.lock();
+        // For as many peers as there are now: one that comes later did not get this, and nobody
+        // waits for it.
         let completion = Completion::new(tag, peers.len());
         let displaced =
             peers.iter().filter(|peer| peer.outbox.put(WriteRequest::new(&bytes, &completion, priority))).count();

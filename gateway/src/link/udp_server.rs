@@ -54,10 +54,13 @@ pub(super) fn run(threads: &Arc<Threads>, socket: &Arc<UdpSocket>) {
 
 fn receive(threads: &Arc<Threads>, socket: &Arc<UdpSocket>, peers: &mut Vec<UdpPeer>, from: SocketAddr, bytes: &[u8]) {
     let at = clock::now();
+    // A peer is whoever sent a datagram: UDP has no connections, and back seats expect answers
+    // at the port they sent from.
     let known = peers.iter_mut().find(|peer| peer.from == from);
     let peer = if let Some(peer) = known {
         peer.received_at = at;
         peer.connection.peer.number
+    // Forged senders must not make a thread each.
     } else if peers.len() < PEERS_MAX {
         let port = Port::UdpTo(Arc::clone(socket), from);
         // Out of threads: it may send again later.

@@ -13,6 +13,7 @@ const SIGNATURE: usize = 13;
 /// The flag of a frame of version 2 that has a signature.
 const SIGNED: u8 = 1;
 /// How many numbers of unknown messages are kept.
+// Numbers come from whoever is on the link: the table must not grow with them.
 const UNKNOWN_MAX: usize = 64;
 
 /// A message, and whose it is.
@@ -135,6 +136,8 @@ impl Framer {
     /// Reads a whole frame; returns how many bytes of it are done with.
     fn read(&mut self, layout: &Layout, frame: &[u8], take: &mut dyn FnMut(Received)) -> usize {
         let Layout { version, id, system, component, payload: (start, end), len } = *layout;
+        // The checksum of a message includes a byte that only its definition tells, so that of
+        // an unknown one cannot be checked.
         if MavMessage::default_message_from_id(id).is_none() {
             let key = if self.counts.unknown.len() < UNKNOWN_MAX { id } else { u32::MAX };
             *self.counts.unknown.entry(key).or_default() += 1;
@@ -143,6 +146,8 @@ impl Framer {
         if !layout.has_right_checksum(frame) {
             self.counts.bad_checksum += 1;
             self.counts.garbage += 1;
+            // One byte and not the whole frame: a false start inside other data would swallow
+            // real frames that follow within its stated length.
             return 1;
         }
         match MavMessage::parse(version, id, &frame[start..end]) {

@@ -37,6 +37,7 @@ impl Writer {
         let mut frame = MAVLinkV2MessageRaw::new();
         frame.serialize_message(header, message);
         out.extend_from_slice(frame.raw_bytes());
+        // Receivers count lost frames by gaps in it.
         self.sequence = self.sequence.wrapping_add(1);
     }
 }

@@ -24,6 +24,8 @@ pub enum RoverMode {
     /// Starts up.
     Initialising,
     /// Any other number.
+    // Kept by number, and treated as somebody else's command: new modes appear with new
+    // versions.
     Other(u32),
 }
 

@@ -25,6 +25,7 @@ impl TimeOfDay {
         // Milliseconds, cut off: a time must not become the next second's.
         let digit = |i: usize| u32::from(decimals.as_bytes().get(i).map_or(0, |byte| byte - b'0'));
         let ms = digit(0) * 100 + digit(1) * 10 + digit(2);
+        // Leap seconds are inserted at the end of a UTC day only.
         let seconds_max = if (hour, minute) == (23, 59) { 60 } else { 59 };
         let known = hour < 24 && minute < 60 && second <= seconds_max;
         known.then_some(TimeOfDay(((hour * 60 + minute) * 60 + second) * 1000 + ms))
@@ -54,6 +55,7 @@ impl TimeOfDay {
     pub fn since_s(self, other: TimeOfDay) -> f64 {
         let day_s = f64::from(DAY_MS) * 1e-3;
         let apart_s = (f64::from(self.0) - f64::from(other.0)) * 1e-3;
+        // Across midnight the shorter way: without a date nobody knows the day.
         apart_s - day_s * (apart_s / day_s).round()
     }
 }
@@ -81,6 +83,7 @@ impl Date {
     /// The date in a field `ddmmyy`: years 00 to 79 are of this century.
     pub(super) fn parse(text: &str) -> Option<Date> {
         let [day, month, year] = pairs(text)?;
+        // GPS began in 1980.
         let century = if year < 80 { 2000 } else { 1900 };
         Some(Date { year: century + u16::from(year), month, day }).filter(|date| date.is_valid())
     }

@@ -60,11 +60,14 @@ impl Framer {
     pub fn push(&mut self, bytes: &[u8], take: &mut dyn FnMut(&str)) {
         for &byte in bytes {
             match (byte, self.filled) {
+                // The start may be in the middle of a sentence that was cut off: gpsd, for
+                // example, writes probes and binary bytes into the stream of a boat.
                 (b'$', filled) => {
                     self.counts.broken += u64::from(filled.is_some());
                     self.filled = Some(0);
                 }
                 (b'\r' | b'\n', None) => {}
+                // Either ends it: some devices send LF alone.
                 (b'\r' | b'\n', Some(filled)) => self.end(filled, take),
                 (b' '..=b'~', Some(filled)) if filled < CONTENT_MAX => {
                     self.content[filled] = byte;

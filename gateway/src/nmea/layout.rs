@@ -111,6 +111,7 @@ impl Format {
         let Format { decimals, width, .. } = self;
         let number = if self.compass { compass_deg(number, decimals) } else { number };
         let mut text = format!("{number:0width$.decimals$}");
+        // Rounding makes "-0.0" of small negative numbers, which strict readers refuse.
         if text.starts_with('-') && !text.bytes().any(|byte| matches!(byte, b'1'..=b'9')) {
             text = format!("{:0width$.decimals$}", 0.0);
         }
@@ -125,5 +126,6 @@ impl Format {
 fn compass_deg(angle_deg: f64, decimals: usize) -> f64 {
     let turned = angle_deg.rem_euclid(360.0);
     let steps_per_deg = [1.0, 10.0, 100.0, 1000.0][decimals];
+    // Rounded, 359.97 would be printed as 360.0, which is no heading for some readers.
     if (turned * steps_per_deg).round() >= 360.0 * steps_per_deg { 0.0 } else { turned }
 }

@@ -127,6 +127,8 @@ impl Sentence {
     ///
     /// A non-finite number becomes an empty field, as does what would make the sentence too long.
     pub fn write(&self, out: &mut Vec<u8>) {
+        // Rounded before it is written, so that thrust and difference together still keep
+        // within 100 %.
         let mut rounded = match self.clone() {
             Sentence::Command(command) => Sentence::Command(command.rounded()),
             Sentence::ControlState(state) => Sentence::ControlState(state.rounded()),
@@ -146,6 +148,8 @@ impl Sentence {
             ("PSEAG", _) => Sentence::BoatError(BoatError::default()),
             ("PSEAR", _) => Sentence::MissionSettings(MissionSettings::default()),
             ("OIWPL", _) => Sentence::Waypoint(Waypoint::default()),
+            // Standard sentences are known by their last three letters, whoever talks: GP, GN
+            // and others are all in use.
             (_, "GGA") => Sentence::Gga(Gga::default()),
             (_, "RMC") => Sentence::Rmc(Rmc::default()),
             (_, "VTG") => Sentence::Vtg(Vtg::default()),

@@ -38,6 +38,8 @@ pub enum Mode {
 
 impl Mode {
     /// Every mode with its letter.
+    // By the command dictionary of a public driver for Surveyors; the manufacturer's interface
+    // document is not public.
     const LETTERS: [(Mode, char); 14] = [
         (Mode::Standby, 'L'),
         (Mode::Thruster, 'T'),

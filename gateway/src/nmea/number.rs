@@ -4,6 +4,7 @@
 pub(super) fn number(text: &str) -> Option<f64> {
     let unsigned = text.strip_prefix(['+', '-']).unwrap_or(text);
     let (whole, decimals) = unsigned.split_once('.').unwrap_or((unsigned, "0"));
+    // By hand, since `parse` also takes "inf", "nan" and exponents, which no sentence has.
     let digits = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
     let number = if digits(whole) && digits(decimals) { text.parse::<f64>().ok() } else { None };
     number.filter(|number| number.is_finite())

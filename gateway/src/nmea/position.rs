@@ -39,6 +39,8 @@ impl Axis {
     /// another position.
     pub(super) fn degrees(&self, text: &str) -> Option<f64> {
         let whole = text.split('.').next().unwrap_or_default();
+        // A missing leading zero would shift degrees into minutes: 8022.3 as a longitude reads
+        // as 802 degrees or as 80, depending on who guesses.
         if whole.len() != self.degree_digits + 2 || !whole.bytes().all(|byte| byte.is_ascii_digit()) {
             return None;
         }
@@ -56,8 +58,12 @@ impl Axis {
         }
         let steps_per_minute = 10_u32.pow(decimals);
         // At most 180 * 60 * 100 000 steps.
+        // In whole steps, so that 59.999996 minutes become the next degree and never
+        // "60.00000".
         let steps = (angle_deg.abs() * f64::from(60 * steps_per_minute)).round() as u32;
         let (minutes, part) = (steps / steps_per_minute, steps % steps_per_minute);
+        // What rounds to zero is north or east: "0000.00000,S" is another text for the same
+        // place.
         let letter = self.letters[usize::from(angle_deg < 0.0 && steps > 0)];
         let (degree_digits, part_digits) = (self.degree_digits, decimals as usize);
         let (degrees, minutes) = (minutes / 60, minutes % 60);

@@ -33,6 +33,8 @@ impl<'a> Reader<'a> {
 
     /// Reads all fields of a layout.
     pub(super) fn read(mut self, layout: Layout<'_>) -> Result<(), ParseError> {
+        // More fields than known are accepted: drivers of real boats send PSEAC with four to
+        // six.
         let (found, expected) = (self.data.len(), layout.fields_min);
         if found < expected {
             return Err(ParseError::TooFew { address: self.address.to_owned(), found, expected });
@@ -43,6 +45,7 @@ impl<'a> Reader<'a> {
     fn read_field(&mut self, field: Field<'_>) -> Result<(), ParseError> {
         match field {
             Field::Address(_) => {}
+            // Any talker: the same sentence comes as GP, GN or II, by who made the receiver.
             Field::Standard(talker, _) => *talker = Talker::split(self.address).map_or(*talker, |(talker, _)| talker),
             Field::Constant(_) => self.at += 1,
             Field::Unit(letter) => self.unit(letter)?,
@@ -87,6 +90,7 @@ impl<'a> Reader<'a> {
         self.text(self.at + ahead)
     }
 
+    // Real boats send a blank for a field that they have not.
     fn text(&self, at: usize) -> &'a str {
         self.data.get(at - 1).map_or("", |text| text.trim_matches(' '))
     }
@@ -106,6 +110,8 @@ impl<'a> Reader<'a> {
 
     /// The whole number in the next field, if any.
     fn whole<T: FromStr>(&mut self) -> Result<Option<T>, ParseError> {
+        // The parser of the library takes a plus sign, which no sentence has: that is a field
+        // that was shifted.
         let whole = |text: &str| text.parse().ok().filter(|_| text.bytes().all(|byte| byte.is_ascii_digit()));
         self.parsed(whole, "a small whole number or nothing")
     }
@@ -147,6 +153,7 @@ impl<'a> Reader<'a> {
     /// `A` (data valid) or `D` (with differential corrections); `V` and nothing are not valid.
     fn valid(&mut self) -> Result<bool, ParseError> {
         match self.next() {
+            // D (differential) stands in this place on some receivers.
             "A" | "D" => Ok(true),
             "V" | "" => Ok(false),
             _ => Err(self.wrong("A, D, V or nothing")),

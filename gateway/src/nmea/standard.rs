@@ -101,6 +101,7 @@ impl Rmc {
             Field::Constant(""),
             Field::Constant(mode),
         ];
+        // Nine: before version 2.3 of the standard there was no mode at the end.
         Layout { fields_min: 9, fields }
     }
 }
@@ -265,6 +266,7 @@ impl Mwv {
             Field::WindSpeed(&mut self.speed_m_s, &mut self.unit),
             Field::Valid(&mut self.valid),
         ];
+        // All five: without its reference and its unit an angle and a number are no wind.
         Layout { fields_min: 5, fields }
     }
 }

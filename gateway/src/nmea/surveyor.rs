@@ -29,6 +29,8 @@ impl Command {
         let zeros = |number: &Option<f64>| WHOLE.wide(if *number == Some(0.0) { 3 } else { 0 });
         let (heading, thrust, difference) = match self.mode {
             Mode::FileDownload => (zeros(&self.heading_deg), zeros(&self.thrust), zeros(&self.difference)),
+            // Whole numbers in mode T: a stand-in for the boat reads each field as an integer,
+            // and keeps the old difference when it has decimals.
             Mode::Thruster => (WHOLE.compass(), WHOLE, WHOLE),
             Mode::Speed => (TENTHS.compass().brief(), BRIEF_THOUSANDTHS, WHOLE),
             _ => (TENTHS.compass().brief(), WHOLE, WHOLE),
@@ -62,6 +64,8 @@ impl Command {
 fn round_percents(mode: Mode, thrust: &mut Option<f64>, difference: &mut Option<f64>) {
     let sum = |thrust: Option<f64>, difference: Option<f64>| Some(thrust?.abs() + difference?.abs());
     let (whole_thrust, whole_difference) = (thrust.map(f64::round), difference.map(f64::round));
+    // 49.5 and 50.5 are within 100 % and round to 50 and 51: what a boat does beyond 100 % is
+    // not known, so the difference gives way.
     let by_rounding = sum(*thrust, *difference).is_some_and(|sum| sum < 100.5)
         && sum(whole_thrust, whole_difference).is_some_and(|sum| sum > 100.0);
     *difference = whole_difference.map(|whole| if by_rounding { whole - whole.signum() } else { whole });
@@ -100,6 +104,8 @@ impl Attitude {
             Field::Number(&mut self.pitch_deg, TENTHS),
             Field::Number(&mut self.roll_deg, TENTHS),
             Field::Number(&mut self.heading_deg, TENTHS.compass()),
+            // Written blank: a public client reads a blank with a space in it as a broken
+            // sentence, and boats leave heave out.
             Field::ReadOnly(&mut self.heave_m),
             Field::Number(&mut self.box_c, TENTHS),
             Field::Number(&mut self.accel_ahead_g, HUNDREDTHS),
@@ -240,6 +246,8 @@ pub struct MissionSettings {
 impl MissionSettings {
     pub(super) fn layout(&mut self) -> Layout<'_> {
         let fields = vec![
+            // Only the throttle is understood; the constants are those of a public driver that
+            // works.
             Field::Address("PSEAR"),
             Field::Constant("0"),
             Field::Constant("000"),

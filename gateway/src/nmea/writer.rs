@@ -25,6 +25,7 @@ impl Writer {
     pub(super) fn write(layout: Layout<'_>, out: &mut Vec<u8>) {
         let mut line = Writer { body: String::with_capacity(EMITTED_MAX), spare: Vec::new() };
         layout.fields.into_iter().for_each(|field| line.field(field));
+        // A field less is better than a sentence that a strict reader refuses as a whole.
         while line.body.len() + FRAME > EMITTED_MAX {
             line.empty_the_longest();
         }
@@ -49,6 +50,8 @@ impl Writer {
             Field::Required(number, format, _) => self.number(Some(*number), format),
             Field::ReadOnly(_) => self.fixed(""),
             Field::East(number) => {
+                // The sign is a letter of its own, and of a number that is none there is
+                // neither.
                 let number = number.filter(|number| number.is_finite());
                 self.number(number.map(f64::abs), TENTHS);
                 self.spare(number.map_or("", |number| if number < 0.0 { "W" } else { "E" }));
@@ -60,6 +63,7 @@ impl Writer {
             Field::Letter(letter) => self.text(&letter.map_or_else(String::new, String::from)),
             Field::Mode(mode) => self.fixed(&String::from(mode.letter())),
             Field::Operator(operator) => self.spare(&operator.map_or_else(String::new, |o| o.number().to_string())),
+            // Never spare: without it a reader would have to guess whether a fix counts.
             Field::Valid(valid) => self.fixed(if *valid { "A" } else { "V" }),
             Field::Time(time) => self.fixed(&time.and_then(TimeOfDay::text).unwrap_or_default()),
             Field::Date(date) => self.fixed(&date.and_then(Date::text).unwrap_or_default()),
@@ -82,6 +86,8 @@ impl Writer {
 
     /// A position in four fields, empty for a missing position and one that is not on the globe.
     fn position(&mut self, at: Option<LatLon>, decimals: u32) {
+        // Both or neither: half a position would be read as one on the equator, or in
+        // Greenwich.
         let texts =
             at.and_then(|at| Some((LATITUDE.printed(at.lat_deg, decimals)?, LONGITUDE.printed(at.lon_deg, decimals)?)));
         let (lat, lon) = texts.unwrap_or_else(|| (",".to_owned(), ",".to_owned()));

@@ -37,6 +37,8 @@ impl Clock {
     }
 
     fn time_at(&self, moment: Instant, suspended: Duration) -> SimTime {
+        // Linux' monotonic clock stands still while the machine sleeps; the time asleep is
+        // added, so that what is old when it wakes is known to be.
         let passed = moment.saturating_duration_since(self.start) + suspended.saturating_sub(self.suspended);
         self.base + SimTime::from_s(passed.as_secs_f64() * self.factor)
     }

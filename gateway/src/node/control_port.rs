@@ -62,6 +62,7 @@ impl ControlPort {
         input: LoopInput,
     ) -> Result<ControlPort, NodeError> {
         let open = || ControlPort::open_once(listen, vehicle, token.clone(), input.clone());
+        // Port 0 is chosen for TCP; the same number may be taken for UDP.
         let attempts = if listen.port() == 0 { ATTEMPTS } else { 1 };
         (1..attempts).fold(open(), |opened, _| opened.or_else(|_| open()))
     }
@@ -102,6 +103,7 @@ impl Server {
         let mut reader = BufReader::new(stream);
         loop {
             let mut line = Vec::new();
+            // A line without an end must not fill the memory.
             reader.by_ref().take(REQUEST_MAX).read_until(b'\n', &mut line)?;
             if line.pop() != Some(b'\n') {
                 return Ok(());
@@ -120,6 +122,8 @@ impl Server {
             };
             answer.push(b'\n');
             stream.write_all(&answer)?;
+            // A browser that is made to post here by some web page speaks HTTP: its first line
+            // is garbage, and what follows is not read.
             if is_garbage {
                 return Ok(());
             }
@@ -136,6 +140,7 @@ impl Server {
         // The loop reads stops before everything else: what is left to be asked is how the boat is then.
         let ask = match self.stop_in(&command) {
             Some(stop) => {
+                // Before the answer is even prepared: nothing that follows may delay it.
                 self.input.stop(stop);
                 GatewayCommand::Boat { name: self.vehicle.clone(), command: OperatorCommand::Status }
             }
@@ -170,6 +175,7 @@ impl Server {
             None if asks_status => 0,
             None => return None,
         };
+        // Obeyed all the same: the flag is read when the loop begins.
         if !self.is_running.load(Ordering::SeqCst) {
             return None;
         }

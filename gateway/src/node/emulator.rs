@@ -74,6 +74,7 @@ pub fn emulate(settings: &EmulatorSettings, notify: &mut dyn FnMut(NodeEvent<'_>
     let (bus, game, info) = search.game(&mut looking, &settings.place, settings.game.as_ref())?;
     let vehicle = info.scenario.vehicle_named(&settings.vehicle)?;
     // A back seat runs in real time.
+    // Refused in lockstep: its clock stands still between decisions.
     pace_factor(&info.pace, true)?;
     let scenario = &info.scenario;
     let datum = scenario.field.plan.datum;
@@ -96,6 +97,7 @@ pub fn emulate(settings: &EmulatorSettings, notify: &mut dyn FnMut(NodeEvent<'_>
     let incoming = Arc::new(Watched::new(Incoming::default()));
     let pictures = Arc::clone(&incoming);
     let _subscription = bus.subscribe(topic::picture(&game, scenario, scenario.team_of(vehicle)), move |bytes| {
+        // The newest only: a boat does not act on how it was.
         pictures.visit(|incoming| incoming.picture = Some(bytes.to_vec()));
     })?;
     let back_seat = open(&settings.listen, Port::Secondary, &incoming)?;
@@ -129,6 +131,7 @@ pub fn emulate(settings: &EmulatorSettings, notify: &mut dyn FnMut(NodeEvent<'_>
 /// Opens a port of the boat.
 fn open(address: &LinkAddress, port: Port, incoming: &Arc<Watched<Incoming>>) -> Result<Link, NodeError> {
     let shared = Arc::clone(incoming);
+    // A back seat may listen for hours without a word.
     let settings = LinkSettings { silence: None, ..LinkSettings::default() };
     Ok(Link::open(address, settings, move |event| shared.visit(|incoming| incoming.take(port, event)))?)
 }
@@ -236,6 +239,8 @@ impl EmulatorNode {
 
     /// Answers a picture with the boat's order, and sends telemetry.
     fn answer(&mut self, picture: &Picture) -> Result<(), NodeError> {
+        // The sim repeats pictures whose answers got lost: the order is given again, telemetry
+        // is not.
         let is_new = self.runner.decided() != Some(picture.stamp.seq);
         if is_new {
             self.now = picture.stamp.valid_ns;

@@ -67,12 +67,15 @@ impl Wanted {
         let field = info.scenario.field.clone();
         let area = GeofenceArea::new(&field, &self.gateway.geofence);
         let file = self.gateway.name.clone();
+        // Before the boat joins: a geofence that leaves out the start would be noticed with the
+        // boat on the water.
         area.check(&info.scenario, vehicle).map_err(|source| NodeError::Geofence { file, source })?;
         let declination_rad = declination_rad(self.gateway.declination_rad, field.plan.datum)?;
         let site = Site { length_m: info.scenario.boat_of(vehicle).length_m, field, declination_rad };
         // The thread that keeps it joined asks again, and gets it again.
         let names = [self.vehicle.clone()];
         let all = (&game, &info.scenario);
+        // Joining once here tells a wrong token or a taken boat while the operator still looks.
         search.until(tell, || game_search::join(&bus, &self.place, all, Role::Gateway, &names))?;
         Ok(FoundGame { bus, game, info, vehicle, factor, site })
     }

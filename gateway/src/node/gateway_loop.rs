@@ -124,9 +124,13 @@ impl GatewayLoop<'_> {
             beat_at = self.beat(beat_at)?;
             let stop_count = self.input.stop_count();
             self.take_requests()?;
+            // With the count from before the stops were taken: a state that is shown stands for
+            // all stops up to that, and none too many.
             self.input.show_state(stop_count, self.bridge.state_in_words());
             let due = self.bridge.due(self.clock.now());
             let wait = self.clock.until(due);
+            // No longer than a heartbeat: the guard takes a loop that waits for a boat for one
+            // that hangs.
             let call = self.input.calls.take(if self.guarded.is_some() { wait.min(HEARTBEAT) } else { wait });
             // That it was suspended comes before what came meanwhile.
             beat_at = self.beat(beat_at)?;
@@ -165,6 +169,8 @@ impl GatewayLoop<'_> {
             self.warn(&format!("this machine was suspended for {:.1} s", suspended.as_secs_f64()));
         }
         if let Some(guarded) = &self.guarded {
+            // What stops the boat may change: who commands it, or whether it is in the middle
+            // of an upload.
             guarded.stop_with(&self.bridge.guard_message());
         }
         if self.guarded.as_ref().is_some_and(|guarded| !guarded.beat()) {
@@ -245,6 +251,7 @@ impl GatewayLoop<'_> {
             _join: Join::begin(&bus, &self.settings.place, (&game, scenario), name, self.back.calls.clone())?,
             bus,
         };
+        // The link has been served since before: only what needs a field begins here.
         self.in_game = Some(in_game);
         self.clock.set_pace(factor);
         self.encoder.set_vehicle(vehicle);
@@ -281,10 +288,13 @@ impl GatewayLoop<'_> {
                 self.remark("joined: the sim takes reports of the boat");
                 self.step(Input::Joined, None)
             }
+            // The ticket would be another boat's: its reports would move that one.
             Call::Joined(_) => {
                 Err(NodeError::Refused("the sim let another boat in than the one that asked".to_owned()))
             }
             Call::SimGone => {
+                // No error: the boat is stopped by stale orders, and the next sim of the game
+                // is joined as this one was.
                 self.counters.ticket = None;
                 self.remark("the sim is gone: waiting for the next");
                 Ok(())
@@ -303,6 +313,7 @@ impl GatewayLoop<'_> {
                 self.remark(&format!("connected to {name}"));
                 self.step(Input::LinkUp, None)
             }
+            // A position that waited would be taken for where the boat is now.
             LinkEvent::Bytes { at, .. } if self.is_too_old(at) => {
                 self.remark("what the boat sent has waited for too long: it is not used");
                 self.step(Input::Tick, None)
@@ -330,6 +341,7 @@ impl GatewayLoop<'_> {
     }
 
     fn take_order(&mut self) -> Result<(), NodeError> {
+        // Of many orders the newest: an older one that is carried out first would delay it.
         let taken = self.input.latest_order.lock().take();
         let Some((message, came)) = taken else { return Ok(()) };
         if self.is_too_old(came) {
@@ -344,6 +356,8 @@ impl GatewayLoop<'_> {
         if Some(message.order.vehicle) != self.vehicle() {
             return self.step(Input::BadOrder, None);
         }
+        // Checked here as well as in the sim: whatever is on the topic, the core is given sound
+        // numbers.
         let sound = message.order.order().and_then(|order: Order| order.check().ok());
         match sound {
             Some(order) => {
@@ -409,6 +423,7 @@ impl GatewayLoop<'_> {
                 let surplus = self.counters.writing.len().saturating_sub(WRITING_MAX);
                 self.counters.writing.drain(..surplus);
             }
+            // Sent before anything is published or recorded, which may be slow.
             self.link.send(out.bytes.clone(), self.counters.tag);
         }
         if let Some(nav) = &out.nav {
@@ -457,8 +472,12 @@ impl Drop for GatewayLoop<'_> {
     /// However a gateway ends, except by a kill or a power cut: the boat is sent the shutdown message, three times, before
     /// the link closes.
     fn drop(&mut self) {
+        // Three times, for links that lose bytes; on every way out of the loop, a panic among
+        // them.
         let message = self.bridge.shutdown_message().repeat(3);
         self.link.send_and_wait(&message, SHUTDOWN_MAX);
+        // After the message, not before: until then the guard is there for the case that this
+        // hangs.
         self.guarded.iter().for_each(Guarded::end);
     }
 }

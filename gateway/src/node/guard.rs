@@ -56,6 +56,8 @@ struct Inner {
 impl Guarded {
     /// Starts the guard, by a command that calls [`guard`] with its standard input, of a boat that this stops.
     pub(super) fn start(mut command: Command, stop: &[u8]) -> io::Result<Guarded> {
+        // Packets with their boundaries, descriptors may travel along, and the kernel tells the
+        // other end when a process dies.
         let (socket, its_end) = socketpair(AddressFamily::UNIX, SocketType::SEQPACKET, SocketFlags::CLOEXEC, None)?;
         // What ends the gateway by its terminal must not end the guard with it.
         command.stdin(Stdio::from(its_end)).stdout(Stdio::null()).process_group(0);
@@ -97,9 +99,12 @@ impl Guarded {
         if !descriptors.is_empty() {
             control.push(SendAncillaryMessage::ScmRights(&descriptors));
         }
+        // The loop must not wait for its guard, and a guard that is gone must not kill the
+        // gateway by SIGPIPE.
         let flags = SendFlags::DONTWAIT | SendFlags::NOSIGNAL;
         match sendmsg(&self.0.socket, &[IoSlice::new(what)], &mut control, flags) {
             Ok(_) => true,
+            // A guard that is slow to read is alive: its queue is full of heartbeats.
             Err(e) => e == rustix::io::Errno::AGAIN,
         }
     }
@@ -151,12 +156,16 @@ pub fn guard(socket: impl AsFd, remark: &mut dyn FnMut(&str)) -> io::Result<()> 
                         remark("the gateway hangs: its boat is sent thrust zero and standby");
                     }
                 }
+                // Without a link there is nothing to say, and nobody to tell that the gateway
+                // hangs.
                 is_hung |= link.is_some();
             }
             Heard::Died => {
                 let Some(link) = &link else { return Ok(()) };
                 write(link, &stop);
                 remark("the gateway has died: its boat is sent thrust zero and standby");
+                // Again, for links that lose bytes, and against whatever the dead gateway had
+                // queued in the kernel.
                 for _ in 1..LAST_WORDS {
                     clock::rest(AGAIN);
                     write(link, &stop);

@@ -73,6 +73,8 @@ impl Joining {
                 .until(&mut say, || game_search::join(bus, place, (game, scenario), Role::Gateway, vehicle));
             match joined {
                 Ok(joined) => calls.put(Call::Joined(joined)),
+                // It goes on: the boat may be taken by a gateway that is about to leave, or the
+                // next sim may know it.
                 Err(NotFound::Refused(refusal)) => calls.put(Call::Remark(format!("the sim refuses: {refusal}"))),
                 Err(NotFound::InTime(..)) => return,
             }

@@ -13,6 +13,7 @@ pub(super) struct Latency {
 
 impl Latency {
     pub(super) fn new() -> Latency {
+        // Three digits, in bounded memory however long it runs.
         let histogram = Histogram::new_with_bounds(1, LONGEST_US, 3).expect("sound bounds");
         Latency { histogram }
     }

@@ -80,6 +80,7 @@ impl Stop {
 /// Stops that came and that the loop has not carried out. They wait behind nothing, and nothing can displace them.
 #[derive(Default)]
 struct Stops {
+    // Flags and no queue: no flood fills them.
     boat: AtomicBool,
     fleet: AtomicBool,
     disarm: AtomicBool,
@@ -120,6 +121,8 @@ pub(super) fn loop_input() -> (LoopInput, LoopOutput) {
 impl LoopInput {
     /// A stop. Gives the count of those that have come.
     pub(super) fn stop(&self, stop: Stop) -> u64 {
+        // Sequentially consistent, as everything about stops: the flag is seen wherever the
+        // count is.
         let is_first = !self.stops.of(stop).swap(true, Ordering::SeqCst);
         // It is counted once it can be seen.
         let count = self.stops.count.fetch_add(1, Ordering::SeqCst) + 1;

@@ -51,6 +51,7 @@ fn sleep(inhibitors: &Path) -> Check {
 /// Who holds off sleep by this entry, if it does.
 fn sleep_inhibitor(text: &str) -> Option<String> {
     let value = |key: &str| text.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix('='));
+    // An inhibitor of mode "delay" only puts sleep off for some seconds.
     let blocks = value("MODE")? == "block" && value("WHAT")?.split(':').any(|what| what == "sleep");
     blocks.then(|| value("WHO").unwrap_or("somebody").to_owned())
 }

@@ -216,10 +216,12 @@ pub fn serve(settings: &Settings, outside: &Outside, notify: &mut dyn FnMut(Node
         }
     };
     let input = loop_input();
-    // What is known of the token by now; nothing is waited for.
+    // What is known of the token by now; nothing is waited for, and that no game is there yet is
+    // no error.
     drop(settings.place.net(settings.game.as_ref()));
     // Until a game says which, the port has a token of its own; in a game with keys that stays so.
     let token = settings.place.token().get().unwrap_or_else(Token::random);
+    // Before the link: a port that is taken is an error before the boat hears anything of us.
     let port = ControlPort::open(outside.control, &settings.vehicle, Some(token).into(), input.0.clone())?;
     // What is sent nothing but standby needs nobody to stop it.
     let guarded = if settings.dry_run { None } else { start_guard(settings, outside, notify) };
@@ -234,6 +236,7 @@ pub fn serve(settings: &Settings, outside: &Outside, notify: &mut dyn FnMut(Node
 /// The guard, where there is to be one. A boat is not left alone since it cannot be started.
 fn start_guard(settings: &Settings, outside: &Outside, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Option<Guarded> {
     let mut command = Command::new(outside.guard.as_ref()?);
+    // Without the environment it has no token and no address, and needs none.
     command.args(["gateway", "guard"]).env_clear();
     let started = Guarded::start(command, &Protocol::new(&settings.gateway).guard_message());
     if let Err(e) = &started {
@@ -279,9 +282,12 @@ fn connect(
     let recorder = file.and_then(|file| recorder(file, settings, &plan, notify));
     let calls = input.calls.clone();
     let link = open(Box::new(move |event| calls.put(Call::Link(event))))?;
+    // From here on time is the core's: a recording begins at zero, and replays with the same
+    // numbers.
     let clock = Clock::start();
     let record = recorder.as_ref().map(Recorder::bulk).zip(settings.record.clone());
     let shell = payload::Shell { record, space_min_mib: SPACE_MIN_MIB, clock, calls: input.calls.clone() };
+    // After the link: a payload that takes its time must not keep standby from the boat.
     let payloads = Payloads::open(payloads, &shell, notify);
     let mut gateway_loop = GatewayLoop {
         game_clock: GameClock::new(SimTime::from_s(plan.gateway.order_ttl_s)),
@@ -300,6 +306,8 @@ fn connect(
         guard: Guard::new(settings.place.token().clone()),
         port: port.as_ref().map(|port| (port.address, port.token.clone())),
     };
+    // In a thread of its own: a gateway that looked for its game first left a boat alone that
+    // was under way.
     let finder = game_finder::begin(settings, input);
     port.iter().for_each(ControlPort::begin);
     let result = match &finder {
@@ -363,6 +371,9 @@ fn subscribe(
     };
     let name = &scenario.vehicles[vehicle.index()].name;
     let mut subscriptions = vec![
+        // From the sim, not from agents: whose order counts (tickets), what the referee lets a
+        // boat do, and when an agent is lost are known there alone. A second implementation of
+        // that on the way to the boat would be wrong one day.
         bus.subscribe(topic::external_order(game, scenario, vehicle), take_order)?,
         bus.answer(topic::operate(game, name), move |query| {
             // It is read again, to be answered, behind others.
@@ -381,6 +392,8 @@ fn subscribe(
         })?,
         bus.subscribe(topic::control(game), move |bytes| {
             // Everything else reaches the boat as an order, if at all.
+            // The sim's own path to everybody: it is heard here directly, and does not depend
+            // on the sim's loop.
             if let Ok(Control::EStop) = serde_json::from_slice(bytes) {
                 controls.stop(Stop::EStop(Scope::Fleet));
             }
@@ -388,6 +401,8 @@ fn subscribe(
         bus.subscribe(topic::released(game), move |_| releases.calls.put(Call::Release))?,
     ];
     // Frames are published only where somebody subscribes.
+    // Where there are two real boats or more: they keep out of each other's way by the frames,
+    // which a single one does not need.
     if scenario.externals().nth(1).is_some() {
         let take_frame = move |bytes: &[u8]| frames.calls.put(Call::Frame(bytes.to_vec()));
         subscriptions.push(bus.subscribe(topic::frame(game), take_frame)?);

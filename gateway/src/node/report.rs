@@ -14,6 +14,7 @@ impl GatewayLoop<'_> {
     pub(super) fn full_status(&self) -> GatewayStatus {
         let mut status = self.bridge.status(self.clock.now());
         status.control = self.port.as_ref().map(|(address, _)| address.to_string());
+        // The core knows up and down; why it is down, the shell.
         if status.link != "up" {
             status.link.clone_from(&self.counters.link);
         }
@@ -43,6 +44,8 @@ impl GatewayLoop<'_> {
     /// Publishes the bytes that went over the link, and records the whole step.
     pub(super) fn record_step(&mut self, now: SimTime, input: &Input, out: &Output) -> Result<(), NodeError> {
         let link_bytes = self.in_game.as_ref().map(|in_game| &in_game.link_bytes);
+        // Nothing is encoded for nobody: without a recorder and observers the bytes are dropped
+        // here.
         let ticket = self.counters.ticket.filter(|_| link_bytes.is_some_and(Publisher::is_heard));
         if ticket.is_none() && self.recorder.is_none() {
             return Ok(());

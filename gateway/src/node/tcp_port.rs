@@ -80,6 +80,8 @@ impl Server {
     fn open(self: &Arc<Self>, stream: TcpStream, from: IpAddr) {
         let Ok(other) = stream.try_clone() else { return };
         // The thread that reads from it finds out; it may be closed already.
+        // Whoever has been idle the longest makes room, so that a crowd of silent connections
+        // locks nobody out.
         let slot = self.connections.admit(from, move || drop(other.shutdown(Shutdown::Both)));
         let server = Arc::clone(self);
         let serve = move || (server.serve)(&slot, &stream);

@@ -89,6 +89,8 @@ fn parse(text: &str) -> Result<PayloadPort, Fault> {
     }
     let address =
         LinkAddress::to_connect(url).map_err(|e| (format!("the URL is {url:?}: {}", e.found), e.allowed.to_owned()))?;
+    // Loopback unless asked for more: whoever reaches this port reaches the payload, without a
+    // token.
     let any = SocketAddr::from((Ipv4Addr::LOCALHOST, 0));
     let mut port = PayloadPort { name: name.to_owned(), address, listen: any, exo2: None };
     parts.try_for_each(|option| set(&mut port, option))?;

@@ -16,6 +16,8 @@ const SCATTER_MAX_M: f64 = 2.5;
 /// For how long they are looked at, s.
 const SCATTER_S: f64 = 25.0;
 /// The boat's clock may be off by so much from this machine's, s: fixes are told a moment after their time.
+// Latencies of half a minute are no latencies: then one of the clocks is wrong, and recordings
+// cannot be laid side by side.
 const CLOCK_BEHIND_S: std::ops::RangeInclusive<f64> = -1.0..=5.0;
 
 /// Where the boat is to play.
@@ -70,6 +72,7 @@ fn scatter(seen: &SensorCheck) -> Check {
     let fixes = seen.fixes();
     let lasted_s = fixes.first().zip(fixes.last()).map_or(0.0, |(first, last)| (last.0 - first.0).as_s());
     let places: Vec<LatLon> = fixes.iter().map(|(_, at)| *at).collect();
+    // Drift of a fix shows over tens of seconds; a few good fixes say nothing of it.
     match FixScatter::of(&places).filter(|_| lasted_s >= SCATTER_S) {
         None => Check::not_done("scatter", format!("{lasted_s:.0} s of fixes, expected {SCATTER_S}: --for-s 30")),
         Some(FixScatter { radius_95_m, drift_m }) => {
@@ -112,6 +115,8 @@ fn compass(seen: &SensorCheck) -> Check {
 fn control(seen: &SensorCheck, gateway: &Gateway) -> Check {
     let Some(control) = seen.control() else {
         let found = "the boat does not say who commands it";
+        // The file may vouch for it, for boats without such a sentence: then it is a person who
+        // answers for who has control.
         return Check::of("control", gateway.control.assumed, format!("{found}; expected PSEAD, or control.assumed"));
     };
     let (mode, is_ours) = (control.shown.mode, control.operator.is_none_or(|operator| operator == Operator::Secondary));
@@ -121,6 +126,7 @@ fn control(seen: &SensorCheck, gateway: &Gateway) -> Check {
         seen.mode_in_words(mode),
         seen.mode_in_words(Mode::Standby)
     );
+    // A boat under way is not to be taken over by a check.
     Check::of("control", is_ours && mode == Mode::Standby, found)
 }
 

@@ -54,6 +54,7 @@ impl CompassSwing {
     /// Says what is missing.
     pub fn fit(&self) -> Result<Deviation, String> {
         let sectors = self.sectors();
+        // With a part of the circle the sines of one and two turns cannot be told apart.
         if sectors < SECTORS {
             return Err(format!("{sectors} of {SECTORS} sectors of 30 degrees were swept, expected all of them"));
         }
@@ -69,6 +70,8 @@ impl CompassSwing {
             right += row * wrap_pi(off_rad - mean_rad);
             normal += row * row.transpose();
         }
+        // Five unknowns and thousands of pairs: the normal equations are good enough, and a
+        // solver of five by five is all that is needed.
         let solved = normal.cholesky().map(|normal| normal.solve(&right));
         let mut found: [f64; 5] = solved.ok_or_else(|| "the headings do not tell a curve".to_owned())?.into();
         found[0] = wrap_pi(found[0] + mean_rad);

@@ -15,6 +15,7 @@ pub(super) struct FixScatter {
 impl FixScatter {
     /// The scatter of these fixes, in the order in which they came; `None` of fewer than ten.
     pub(super) fn of(fixes: &[LatLon]) -> Option<FixScatter> {
+        // Of fewer fixes the 95th percentile is the worst of them.
         if fixes.len() < 10 {
             return None;
         }

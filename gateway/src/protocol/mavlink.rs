@@ -33,6 +33,8 @@ const AGAIN_S: f64 = 0.5;
 const VELOCITY_MIN_M_S: f64 = 0.01;
 /// What we need of the boat: the numbers of messages, and how often, 1/s.
 const STREAMS: [(u32, f64); 9] = [
+    // Five times a second in place of once: by it the gateway sees that somebody has taken the
+    // boat, and a second is two metres.
     (HEARTBEAT_DATA::ID, 5.0),
     (GLOBAL_POSITION_INT_DATA::ID, 10.0),
     (ATTITUDE_DATA::ID, 10.0),
@@ -103,6 +105,8 @@ impl Mavlink {
     pub(super) fn begin_link(&mut self) {
         self.framer.interrupt();
         self.boat.forget(self.settings.boat_system);
+        // The boat may be another one, or started anew: what was asked of it before is not
+        // believed to hold.
         (self.asked, self.upload) = (None, None);
         (self.heartbeat_due, self.streams_due) = (SimTime::LONG_AGO, SimTime::LONG_AGO);
         self.answers.clear();
@@ -133,6 +137,8 @@ impl Mavlink {
                 take(Report::Home([1e-7 * f64::from(home.latitude), 1e-7 * f64::from(home.longitude)]));
             }
             MavMessage::MISSION_ACK(ack) if (ack.target_system, ack.target_component) == ours => {
+                // To us, by system and component: ground stations on the same link upload
+                // missions, too.
                 self.upload.iter_mut().for_each(|upload| upload.take_ack(ack.mavtype, now));
             }
             other => match item_request(other) {
@@ -299,6 +305,8 @@ impl Mavlink {
                 out,
             );
         }
+        // Not before the boat is known: ArduPilot answers a request for everybody as well, and
+        // so would every other system on the link.
         if self.boat.system.is_some() && now >= self.streams_due {
             self.streams_due = now + SimTime::from_s(STREAMS_AGAIN_S);
             for (id, rate_hz) in STREAMS {
@@ -337,6 +345,7 @@ impl Mavlink {
 
     pub(super) fn begin_upload(&mut self, now: SimTime, mission: &Mission) -> Result<(), String> {
         mission_check::check(mission)?;
+        // Missions of the game give a throttle, as a Surveyor has it; ArduPilot's give a speed.
         let speed_m_s = math::interpolate(self.thrust_map.iter().copied(), mission.throttle_pct);
         let speed_m_s = speed_m_s.clamp(0.0, self.speed_max_m_s);
         self.upload = Some(Upload::new(mission, speed_m_s, self.target(), now));
@@ -387,6 +396,8 @@ impl Mavlink {
 fn mode_of(task: Task) -> RoverMode {
     match task {
         Task::StationKeep => RoverMode::Loiter,
+        // What comes nearest on an ArduPilot boat: it goes home to where it was armed, or to
+        // its rally point.
         Task::GoToErp => RoverMode::Rtl,
         Task::Mission => RoverMode::Auto,
         // It is refused before.

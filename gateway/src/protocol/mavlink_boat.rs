@@ -78,6 +78,7 @@ impl Boat {
         {
             self.system = Some(received.system);
         }
+        // Cameras and gimbals of the same boat have its system and send heartbeats as well.
         let is_its = self.system == Some(received.system) && received.component == AUTOPILOT;
         self.others += u64::from(!is_its);
         is_its
@@ -127,6 +128,8 @@ impl Boat {
         self.mode = Some(shown);
         let is_ours = self.is_ours(asked.as_ref());
         if !is_ours {
+            // Somebody took it: what we asked for before must not count as ours when the boat
+            // happens to be in that mode later.
             *asked = None;
         }
         if let Some(asked) = asked {
@@ -134,6 +137,7 @@ impl Boat {
         }
         let is_fresh = |at: SimTime| (now - at).as_s() <= TARGET_AGE_MAX_S;
         let mode = match shown.mode {
+            // Whatever its mode: a boat that is not armed does not move.
             _ if is_ours && !is_armed => Mode::Standby,
             RoverMode::Hold => Mode::Standby,
             // We never send it a position.
@@ -189,6 +193,8 @@ impl Boat {
                 take(Report::Heading(Heading { deg, north: North::True, yaw_rate_deg_s: Some(yaw_rate) }));
             }
             MavMessage::SYS_STATUS(status) => {
+                // Both messages may tell of the same battery; SYS_STATUS is the one that every
+                // board sends.
                 let volts = millivolts(status.voltage_battery);
                 self.has_volts = volts.is_some();
                 volts
@@ -204,11 +210,14 @@ impl Boat {
                 let (_, time) = date_and_time(time.time_unix_usec.saturating_mul(1000));
                 take(Report::Clock(time));
             }
+            // What is less than a warning is said all the time, and would hide what matters.
             MavMessage::STATUSTEXT(status) if status.severity as u8 <= MavSeverity::MAV_SEVERITY_WARNING as u8 => {
                 let text = status.text.to_str().unwrap_or("a text that is not UTF-8").trim().to_owned();
                 take(Report::Notice(text));
             }
             MavMessage::COMMAND_ACK(COMMAND_ACK_DATA { command, result }) => {
+                // Only of commands that we send ourselves: an answer goes to everybody on the
+                // link.
                 let is_orderly = matches!(
                     command,
                     MavCmd::MAV_CMD_DO_SET_MODE
@@ -228,6 +237,7 @@ impl Boat {
     fn take_position(&mut self, now: SimTime, position: &GLOBAL_POSITION_INT_DATA, take: &mut dyn FnMut(Report)) {
         let GLOBAL_POSITION_INT_DATA { time_boot_ms, lat, lon, vx, vy, hdg, .. } = *position;
         // The same again is not news.
+        // A router may deliver a message by two ways.
         if self.position_ms.replace(time_boot_ms) == Some(time_boot_ms) {
             return;
         }

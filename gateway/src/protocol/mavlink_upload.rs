@@ -103,6 +103,8 @@ impl Upload {
     pub(super) fn take_home(&mut self, (lat_e7, lon_e7): (i32, i32), now: SimTime) {
         let is_near = lat_e7.abs_diff(self.home.0) <= SAME_E7 && lon_e7.abs_diff(self.home.1) <= SAME_E7;
         if self.phase == Phase::Home && is_near {
+            // RTL goes to the home, so a boat that has not taken it must not get a mission
+            // whose recovery point it is.
             (self.phase, self.tries, self.due) = (Phase::Items, 0, now);
         }
     }
@@ -110,6 +112,7 @@ impl Upload {
     /// The boat asks for an item.
     pub(super) fn take_request(&mut self, seq: u16, now: SimTime) -> Option<MavMessage> {
         let item = self.items.get(usize::from(seq)).filter(|_| self.phase == Phase::Items)?;
+        // Each request shows that the boat is still at it: the tries begin anew.
         (self.tries, self.due) = (1, now + SimTime::from_s(AGAIN_S));
         Some(MavMessage::MISSION_ITEM_INT(item.clone()))
     }

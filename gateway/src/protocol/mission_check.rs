@@ -3,6 +3,7 @@
 use messages::external::Mission;
 
 /// Most waypoints of a mission.
+// An upload of a second a line takes minutes by then; a boat's own limit is not published.
 const WAYPOINTS_MAX: usize = 200;
 /// Largest throttle that other drivers of a Surveyor send, per cent.
 const THROTTLE_MAX_PCT: f64 = 70.0;

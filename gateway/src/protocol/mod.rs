@@ -95,6 +95,7 @@ impl Protocol {
     /// Appends what is due without a command, such as a heartbeat and answers to the boat.
     pub fn keep_up(&mut self, now: SimTime, out: &mut Vec<u8>) {
         match self {
+            // A Surveyor sends everything unasked and wants no heartbeat.
             Protocol::Surveyor(_) => {}
             Protocol::Mavlink(mavlink) => mavlink.keep_up(now, out),
         }
@@ -137,6 +138,8 @@ impl Protocol {
     #[must_use]
     pub fn forced_stop_message(&self) -> Vec<u8> {
         match self {
+            // A Surveyor follows only the operator in control, and no sentence of ours changes
+            // who that is.
             Protocol::Surveyor(_) => surveyor::stop_message(),
             Protocol::Mavlink(mavlink) => mavlink.forced_stop_message(),
         }
@@ -193,6 +196,8 @@ impl Protocol {
     pub fn due(&self) -> Option<SimTime> {
         match self {
             Protocol::Surveyor(surveyor) => surveyor.due(),
+            // MAVLink wants a word every second even when nothing is commanded: without it a
+            // boat may go into a failsafe of their own.
             Protocol::Mavlink(mavlink) => Some(mavlink.due()),
         }
     }

@@ -40,6 +40,8 @@ impl Surveyor {
         framer.push(bytes, &mut |body| match Sentence::parse(body) {
             Ok(sentence) => report(&sentence, take),
             Err(ParseError::Unknown { address }) => {
+                // Names come off a wire that may carry noise: without a limit they would fill
+                // the memory.
                 let room = unknown.len() < UNKNOWN_MAX;
                 let name = if room || unknown.contains_key(&address) { address } else { "others".to_owned() };
                 *unknown.entry(name).or_default() += 1;
@@ -154,6 +156,8 @@ fn pseac(mode: Mode, numbers: [Option<f64>; 3]) -> nmea::Command {
 
 fn sentence(command: Command) -> nmea::Command {
     match command {
+        // Zeros as in the public drivers that run these boats: an empty field might mean "as
+        // before".
         Command::Standby => pseac(Mode::Standby, [Some(0.0); 3]),
         Command::Switch(word) => nmea::Command { words: word.text().to_owned(), ..sentence(Command::Standby) },
         Command::Zero => sentence(Command::SetPoint(SetPoint::ZERO)),
@@ -163,6 +167,7 @@ fn sentence(command: Command) -> nmea::Command {
         Command::SetPoint(SetPoint::Speed { heading_deg, speed_m_s }) => {
             pseac(Mode::Speed, [Some(heading_deg), Some(speed_m_s / M_S_PER_KN), None])
         }
+        // Empty fields, as the one public driver sends it that has driven it.
         Command::Task(Task::StationKeep) => pseac(Mode::StationKeep, [None; 3]),
         Command::Task(Task::GoToErp) => pseac(Mode::GoToErp, [Some(0.0); 3]),
         Command::Task(Task::Mission) => pseac(Mode::Waypoint, [Some(0.0); 3]),

@@ -30,6 +30,7 @@ impl Upload {
     pub(super) fn new(mission: &Mission, gap_s: f64, now: SimTime) -> Upload {
         let places = std::iter::once(&mission.erp).chain(&mission.waypoints);
         let mut lines = VecDeque::from([
+            // The lines that follow: settings, recovery point, waypoints.
             start_of_download(mission.waypoints.len() + 2),
             Sentence::MissionSettings(MissionSettings { throttle_pct: mission.throttle_pct }),
         ]);

@@ -97,6 +97,8 @@ impl Cause {
     /// Whether the boat can still be told what to do, knows where it is and points, and is moved by its thrusters.
     #[must_use]
     pub fn leaves_control(self) -> bool {
+        // Only for these may a file name a task after a failsafe. A table of every cause with
+        // every action would let somebody keep station on a lost fix.
         matches!(self, Cause::OrderStale | Cause::BatteryLow | Cause::Geofence | Cause::Hung(_))
     }
 

@@ -226,6 +226,8 @@ impl Supervisor {
         if self.arms_itself && self.state == State::Safed && now.missing().is_empty() {
             self.state = State::Armed;
         }
+        // After the request: an arming that is granted and fails in the same step ends in the
+        // failsafe, with its cause.
         self.check_failsafes(now);
         // Arming by itself is used up by the first change of state.
         self.arms_itself &= self.state == State::Safed && request.is_none();
@@ -261,6 +263,7 @@ impl Supervisor {
     fn check_failsafes(&mut self, now: &Conditions) {
         self.state = match self.state {
             _ if self.is_stopped() => State::EStopped,
+            // Released, it is safed and not what it was before: somebody has to arm it.
             State::EStopped => State::Safed,
             State::Armed => now.failsafe().map_or(State::Armed, |cause| self.failsafe(now, cause)),
             State::Delegated(task) => now.unfit_failsafe(task).map_or(self.state, |cause| self.failsafe(now, cause)),
@@ -280,6 +283,8 @@ impl Supervisor {
         if let Some(cause) = now.hindrance(task) {
             return State::Failsafe { cause, task: None };
         }
+        // Of two causes the geofence decides before the battery: a boat that leaves its water
+        // endangers others, one that runs empty only itself.
         let graver = now.causes().find(|other| other.gravity() > cause.gravity());
         graver.map_or(self.state, |graver| self.failsafe(now, graver))
     }
@@ -296,6 +301,8 @@ impl Supervisor {
         };
         match action {
             FailsafeAction::Standby => None,
+            // For four causes only. With an action for each, somebody would let a boat keep
+            // station on a lost fix.
             FailsafeAction::StationKeep => Some(Task::StationKeep),
             FailsafeAction::GoToErp => Some(Task::GoToErp),
         }
@@ -303,6 +310,8 @@ impl Supervisor {
 
     fn action(&self, now: &Conditions) -> Action {
         match self.state {
+            // Thrust zero in mode T and not standby: it goes on by itself when the box is
+            // clear.
             State::Armed if now.blocked => Action::Zero,
             State::Armed => Action::Follow,
             State::Delegated(task) => Action::Task(task),
@@ -330,6 +339,8 @@ impl Conditions {
         let order = (!self.order_fresh).then_some(Cause::OrderStale);
         let hung = self.hung_s.map(Cause::Hung);
         let (nav, thrust) = (self.nav.map(Cause::Nav), self.thrust.map(Cause::Thrust));
+        // The order in which they are shown to operators: what makes the others meaningless
+        // comes first.
         [link, hung, control, nav, thrust, geofence, battery, order].into_iter().flatten()
     }
 

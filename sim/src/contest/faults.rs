@@ -10,6 +10,8 @@ use scenario::fault::{FaultKind, FaultSpan, fault_spans};
 pub(super) fn of(scenario: &Scenario, vehicle: VehicleId) -> Vec<FaultSpan> {
     let name = &scenario.vehicles[vehicle.index()].name;
     let spans = fault_spans(&scenario.faults, (vehicle, name), &scenario.seeds(), scenario.rules.time_limit);
+    // Those of sensors and thrusters are the world's. Spans follow from the seed before the
+    // game, so a snapshot holds nothing of them and processes agree.
     spans.into_iter().filter(|span| matches!(span.kind, FaultKind::AgentLost | FaultKind::LinkLost)).collect()
 }
 
@@ -33,6 +35,8 @@ impl Contest {
             }
             let is_on =
                 |at: SimTime| self.faults[i].iter().any(|span| span.kind == FaultKind::AgentLost && span.is_on(at));
+            // Compared with the tick before and not remembered: a restored game must log the
+            // same events.
             let (was, is) = (now.0 >= tick.0 && is_on(now - tick), is_on(now));
             if is {
                 self.hold_now(i);

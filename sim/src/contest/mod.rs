@@ -156,6 +156,9 @@ impl Contest {
     /// one decision.
     pub fn pictures(&mut self) -> &[Picture] {
         if self.state.pictured_for != Some(self.state.decision) {
+            // Made once a decision, however often they are asked for: making them draws noise
+            // and reads events, and agents that are sent a picture twice must get the same
+            // bytes.
             self.state.pictured_for = Some(self.state.decision);
             self.note(Input::Pictured);
             self.gather();
@@ -222,6 +225,8 @@ impl Contest {
             Input::Reported { vehicle, nav, fix_at, valid } => drop(self.report(vehicle, nav, fix_at, valid)),
             Input::EStopped(stopped) => self.e_stop(stopped),
             Input::Halted(halted) => self.halt(halted),
+            // In the recorded order with everything else: what came before which tick must not
+            // depend on clocks when a game is played again.
             Input::Played => self.advance(),
         }
     }
@@ -235,6 +240,7 @@ impl Contest {
         let now = self.now();
         let track = self.state.tracks[vehicle.index()].as_mut().ok_or(BadReport::Simulated)?;
         let nav = external::sound(nav)?;
+        // An invalid report is recorded all the same: it shows that the gateway is there.
         if valid {
             track.update(nav, fix_at.min(now + self.scenario.decision()));
             let estimate = track.estimate(now);
@@ -287,6 +293,7 @@ impl Contest {
                 }
             };
             match (radio.as_mut(), track) {
+                // A real boat has a real radio.
                 (Some(radio), None) => {
                     radio.send_report(i, report, world.state().boats[i].pose.at, now);
                     if let Some(newest) = radio.report(i, now, take) {
@@ -342,12 +349,16 @@ impl Contest {
 
     /// Plays until the next decision, or the end of the game.
     pub fn advance(&mut self) {
+        // Once a decision and before any tick: an order that expires in the middle would make a
+        // game depend on when it was looked at.
         self.expire_orders();
         self.hear_requests();
         for _ in 0..self.scenario.ticks_per_decision {
             if self.is_over() {
                 break;
             }
+            // In this order: a fault silences an agent before its orders arrive, and real boats
+            // are where their reports say before anything moves.
             self.begin_and_end_faults();
             self.deliver_orders();
             self.watch_real_boats();
@@ -358,6 +369,7 @@ impl Contest {
         if let Some(radio) = &mut self.radio {
             radio.open_next();
         }
+        // Once a decision: a broken invariant stops the game close to its cause.
         self.assert_sound();
     }
 
@@ -383,6 +395,8 @@ impl Contest {
         let Contest { scenario, referee, world, state, work: Work { notes, events, legs, asks, .. }, .. } = self;
         let standing = &mut state.standing;
         events.clear();
+        // A boat with bad numbers is taken out of play here, in the tick in which it went
+        // wrong, and all others go on.
         for vehicle in world.step(&commands) {
             events.push(Event::Quarantined(*vehicle));
             referee.retire(standing, *vehicle, events);
@@ -391,8 +405,10 @@ impl Contest {
         legs.clear();
         legs.extend((0..commands.len()).map(|i| world.leg(VehicleId::at(i))));
         referee.advance(standing, notes, &Look { legs, asks, near: world.pairs(), now }, events);
+        // After the referee has looked: before, a boat would never be seen entering the circle.
         world.set_back(|vehicle, at| referee.keepout(standing, vehicle, at));
         let tick = world.state().tick;
+        // Only where minds decide next, since nobody asks between.
         if tick.is_multiple_of(u64::from(scenario.ticks_per_decision)) {
             world.read_sensors();
         }

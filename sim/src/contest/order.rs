@@ -10,6 +10,7 @@ use rules::Directive;
 use scenario::boat::Hold;
 
 /// A boat that keeps its station lies still as near to it, m ...
+// Within the noise of a satellite receiver: a boat that corrected less would never rest.
 const STATION_RADIUS_M: f64 = 2.0;
 /// ... and from there comes back the faster the farther off it is, 1/s.
 const STATION_RETURN_PER_S: f64 = 0.5;
@@ -24,11 +25,15 @@ impl Contest {
     pub fn order(&mut self, vehicle: VehicleId, order: Order, given_at: SimTime) -> Result<(), BadOrder> {
         let checked = order.check();
         let (order, i, now) = (checked.unwrap_or_default(), vehicle.index(), self.now());
+        // An agent may claim to have answered a picture of the future, and its order would
+        // never expire.
         let given_at = given_at.min(now);
         self.note(Input::Ordered { vehicle, order, given_at });
+        // The input is noted before: a replay cuts it off again.
         if self.is_cut_off(vehicle) {
             return checked.map(drop);
         }
+        // With a radio the age counts from when it was given, not from its arrival.
         let in_force = &mut self.state.orders[i];
         in_force.given_at = given_at;
         match &mut self.radio {
@@ -154,6 +159,8 @@ impl Contest {
             {
                 *in_force = OrderInForce { order, arrived_at: now, ..*in_force };
             }
+            // The boat's own watchdog counts from the last order that arrived, as firmware
+            // does; the time to live counts from the picture.
             if self.watchdogs[i].is_some_and(|limit| now > in_force.arrived_at + limit) {
                 in_force.order = Order::Hold;
             }

@@ -35,6 +35,8 @@ impl Contest {
     #[must_use]
     pub fn snapshot(&self) -> Vec<u8> {
         let (radio, sightings) = (self.radio.as_ref().map(Radio::state), self.sightings.as_ref().map(Sightings::state));
+        // The sea, the faults and the contact engine are missing on purpose: they are functions
+        // of scenario, seed and time.
         let body = bytes(&(self.world.state(), &self.state, radio, sightings));
         let mut snapshot = MAGIC.to_vec();
         snapshot.extend(self.scenario_mark.to_le_bytes());
@@ -51,6 +53,7 @@ impl Contest {
         let rest = snapshot.strip_prefix(&MAGIC).ok_or(RestoreError::NotASnapshot)?;
         let (mark, rest) = rest.split_at_checked(8).ok_or(RestoreError::Damaged)?;
         let (check, body) = rest.split_at_checked(8).ok_or(RestoreError::Damaged)?;
+        // A state of another scenario would fit by length and be nonsense.
         if mark != self.scenario_mark.to_le_bytes() {
             return Err(RestoreError::OtherScenario);
         }
@@ -73,12 +76,16 @@ impl Contest {
         let mut hash = xxh3::Xxh3::new();
         hash.update(&xxh3::xxh3_128(&bytes(&(self.world.state(), standing))).to_le_bytes());
         for logged in events {
+            // As it is recorded, field by field: a change of the Rust types alone must not
+            // change a digest.
             let record = messages::EventRecord::from(*logged);
             hash.update(&record.tick.to_le_bytes());
             hash.update(&[record.kind]);
             hash.update(&record.subject.to_le_bytes());
             hash.update(&record.object.to_le_bytes());
         }
+        // Only where they exist: digests of games without them stay what they were before
+        // radios were added.
         if self.radio.is_some() || self.sightings.is_some() || self.watchdogs.iter().any(Option::is_some) {
             let in_force: Vec<_> = orders.iter().map(|held| held.order).collect();
             let arrived_at: Vec<_> = orders.iter().map(|held| held.arrived_at).collect();

@@ -53,9 +53,12 @@ impl Contest {
     pub(super) fn assert_sound(&self) {
         let (world, standing) = (self.world.state(), &self.state.standing);
         assert_eq!(world.now, self.scenario.tick * world.tick as i64, "time is ticks");
+        // The world sets a boat aside whose numbers went bad; one that gets past that is a
+        // mistake of ours, and the game's result would be worth nothing.
         assert!(world.boats.iter().all(|boat| boat.pose.at.is_finite()), "boats are somewhere");
         for (i, boat) in standing.vehicles.iter().enumerate() {
             let Some(flag) = boat.carrying else { continue };
+            // Three rules meet here, and each could break it.
             assert!(boat.in_play && !boat.tagged && !boat.outside, "vehicle {i} carries a flag");
             assert_eq!(
                 standing.flags[flag.index()].carrier,
@@ -69,6 +72,8 @@ impl Contest {
 
     /// That the score is what the events add up to.
     pub(super) fn assert_score(&self) {
+        // Counted a second time, from the events: what referee and log say must not drift
+        // apart.
         let mut tally = Tally::new(self.scenario.vehicles.len());
         self.state.events.iter().for_each(|logged| tally.add(logged.event));
         let mut score = vec![0_u32; self.score().len()];

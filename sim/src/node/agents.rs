@@ -39,9 +39,13 @@ pub fn accept(
     // A message with a good ticket shows that somebody is there, in time or not.
     accepted.back = agents.welcome_back(message.ticket);
     let seq = message.stamp.seq;
+    // An answer that came twice, since the sim repeats pictures and agents their answers: no
+    // acknowledgements are needed.
     if own.iter().any(|vehicle| agents.has_taken(*vehicle, seq)) {
         return accepted;
     }
+    // In real time an agent that is a tick late is still useful: its order counts until its
+    // time to live is over.
     if seq > tick || (seq < tick && timing == Timing::Lockstep) {
         refusals.count(Refusal::WrongTick);
         return accepted;
@@ -65,6 +69,8 @@ fn orders_for(own: &[VehicleId], message: &Orders, refusals: &mut Refusals) -> V
     }
     for vehicle in own {
         if !orders.iter().any(|(given, _)| given == vehicle) {
+            // It holds rather than going on by the order before: a mind that forgets a boat has
+            // a bug, and the result says so.
             refusals.count(Refusal::Missing);
             orders.push((*vehicle, Order::Hold));
         }

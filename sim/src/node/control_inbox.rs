@@ -37,6 +37,8 @@ impl<Q> ControlInbox<Q> {
     pub(super) fn put_stop(&self, bytes: &[u8]) -> bool {
         let control = serde_json::from_slice::<Control>(bytes);
         self.0.visit(|waiting| match control {
+            // Anybody may publish these; whatever else is published here is asked for with the
+            // token instead.
             Ok(control) if control.stops() => {
                 waiting.put_stop(control);
                 true
@@ -80,6 +82,8 @@ impl<Q> Waiting<Q> {
     /// The same stop twice in a row is one. Where too much waits, a stop takes the place of all that is none.
     fn put_stop(&mut self, stop: Control) {
         let is_stop = |command: &Command<Q>, stop| matches!(command, Command::Stop(waiting) if *waiting == stop);
+        // Stops are repeated until they are answered: the same one twice would only fill the
+        // room.
         if self.commands.back().is_some_and(|last| is_stop(last, stop)) {
             return;
         }

@@ -16,6 +16,8 @@ pub fn accept(gateways: &mut Membership, report: &NavReport, now: SimTime, refus
         Refusal::Ticket
     } else if !own.any(|own| own == vehicle) {
         Refusal::NotYours
+    // Reports may arrive out of order after a cut: an older position must not replace a newer
+    // one.
     } else if gateways.has_taken(vehicle, seq) {
         Refusal::WrongTick
     } else if report.age_ns < 0 {
@@ -24,6 +26,8 @@ pub fn accept(gateways: &mut Membership, report: &NavReport, now: SimTime, refus
         drop(own);
         gateways.note_taken(vehicle, seq);
         gateways.welcome_back(report.ticket);
+        // The age is by the gateway's own clock. A time of the fix would need clocks that
+        // agree.
         return Some(now - SimTime(report.age_ns).min(OLDEST));
     };
     refusals.count(refusal);

@@ -6,12 +6,16 @@ use bus::clock;
 use std::time::{Duration, Instant};
 
 /// After this time without an answer the pictures are sent again.
+// A link that is cut and comes back may have lost the picture or its answer, and both sides
+// would wait for ever.
 const SEND_AGAIN: Duration = Duration::from_millis(250);
 
 /// Plays until the game is over or stopped.
 pub(super) fn play(server: &mut GameServer<'_>, tell: &mut dyn FnMut(ProgressMessage)) -> Result<(), NodeError> {
     let mut due = clock::now();
     while !server.contest.is_over() && !server.is_stopped() {
+        // Before the pictures: what is recorded of a decision is complete even if the game is
+        // killed while agents think.
         server.record();
         server.send_pictures()?;
         server.send_frame()?;
@@ -65,6 +69,7 @@ fn gather(server: &mut GameServer<'_>, tell: &mut dyn FnMut(ProgressMessage)) ->
     while !server.agents.all_answered(tick) && !server.is_stopped() {
         server.listen(Duration::from_millis(50));
         if server.time.worked().saturating_sub(since) >= patience {
+            // All that have not answered, at once: the next decision waits for none of them.
             server.give_up(tick);
         } else if clock::since(sent) >= SEND_AGAIN {
             server.send_pictures()?;

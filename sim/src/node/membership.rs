@@ -59,10 +59,14 @@ impl Membership {
     pub fn join(&mut self, request: &JoinRequest, ticket: u64, now: SimTime) -> JoinReply {
         let role = self.role;
         let refused = |reason: String| JoinReply::Refused { reason };
+        // Exactly the same: two versions may agree on messages and differ in a rounding, and
+        // then in the game.
         if request.version != primitives::VERSION {
             let (theirs, ours) = (&request.version, primitives::VERSION);
             return refused(format!("the {role} is Squall {theirs}, the sim is Squall {ours}: use the same version"));
         }
+        // Nobody can have joined with nothing: lockstep would wait for a node that has nothing
+        // to answer.
         if request.vehicles.is_empty() {
             return refused(format!("the {role} names no vehicle"));
         }
@@ -78,12 +82,16 @@ impl Membership {
             if place.present().is_some_and(|holder| holder.node != request.node) {
                 return JoinReply::Busy { vehicle: name.clone() };
             }
+            // A name given twice is a slip of the command line, and the count of boats would be
+            // wrong.
             if vehicles.contains(&VehicleId::at(i)) {
                 return refused(format!("the {role} names {name:?} twice"));
             }
             vehicles.push(VehicleId::at(i));
         }
         for vehicle in &vehicles {
+            // A new ticket voids the old one, so that an agent that was taken for dead cannot
+            // steer beside its successor.
             let holder = Holder { node: request.node.clone(), ticket, is_present: true, newest: None };
             self.places[vehicle.index()].holder = Some(holder);
         }
@@ -145,6 +153,8 @@ impl Membership {
 
     /// A node is gone: the vehicles it leaves behind. It may come back to those that nobody else takes.
     pub fn gone(&mut self, node: &str) -> Vec<VehicleId> {
+        // By the link that zenoh says is gone, not by a liveliness token: anybody could show
+        // one in another's name.
         self.lose(|holder| holder.node == node)
     }
 

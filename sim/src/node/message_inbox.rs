@@ -29,6 +29,8 @@ impl Sender {
     /// How many messages may wait to be read: more than come between two looks of the sim.
     fn share(self) -> usize {
         match self {
+            // Shares by topic or by link would need no tickets, but anybody can publish on as
+            // many topics, over as many links, as they like.
             Sender::Member(_) => 128,
             // Every byte between a gateway and its boat is among it.
             Sender::Reporting(_) => 2048,
@@ -91,6 +93,7 @@ impl MessageInbox {
             }
             has_room
         });
+        // A look that finds no room is no loss: one is waiting.
         if !has_room && sender != Sender::Inboxes {
             self.refuse(Refusal::Flood);
         }

@@ -74,6 +74,8 @@ impl std::fmt::Display for Pace {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Pace::Lockstep => f.write_str("lockstep"),
+            // The words are those that are read back: a recording's pace can be given to
+            // another run.
             Pace::Realtime { factor } if *factor == 1.0 => f.write_str("realtime"),
             Pace::Realtime { factor } => write!(f, "{factor}x"),
         }
@@ -108,14 +110,19 @@ pub fn serve(
     tell: &mut dyn FnMut(ProgressMessage),
 ) -> Result<Report, NodeError> {
     if settings.pace == Pace::Lockstep {
+        // A real boat does not wait for agents that think.
         scenario.has_no_real_boats().map_err(NoStart::from)?;
     }
+    // Before the hub opens: a game whose boats do not fit is refused before anybody can join
+    // it.
     let contest = Contest::new(scenario, seed)?;
     let mut server = GameServer::open(contest, settings, recorder)?;
     tell(ProgressMessage::Open {
         game: settings.game.as_str().to_owned(),
         endpoint: settings.net.local_endpoint().unwrap_or_default(),
     });
+    // Simulated time begins when all are there: how long programs take to start is no part of a
+    // game.
     server.wait_for_everybody(settings.join_limit, tell)?;
     tell(ProgressMessage::Started);
     let started = clock::now();

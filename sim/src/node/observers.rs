@@ -33,6 +33,8 @@ pub(super) struct RecordedTopic {
 
 impl RecordedTopic {
     fn cdr<M: Message + DeserializeOwned>(topic: String) -> RecordedTopic {
+        // Checked before it is recorded: a reader must not fail on what a stranger has
+        // published.
         RecordedTopic { topic, schema: Some(M::SCHEMA), is_sound: |bytes| codec::decode::<M>(bytes).is_ok() }
     }
 }

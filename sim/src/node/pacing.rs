@@ -46,7 +46,9 @@ impl Pacing {
         match control {
             Control::Pause => (self.is_paused, self.steps) = (true, 0),
             Control::Resume => (self.is_paused, self.steps) = (false, 0),
+            // Counted, since a person may press the key faster than a decision is played.
             Control::Step if self.is_paused => self.steps = self.steps.saturating_add(1),
+            // Real boats have one speed.
             Control::Speed(Some(speed)) if Control::SPEEDS.contains(&speed) && !self.is_real => {
                 self.speed = Some(speed);
             }

@@ -31,6 +31,8 @@ pub(super) fn play(server: &mut GameServer<'_>, tell: &mut dyn FnMut(ProgressMes
             due = clock::now();
         }
         due += period;
+        // Here nobody is waited for, so silence is measured by the time since an agent was
+        // heard.
         server.lose_silent();
         server.contest.advance();
         server.pacing.played();

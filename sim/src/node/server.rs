@@ -96,12 +96,14 @@ impl<'w> GameServer<'w> {
         settings: &Settings,
         recorder: Option<&'w mut GameRecorder>,
     ) -> Result<GameServer<'w>, NodeError> {
+        // The scenario goes to the hub, whose rules spell out every topic by team and boat.
         let bus = Bus::hub(&settings.net, &settings.game, contest.scenario())?;
         let (questions_sender, questions) = inbox(QUESTIONS);
         let (controls, messages) = (Arc::new(ControlInbox::default()), Arc::new(MessageInbox::default()));
         let (to_controls, others) = (Arc::clone(&controls), Arc::clone(&messages));
         let inboxes = Inboxes { controls: to_controls, questions: questions_sender, others };
         let game = &settings.game;
+        // A game's inputs cost memory, and nobody would take them.
         if recorder.is_some() {
             contest.keep_inputs();
         }
@@ -113,6 +115,7 @@ impl<'w> GameServer<'w> {
         let speed = if let Pace::Realtime { factor } = settings.pace { Some(factor) } else { settings.speed };
         let teams = (0..scenario.teams.len()).map(|team| topic::picture(game, scenario, TeamId(team as u8)));
         let pictures: Result<Vec<Publisher>, _> = teams.map(|key| bus.publisher(key, Priority::Normal)).collect();
+        // Commands to boats are urgent: they pass everything that waits on a link.
         let to_boat = |v| Ok((v, bus.publisher(topic::external_order(game, scenario, v), Priority::Urgent)?));
         let external_orders: Vec<_> = scenario.externals().map(to_boat).collect::<Result<_, NodeError>>()?;
         let reports = subscriptions::report_publishers(&bus, game, scenario)?;
@@ -193,6 +196,8 @@ impl<'w> GameServer<'w> {
             self.listen(Duration::from_millis(100));
         }
         self.last_report = (clock::now(), SimTime::ZERO);
+        // Agents that came first have waited for the last: their silence until now tells
+        // nothing.
         self.heard.fill(self.time.worked());
         Ok(())
     }
@@ -231,6 +236,7 @@ impl<'w> GameServer<'w> {
 
     /// Sends observers the truth, if there are any.
     pub(super) fn send_frame(&mut self) -> Result<(), NodeError> {
+        // Lockstep would pay at every decision for encoding what nobody reads.
         if !self.frames.is_heard() {
             return Ok(());
         }
@@ -240,7 +246,10 @@ impl<'w> GameServer<'w> {
 
     /// Sends every team the picture of the open decision, and every real boat its order. Sending them twice does no harm.
     pub(super) fn send_pictures(&mut self) -> Result<(), NodeError> {
+        // Reports of real boats come while a decision is open: their age is laid off from this
+        // moment.
         self.opened = Some(clock::now());
+        // Pictures are sent again until they are answered, but recorded once.
         let is_again = self.asked.replace(self.contest.decision()) == Some(self.contest.decision());
         let pictures: Vec<Vec<u8>> = self.contest.pictures().iter().map(codec::encode).collect();
         for (i, bytes) in pictures.into_iter().enumerate() {
@@ -257,6 +266,7 @@ impl<'w> GameServer<'w> {
     /// send.
     fn pass_on(&mut self, vehicle: VehicleId) -> Result<(), NodeError> {
         let Some(boat) = self.external_orders.iter().position(|(boat, _)| *boat == vehicle) else { return Ok(()) };
+        // A paused game must not leave a real boat under way on its last order.
         let is_held = self.pacing.is_held();
         self.send_order(boat, if is_held { Order::Hold } else { self.contest.effective_command(vehicle) })
     }
@@ -269,6 +279,8 @@ impl<'w> GameServer<'w> {
         }
         let (valid_ns, seq) = (self.contest.now(), self.contest.decision());
         let stamp = Stamp { valid_ns, seq, version: ExternalOrder::VERSION };
+        // The time of the picture that it answers: by that a gateway judges how old an order
+        // is, however often it is repeated.
         let given_ns = self.contest.given_at(vehicle);
         let order = ExternalOrder { stamp, given_ns, order: VehicleOrder::new(vehicle, order) };
         let bytes = codec::encode(&order);
@@ -288,6 +300,8 @@ impl<'w> GameServer<'w> {
 
     /// Gives up on agents that have not been heard for as long as the scenario's patience.
     pub(super) fn lose_silent(&mut self) {
+        // By the time at work, not by the clock: a sim that was suspended blames nobody for the
+        // silence meanwhile.
         let patience = Duration::from_secs_f64(self.contest.scenario().patience_s);
         for i in 0..self.heard.len() {
             if self.time.worked().saturating_sub(self.heard[i]) > patience {
@@ -323,6 +337,7 @@ impl<'w> GameServer<'w> {
         if passed < REPORT_EVERY && !self.is_news {
             return Ok(());
         }
+        // Over no time at all a rate would be infinite, and the page could not draw it.
         let rate = (self.contest.now() - then_sim).as_s() / passed.as_secs_f64().max(1e-3);
         self.last_report = (clock::now(), self.contest.now());
         self.reporter.progress(&self.contest, (rate, self.refusals().total()), tell);
@@ -377,6 +392,8 @@ impl<'w> GameServer<'w> {
         self.is_news = true;
         self.send_run(Phase::Over, 0.0)?;
         let start = clock::now();
+        // The end may be lost on the way: agents that leave show that it was not. With a limit,
+        // since one may hang.
         while !self.agents.is_empty() && clock::since(start) < SHUTDOWN {
             self.listen(Duration::from_millis(20));
         }

@@ -72,6 +72,7 @@ impl Inboxes {
     ) -> impl Fn(&[u8]) + Send + Sync + use<M> {
         let others = Arc::clone(&self.others);
         move |bytes: &[u8]| {
+            // Decoded in zenoh's thread, so that what is garbage never wakes the loop.
             if let Some(message) = others.decode::<M>(bytes) {
                 others.put(incoming(message, bytes));
             }
@@ -94,6 +95,7 @@ impl Inboxes {
             Some((ticket, message)) => {
                 others.put(Incoming::Report { ticket, vehicle, what, message: message.to_vec() });
             }
+            // Counted with everything that is refused, which the result and the page show.
             None => others.refuse(Refusal::Garbage),
         }
     }
@@ -139,6 +141,8 @@ pub(super) fn open(
         }
     };
     let mut declarations = vec![
+        // One subscription for all agents: their names are in the key for access control, and
+        // the ticket says who it is.
         bus.subscribe(topic::all_orders(game), inboxes.take(|orders, _| Incoming::Orders(orders)))?,
         bus.subscribe(topic::control(game), stop)?,
         bus.answer(topic::control(game), control)?,

@@ -27,6 +27,9 @@ impl WorkingTime {
         let passed = now.saturating_duration_since(self.looked);
         self.looked = now;
         if passed.saturating_sub(waited) > TURN_MAX {
+            // Patience for ten seconds more: zenoh gives up links after ten seconds of silence,
+            // and they have to be opened anew. A shorter lease would find cut links sooner and
+            // give up suspended ones as well.
             self.recovery = RECOVERY;
             return;
         }

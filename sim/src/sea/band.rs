@@ -39,6 +39,7 @@ impl WaveField {
         for component in self.components() {
             // A number below the range, or none, becomes 0.
             let place = ((component.omega_rad_s / TAU - range_hz.0) / width_hz) as usize;
+            // The last band takes what lies above.
             bands[place.min(count - 1)].variance_m2 += 0.5 * component.amplitude_m * component.amplitude_m;
         }
         bands

@@ -26,6 +26,7 @@ impl CachedProcess {
     pub(super) fn new(process: GaussMarkov, points: f64) -> CachedProcess {
         let correlation = GaussMarkov::neighbour_correlation();
         let length = (points.ceil() as i64).saturating_add(3).clamp(1, HELD_MAX) as u64;
+        // A power of two, so that a slot is a mask and not a division.
         let ring = vec![(0.0, 0.0); length.next_power_of_two() as usize];
         CachedProcess { process, correlation, trail: Trail::default(), ring, held: (0, 0) }
     }
@@ -52,6 +53,8 @@ impl CachedProcess {
         let (index, weight) = (floor as i64, place - floor);
         let (low, high) = self.neighbours(index);
         let product = 2.0 * weight * (1.0 - weight);
+        // Linear interpolation of two correlated numbers has less variance in the middle;
+        // without this gusts would be weaker between grid points.
         let deviation = (1.0 - product * (1.0 - self.correlation)).sqrt();
         let between = |low: f64, high: f64| (low + weight * (high - low)) / deviation;
         (between(low.0, high.0), between(low.1, high.1))

@@ -73,11 +73,14 @@ impl CurrentField {
         if let Some((wander, process)) = &self.wander {
             let mean_m_s = self.mean_m_s.dot(wander.toward);
             let wandering_m_s = mean_m_s + wander.sigma_m_s * process.at(wander_place(wander, now)).0;
+            // Clipped and not reflected: the process itself goes on unbounded and stays a
+            // function of the time.
             let speed_m_s = wandering_m_s.max(wander.speed_m_s.0).min(wander.speed_m_s.1);
             uniform_m_s = uniform_m_s + wander.toward.scaled(speed_m_s - mean_m_s);
         }
         if let Some(tide) = self.tide {
             let turns = now.as_s() / tide.period_s + tide.phase;
+            // Reduced first, so that a game of many tides keeps its digits.
             let (sin, _) = math::sin_cos(TAU * (turns - turns.floor()));
             uniform_m_s = uniform_m_s + tide.flood_m_s.scaled(sin);
         }

@@ -56,6 +56,7 @@ impl Vortex {
         if s == 0.0 {
             return (self.core_rad_s, 0.0);
         }
+        // `expm1` and not `1 - exp`: in the core all digits would cancel.
         let share = if s > FAR { 1.0 } else { -libm::expm1(-s) };
         (self.core_rad_s * share / s, share)
     }
@@ -70,6 +71,8 @@ pub fn draw(random: &RandomEddies, field: &Field, seed: u64) -> Vec<Eddy> {
         let across_m = stream.between(0.0, field.plan.depth_m);
         let radius_m = stream.between(random.radius_m.0, random.radius_m.1);
         let peak_m_s = stream.between(random.peak_m_s.0, random.peak_m_s.1);
+        // All numbers of an eddy are drawn, also where a range has one value: the next eddy
+        // does not move when one is set.
         let sense = if stream.bits() & 1 == 0 { 1.0 } else { -1.0 };
         Eddy { centre: field.at(along_m, across_m), radius_m, peak_m_s: sense * peak_m_s }
     };

@@ -81,6 +81,8 @@ impl GaussMarkov {
     pub(super) fn new(seeds: &Seeds, name: &str, place: impl Fn(SimTime) -> f64) -> GaussMarkov {
         let halving = std::array::from_fn(|level| {
             let apart = (BLOCK >> (level + 1)) as f64 / STEPS_PER_LENGTH;
+            // Once for each level of halving; a look-up then takes no transcendental function
+            // but the logarithm of the noise.
             let rho = libm::exp(-apart);
             (rho / (1.0 + rho * rho), (-libm::expm1(-2.0 * apart) / (1.0 + rho * rho)).sqrt())
         });
@@ -121,6 +123,8 @@ impl GaussMarkov {
         let block = index.div_euclid(BLOCK);
         // The ends of a block take turns, so that the end of one stays known as the beginning of the next.
         let end = |block: i64| LEVELS + (block & 1) as usize;
+        // Neighbours share most of their way down: a sequence of points costs about one draw
+        // each.
         let mut low = trail.known(end(block), block * BLOCK, || draw(block * BLOCK));
         if index == block * BLOCK {
             return low;

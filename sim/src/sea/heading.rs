@@ -4,6 +4,8 @@ use crate::lanes::{FOLD, Lanes, ROW};
 use std::f64::consts::TAU;
 
 /// Headings at which the numbers stand.
+// Linear between 72 headings is 0.4 % off at most (root mean square) for the shipped boats, and
+// up to 3 % for a hull three waves long, which hardly feels them.
 pub(super) const BINS: usize = 72;
 
 /// The heading of a bin, rad.

@@ -98,6 +98,7 @@ impl HullWaves {
             [surge, sway, yaw, reflected_m[wave]]
         });
         let reflected_m2: f64 = reflected_m.iter().map(|c| c * c).sum();
+        // In the mean over time the squares add up to the closed-form mean drift.
         let per_m2 = if reflected_m2 > 0.0 { 1.0 / reflected_m2 } else { 0.0 };
         let drift = HeadingTable::new(1, |bin, number| {
             if number > 0 {
@@ -135,6 +136,8 @@ impl HullWaves {
         let mut change_m = Lanes::splat(0.0);
         let (lines, fraction) = self.lines.at(pose.psi_rad);
         for (n, (block, lines)) in self.blocks.iter().zip(lines.as_chunks::<FOLD>().0).enumerate() {
+            // At the boat's position: the frequency of encounter results from that. Put in by
+            // hand instead, it would go with a wrong wave number.
             let (sin, cos) = block.phases.sin_cos(pose.at, time_s);
             for (i, (row, line)) in block.rows.iter().zip(lines).enumerate() {
                 let (line, sin, cos) = (line.at_fraction(fraction), sin.row(i), cos.row(i));
@@ -150,6 +153,8 @@ impl HullWaves {
 
     fn sample(&self, Sums { of_cos, of_sin }: &Sums, heading_rad: f64) -> WaveSample {
         let (in_phase, off_phase) = (of_cos.sum(3), of_sin.sum(3));
+        // The square of the envelope: Newman's approximation, in which drift follows the groups
+        // of waves.
         let groups_m2 = in_phase * in_phase + off_phase * off_phase;
         let (drift, fraction) = self.drift.at(heading_rad);
         let mean = drift[0].at_fraction(fraction);

@@ -116,6 +116,8 @@ impl SeaModel {
     #[must_use]
     pub fn new(sea: &Sea, boats: &[Boat], field: &Field, tick: SimTime, seeds: &Seeds) -> SeaModel {
         let waves = sea.waves.as_ref().map(|waves| WaveField::new(waves, sea.depth_m, seeds.first()));
+        // No lower than half a metre: the profile of the wind is a power of the height, and has
+        // no sense at the water itself.
         let highest = boats.iter().map(|boat| boat.windage.height_m).fold(0.5, f64::max);
         // Wind of no speed is no wind, whatever the boat makes by its own way.
         let wind = sea.wind.as_ref().filter(|wind| wind.speed_10m_m_s > 0.0);
@@ -147,7 +149,10 @@ impl SeaModel {
     /// The index of the boat's propeller submergence, made if it is the first of it, if the propellers can ventilate.
     fn submergence_of(&mut self, boat: &Boat, patches: &mut Made<2, Patches>) -> Option<usize> {
         let (Drive::Thrusters { thruster, .. }, Some(field)) = (&boat.drive, &self.waves) else { return None };
+        // For boats whose propellers never draw air this costs nothing.
         thruster.flaws.ventilation?;
+        // By size and not by name: tables take most of the time in which a game is made, and
+        // strategies often differ where hulls do not.
         let size = [boat.length_m, boat.beam_m, boat.draught_m, thruster.arm_m];
         Some(index_of(&mut self.submergences, size, || {
             let ahead = -PROPELLER_ASTERN * boat.length_m;
@@ -198,6 +203,8 @@ impl SeaModel {
     #[inline]
     #[must_use]
     pub fn at_time(&self, now: SimTime) -> SeaNow<'_> {
+        // In whole nanoseconds: the time of a wave has the same bits whether the game has come
+        // here or was set here.
         let middle_s = (now + self.half_tick).as_s();
         SeaNow { model: self, current: self.current.at_time(now), now, middle_s }
     }
@@ -217,6 +224,7 @@ impl SeaNow<'_> {
             ..SeaForcing::default()
         };
         if let Some(wind) = &self.model.wind {
+            // At the beginning of the tick: gusts last for seconds, a tick for hundredths.
             let air_m_s = wind.at(pose.at, boat.wind_mean_m_s, self.now);
             let past = windage::wind_past_boat(rotation, air_m_s, nu);
             forcing.force = windage::wind_force(&boat.windage, boat.length_m, windage::AIR_DENSITY_KG_M3, past);
@@ -240,12 +248,16 @@ impl SeaNow<'_> {
     ) {
         let (half_s, shape) = (self.model.half_s, &self.model.shapes[boat.shape].1);
         let velocity_m_s = nu.in_ned(rotation);
+        // In the middle of the tick, once: its rate of change is known there as well, and three
+        // evaluations would triple the largest part of a tick.
         let middle = Pose { at: pose.at + velocity_m_s.scaled(half_s), psi_rad: pose.psi_rad + half_s * nu.yaw };
         let (waves, submergence_change_m) = match boat.submergence.map(|index| &self.model.submergences[index].1) {
             None => (shape.waves.at(middle, self.middle_s), [0.0; 2]),
             Some(submergence) => shape.waves.at_with(submergence, middle, self.middle_s),
         };
         forcing.submergence_change_m = submergence_change_m;
+        // Linear waves carry nothing in the mean. What floats in real ones drifts (Stokes), and
+        // this part of it does not come out of the forces.
         forcing.current_m_s = forcing.current_m_s + shape.rise_drift_m_s;
         forcing.water = forcing.water.plus(1.0, waves.velocity);
         forcing.water_rate = waves.acceleration;
@@ -281,6 +293,8 @@ impl SeaNow<'_> {
     /// The velocity of the air 10 m above the water, m/s.
     #[must_use]
     pub fn wind_at(&self, at: Ned) -> Ned {
+        // At ten metres, the height for which winds are told and Beaufort numbers are defined,
+        // not at a boat's.
         self.model.wind.as_ref().map_or_else(Ned::default, |wind| wind.at(at, wind.mean_m_s(10.0), self.now))
     }
 

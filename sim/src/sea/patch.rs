@@ -38,6 +38,7 @@ impl Patch {
 /// that fits sin best, 3 (sin u − u cos u) / u³.
 fn fit(half_rad: f64) -> (f64, f64) {
     let u = half_rad;
+    // Series near zero, where the quotient loses its digits.
     if u.abs() < 1e-4 {
         return (1.0 - u * u / 6.0, 1.0 - u * u / 10.0);
     }
@@ -57,6 +58,8 @@ impl Patches {
     pub(super) fn new(field: &WaveField, boat: &Boat) -> Patches {
         let of_bin = |bin| field.waves.iter().map(move |wave| Patch::new(wave, boat, heading::of_bin(bin)));
         let mut patches: Vec<Patch> = (0..BINS / 2).flat_map(of_bin).collect();
+        // Half a turn on, the same wave comes from the other end: half of the sines are saved
+        // when a game begins.
         patches.extend_from_within(..);
         let half = patches.len() / 2;
         patches[half..].iter_mut().for_each(|patch| *patch = patch.turned());

@@ -75,11 +75,15 @@ pub(super) fn components(waves: &Waves, seed: u64) -> Vec<Component> {
     let densities: Vec<f64> = points(BAND).map(|x| jonswap.density_m2_s(x * peak_rad_s)).collect();
     let energy = Curve::new(BAND, densities.iter().copied());
     let second = Curve::new(BAND, points(BAND).zip(&densities).map(|(x, density)| x * x * density));
+    // Strata of equal share in energy and in its second moment: by energy alone the short
+    // waves, which make the slopes, would be a handful.
     let both = Curve { x: energy.x, up_to: (0..=PIECES).map(|i| 0.5 * (energy.up_to[i] + second.up_to[i])).collect() };
     let spread = spread(waves.spreading);
     let first_quantile = stream.unit();
 
     // The renormalisation takes the place of the variance that the band leaves out.
+    // With amplitudes straight from the density, Hs comes out up to 6 % off for 16 to 64
+    // components.
     let variance_m2 = waves.hs_m * waves.hs_m / 16.0;
     let mut below = 0.0;
     (0..count)
@@ -88,6 +92,8 @@ pub(super) fn components(waves: &Waves, seed: u64) -> Vec<Component> {
             let share = above - below;
             let x = energy.at(below + stream.unit() * share);
             below = above;
+            // One direction for each frequency. Many directions at one frequency lock into a
+            // standing pattern.
             let quantile = first_quantile + i as f64 * GOLDEN;
             Component {
                 amplitude_m: (2.0 * variance_m2 * share).sqrt(),

@@ -75,6 +75,7 @@ impl Summary {
 }
 
 fn wave_summary(field: &WaveField, (tp_s, from_rad): (f64, f64), boat: &Boat, density_kg_m3: f64) -> WaveSummary {
+    // From ahead and from abeam, the two extremes of a hull that is longer than wide.
     let headings_rad = [from_rad, from_rad + std::f64::consts::FRAC_PI_2];
     let on_hull = |heading_rad: f64| {
         let velocities = field
@@ -119,6 +120,7 @@ fn wind_summary(wind: &Wind, boat: &Boat, hull: &HullModel) -> WindSummary {
 /// Where `excess`, which falls, is nothing between 0 and `most`: by bisection.
 fn equilibrium(most: f64, excess: impl Fn(f64) -> f64) -> f64 {
     let (mut low, mut high) = (0.0, most);
+    // Halved sixty times, beyond the last bit: drag is not smooth enough for Newton's method.
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
         if excess(middle) > 0.0 {

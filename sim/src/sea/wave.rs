@@ -51,6 +51,7 @@ impl PlaneWave {
 
     /// How much of the orbital velocity's horizontal part is left at a depth, over a ω: cosh k(z + h) / sinh k h.
     pub(super) fn orbital_at(&self, below_m: f64) -> f64 {
+        // As decaying exponentials: sinh and cosh of deep water overflow.
         self.decay_at(below_m) / (1.0 - libm::exp(-2.0 * self.depth_rad()))
     }
 
@@ -62,6 +63,7 @@ impl PlaneWave {
     /// 2 e^(−k h) cosh k(z + h).
     fn decay_at(&self, below_m: f64) -> f64 {
         let k = self.wavenumber_rad_m;
+        // A boat may be laid over water that is shallower than its draught.
         let below_m = below_m.min(self.depth_m);
         libm::exp(-k * below_m) * (1.0 + libm::exp(-2.0 * k * (self.depth_m - below_m)))
     }
@@ -69,6 +71,8 @@ impl PlaneWave {
     /// The group's speed over half the phase's: 1 in deep water, 2 in shallow. 1 + 2kh / sinh 2kh.
     fn group_factor(&self) -> f64 {
         let twice = 2.0 * self.depth_rad();
+        // From there on the quotient is nothing to the last bit, and somewhat later the
+        // hyperbolic sine overflows.
         if twice > 40.0 { 1.0 } else { 1.0 + twice / libm::sinh(twice) }
     }
 
@@ -101,6 +105,7 @@ pub fn wavenumber_rad_m(omega_rad_s: f64, depth_m: f64) -> f64 {
         return deep;
     }
     // Eckart (1952), within 5 %, then Newton's method; its steps become nothing after four or five.
+    // The dispersion relation has no closed solution in finite depth.
     let mut k = deep / libm::tanh(deep * depth_m).sqrt();
     for _ in 0..20 {
         let tanh = libm::tanh(k * depth_m);
@@ -227,6 +232,8 @@ impl WaveField {
     /// The field of these components: a regular wave, or a sea measured elsewhere.
     #[must_use]
     pub fn of(components: &[Component], depth_m: Option<f64>, drift_factor: f64) -> WaveField {
+        // Infinite and not merely deep: every formula above has its limit there, and no case is
+        // needed.
         let depth_m = depth_m.unwrap_or(f64::INFINITY);
         let waves: Vec<PlaneWave> = components.iter().map(|c| PlaneWave::new(*c, depth_m)).collect();
         let block = |waves: &[PlaneWave]| SurfaceBlock {

@@ -107,6 +107,8 @@ pub(super) fn transfer(natural_rad_s: f64, damping: f64, omega_rad_s: f64) -> (f
     let ratio = omega_rad_s / natural_rad_s;
     let (real, imaginary) = (1.0 - ratio * ratio, 2.0 * damping * ratio);
     let size = real * real + imaginary * imaginary;
+    // A damped spring that is driven by the surface. Peaks of these seas are at half of its
+    // natural frequency or below, so a hull mostly follows the surface.
     (real / size, imaginary / size)
 }
 
@@ -123,7 +125,11 @@ impl WaveResponse {
             phases: Phases::new(waves),
             rows: std::array::from_fn(|row| Row::new(waves_of_row(waves, row))),
         };
+        // Waves that are short for the draught hardly press on the hull: it follows the
+        // pressure at its keel, not the surface.
         let pressed_m: Vec<f64> = field.waves.iter().map(|wave| pressed_m(wave, boat)).collect();
+        // By heading, in a table: the form of the hull against each wave's direction is most of
+        // the work, and changes little from one tick to the next.
         let quasi_static = HeadingTable::new(row_count(&field.waves), |bin, wave| {
             let Some(patch) = patches.of_bin(bin).get(wave) else { return [0.0; FOLD] };
             let [heave, roll, pitch] = quasi_static(pressed_m[wave], patch);

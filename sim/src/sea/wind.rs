@@ -60,6 +60,8 @@ impl WindField {
             profile_exponent: wind.profile_exponent,
             gusts: None,
         };
+        // By the highest boat: the pattern has one speed, or boats would disagree on when a
+        // gust comes.
         let carry_m_s = made.mean_m_s(reference_height_m).max(CARRY_MIN_M_S);
         let along_m = field.corners.map(|corner| corner.dot(downwind));
         let reach_m = (
@@ -105,6 +107,7 @@ impl WindField {
     #[must_use]
     pub fn at(&self, place: Ned, mean_m_s: f64, now: SimTime) -> Ned {
         let Some(gusts) = &self.gusts else { return self.downwind.scaled(mean_m_s) };
+        // Two processes at once, along and across: gusts shift the direction as well.
         let (along, across) = gusts.process.at(gusts.place(place.dot(self.downwind), now));
         self.downwind.scaled(mean_m_s * (1.0 + gusts.intensity.0 * along))
             + self.across.scaled(mean_m_s * (gusts.intensity.1 * across))

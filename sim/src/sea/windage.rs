@@ -33,6 +33,8 @@ pub fn wind_past_boat(rotation: Rotation, wind_m_s: Ned, nu: Planar) -> Body {
 pub fn wind_force(windage: &Windage, length_m: f64, air_density_kg_m3: f64, past: Body) -> Planar {
     let Body { ahead: a, starboard: s } = past;
     let half_rho = 0.5 * air_density_kg_m3;
+    // Relative to the boat and in its axes. VRX takes the wind component by component in world
+    // axes, which makes the force depend on the compass.
     let speed_m_s = (a * a + s * s).sqrt();
     Planar {
         surge: half_rho * windage.surge_coefficient * windage.frontal_area_m2 * speed_m_s * a,

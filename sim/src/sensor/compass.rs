@@ -78,6 +78,8 @@ impl CompassModel {
             if let Some(off_rad) = self.fault_rad(now) {
                 state.psi_rad = wrap_pi(state.psi_rad + off_rad);
             }
+            // The front seat steers by its compass, as the real one does: a deviation leads the
+            // boat astray instead of only being reported.
             state.error_rad = wrap_pi(state.psi_rad - psi_rad);
         }
         state.psi_rad

@@ -125,6 +125,7 @@ impl GpsModel {
             let number = (now.0 / self.period.0) as u64;
             let fix = self.take(state, truth, now, number);
             let dropped = state.dropped || self.fault(FaultKind::GpsLost, now).is_some();
+            // Every boat begins with a fix: nobody launches without one.
             if number == 0 || (self.latency == SimTime::ZERO && !dropped) {
                 state.latest = fix;
             } else if !dropped {
@@ -147,12 +148,15 @@ impl GpsModel {
         if number > 0 {
             state.dropped = self.dropout.next(state.dropped, uniform(0));
             if uniform(2) < self.jump_chance {
+                // It stays until the next one, as after a change of satellites.
                 state.jump = normal(3, self.jump_m);
             }
         }
         let mut measured = Fix {
             at: now,
             position: truth.pose.at + state.bias + state.jump + normal(1, self.noise_m),
+            // By Doppler shift: it is not the change of the noisy position, and much better
+            // than that.
             velocity_m_s: truth.velocity_m_s() + normal(2, self.velocity_noise_m_s),
         };
         if let Some(span) = self.fault(FaultKind::GpsOffset, now) {

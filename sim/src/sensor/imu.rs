@@ -87,6 +87,8 @@ impl ImuModel {
         let mut reading = ImuReading::of(truth);
         for axis in 0..3 {
             let (noise, step) = drawn.normal_pair(PAIRS * number + axis as u64);
+            // A random constant that wanders slowly: integrated rates run away by it, which
+            // white noise alone hides.
             let bias = &mut state.bias.gyro_rad_s[axis];
             *bias = kept * *bias + fresh * imu.gyro_bias_rad_s * step;
             reading.gyro_rad_s[axis] += *bias + imu.gyro_noise_rad_s * noise;

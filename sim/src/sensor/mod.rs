@@ -117,11 +117,15 @@ impl SensorModel {
         };
         let (at, velocity, fix_at) = match &self.gps {
             None => (truth.pose.at, Body { ahead: truth.nu.surge, starboard: truth.nu.sway }, now),
+            // A receiver measures over the ground, north and east. What it is along the boat's
+            // axes depends on the compass, so a compass error shows up as leeway.
             Some(gps) => {
                 let fix = gps.read(&mut state.gps, truth, now);
                 (fix.position, body_from_ned(Rotation::from_heading(psi_rad), fix.velocity_m_s), fix.at)
             }
         };
+        // Without an inertial unit the rate is the true one: a boat whose file leaves a sensor
+        // out is meant to have a perfect one.
         let yaw_rate_rad_s = if self.imu.is_some() { imu.gyro_rad_s[2] } else { truth.nu.yaw };
         let nav = Nav {
             north_m: at.north,

@@ -76,6 +76,8 @@ impl<'a> Problem<'a> {
             residuals: None,
             tell,
         };
+        // A model that starts from a noisy measurement is off from the first row on, and the
+        // search would bend parameters to make up for it.
         problem.settle();
         problem
     }

@@ -26,6 +26,9 @@ impl Estimate {
         let mean = observations.iter().sum::<f64>() / count as f64;
         let squares: f64 = observations.iter().map(|observation| (observation - mean) * (observation - mean)).sum();
         let degrees = count as f64 - 1.0;
+        // Over seeds: all games of a seed have the same sea, and an entry that is lucky with it
+        // is so from both sides and against all. It says what other seeds would have given, not
+        // other opponents, which are chosen and not drawn.
         let half = quantile(degrees).map(|quantile| quantile * (squares / degrees / count as f64).sqrt());
         Estimate { mean, low: half.map(|half| mean - half), high: half.map(|half| mean + half) }
     }

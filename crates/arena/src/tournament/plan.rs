@@ -101,6 +101,8 @@ impl Plan {
     pub fn match_at(&self, index: usize) -> (Match, &Scenario) {
         assert!(index < self.games(), "match {index} of {}", self.games());
         let (sides, scenario) = &self.rounds[index % self.rounds.len()];
+        // Whole seeds first: a seed counts when all its games were played, or an entry would be
+        // measured against some of its opponents, perhaps the easy ones.
         let seed = self.tournament.seed.wrapping_add((index / self.rounds.len()) as u64);
         (Match { seed, sides: *sides }, scenario)
     }

@@ -52,6 +52,9 @@ pub fn ratings(entries: usize, rounds: &[Vec<Meeting>]) -> Vec<Rating> {
     let all: Vec<Meeting> = rounds.iter().flatten().copied().collect();
     let mut strengths = DVector::zeros(entries);
     let mut curvature = DMatrix::identity(entries, entries);
+    // All games are there at once. Ratings that change game by game (Elo's own rule, Glicko,
+    // TrueSkill, Weng-Lin) would only add an order in which they happen to be played, and a
+    // speed of change for players that do not change.
     for _ in 0..STEPS_MAX {
         let slope = slope_of(&all, &strengths) + prior_slope(&strengths);
         curvature = curvature_of(&all, &strengths);
@@ -120,6 +123,9 @@ fn errors(rounds: &[Vec<Meeting>], strengths: &DVector<f64>, curvature: &DMatrix
         let slope = slope_of(round, strengths);
         spread += &slope * slope.transpose();
     }
+    // The wider of the two, since that of an entry that always wins would be nothing by seeds
+    // alone. In 200 trials with known strengths 19 of 20 intervals have the truth, which a test
+    // counts.
     let clustered = &covariance * spread * &covariance * (seeds / (seeds - 1.0));
     // Only how far an entry is from the mean of all is known: where all of them are is not asked.
     let centre = DMatrix::identity(entries, entries) - DMatrix::from_element(entries, entries, 1.0 / entries as f64);

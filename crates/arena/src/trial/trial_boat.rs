@@ -50,6 +50,9 @@ impl TrialBoat {
         });
         let mut psi_rad = start.psi_rad;
         if let Drive::Kinematic(kinematic) = &boat.drive {
+            // An order for two thrusters cannot say full thrust and half rudder: in a trial the
+            // loops of a kinematic boat are set directly. A test compares that with what the
+            // world computes.
             let mut state = world.state().clone();
             state.points[0] = point_at_start(kinematic, start, world.sea().current_at(Ned::default()));
             psi_rad = state.points[0].psi_rad();

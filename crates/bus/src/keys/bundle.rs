@@ -46,6 +46,8 @@ impl Bundle {
         let (chain, key) = (certificates(&path(CERTIFICATE_FILE))?, private_key(&path(KEY_FILE))?);
         certificates(&path(AUTHORITY_FILE))?;
         let refused = |name, problem: String| BundleError { file: path(name), problem };
+        // zenoh would only say that it cannot open a session. Here each file is named with what
+        // is wrong with it, before anything is opened.
         CertifiedKey::from_der(chain.clone(), key, &ring::default_provider())
             .map_err(|e| refused(KEY_FILE, format!("is not the key of {CERTIFICATE_FILE}: {e}")))?;
         let not_understood = |problem: String| refused(CERTIFICATE_FILE, problem);
@@ -53,6 +55,8 @@ impl Bundle {
             X509Certificate::from_der(&chain[0]).map_err(|e| not_understood(format!("is no certificate: {e}")))?;
         let name = certificate.subject().iter_common_name().find_map(|name| name.as_str().ok()).unwrap_or_default();
         let identity = name.parse().map_err(|e| not_understood(format!("was not made by `squall keys new`: {e}")))?;
+        // An expired certificate looks to its owner like a network that is down, since the
+        // other side closes the link without a word.
         check_period(&certificate, ASN1Time::now()).map_err(not_understood)?;
         let (validity, hosts) = (certificate.validity(), hosts(&certificate));
         let valid = [validity.not_before, validity.not_after].map(|at| at.to_string());

@@ -23,6 +23,8 @@ pub(crate) fn refusal(endpoint: &str, keys: &Bundle) -> Option<BusError> {
     let refused = |why: String| BusError::Keys(format!("{endpoint}: {why}"));
     let address = address(endpoint);
     let host = address.rsplit_once(':')?.0.trim_start_matches('[').trim_end_matches(']');
+    // zenoh (1.10) only says that it could not connect; so the handshake is done once more, by
+    // rustls directly, to learn why.
     let mut stream = connect(address)?;
     let mut tls = match client(host, keys) {
         Ok(tls) => tls,
@@ -45,6 +47,7 @@ pub(crate) fn is_tls(endpoint: &str) -> bool {
     let asked = || {
         let mut stream = connect(address(endpoint))?;
         let mut answer = [0; 1];
+        // Eight zeros are no TLS record: whoever speaks TLS answers with an alert.
         stream.write_all(&[0; 8]).ok()?;
         stream.read_exact(&mut answer).ok()?;
         Some(answer[0] == ALERT)
@@ -66,6 +69,8 @@ fn client(host: &str, keys: &Bundle) -> Result<ClientConnection, String> {
     roots.add_parsable_certificates(authority);
     let name = ServerName::try_from(host.to_owned()).map_err(|e| format!("{host:?}: {e}"))?;
     let config = ClientConfig::builder_with_provider(Arc::new(ring::default_provider()))
+        // As zenoh's own links, which speak nothing older (`zenoh-link-tls` 1.10.2): another
+        // handshake could fail, or succeed, for other reasons.
         .with_protocol_versions(&[&TLS13])
         .and_then(|builder| builder.with_root_certificates(roots).with_client_auth_cert(chain, key));
     config.and_then(|config| ClientConnection::new(Arc::new(config), name)).map_err(|e| e.to_string())

@@ -57,6 +57,8 @@ impl FromStr for Identity {
 /// Whether this can be the name of a team or a boat: it becomes part of file names and topics.
 fn is_name(name: &str) -> bool {
     let allowed = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+    // A common name has room for 64 characters (RFC 5280, upper bound `ub-common-name`), and
+    // the longest prefix needs eight.
     (1..=48).contains(&name.len()) && name.chars().all(allowed)
 }
 

@@ -50,12 +50,17 @@ pub fn make(
     let (from, Some(until)) = period else { return Err(MakeError::TooLong) };
     let params = |name: String, hosts: &[String]| -> Result<CertificateParams, rcgen::Error> {
         let mut params = CertificateParams::new(hosts)?;
+        // zenoh's access control tells nodes apart by the common name, and by nothing else in a
+        // certificate.
         params.distinguished_name.push(DnType::CommonName, name);
         (params.not_before, params.not_after) = (from, until);
         Ok(params)
     };
     // Each set has an authority of another name, so that keys of two sets are told apart.
     let mut authority = params(format!("Squall {:016x}", crate::random_number()), &[])?;
+    // No authorities below this one: its key is thrown away when this function returns, and
+    // nothing else may sign in its name. Revoking a single certificate would need a list that
+    // every boat has to hear of, so a set is replaced as a whole.
     authority.is_ca = IsCa::Ca(BasicConstraints::Constrained(0));
     authority.key_usages = vec![KeyUsagePurpose::KeyCertSign];
     let authority_key = KeyPair::generate()?;
@@ -71,6 +76,8 @@ pub fn make(
         let mut certificate = params(identity.to_string(), hosts)?;
         certificate.key_usages = vec![KeyUsagePurpose::DigitalSignature];
         certificate.extended_key_usages = vec![usage];
+        // Strict verifiers, `openssl verify -x509_strict` among them, refuse a certificate
+        // without it.
         certificate.use_authority_key_identifier_extension = true;
         let key = KeyPair::generate()?;
         let certificate = certificate.signed_by(&key, &issuer)?.pem();
@@ -92,6 +99,8 @@ fn make_folder(path: &Path) -> Result<(), MakeError> {
     if let Some(above) = path.parent() {
         builder.recursive(true).create(above).map_err(failed)?;
     }
+    // A bundle that is there already is left alone: writing over one half of a set would leave
+    // two sets that do not know each other.
     builder.recursive(false).create(path).map_err(failed)
 }
 

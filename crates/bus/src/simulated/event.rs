@@ -79,6 +79,8 @@ impl PartialOrd for Queued {
 impl Ord for Queued {
     fn cmp(&self, other: &Queued) -> Ordering {
         // The earliest is the greatest: the queue is a max-heap.
+        // The order of insertion decides among events of one moment: a heap by time alone would
+        // be free to take either, and the same seed would give two traces.
         (other.at_ns, other.order).cmp(&(self.at_ns, self.order))
     }
 }
@@ -87,6 +89,7 @@ impl State {
     /// Puts an event into the queue.
     pub(super) fn at(&mut self, at_ns: u64, event: Event) {
         self.order += 1;
+        // A deadline that has passed already must not turn the clock back.
         self.events.push(Queued { at_ns: at_ns.max(self.now_ns), order: self.order, event });
     }
 
@@ -131,6 +134,8 @@ impl State {
     /// Ends the simulation: every node is killed, and nothing happens any more.
     fn give_up(&mut self, verdict: Verdict) {
         self.verdict = verdict;
+        // All nodes are killed in place of left waiting, so that their threads end and the test
+        // can tell what they waited for.
         self.events.clear();
         self.starts_due = 0;
         (0..self.nodes.len()).for_each(|node| self.nodes[node].starts_again = None);

@@ -83,6 +83,9 @@ impl State {
         let packet = match packet {
             _ if !is_open => return,
             Packet::Publish { key, bytes } => {
+                // Like zenoh's links: what is published never waits, so a link that is cut
+                // takes as many messages as its queue has room for, and loses the rest.
+                // Declarations and questions are kept.
                 let is_full =
                     self.is_stopped(link, up) && self.links[link].direction(up).queue.len() >= self.conditions.queue;
                 if is_full || (self.conditions.loss > 0.0 && self.stream.unit() < self.conditions.loss) {
@@ -103,6 +106,7 @@ impl State {
         let wait = delay + self.draw(jitter);
         let arrival_ns = self.now_ns + nanos(wait);
         let direction = self.links[link].direction(up);
+        // TCP keeps the order: with jitter alone a later packet could overtake.
         let arrival_ns = arrival_ns.max(direction.last_ns);
         direction.last_ns = arrival_ns;
         direction.queue.push_back((arrival_ns, packet));
@@ -218,6 +222,8 @@ impl State {
                 if !from && to && !is_silent {
                     self.put(link, up, Packet::Close);
                 }
+                // TCP sends again at intervals that grow, so after a cut what waited comes some
+                // time after the cable is back.
                 let wait = self.draw(SENT_AGAIN);
                 if !self.is_stopped(link, up) && !self.links[link].direction(up).queue.is_empty() {
                     self.expect(link, up, self.now_ns + nanos(wait));

@@ -135,6 +135,8 @@ impl fmt::Debug for Declared {
 
 /// Whether two key expressions have a key in common.
 fn meets(one: &str, other: &str) -> bool {
+    // zenoh's own expressions decide what meets what, so that a simulated game cannot differ
+    // from a real one in that.
     one == other || matches!((keyexpr::new(one), keyexpr::new(other)), (Ok(one), Ok(other)) if one.intersects(other))
 }
 
@@ -185,6 +187,8 @@ impl State {
 
     /// Sends it to all leaves that have subscribed.
     fn forward(&mut self, hub: usize, key: &Arc<str>, bytes: &Arc<[u8]>, from: Option<usize>) {
+        // Never back by the link that it came from; and once for each link, however many
+        // subscribers are behind it, as zenoh does.
         let mut to = self.declared_beyond(hub, Kind::Subscriber, key, from);
         to.dedup_by_key(|(link, _)| *link);
         for (link, _) in to {

@@ -129,6 +129,9 @@ impl SimulatedNetwork {
     pub fn new(seed: u64, conditions: Conditions) -> SimulatedNetwork {
         let state = State {
             conditions,
+            // turmoil and madsim simulate tokio, whose sockets and tasks neither our nodes nor
+            // zenoh use; shuttle has no time, and our protocols are made of limits. Hence a
+            // network of our own, below the same `Bus`.
             stream: Stream::new(seed, "network"),
             now_ns: 0,
             limit_ns: 0,
@@ -147,6 +150,8 @@ impl SimulatedNetwork {
             on_take: None,
             verdict: Verdict::Ended,
             ends: vec![],
+            // With keys that are fixed, unlike a `RandomState`: two runs of one seed are
+            // compared by this number.
             hash: DefaultHasher::new(),
             lines: None,
         };

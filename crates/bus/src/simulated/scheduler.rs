@@ -87,11 +87,15 @@ pub(crate) fn wait_until(address: usize, deadline: Option<Instant>) -> bool {
     if thread::panicking() {
         return false;
     }
+    // On zenoh a callback that waits holds up all links; here it would deadlock, so the mistake
+    // is found by every test.
     assert!(!is_in_callback(), "callbacks must only hand over");
     let deadline_ns = deadline.map(|deadline| world.ns_at(deadline));
     world.state.lock().block(current.thread, address, deadline_ns);
     world.pass_on(current.thread);
     if world.state.lock().threads[current.thread].is_killed {
+        // A killed node unwinds, so that its locks and sockets are given back; `resume_unwind`
+        // and not `panic`, which would print a report for each.
         resume_unwind(Box::new(Killed));
     }
     deadline.is_none_or(|deadline| world.now() < deadline)
@@ -160,6 +164,7 @@ impl World {
 
     fn await_turn(&self, me: usize) {
         while self.running.load(Ordering::Acquire) != me {
+            // In a loop, since `park` may return for no reason.
             thread::park();
         }
     }
@@ -178,6 +183,7 @@ impl World {
             self.now_ns.store(state.now_ns, Ordering::Relaxed);
             let to_drop = std::mem::take(&mut state.to_drop);
             drop(state);
+            // What is dropped may send, and with the state locked that would wait for itself.
             drop(to_drop);
             IN_CALLBACK.set(true);
             calls.into_iter().for_each(|call| call());
@@ -231,6 +237,8 @@ impl State {
         let drawn = match ready.as_slice() {
             [] => None,
             [one] => Some(*one),
+            // Which of several goes on is drawn: a real system promises no order either, and a
+            // game that depends on one is found by another seed.
             several => Some(several[self.stream.below(several.len() as u64) as usize]),
         };
         self.ready = ready;

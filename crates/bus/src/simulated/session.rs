@@ -69,6 +69,8 @@ impl SimulatedSession {
     pub(crate) fn leaf(net: &Net) -> Result<SimulatedSession, String> {
         let session = SimulatedSession::new(&net.connect, false)?;
         let delay = session.world.state.lock().conditions.delay;
+        // A handshake goes there and back; zenoh takes more, but what happens meanwhile is the
+        // same.
         wait_until(0, session.world.now().checked_add(2 * delay));
         session.insert(format!("{LINKS}{}", session.id), What::Token);
         let mut state = session.world.state.lock();

@@ -101,6 +101,8 @@ impl State {
 
     /// Takes something down in the trace.
     pub(super) fn note(&mut self, what: &str, node: usize, key: &str, bytes: &[u8]) {
+        // The bytes too: a game that took another course shows in the first message that
+        // differs, not only at its end.
         (self.now_ns, what, node, key, bytes).hash(&mut self.hash);
         if let Some(lines) = &mut self.lines {
             let at_s = self.now_ns as f64 * 1e-9;
@@ -119,6 +121,7 @@ impl State {
             Fault::Cut { node, time } => {
                 self.note("is cut off", node, "", &[]);
                 self.nodes[node].cuts += 1;
+                // Drawn faults overlap: a node is well again when the last one is over.
                 if self.nodes[node].cuts == 1 {
                     self.nodes[node].is_cut = true;
                     self.begin_silence(node);

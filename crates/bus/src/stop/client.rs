@@ -64,6 +64,9 @@ impl StopClient {
             is_closing: AtomicBool::new(false),
         });
         let at_work = Arc::clone(&shared);
+        // A lost TCP packet costs at least 200 ms, and opening a zenoh session five round
+        // trips; datagrams and connections that are open already cost the way there. So all
+        // paths are opened before anybody presses the button.
         start_thread("stop-client", move || at_work.run())?;
         Ok(StopClient(shared))
     }
@@ -81,6 +84,8 @@ impl StopClient {
     /// # Errors
     /// If the system has no socket or thread to give. An endpoint of another kind, or of an unknown host, is no path.
     pub fn add_hub(&self, endpoints: &[String], game: Option<&GameName>, token: Option<&Token>) -> io::Result<()> {
+        // With keys there are no datagrams: nothing would tell their sender, and everybody in
+        // such a game has a link anyway.
         for endpoint in endpoints.iter().filter(|endpoint| endpoint.starts_with("tcp/")) {
             let found = address(endpoint).to_socket_addrs().ok().and_then(|mut found| found.next());
             let Some(at) = found else { continue };
@@ -94,6 +99,7 @@ impl StopClient {
             let path = DatagramPath::open(at, game, token.cloned().into(), on_news)?;
             self.0.hubs.lock().push(path);
         }
+        // A path that opens while a stop is under way says it at once, not at the next repeat.
         self.0.orders.visit(StopOrders::hurry);
         Ok(())
     }
@@ -157,6 +163,8 @@ impl StopClient {
     #[must_use]
     pub fn finish(&self, limit: Duration) -> Vec<String> {
         let start = clock::now();
+        // The answer of a sim is no proof: it may be suspended while all boats have stopped, or
+        // answer while one has not. What counts is what boats show.
         self.wait(limit.min(GAME_MAX), |orders| orders.is_done(clock::now()));
         self.wait(limit.saturating_sub(clock::since(start)), |orders| orders.unfinished().is_empty());
         self.visit(|orders| orders.unfinished())

@@ -65,6 +65,9 @@ impl StopRequest {
         let body = to_raw_value(&self.command).expect("a command is JSON");
         let datagram = RequestDatagram { body, session: self.session, number: self.number, game: self.game.clone() };
         let mut bytes = serde_json::to_vec(&datagram).expect("a request is JSON");
+        // The answer may be no longer than the request, and has to name all boats. With its
+        // headers it stays below the 1280 bytes that every IPv6 link carries (RFC 8200): a
+        // datagram in fragments is lost if one of them is.
         bytes.resize(bytes.len().max(FILLED), b' ');
         bytes
     }
@@ -77,6 +80,8 @@ impl StopRequest {
         }
         let RequestDatagram { body, session, number, game } = serde_json::from_slice(bytes).ok()?;
         let command: GatewayCommand = serde_json::from_str(body.get()).ok()?;
+        // A datagram has no challenge, so one that was recorded could be sent again: only what
+        // may be done by anybody, and twice, comes by it.
         (!command.needs_token()).then_some(StopRequest { session, number, game, command })
     }
 

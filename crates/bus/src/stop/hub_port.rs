@@ -42,6 +42,8 @@ impl HubStopPort {
     pub fn open(bus: &Bus, net: &Net, game: &GameName, boats: &[String]) -> Result<HubStopPort, BusError> {
         let heard = Arc::new(Watched::new(boats.iter().map(|boat| (boat.clone(), None)).collect::<Heard>()));
         let (mut stops, mut statuses) = (BTreeMap::new(), Vec::new());
+        // A datagram shows no certificate, and in a game with keys nobody without one is to be
+        // heard.
         if simulated::is_inside() || net.keys.is_some() {
             return Ok(HubStopPort { _ports: vec![], _statuses: vec![] });
         }
@@ -90,6 +92,8 @@ impl Server {
             // This session hears it, too.
             GatewayCommand::Fleet(FleetCommand::EStop) => publish(&self.control, serde_json::to_vec(&Control::EStop)),
             GatewayCommand::Boat { name, command } if *command != OperatorCommand::Status => {
+                // Published by the sim's session, which needs no rule at the hub; an unknown
+                // boat gets no answer, and so nothing to be learnt.
                 publish(self.stops.get(name)?, serde_json::to_vec(command));
             }
             _ => {}

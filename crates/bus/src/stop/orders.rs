@@ -204,6 +204,8 @@ impl StopOrders {
 
     /// A stop is asked for; it takes the place of an earlier one like it.
     pub(super) fn ask(&mut self, now: Instant, target: Option<String>, command: StopCommand) -> u64 {
+        // Somebody who presses the button again wants to see it done again, not that it was
+        // done before.
         self.stops.retain(|stop| (&stop.target, stop.command) != (&target, command));
         self.count += 1;
         let is_other = |boat: &KnownBoat| boat.state.as_ref().is_some_and(|state| !command.is_shown_by(state));
@@ -259,6 +261,8 @@ impl StopOrders {
         let (Some(boat), Some(at)) = (self.boats.get_mut(vehicle), at) else { return now };
         let Some(began) = now.checked_sub(at) else { return now };
         // The clocks may drift apart; a gateway that was started again began later.
+        // The earliest beginning that any status implies is that of the one which took the
+        // least time to come; all later ones are judged by it.
         let known = boat.began.map(|known| known + DRIFT).filter(|known| began < *known + RESTARTED);
         let began = known.map_or(began, |known| known.min(began));
         boat.began = Some(began);
@@ -281,6 +285,8 @@ impl StopOrders {
         }
         let mut news = Vec::new();
         for stop in self.stops.iter_mut().filter(|stop| stop.target.as_deref().is_none_or(|target| target == vehicle)) {
+            // A status on its way may be older than the stop: only what is an answer to it, or
+            // was certainly received after it, proves something.
             let is_sure = source == Source::Answer(stop.number) || relayed.is_some_and(|as_of| as_of > stop.asked);
             // A packet that was lost holds up statuses for longer than a stop takes.
             if matches!(source, Source::Published(as_of) if as_of < stop.asked) && now < stop.asked + DOUBTED {

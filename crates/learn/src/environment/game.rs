@@ -67,6 +67,8 @@ impl Game {
                 (false, Player::Model(model), _) => {
                     Box::new(policy_pilot(setup, scenario, vehicle).by_model(model.clone()))
                 }
+                // The arena's own game, with a pilot in the place of a mind: a test plays the
+                // same one in the arena and compares digests.
                 _ => Box::new(pilot(setup, scenario, vehicle)),
             }
         };
@@ -195,6 +197,11 @@ impl Game {
         let scenario = self.contest.scenario();
         let step_s = scenario.tick.as_s() * f64::from(scenario.ticks_per_decision * setup.decisions_per_step);
         for (i, reward) in self.rewards.iter_mut().enumerate() {
+            // A potential of the state alone, nothing at the end: it does not change what the
+            // best policy is (Ng, Harada and Russell, ICML 1999). Places are paid undiscounted
+            // for what is gained in a step. Paid by the second, half a second of the right
+            // course changes the sum by a hundredth of itself, and boats that had learnt from
+            // 300,000 samples to retreat were no nearer to home than ones that lay still.
             let after = if ending == Ending::Over { 0.0 } else { rewards.potential.of(&self.boats[i]) };
             *reward = setup.discount * after + rewards.place.of(&self.boats[i]) - before[i] + rewards.second * step_s;
         }
@@ -254,6 +261,7 @@ fn draw_side(setup: &Setup, seed: u64) -> Side {
         left < 0.0
     });
     let last = || setup.opponents.iter().rposition(|(weight, _)| *weight > 0.0).unwrap_or_default();
+    // By the seed: the field has two ends, and the wind a direction.
     let learner = setup.learner.unwrap_or(TeamId((seed % 2) as u8));
     Side { learner, opponent: chosen.unwrap_or_else(last) }
 }

@@ -140,6 +140,8 @@ impl RecordedGame {
                 contest.keep_inputs();
                 Stage::Start(Box::new(contest.clone()), Arc::new(contest.frame(&mut self.shown)))
             }
+            // Decision by decision within a step, where the game is played: a step ends one
+            // game and begins the next.
             (Stage::Start(mut start, first), Moment::Decision) => {
                 match self.recordings.begin(start.scenario(), self.number) {
                     Ok((mut recorder, path)) => {

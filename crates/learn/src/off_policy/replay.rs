@@ -60,6 +60,8 @@ impl<A: Copy> Replay<A> {
     /// If either is 0.
     #[must_use]
     pub fn new(size: usize, capacity: usize) -> Replay<A> {
+        // Part of the state that a training is resumed from, some 100 MB by default: to fill it
+        // again by playing would take the games themselves back.
         assert!(size > 0 && capacity > 0, "{size}, {capacity}");
         Replay {
             size,

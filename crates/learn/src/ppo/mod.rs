@@ -162,6 +162,8 @@ impl ActorCritic {
         let samples = (counted().count(), minibatch.len());
         let advantages = Normal::of(counted().map(|i| batch.advantages[i]));
         let of_shard = |shard: &[u32]| self.shard(batch, shard, samples, advantages, settings);
+        // Shards of a fixed size, summed in their order: the same bits on any number of
+        // threads.
         let shards: Vec<Shard> = minibatch.par_chunks(SHARD).map(of_shard).collect();
         let mut shards = shards.into_iter();
         let Some(mut all) = shards.next() else { return Sums::default() };
@@ -197,6 +199,10 @@ impl ActorCritic {
         let of_rows = shard.iter().zip(trace.output().chunks_exact(actions)).zip(by_logits.chunks_exact_mut(actions));
         for ((i, logits), by) in of_rows {
             let i = *i as usize;
+            // Of what a tagged boat was told nothing depends; policies that learnt from that
+            // too sailed out to sea. The critic does learn from it: as long as it did not, it
+            // expected nothing sensible of being tagged, and policies that won 16 games of 20
+            // against Pav01 won none after another half a million samples.
             if !batch.counts[i] {
                 continue;
             }
@@ -205,6 +211,8 @@ impl ActorCritic {
             let (action, was) = (usize::from(batch.actions[i]), batch.log_probabilities[i]);
             match batch.lesson {
                 Lesson::Reinforcement => policy_gradient(&logs, action, (was, advantage), settings, by, &mut sums),
+                // Learning from nothing reached in a million samples what a hundred thousand of
+                // imitation give.
                 Lesson::Imitation => imitation_gradient(&logs, action, by, &mut sums),
             }
             by.iter_mut().for_each(|number| *number *= per_counted);
@@ -213,6 +221,7 @@ impl ActorCritic {
         self.actor.backward(&trace, &mut by_logits, &mut actor, None);
         self.critic.forward(&rows(batch.states, self.critic.sizes()[0]), &mut trace);
         let deviation = self.scale.deviation();
+        // In standard deviations of returns: rewards of any size are learnt at Adam's pace.
         let off = |(i, value): (&u32, &f32)| value - batch.returns[*i as usize] / deviation;
         let mut by_values: Vec<f32> = shard.iter().zip(trace.output()).map(off).collect();
         sums.value = by_values.iter().map(|off| 0.5 * off * off).sum();

@@ -59,6 +59,8 @@ pub fn evaluate(
     while ended.iter().any(Option::is_none) {
         let observations = environment.observations();
         let logits = pool.install(|| outputs(actor, observations));
+        // What it thinks best and not what it would draw: that is what a boat does that has the
+        // policy on board.
         let chosen = logits.chunks_exact(logits.len() / rows).map(|output| greedy(is_discrete, output));
         let actions: Vec<Action> = chosen.collect();
         environment.step(&actions)?;

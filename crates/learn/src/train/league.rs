@@ -98,6 +98,8 @@ impl League {
         let past = self.fixed + self.kept - self.past.len()..self.fixed + self.kept;
         let mut weights = vec![0.0; self.records.len()];
         for (range, total) in [(strategies, stage.strategies), (past.clone(), stage.past_selves)] {
+            // Prioritised fictitious self-play (Vinyals and others, Nature 2019). Past policies
+            // play from their ONNX files, as boats do.
             let urgencies: Vec<f64> = self.records[range.clone()].iter().map(|r| r.urgency(league.priority)).collect();
             let sum: f64 = urgencies.iter().sum();
             let parts = weights[range].iter_mut().zip(urgencies);

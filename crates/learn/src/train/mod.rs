@@ -286,6 +286,8 @@ impl Trainer {
         }
         let evaluated = Evaluated { samples: self.state.samples, stage: self.state.stage, played };
         let won = evaluated.won();
+        // By games of an evaluation with the same seeds each time: returns of self-play say
+        // little.
         let is_best = self.state.best.as_ref().is_none_or(|best| won >= best.won);
         if is_best {
             self.state.best = Some(Best { samples: self.state.samples, won, onnx: self.model().map_err(diverged)? });
@@ -303,6 +305,8 @@ impl Trainer {
         if !is_over && state.updates_of_epoch < self.updates_per_epoch[state.stage] {
             return Ok(false);
         }
+        // To be resumed anywhere a training would need the state of every helm in every game.
+        // Where all games begin anew the state is what was learnt, and the opponents.
         (state.epoch, state.updates_of_epoch) = (state.epoch + 1, 0);
         if is_over {
             (state.stage, state.samples_of_stage) = (state.stage + 1, 0);

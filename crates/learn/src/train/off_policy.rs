@@ -36,6 +36,8 @@ impl OffPolicy<Td3Learner, Td3, Numbers> {
         let OffPolicy { learner, settings, replay } = self;
         let actor = &learner.actor;
         let choose = |observations: &[f32], counts: &[bool], known: usize| -> Vec<Numbers> {
+            // TD3 and double DQN are there since entries of the 2023 games learnt by them, so
+            // that what their paper tells can be tried again.
             if is_new && known < settings.warm_up {
                 return counts.iter().map(|_| td3::drawn(stream)).collect();
             }

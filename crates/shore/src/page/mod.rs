@@ -118,6 +118,7 @@ impl Page {
     pub fn open(settings: PageSettings) -> Result<Page, PageError> {
         let (listener, address) = listener(&settings)?;
         let PageSettings { token, hosts, background, stop, .. } = settings;
+        // One thread, beside the game's: a page must never cost the game a processor.
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(PageError::Begin)?;
         let (shown, to_show) = watch::channel(None);
         let operator_token = token.clone().unwrap_or_else(|| Token::random().hex()[..OPERATOR_TOKEN_DIGITS].to_owned());
@@ -176,6 +177,8 @@ fn listener(PageSettings { listen, token, hosts, .. }: &PageSettings) -> Result<
     if token.as_ref().is_some_and(String::is_empty) {
         return Err(PageError::EmptyToken);
     }
+    // Watching is free, acting is not. TLS is left to a proxy: nobody maintains certificates
+    // for a laptop on a dock.
     if !listen.ip().is_loopback() && token.is_none() {
         return Err(PageError::Open(*listen));
     }

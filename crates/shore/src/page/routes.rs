@@ -92,6 +92,9 @@ pub(super) async fn serve(
         report,
         background: background.map(Arc::new),
         viewers: Connections::new(PAGES_MAX),
+        // Room of their own: an E-stop must not stand behind observers. Where there are too
+        // many nobody is refused; the idlest makes room, and comes back after half a minute, so
+        // that one page too many does not make all of them come and go.
         operators: Connections::new(OPERATORS_MAX),
     };
     let site = Router::new()

@@ -88,6 +88,8 @@ impl PageSession {
         let (made, back) = self.pings;
         match self.undrawn < UNDRAWN_MAX {
             false => Budget::None,
+            // What can wait (helms) waits for room on the connection: an E-stop must not stand
+            // behind pictures.
             true if back < made || self.unconfirmed >= UNCONFIRMED_MAX => Budget::Frames,
             true => Budget::All,
         }

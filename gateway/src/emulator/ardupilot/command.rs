@@ -36,6 +36,8 @@ impl ArduPilot {
         let mode = RoverMode::from_number(number);
         let can = match mode {
             RoverMode::Manual | RoverMode::Hold | RoverMode::Guided | RoverMode::Loiter => true,
+            // Rover refuses a mode that has nothing to do, and says so in a STATUSTEXT, which
+            // the gateway shows to its operator.
             RoverMode::Auto => self.mission.waypoints() > 0,
             RoverMode::Rtl => self.home.is_some(),
             _ => false,
@@ -58,6 +60,8 @@ impl ArduPilot {
             // Where it is armed is its home, unless that was set.
             let at = self.frame.lat_lon(own.nav.at());
             let here = ((1e7 * at.lat_deg).round() as i32, (1e7 * at.lon_deg).round() as i32);
+            // As ArduPilot does: the home is where the boat is first armed, unless a ground
+            // station has set it.
             if self.home.is_none() {
                 self.set_home(here);
             }

@@ -27,6 +27,7 @@ struct Upload {
 impl MissionStore {
     /// How many waypoints the mission has; the first item is the home.
     pub(super) fn waypoints(&self) -> usize {
+        // Item 0 is the home in ArduPilot's missions, whoever uploads them.
         self.items.iter().skip(1).filter(|item| item.command == MavCmd::MAV_CMD_NAV_WAYPOINT).count()
     }
 
@@ -52,6 +53,7 @@ impl MissionStore {
     )]
     pub(super) fn take(&mut self, from: (u8, u8), message: &MavMessage) -> Option<MavMessage> {
         match message {
+            // About what a board that runs ArduPilot has room for.
             MavMessage::MISSION_COUNT(count) if count.count > ITEMS_MAX => {
                 Some(ack(from, MavMissionResult::MAV_MISSION_NO_SPACE))
             }
@@ -82,6 +84,8 @@ impl MissionStore {
     fn take_item(&mut self, from: (u8, u8), item: &MISSION_ITEM_INT_DATA) -> Option<MavMessage> {
         let upload = self.upload.as_mut().filter(|upload| upload.from == from)?;
         let next = upload.items.len() as u16;
+        // Another number than the one asked for is answered by asking again, as the protocol
+        // says: that is how it survives lost packets.
         if item.seq == next {
             upload.items.push(item.clone());
         }

@@ -64,6 +64,8 @@ impl ArduPilot {
             frame: LocalFrame::new(datum),
             framer: Framer::new(),
             writer: Writer::new(SYSTEM, AUTOPILOT),
+            // INITIAL_MODE 4 of our recommended parameters: a boat that has just started is the
+            // gateway's, and rests.
             mode: RoverMode::Hold,
             is_armed: false,
             set_points: SetPoints::default(),
@@ -89,6 +91,7 @@ impl ArduPilot {
 
     /// Takes bytes from a link.
     pub fn take(&mut self, now: SimTime, bytes: &[u8]) {
+        // Taken out while it runs, since the callback needs the whole boat.
         let mut framer = std::mem::take(&mut self.framer);
         framer.push(bytes, &mut |received| self.apply(now, &received));
         self.framer = framer;
@@ -181,6 +184,8 @@ impl ArduPilot {
         if !is_for_us || *system == SYSTEM && *component == AUTOPILOT {
             return;
         }
+        // Rover obeys commands of anybody, but its failsafe and its manual control listen to
+        // one ground station alone.
         let is_station = f64::from(*system) == self.parameters.value("SYSID_MYGCS");
         match message {
             MavMessage::HEARTBEAT(_) if is_station => self.station_at = Some(now),
@@ -229,6 +234,8 @@ impl ArduPilot {
         if self.parameters.value("FS_GCS_ENABLE") != 1.0 || !is_lost || !self.is_armed {
             return;
         }
+        // Once is enough: the failsafe fires again after the next heartbeat only, so that an
+        // operator who takes over is not overruled.
         self.station_at = None;
         self.set_mode(if self.parameters.value("FS_ACTION") == 1.0 { RoverMode::Rtl } else { RoverMode::Hold });
         self.say("GCS failsafe");

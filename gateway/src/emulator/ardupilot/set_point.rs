@@ -50,6 +50,7 @@ impl SetPoints {
 
     pub(super) fn take_attitude(&mut self, now: SimTime, target: &SET_ATTITUDE_TARGET_DATA) {
         let mask = target.type_mask;
+        // Rover drops the whole message when it carries no throttle.
         if mask.contains(AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_THROTTLE_IGNORE) {
             return;
         }
@@ -85,12 +86,16 @@ impl SetPoints {
         let has_rate = !ignores(PositionTargetTypemask::POSITION_TARGET_TYPEMASK_YAW_RATE_IGNORE);
         let (x_m_s, y_m_s) = (f64::from(target.vx), f64::from(target.vy));
         let course = match (has_yaw, has_rate) {
+            // Rover takes one or the other, and nothing when both are given.
             (true, true) => return,
             (true, false) => Course::Heading(f64::from(target.yaw) + turned_rad),
             (false, true) => Course::Turn(f64::from(target.yaw_rate)),
             (false, false) => Course::Heading(math::atan2(y_m_s, x_m_s) + turned_rad),
         };
         // The sign of x is that of the speed, in frames where x is to the north too.
+        // This is the mistake in Rover/GCS_MAVLink_Rover.cpp that sent boats astern on
+        // southward headings. It is imitated so that our closed loops show it if a yaw is ever
+        // sent with a velocity again.
         let sign = if (has_yaw || has_rate) && x_m_s < 0.0 { -1.0 } else { 1.0 };
         self.set(now, course, Speed::MetresPerSecond(sign * math::length(x_m_s, y_m_s)));
     }
@@ -113,6 +118,8 @@ impl SetPoints {
     pub(super) fn nav_bearing(&self, now: SimTime) -> i16 {
         match self.guided {
             Some((at, Course::Heading(heading_rad), _)) if (now - at).as_s() <= HELD_S => {
+                // Rover 4.7 shows whole degrees here, cut off and not rounded; earlier versions
+                // always 0.
                 wrap_pi(heading_rad).to_degrees() as i16
             }
             _ => 0,
@@ -164,6 +171,8 @@ impl SetPoints {
             }
             Course::Turn(rate_rad_s) if speed_m_s < 0.0 => autopilot::astern(speed_m_s, rate_rad_s * TURN_LEAD_S),
             Course::Heading(heading_rad) => autopilot::steer(Some(heading_rad), Some(speed_m_s)),
+            // A set-point of zero is what our gateway stops a boat with: it must rest and not
+            // hold a heading.
             Course::Turn(0.0) if speed_m_s == 0.0 => Order::Hold,
             Course::Turn(rate_rad_s) => {
                 let by_rad = (rate_rad_s * TURN_LEAD_S).clamp(-PI, PI);

@@ -63,6 +63,8 @@ impl Streams {
     }
 
     /// The interval of a message, µs; -1 is never, 0 as unasked.
+    // Zero asks for the default rate and a negative interval ends the message
+    // (MAV_CMD_SET_MESSAGE_INTERVAL).
     pub(super) fn set_interval(&mut self, id: u32, interval_us: f64) -> MavResult {
         let Some((_, _, unasked_s)) = MESSAGES.iter().find(|(known, ..)| *known == id) else {
             return MavResult::MAV_RESULT_FAILED;
@@ -199,6 +201,8 @@ impl ArduPilot {
 
     fn battery(&self) -> BATTERY_STATUS_DATA {
         let mut voltages = [u16::MAX; 10];
+        // The whole pack in the first cell and the others unused, as boards without cell
+        // monitors report it.
         voltages[0] = self.millivolts();
         BATTERY_STATUS_DATA {
             current_consumed: self.battery.used_mah().round() as i32,
@@ -249,6 +253,7 @@ impl ArduPilot {
             vx: (100.0 * velocity.north).round() as i16,
             vy: (100.0 * velocity.east).round() as i16,
             vz: 0,
+            // Held below 36000, which is no heading any more.
             hdg: ((100.0 * compass_deg_from_rad(nav.psi_rad)) as u16).min(35_999),
         })
     }

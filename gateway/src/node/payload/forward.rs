@@ -99,6 +99,8 @@ impl Forward<'_> {
                     received = clock::now();
                     self.slot.touch();
                     self.tap.take(self.number, outward, &piece[..count]);
+                    // What one side does not take is not read from the other: TCP's own back
+                    // pressure holds a fast camera back.
                     if let Err(e) = (&mut &*to).write_all(&piece[..count]) {
                         self.tell_stall(outward, &e);
                         return self.close();

@@ -113,6 +113,8 @@ impl Passage {
         let name = format!("payload {}", port.name);
         let passage = Passage { port: TcpPort::open(port.listen, &name, CLIENTS_MAX, serve)?, payload };
         // Without a recording nobody would learn what was measured.
+        // A sonde says nothing unasked, and two who ask at once get each other's answers: so
+        // the gateway asks itself, in turn with clients.
         if let (Some(exo2), true) = (port.exo2, shell.record.is_some()) {
             let payload = Arc::clone(&passage.payload);
             let thread = std::thread::Builder::new().name(format!("sonde {}", port.name));

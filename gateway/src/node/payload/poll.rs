@@ -43,6 +43,7 @@ pub(super) fn run(payload: &Payload, way: &Way, exo2: Exo2Port) {
         if let Err(e) = asked {
             payload.remark(&format!("the sonde at {} cannot be asked: {e}", payload.port.address));
         }
+        // A client that connects has the sonde at once: people come before the recording.
         turn.is_wanted_within(EVERY);
     }
 }
@@ -66,6 +67,8 @@ impl Questions<'_> {
     }
 
     fn command(&self, sonde: &Sonde) -> Command {
+        // Numbers mean nothing without the codes of their parameters, which a sonde is asked
+        // for first.
         if sonde.told == self.begun.told { Command::Parameters } else { Command::Values }
     }
 }
@@ -99,6 +102,7 @@ fn over_line(line_to: &SharedLine, questions: &mut Questions<'_>, turn: &PollTur
 /// By HTTP, a connection for each question.
 fn by_http(payload: &Payload, at: &HostPort, questions: &mut Questions<'_>, turn: &PollTurn<'_>) -> io::Result<()> {
     loop {
+        // HTTP/1.0: the answer ends with the connection, and comes in no chunks.
         let request = match questions.next() {
             Command::Values => format!("GET /data HTTP/1.0\r\nHost: {at}\r\n\r\n"),
             other => {

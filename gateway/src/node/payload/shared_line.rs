@@ -62,6 +62,7 @@ impl SharedLine {
 
     /// Sends the payload something, behind what others send; whether the line took it.
     pub(super) fn send(&self, connection: u32, bytes: &[u8]) -> bool {
+        // A command of one client is written whole before the next one's begins.
         let _writing = self.writing.lock();
         self.ends.tap.take(connection, true, bytes);
         self.link.send_and_wait(bytes, WRITE_LIMIT)
@@ -135,6 +136,8 @@ impl Ends {
     /// Gives all clients a piece; one that has too many already is cut off.
     fn give(&self, piece: &Arc<[u8]>) {
         for client in &*self.clients.lock() {
+            // One client that does not read must not hold up the others, nor make the gateway
+            // keep what it misses.
             if client.pieces.try_send(Arc::clone(piece)).is_err() {
                 self.payload.remark("a client does not read: disconnected");
                 client.close();

@@ -92,6 +92,8 @@ impl Tap {
         };
         let at = clock.now();
         let mut encoder = encoder.lock();
+        // The boat's own recording needs the room: a camera of 1 MB a second fills a disk in a
+        // day.
         if space.is_enough() {
             recorder.record(encoder.bytes(at, connection, outward, bytes));
         } else {

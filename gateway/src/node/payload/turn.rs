@@ -35,6 +35,8 @@ impl Turn {
             is_one_more
         });
         let turn = is_one_more.then(|| ClientTurn(self))?;
+        // A sonde has one conversation at a time: our question and a client's would get each
+        // other's answers.
         self.0.wait(LET_GO_MAX, |state| !state.is_polling);
         Some(turn)
     }

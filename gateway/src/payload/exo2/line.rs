@@ -38,6 +38,7 @@ impl Lines {
             self.add(byte);
         }
         match self.part {
+            // Chunked bodies are not read: a server at a sonde speaks HTTP/1.0, which has none.
             Part::Chunks => {
                 self.line.clear();
                 None
@@ -77,10 +78,12 @@ impl Lines {
         if std::mem::take(&mut self.is_overlong) || line.is_empty() {
             return None;
         }
+        // Noise on a serial line is no text, and no answer.
         String::from_utf8(line).ok()
     }
 
     fn add(&mut self, byte: u8) {
+        // Dropped as a whole: a line that was cut would be read as one with fewer values.
         self.is_overlong |= self.line.len() >= LINE_MAX;
         if self.is_overlong {
             self.line.clear();

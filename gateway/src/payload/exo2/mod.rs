@@ -111,6 +111,8 @@ impl Conversation {
             self.asked = Command::of(line);
             return None;
         }
+        // Without a question before it a line is not known to be an answer: the sonde also
+        // prompts, and may be set to talk by itself.
         let asked = self.asked?;
         let answer = line.trim_start_matches(['#', ' ', '\t']);
         // The echo may be in the same line.
@@ -124,6 +126,7 @@ impl Conversation {
             Command::Values => {
                 let is_number = |number: &f64| number.is_finite();
                 let values = numbers(answer, |text| text.parse().ok().filter(is_number))?;
+                // A torn line has fewer numbers, and each would get the name of another.
                 if values.len() != sonde.codes.len() {
                     return None;
                 }
@@ -135,6 +138,8 @@ impl Conversation {
                 Some(Measurement { values: named.collect() })
             }
         };
+        // Only after an answer that was understood: its echo comes before it, in a line of its
+        // own.
         self.asked = None;
         measurement
     }

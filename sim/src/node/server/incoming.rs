@@ -23,6 +23,8 @@ const ANSWERS_MAX: usize = 4;
 impl GameServer<'_> {
     /// Takes in what comes, waiting up to `limit` for the first of it. Commands come first.
     pub(in crate::node) fn listen(&mut self, limit: Duration) {
+        // Before and after waiting: what passes outside of a wait is the sim's own, and if it
+        // is more than a second the sim was suspended.
         self.time.pass(clock::now(), Duration::ZERO);
         let mut next = self.inbox.take(limit);
         self.time.pass(clock::now(), limit);
@@ -30,6 +32,7 @@ impl GameServer<'_> {
         self.answer();
         // Messages may come faster than they are read: the game goes on all the same.
         for _ in 0..MESSAGES_MAX {
+            // Before each message: no flood delays an E-stop by more than one of them.
             self.obey();
             let Some(incoming) = next else { return };
             self.take_in(incoming);
@@ -76,6 +79,8 @@ impl GameServer<'_> {
                 }
             }
             Incoming::Gone(node) => {
+                // A gateway comes back with the same boat at once; nobody waits for it, so no
+                // patience is needed.
                 self.gateways.gone(&node);
                 // Links that were given up while the sim did nothing: patience tells whether agents come back.
                 if !self.time.is_recovering() {
@@ -95,6 +100,7 @@ impl GameServer<'_> {
             let taken = self.contest.order(vehicle, order, message.stamp.valid_ns);
             self.refusals.add(Refusal::BadNumber, u64::from(taken.is_err()));
             self.heard[vehicle.index()] = self.time.worked();
+            // At once and not with the next pictures, up to a decision later.
             self.pass_on_now(vehicle);
         }
     }
@@ -167,6 +173,7 @@ impl GameServer<'_> {
         let reply = self.agents.join(request, random_number(), self.contest.now());
         if let JoinReply::Granted { vehicles, .. } = &reply {
             for vehicle in vehicles {
+                // Whatever was in force was the order of somebody else.
                 self.contest.hold(*vehicle);
                 self.contest.regain_agent(*vehicle);
                 self.heard[vehicle.index()] = self.time.worked();

@@ -59,6 +59,10 @@ pub(super) fn check(scope: &mut Scope<'_>, program: &mut Program) {
 /// Sees to it that no behaviour outweighs what keeps the boat safe in a mode in which both run.
 fn hold_below_guards(scope: &mut Scope<'_>, program: &mut Program) {
     for leaf in program.leaves().collect::<Vec<_>>() {
+        // A guard is worth nothing if a number can disable it: a weight below a goal's, a range
+        // of nothing, a region wider than the field, an expression that becomes any of these.
+        // So guards have constants within limits, and nothing outweighs them; somebody reads
+        // the error while the file is loaded.
         let weight = |kind: &str| {
             let guards = program.behaviours.iter().filter(|b| b.task.kind() == kind && b.modes[leaf] && b.is_guard());
             guards.filter_map(|b| b.weight.constant()).fold(0.0, f64::max)

@@ -41,6 +41,8 @@ impl FrameBuffer {
         while self.past.front().is_some_and(|(first, _)| (at - *first).as_s() > TRAIL_S) {
             self.past.pop_front();
         }
+        // The sim's own bytes: the page reads CDR by the `.msg` texts that come with the first
+        // message, so there is no second encoding that could fall out of step.
         (self.stamp, self.is_over, self.newest) = (frame.stamp, frame.over, marked(1, cdr));
         (self.count, self.came) = (self.count + 1, Some(now));
         self.measure(now);
