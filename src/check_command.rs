@@ -1,5 +1,6 @@
 //! `squall check` and `squall schema`: scenario files explained.
 
+use crate::kinds::KINDS;
 use crate::{explain, screen, style};
 use anyhow::{Result, anyhow, bail};
 use scenario::{Kind, check_file, load, schema};
@@ -29,7 +30,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             screen::print(&format!("{}: no scenario file, expected a TOML file, NAME.toml\n", file.display()));
             continue;
         }
-        match check_file(file) {
+        match check_file(KINDS, file) {
             Ok(kind) => {
                 screen::show(&format!("{}: {} {kind}\n", file.display(), style::good("a good")));
                 for warning in warnings(file, kind) {
@@ -51,15 +52,15 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 
 /// What a good game asks of its boats that they cannot do.
 fn warnings(file: &Path, kind: Kind) -> Vec<String> {
-    if kind != Kind::Game {
+    if kind != Kind::GAME {
         return Vec::new();
     }
     load(file).map(|scenario| agent::warnings(&scenario)).unwrap_or_default()
 }
 
 pub(crate) fn print_schema(args: &SchemaArgs) -> Result<ExitCode> {
-    let kinds = || Kind::ALL.iter().map(|kind| kind.name()).collect::<Vec<_>>().join(", ");
-    let kind = Kind::ALL.into_iter().find(|kind| kind.name() == args.kind);
+    let kinds = || KINDS.iter().map(|kind| kind.name()).collect::<Vec<_>>().join(", ");
+    let kind = KINDS.iter().copied().find(|kind| kind.name() == args.kind);
     let kind = kind.ok_or_else(|| anyhow!("{:?} is not a kind of scenario file: {}", args.kind, kinds()))?;
     screen::print(&(serde_json::to_string_pretty(&schema(kind))? + "\n"));
     Ok(ExitCode::SUCCESS)

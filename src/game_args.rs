@@ -102,11 +102,11 @@ impl GameArgs {
             ..Overrides::default()
         };
         let beside = self.scenario.parent().unwrap_or(Path::new(""));
-        let folder = beside.parent().unwrap_or(Path::new("..")).join(Kind::Strategy.folder());
+        let folder = beside.parent().unwrap_or(Path::new("..")).join(Kind::STRATEGY.folder());
         let named = [("blue", &self.blue), ("red", &self.red)];
         let named = named.into_iter().filter_map(|(team, file)| Some((team, file.as_deref()?)));
         for (team, file) in named.chain(self.strategy.iter().map(|(team, file)| (team.as_str(), file.as_str()))) {
-            let path = scenario_files::find_beside(file, Kind::Strategy, Some(&folder))?;
+            let path = scenario_files::find_beside(file, Kind::STRATEGY, Some(&folder))?;
             if overrides.strategies.insert(team.to_owned(), path).is_some() {
                 bail!("the strategy of team {team} is given twice, expected one");
             }

@@ -1,5 +1,6 @@
 //! `squall new` and `squall copy`: a scenario file on the disk to change.
 
+use crate::kinds::KINDS;
 use crate::{output_file, scenario_files, screen};
 use anyhow::{Result, anyhow, bail};
 use scenario::{Kind, did_you_mean};
@@ -8,13 +9,13 @@ use std::process::ExitCode;
 
 /// What begins from a template.
 const TEMPLATES: [(Kind, &str); 7] = [
-    (Kind::Strategy, include_str!("templates/strategy.toml")),
-    (Kind::Boat, include_str!("templates/boat.toml")),
-    (Kind::Sea, include_str!("templates/sea.toml")),
-    (Kind::Game, include_str!("templates/game.toml")),
-    (Kind::Sweep, include_str!("templates/sweep.toml")),
-    (Kind::Training, include_str!("templates/training.toml")),
-    (Kind::Tournament, include_str!("templates/tournament.toml")),
+    (Kind::STRATEGY, include_str!("templates/strategy.toml")),
+    (Kind::BOAT, include_str!("templates/boat.toml")),
+    (Kind::SEA, include_str!("templates/sea.toml")),
+    (Kind::GAME, include_str!("templates/game.toml")),
+    (Kind::SWEEP, include_str!("templates/sweep.toml")),
+    (Kind::of::<learn::training::Training>(), include_str!("templates/training.toml")),
+    (Kind::TOURNAMENT, include_str!("templates/tournament.toml")),
 ];
 
 /// Which file.
@@ -60,11 +61,11 @@ pub(crate) fn copy(args: &CopyArgs) -> Result<ExitCode> {
     let name = name.strip_suffix(".toml").unwrap_or(name);
     let is_asked = |kind: &Kind| folder.is_none_or(|folder| folder == kind.folder());
     let of = |kind: Kind| Some((kind, scenario_files::contents(kind, name)?));
-    let found: Vec<(Kind, &[u8])> = Kind::ALL.into_iter().filter(is_asked).filter_map(of).collect();
+    let found: Vec<(Kind, &[u8])> = KINDS.iter().copied().filter(is_asked).filter_map(of).collect();
     let (kind, content) = match found[..] {
         [one] => one,
         [] => {
-            let known: Vec<String> = Kind::ALL.into_iter().filter(is_asked).flat_map(scenario_files::names).collect();
+            let known: Vec<String> = KINDS.iter().copied().filter(is_asked).flat_map(scenario_files::names).collect();
             let known: Vec<&str> = known.iter().map(String::as_str).collect();
             bail!("there is no file {}{}; squall files lists them", args.name, did_you_mean(name, &known));
         }
@@ -93,7 +94,7 @@ fn write(kind: Kind, name: &str, content: &[u8]) -> Result<PathBuf> {
 
 /// Lists what is inside of the program, by kind.
 pub(crate) fn files() -> ExitCode {
-    for kind in Kind::ALL {
+    for &kind in KINDS {
         let names: Vec<String> = scenario_files::names(kind).into_iter().collect();
         screen::print(&format!("{}: {}\n", kind.folder(), names.join(" ")));
     }
@@ -113,7 +114,7 @@ mod tests {
             let file = folder.path().join("scenarios").join(kind.folder()).join("mine.toml");
             std::fs::create_dir_all(file.parent().expect("it has one")).expect("it is made");
             std::fs::write(&file, text.replace("NAME", "mine")).expect("it is written");
-            assert_eq!(check_file(&file).unwrap_or_else(|problems| panic!("{problems}")), kind);
+            assert_eq!(check_file(KINDS, &file).unwrap_or_else(|problems| panic!("{problems}")), kind);
         }
     }
 
@@ -121,21 +122,21 @@ mod tests {
     fn names_are_found_inside_of_the_program_and_what_is_meant_is_guessed() {
         scenario_files::install();
         let find = |word: &str, kind| scenario_files::find(word, kind).map_err(|error| error.to_string());
-        assert!(find("gale", Kind::Sea).is_ok_and(|path| path.ends_with("scenarios/seas/gale.toml")));
+        assert!(find("gale", Kind::SEA).is_ok_and(|path| path.ends_with("scenarios/seas/gale.toml")));
         assert_eq!(
-            find("pav1_vs_pav01", Kind::Game),
+            find("pav1_vs_pav01", Kind::GAME),
             Err("there is no game pav1_vs_pav01 (did you mean pav01_vs_pav01?)".into())
         );
         assert_eq!(
-            find("pav01", Kind::Game),
+            find("pav01", Kind::GAME),
             Err("there is no game pav01, but a strategy of that name: --blue and --red take it".into())
         );
         let folder = tempfile::tempdir().expect("a folder");
         let sweep = folder.path().join("mine.toml");
         std::fs::write(&sweep, TEMPLATES[4].1).expect("it is written");
-        let said = find(&sweep.display().to_string(), Kind::Game).expect_err("it is none");
+        let said = find(&sweep.display().to_string(), Kind::GAME).expect_err("it is none");
         assert!(said.ends_with("is a sweep, expected a game: squall sweep plays it"), "{said}");
         let path = "scenarios/seas/gale.toml";
-        assert_eq!(find(path, Kind::Game), Err(format!("{path} is a sea, expected a game: --sea takes it")));
+        assert_eq!(find(path, Kind::GAME), Err(format!("{path} is a sea, expected a game: --sea takes it")));
     }
 }

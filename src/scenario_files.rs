@@ -1,5 +1,6 @@
 //! The scenario files that the program has inside of itself, and what a word of the command line names: a path, or the name of one.
 
+use crate::kinds::KINDS;
 use anyhow::{Result, anyhow, bail};
 use include_dir::{Dir, include_dir};
 use scenario::{Kind, built_in, did_you_mean, other_kind, set_built_in};
@@ -29,7 +30,7 @@ pub(crate) fn find(word: &str, kind: Kind) -> Result<PathBuf> {
 pub(crate) fn find_beside(word: &str, kind: Kind, beside: Option<&Path>) -> Result<PathBuf> {
     let given = PathBuf::from(word);
     if word.contains(['/', '\\']) || given.extension().is_some_and(|end| end == "toml") || given.is_file() {
-        return match other_kind(&given, kind) {
+        return match other_kind(KINDS, &given, kind) {
             Some(other) => bail!("{word} is a {other}, expected a {kind}{}", where_it_goes(other)),
             None if given.exists() || built_in(&given).is_some() => Ok(given),
             None => {
@@ -54,8 +55,8 @@ pub(crate) fn find_beside(word: &str, kind: Kind, beside: Option<&Path>) -> Resu
 }
 
 fn unknown(word: &str, kind: Kind, folders: &[PathBuf]) -> anyhow::Error {
-    let others = Kind::ALL.into_iter().filter(|other| *other != kind);
-    if let Some(other) = others.into_iter().find(|other| names(*other).contains(word)) {
+    let mut others = KINDS.iter().copied().filter(|other| *other != kind);
+    if let Some(other) = others.find(|other| names(*other).contains(word)) {
         return anyhow!("there is no {kind} {word}, but a {other} of that name{}", where_it_goes(other));
     }
     let mut known = names(kind);
@@ -69,16 +70,16 @@ fn unknown(word: &str, kind: Kind, folders: &[PathBuf]) -> anyhow::Error {
 
 /// Where a file of a kind is asked for.
 fn where_it_goes(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Game => ": squall run plays it",
-        Kind::Strategy => ": --blue and --red take it",
-        Kind::Sea => ": --sea takes it",
-        Kind::Field => ": --field takes it",
-        Kind::Tournament => ": squall tournament plays it",
-        Kind::Sweep => ": squall sweep plays it",
-        Kind::Training => ": squall train takes it",
-        Kind::Gateway => ": squall gateway surveyor --config takes it",
-        Kind::Boat | Kind::Rules | Kind::Rewards => "",
+    match kind.name() {
+        "game" => ": squall run plays it",
+        "strategy" => ": --blue and --red take it",
+        "sea" => ": --sea takes it",
+        "field" => ": --field takes it",
+        "tournament" => ": squall tournament plays it",
+        "sweep" => ": squall sweep plays it",
+        "training" => ": squall train takes it",
+        "gateway" => ": squall gateway surveyor --config takes it",
+        _ => "",
     }
 }
 
@@ -100,14 +101,18 @@ fn name_of(path: &Path) -> Option<String> {
 }
 
 macro_rules! finders {
-    ($($name:ident $kind:ident,)*) => {
+    ($($name:ident $kind:expr,)*) => {
         $(
             /// What an argument for a file of this kind names.
             pub(crate) fn $name(word: &str) -> Result<PathBuf> {
-                find(word, Kind::$kind)
+                find(word, $kind)
             }
         )*
     };
 }
 
-finders! { field Field, game Game, sea Sea, strategy Strategy, tournament Tournament, sweep Sweep, training Training, gateway Gateway, }
+finders! { field Kind::FIELD, game Kind::GAME, sea Kind::SEA, strategy Kind::STRATEGY, tournament Kind::TOURNAMENT, sweep Kind::SWEEP,
+training Kind::of::<learn::training::Training>(), }
+
+#[cfg(feature = "network")]
+finders! { gateway Kind::of::<gateway::config::Gateway>(), }

@@ -47,7 +47,7 @@ pub(crate) fn sea(path: &Path, seed: u64) -> Result<Sea> {
 
 /// The boat in a file, or of a name in `scenarios/boats`, the file, and what was drawn of it.
 pub(crate) fn boat(named: &str, seed: u64) -> Result<(Boat, PathBuf, Vec<Drawn>)> {
-    let path = scenario_files::find(named, Kind::Boat)?;
+    let path = scenario_files::find(named, Kind::BOAT)?;
     let drawn = scenario::draw_boat(&path, seed);
     let (boat, drawn) = drawn.with_context(|| format!("no boat in {}", path.display()))?;
     Ok((boat, path, drawn))

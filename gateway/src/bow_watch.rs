@@ -1,9 +1,9 @@
 //! The box about the bow in which no other real boat may be.
 
+use crate::config::Halt;
 use messages::picture::Nav;
 use primitives::SimTime;
 use primitives::frame::{Ned, Rotation, body_from_ned};
-use scenario::gateway::Halt;
 
 /// The box about the bow.
 #[derive(Clone, Debug)]

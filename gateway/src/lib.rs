@@ -7,6 +7,7 @@
 pub mod bow_watch;
 pub mod bridge;
 mod compass_check;
+pub mod config;
 pub mod declination;
 pub mod emulator;
 pub mod game_clock;

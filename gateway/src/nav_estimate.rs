@@ -5,6 +5,7 @@
 //! last one younger.
 
 use crate::compass_check::CompassCheck;
+use crate::config::NavWatch;
 use crate::geodesy::LocalFrame;
 use crate::motion_check::MotionCheck;
 use crate::nmea::TimeOfDay;
@@ -15,7 +16,6 @@ use messages::picture::Nav;
 use primitives::SimTime;
 use primitives::angle::{rad_from_compass_deg, wrap_pi};
 use primitives::frame::{Body, LatLon, Ned, Rotation, body_from_ned};
-use scenario::gateway::NavWatch;
 
 /// After a jump the position must be consistent for this long before it is believed again, s.
 const JUMP_MEMORY_S: f64 = 2.0;

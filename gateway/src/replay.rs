@@ -1,11 +1,11 @@
 //! A recording, played through the codec and the supervisor again.
 
 use crate::bridge::{Bridge, Event, Input, Output, Plan};
+use crate::config::default_gateway;
 use crate::record::{EVENT, INPUT, RecordedEvent, RecordedInput, link_topic};
 use messages::external::{GatewayStatus, LinkBytes};
 use primitives::SimTime;
 use recording::{Bag, Kind, RecordedMessage, RecordingError};
-use scenario::default_gateway;
 use serde_json::Value;
 
 /// What came of a replay.

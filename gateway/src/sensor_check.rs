@@ -1,5 +1,6 @@
 //! The sensor check before arming: what a boat sends, how often, who commands it, and what is missing.
 
+use crate::config::{BoatProtocol, Gateway};
 use crate::mavlink;
 use crate::mavlink::dialect::MavMessage;
 use crate::nmea::{self, Date, Mode, Operator, Sentence, TimeOfDay, date_and_time, quality_in_words};
@@ -8,7 +9,6 @@ use ::mavlink::Message;
 use primitives::angle::{compass_deg_from_rad, wrap_pi};
 use primitives::frame::LatLon;
 use primitives::{SimTime, math};
-use scenario::gateway::{BoatProtocol, Gateway};
 use std::collections::BTreeMap;
 
 /// Below this rate something comes too seldom to drive a boat, 1/s: what comes once a second may come a little late.
@@ -376,7 +376,7 @@ mod tests {
         $PTQM0,1*35\r\n";
 
     fn checked(text: &str, hz: f64) -> SensorCheck {
-        let mut check = SensorCheck::new(&scenario::default_gateway());
+        let mut check = SensorCheck::new(&crate::config::default_gateway());
         for i in 0..10 {
             check.take(SimTime::from_s(f64::from(i) / hz), text.as_bytes());
         }

@@ -3,13 +3,13 @@
 //! With `drive = "thrust"` the heading and speed loops are here; with `drive = "speed"` they are the boat's. Thrust is in
 //! per cent, its difference positive to starboard: port = thrust + difference, starboard = thrust − difference.
 
+use crate::config::{Drive, Gateway, Limits, Loops};
 use crate::thrust_check::Ordered;
 use messages::Order;
 use messages::picture::Nav;
 use primitives::SimTime;
 use primitives::angle::{compass_deg_from_rad, wrap_pi};
 use primitives::math::interpolate;
-use scenario::gateway::{Drive, Gateway, Limits, Loops};
 
 /// A set-point for the boat's controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -177,12 +177,13 @@ fn slewed(from: f64, to: f64, growth: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use scenario::gateway::SURVEYOR_THRUST_MAP;
+    use crate::config::SURVEYOR_THRUST_MAP;
 
     fn gateway(drive: &str) -> Gateway {
         let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/gateways");
         let name = if drive == "speed" { "surveyor_speed.toml" } else { "surveyor.toml" };
-        scenario::load_gateway(&folder.join(name)).unwrap_or_else(|problems| panic!("{problems}"))
+        scenario::load_file::<crate::config::Gateway>(&folder.join(name))
+            .unwrap_or_else(|problems| panic!("{problems}"))
     }
 
     fn steer(heading_deg: f64, speed_m_s: f64) -> Order {

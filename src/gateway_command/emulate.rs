@@ -7,10 +7,10 @@ use crate::stop;
 use crate::water_args::within;
 use anyhow::{Context, Result, anyhow, bail};
 use clap::ValueEnum;
+use gateway::config::BoatProtocol;
 use gateway::emulator::Extra;
 use gateway::link::LinkAddress;
 use gateway::node::{EmulatorSettings, NodeEvent};
-use scenario::gateway::BoatProtocol;
 use std::process::ExitCode;
 use std::time::Duration;
 

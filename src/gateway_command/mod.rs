@@ -48,10 +48,12 @@ enum Command {
 }
 
 /// How a boat is driven and stopped, by this file, or by the defaults.
-fn gateway_file(path: Option<&Path>) -> Result<scenario::gateway::Gateway> {
-    let load =
-        |path: &Path| scenario::load_gateway(path).with_context(|| format!("cannot drive by {}", path.display()));
-    path.map_or_else(|| Ok(scenario::default_gateway()), load)
+fn gateway_file(path: Option<&Path>) -> Result<gateway::config::Gateway> {
+    let load = |path: &Path| {
+        scenario::load_file::<gateway::config::Gateway>(path)
+            .with_context(|| format!("cannot drive by {}", path.display()))
+    };
+    path.map_or_else(|| Ok(gateway::config::default_gateway()), load)
 }
 
 /// The mission in the text of a mission file, or what is wrong with it.

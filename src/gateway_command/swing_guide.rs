@@ -2,11 +2,11 @@
 
 use super::check::Listener;
 use crate::screen;
+use gateway::config::{BoatProtocol, CompassFrame, Gateway};
 use gateway::declination::declination_deg;
 use gateway::nmea::{Operator, date_and_time};
 use gateway::preflight::{Check, CompassSwing};
 use recording::utc;
-use scenario::gateway::{BoatProtocol, CompassFrame, Gateway};
 use std::io::BufRead;
 use std::sync::mpsc::{Receiver, TryRecvError, sync_channel};
 

@@ -7,9 +7,9 @@ use crate::game_args::GameArgs;
 use crate::output_file;
 use anyhow::{Context, Result, anyhow, bail};
 use bus::keys::Identity;
+use gateway::config::{BoatProtocol, Gateway};
 use recording::NewFile;
 use scenario::Scenario;
-use scenario::gateway::{BoatProtocol, Gateway};
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::time::Duration;
@@ -56,10 +56,9 @@ impl LoopArgs {
             bail!("no boat of this game is real: --emulate has nothing to stand in for");
         }
         let gateway = match &self.gateway {
-            None => scenario::default_gateway(),
-            Some(path) => {
-                scenario::load_gateway(path).with_context(|| format!("cannot drive by {}", path.display()))?
-            }
+            None => gateway::config::default_gateway(),
+            Some(path) => scenario::load_file::<gateway::config::Gateway>(path)
+                .with_context(|| format!("cannot drive by {}", path.display()))?,
         };
         if let Some(folder) = &self.record_gateways {
             output_file::make_folder(folder)?;

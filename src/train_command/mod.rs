@@ -9,8 +9,8 @@ use anyhow::{Context, Result, bail};
 use files::Files;
 use learn::environment::{RecordingLog, RecordingNames, Recordings, check_recording_folder};
 use learn::train::{Evaluated, Played, Trainer};
+use learn::training::Training;
 use scenario::Kind;
-use scenario::training::Training;
 use std::num::{NonZeroU64, NonZeroUsize};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -47,7 +47,7 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
-    let mut training = scenario::load_training(&args.training)?;
+    let mut training = scenario::load_file::<learn::training::Training>(&args.training)?;
     training.seed = args.seed.unwrap_or(training.seed);
     let folder = args.out.clone().unwrap_or_else(|| Path::new("runs/train").join(&training.name));
     let jobs = args.jobs.or(std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
@@ -98,7 +98,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 /// The strategy through whose helm the policy learns last, or that stands beside the training.
 fn base(file: &Path, training: &Training) -> PathBuf {
     let helm = training.stage.iter().rev().find_map(|stage| stage.helm.clone());
-    let beside = || file.parent().unwrap_or(Path::new("")).join("..").join(Kind::Strategy.folder()).join("policy.toml");
+    let beside = || file.parent().unwrap_or(Path::new("")).join("..").join(Kind::STRATEGY.folder()).join("policy.toml");
     helm.unwrap_or_else(beside)
 }
 

@@ -4,9 +4,9 @@ use crate::play::{WAIT, name, net};
 use crate::real_boat::{DECLINATION_RAD, Wire};
 use bus::{NodeThread, clock};
 use gateway::bridge::{Event, Preflight};
+use gateway::config::Gateway;
 use gateway::link::{BoatLink, LinkEvent};
 use gateway::node::{NodeError, NodeEvent, OnLinkEvent, Settings, serve_over};
-use scenario::gateway::Gateway;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, LazyLock};
@@ -22,7 +22,7 @@ const LOOK: Duration = Duration::from_millis(500);
 /// How the boat is driven.
 static GATEWAY: LazyLock<Gateway> = LazyLock::new(|| {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/gateways/surveyor.toml");
-    let gateway = scenario::load_gateway(&file).unwrap_or_else(|e| panic!("{e}"));
+    let gateway = scenario::load_file::<gateway::config::Gateway>(&file).unwrap_or_else(|e| panic!("{e}"));
     Gateway { declination_rad: Some(DECLINATION_RAD), ..gateway }
 });
 

@@ -16,7 +16,7 @@ use primitives::angle::wrap_pi;
 use primitives::frame::{Ned, Rotation, body_from_ned};
 use primitives::stream::Stream;
 use primitives::{SimTime, VehicleId};
-use scenario::{Overrides, load_gateway, load_with};
+use scenario::{Overrides, load_file, load_with};
 use sim::World;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -151,7 +151,8 @@ impl Voyage {
             pose.at = Ned::from_xy(APART_M * i as f64, 0.0);
             world.set_under_way(VehicleId::at(i), pose, sim::hull::Planar::default());
         }
-        let mut gateway = load_gateway(&scenarios.join("gateways").join(gateway)).unwrap_or_else(|e| panic!("{e}"));
+        let mut gateway = load_file::<gateway::config::Gateway>(&scenarios.join("gateways").join(gateway))
+            .unwrap_or_else(|e| panic!("{e}"));
         gateway.geofence.margin_m = 10_000.0;
         let site = Site { field: game.field.clone(), length_m: 1.83, declination_rad: -0.2 };
         let plan = |_| Plan {

@@ -4,9 +4,9 @@
 use agent::{Action, ActionSpace, ObservationSpace, Spaces};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use learn::environment::{Control, Player, Setup, VectorEnvironment};
+use learn::rewards::Rewards;
+use learn::training::CriticInput;
 use primitives::stream::Stream;
-use scenario::rewards::Rewards;
-use scenario::training::CriticInput;
 use std::path::Path;
 
 // On one core, all four boats shown at every decision: 192,000 decisions of games a second in

@@ -5,8 +5,8 @@
 //! shipped policies, `scenarios/policies/primitive_NAME.onnx`. The same numbers are the same games.
 
 use agent::{Action, ActionSpace};
+use learn::rewards::{BoatProgress, Placed, progress};
 use rules::count::Counts;
-use scenario::rewards::{BoatProgress, Placed, progress};
 
 use learn::environment::{Setup, VectorEnvironment};
 use onnx::Network;
@@ -138,7 +138,8 @@ fn main() {
     println!("policy    boats     reward  home guard shield clear  grabs  tags tagged grabbed  left");
     for name in names {
         let file = scenarios.join(format!("training/primitive_{name}.toml"));
-        let training = scenario::load_training(&file).unwrap_or_else(|problems| panic!("{problems}"));
+        let training =
+            scenario::load_file::<learn::training::Training>(&file).unwrap_or_else(|problems| panic!("{problems}"));
         let setup = Setup::of_stage(&training, &training.stage[0]).unwrap_or_else(|error| panic!("{error}"));
         let path = folder.join(format!("primitive_{name}.onnx"));
         let bytes = std::fs::read(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));

@@ -2,11 +2,11 @@
 
 use agent::{Action, ActionSpace, Mind, ObservationSpace, Pilot, Spaces};
 use learn::environment::{Control, Player, Setup, Teacher, VectorEnvironment};
+use learn::rewards::{Potential, Rewards, Worth};
+use learn::training::CriticInput;
 use messages::{Order, Picture};
 use primitives::stream::Stream;
 use primitives::{TeamId, VehicleId};
-use scenario::rewards::{Potential, Rewards, Worth};
-use scenario::training::CriticInput;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 

@@ -7,8 +7,8 @@ use learn::environment::SetupError;
 use learn::nn::Trace;
 use learn::off_policy::td3;
 use learn::train::{Learner, Progress, Trainer};
+use learn::training::{Algorithm, Dqn, Evaluation, Layers, League, Opponent, Stage, Td3, Training};
 use primitives::stream::Stream;
-use scenario::training::{Algorithm, Dqn, Evaluation, Layers, League, Opponent, Stage, Td3, Training};
 use std::path::{Path, PathBuf};
 
 fn file(path: &str) -> PathBuf {
@@ -16,7 +16,8 @@ fn file(path: &str) -> PathBuf {
 }
 
 fn shipped(name: &str) -> Training {
-    scenario::load_training(&file(&format!("training/{name}.toml"))).unwrap_or_else(|problems| panic!("{problems}"))
+    scenario::load_file::<learn::training::Training>(&file(&format!("training/{name}.toml")))
+        .unwrap_or_else(|problems| panic!("{problems}"))
 }
 
 /// Two short stages with strategies, past policies, a helm for the second, and a buffer that overflows.

@@ -2,8 +2,8 @@
 
 use learn::nn::{Adam, AdamSettings, Perceptron, Trace};
 use learn::ppo::{ActorCritic, Batch, Lesson, choice};
+use learn::training::Ppo;
 use primitives::stream::Stream;
-use scenario::training::Ppo;
 
 #[test]
 fn gradients_are_the_slopes_of_the_output() {

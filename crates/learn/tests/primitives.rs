@@ -2,10 +2,10 @@
 
 use agent::{Action, ActionSpace};
 use learn::environment::{Player, Setup, VectorEnvironment};
+use learn::rewards::{BoatProgress, Place, Placed, Rewards, progress};
+use learn::training::Training;
 use primitives::{Ned, VehicleId};
-use scenario::rewards::{BoatProgress, Place, Placed, Rewards, progress};
 use scenario::strategy::Task;
-use scenario::training::Training;
 use sim::Contest;
 use std::path::{Path, PathBuf};
 
@@ -14,7 +14,7 @@ fn file(path: &str) -> PathBuf {
 }
 
 fn training(name: &str) -> Training {
-    let training = scenario::load_training(&file(&format!("training/primitive_{name}.toml")));
+    let training = scenario::load_file::<learn::training::Training>(&file(&format!("training/primitive_{name}.toml")));
     training.unwrap_or_else(|problems| panic!("{problems}"))
 }
 

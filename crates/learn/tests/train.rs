@@ -2,7 +2,7 @@
 
 use learn::environment::{Moment, Watch};
 use learn::train::{Progress, StateError, Trainer};
-use scenario::training::{CriticInput, Evaluation, Layers, League, Ppo, Stage, Teacher, Training};
+use learn::training::{CriticInput, Evaluation, Layers, League, Ppo, Stage, Teacher, Training};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
@@ -12,7 +12,8 @@ fn file(path: &str) -> PathBuf {
 }
 
 fn first() -> Training {
-    scenario::load_training(&file("training/first.toml")).unwrap_or_else(|problems| panic!("{problems}"))
+    scenario::load_file::<learn::training::Training>(&file("training/first.toml"))
+        .unwrap_or_else(|problems| panic!("{problems}"))
 }
 
 #[test]
@@ -45,7 +46,7 @@ fn short() -> Training {
         self_play: 1.0,
         past_selves: 1.0,
         strategies: 1.0,
-        opponent: vec![scenario::training::Opponent { strategy: file("strategies/pav01.toml") }],
+        opponent: vec![learn::training::Opponent { strategy: file("strategies/pav01.toml") }],
         starts: Some(8),
         episode_max_s: Some(20.0),
         samples: 4_000,
@@ -132,8 +133,8 @@ fn episodes_that_are_seen_have_the_numbers_that_are_told_and_change_nothing() {
 fn imitation(options: &[(&str, &str)]) -> Training {
     let options = options.iter().map(|(mode, option)| ((*mode).to_owned(), (*option).to_owned())).collect();
     let teacher = Some(Teacher { strategy: file("strategies/strategy_5.toml"), options });
-    let options =
-        scenario::load_training(&file("training/options.toml")).unwrap_or_else(|problems| panic!("{problems}"));
+    let options = scenario::load_file::<learn::training::Training>(&file("training/options.toml"))
+        .unwrap_or_else(|problems| panic!("{problems}"));
     let helm = Some(file("strategies/options.toml"));
     let stage = Stage { teacher, helm, samples: 40_000, ..short().stage.remove(0) };
     Training {

@@ -3,16 +3,18 @@
 use super::draw::{Drawing, Drawn};
 use super::files::Files;
 use super::kept::Kept;
+use super::kind::{Kind, ScenarioFile};
 use super::overrides::Overrides;
 use super::problem::{Problem, Problems};
+use super::read::{self, Document};
 use super::source::Sources;
 use crate::policy::PolicyModel;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// What was read, and what is wrong with it.
 #[derive(Debug)]
-pub(super) struct Diagnostics {
+pub struct Diagnostics {
     pub(super) sources: Sources,
     /// Which numbers are taken where a distribution is given.
     pub(super) drawing: Drawing,
@@ -50,11 +52,33 @@ impl Diagnostics {
     }
 
     /// Notes that the value at `at` is wrong. A line whose syntax is wrong has had its say already.
-    pub(super) fn note(&mut self, at: usize, message: impl Into<String>) {
+    pub fn note(&mut self, at: usize, message: impl Into<String>) {
         self.faults += 1;
         if !self.sources.is_broken_line(at) {
             self.push(at, message.into());
         }
+    }
+
+    /// The path of the file that `reference`, standing at `at`, names.
+    #[must_use]
+    pub fn resolve(&self, at: usize, reference: impl AsRef<Path>) -> PathBuf {
+        self.sources.resolve(at, reference)
+    }
+
+    /// Reads and checks the file of another kind that the value at `key` of a file refers to.
+    pub fn referenced<F: ScenarioFile, D>(
+        &mut self,
+        document: &Document<D>,
+        key: &str,
+        given: impl AsRef<Path>,
+    ) -> Option<F> {
+        if !document.is_sound(key) {
+            return None;
+        }
+        let place = document.at(key);
+        let path = self.resolve(place, given);
+        let document = read::document(self, Kind::of::<F>(), &path, Some(place))?;
+        F::check(self, &document)
     }
 
     /// Notes what may follow from broken syntax elsewhere in the file, unless there is some.

@@ -29,7 +29,7 @@ pub(super) struct KeptDocument {
 }
 
 fn key(kind: Kind, path: &Path, owner: &str) -> Key {
-    (kind, path.to_owned(), if kind == Kind::Strategy { owner.to_owned() } else { String::new() })
+    (kind, path.to_owned(), if kind == Kind::STRATEGY { owner.to_owned() } else { String::new() })
 }
 
 impl Kept {
@@ -42,11 +42,11 @@ impl Kept {
     }
 
     pub(super) fn strategy(&self, path: &Path, owner: &str) -> Option<&Strategy> {
-        self.strategies.get(&key(Kind::Strategy, path, owner))
+        self.strategies.get(&key(Kind::STRATEGY, path, owner))
     }
 
     pub(super) fn keep_strategy(&mut self, path: &Path, owner: &str, strategy: Strategy) {
-        self.strategies.insert(key(Kind::Strategy, path, owner), strategy);
+        self.strategies.insert(key(Kind::STRATEGY, path, owner), strategy);
     }
 }
 

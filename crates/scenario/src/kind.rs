@@ -1,94 +1,116 @@
-//! The kinds of scenario files: their names, and which kind a file is.
+//! What makes a kind of scenario file: its keys, its folder, and how it is checked.
 
-use super::schema::declared;
+use super::diagnostics::Diagnostics;
+use super::problem::Problems;
+use super::read::Document;
+use super::schema::{declared, generated};
+use super::{load, raw};
+use crate::boat::Boat;
+use crate::sea::Sea;
+use crate::strategy::Strategy;
+use crate::{Scenario, Sweep, Tournament, check};
+use rules::{Field, Rules};
+use schemars::JsonSchema;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+use std::cmp::Ordering;
 use std::collections::BTreeSet;
+use std::fmt;
 use std::path::Path;
-use strum::{Display, IntoStaticStr};
+
+/// What a kind of scenario file is read as. The crate that uses the file implements this; the kinds that make up a game do so here.
+pub trait ScenarioFile: Sized + 'static {
+    /// The file key by key; `schema.rs` says how keys are declared.
+    type Keys: DeserializeOwned + JsonSchema;
+    /// The name of the kind, which is also that of its schema file.
+    const NAME: &'static str;
+    /// The folder its files lie in.
+    const FOLDER: &'static str;
+
+    /// Makes the value of a file that fits its schema. `None` if anything is wrong, which has been noted.
+    fn check(diagnostics: &mut Diagnostics, document: &Document<Self::Keys>) -> Option<Self>;
+
+    /// Reads and checks the file at `path`, its bases and the files it names. Where it gives distributions, the numbers are
+    /// those of seed 1.
+    ///
+    /// # Errors
+    /// Everything that is wrong in any of them, by file, line and column.
+    fn load(path: &Path) -> Result<Self, Problems> {
+        load::of_seed(path, 1).map(|(value, _)| value)
+    }
+}
 
 /// A kind of scenario file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Display, IntoStaticStr)]
-#[strum(serialize_all = "snake_case")]
-pub enum Kind {
-    /// A game.
-    Game,
-    /// A field.
-    Field,
-    /// Rules.
-    Rules,
-    /// A kind of boat.
-    Boat,
-    /// A sea.
-    Sea,
-    /// A strategy.
-    Strategy,
-    /// A tournament.
-    Tournament,
-    /// The way to a real boat.
-    Gateway,
-    /// Rewards for learning.
-    Rewards,
-    /// How a policy is trained.
-    Training,
-    /// How strategies do at many points of a space of scenarios.
-    Sweep,
+#[derive(Clone, Copy)]
+pub struct Kind {
+    name: &'static str,
+    folder: &'static str,
+    pub(super) keys: fn(Kind) -> Value,
+    check: fn(&Path) -> Result<(), Problems>,
 }
 
 impl Kind {
-    /// All kinds.
-    pub const ALL: [Kind; 11] = [
-        Kind::Game,
-        Kind::Field,
-        Kind::Rules,
-        Kind::Boat,
-        Kind::Sea,
-        Kind::Strategy,
-        Kind::Tournament,
-        Kind::Gateway,
-        Kind::Rewards,
-        Kind::Training,
-        Kind::Sweep,
-    ];
+    /// A game.
+    pub const GAME: Kind = Kind::of::<Scenario>();
+    /// A field.
+    pub const FIELD: Kind = Kind::of::<Field>();
+    /// Rules.
+    pub const RULES: Kind = Kind::of::<Rules>();
+    /// A kind of boat.
+    pub const BOAT: Kind = Kind::of::<Boat>();
+    /// A sea.
+    pub const SEA: Kind = Kind::of::<Sea>();
+    /// A strategy.
+    pub const STRATEGY: Kind = Kind::of::<Strategy>();
+    /// A tournament.
+    pub const TOURNAMENT: Kind = Kind::of::<Tournament>();
+    /// How strategies do at many points of a space of scenarios.
+    pub const SWEEP: Kind = Kind::of::<Sweep>();
+
+    /// The kind of the files that are read as `F`.
+    #[must_use]
+    pub const fn of<F: ScenarioFile>() -> Kind {
+        Kind { name: F::NAME, folder: F::FOLDER, keys: generated::<F::Keys>, check: check_as::<F> }
+    }
 
     /// Its name, which is also that of its schema file.
     #[must_use]
     pub fn name(self) -> &'static str {
-        self.into()
+        self.name
     }
 
     /// The folder its files lie in.
     #[must_use]
     pub fn folder(self) -> &'static str {
-        [
-            "games",
-            "fields",
-            "rules",
-            "boats",
-            "seas",
-            "strategies",
-            "tournaments",
-            "gateways",
-            "rewards",
-            "training",
-            "sweeps",
-        ][self as usize]
+        self.folder
     }
 
-    /// The kind that the folder of `path` says, if it says one.
+    /// Reads and checks a file of this kind.
+    ///
+    /// # Errors
+    /// Everything that is wrong in it, its bases and the files it names.
+    pub fn check(self, path: &Path) -> Result<(), Problems> {
+        (self.check)(path)
+    }
+
+    /// Which of `kinds` the folder of `path` says, if it says one.
     #[must_use]
-    pub fn by_folder(path: &Path) -> Option<Kind> {
+    pub fn by_folder(kinds: &[Kind], path: &Path) -> Option<Kind> {
         let folder = path.parent()?.file_name()?;
-        Kind::ALL.into_iter().find(|kind| folder == kind.folder())
+        kinds.iter().copied().find(|kind| folder == kind.folder)
     }
 
-    /// The kind that knows most of these top-level keys; the first of [`Kind::ALL`] where several do.
-    pub(super) fn by_keys(keys: &BTreeSet<String>) -> Kind {
+    /// Which of `kinds` knows most of these top-level keys; the first where several do.
+    #[must_use]
+    pub fn by_keys(kinds: &[Kind], keys: &BTreeSet<String>) -> Kind {
         // Of equals `max_by_key` takes the last.
-        Kind::ALL.into_iter().rev().max_by_key(|kind| kind.known(keys)).unwrap_or(Kind::Game)
+        kinds.iter().copied().rev().max_by_key(|kind| kind.known(keys)).unwrap_or(Kind::GAME)
     }
 
-    /// The kind of a file with these top-level keys, if it is clearly another than this: it knows two more of them at least.
-    pub(super) fn other_by_keys(self, keys: &BTreeSet<String>) -> Option<Kind> {
-        Some(Kind::by_keys(keys)).filter(|other| other.known(keys) >= self.known(keys) + 2)
+    /// Which of `kinds` a file with these top-level keys is, if clearly another than this: it knows at least two more of them.
+    #[must_use]
+    pub fn other_by_keys(self, kinds: &[Kind], keys: &BTreeSet<String>) -> Option<Kind> {
+        Some(Kind::by_keys(kinds, keys)).filter(|other| other.known(keys) >= self.known(keys) + 2)
     }
 
     /// How many of these top-level keys it knows.
@@ -98,35 +120,127 @@ impl Kind {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+fn check_as<F: ScenarioFile>(path: &Path) -> Result<(), Problems> {
+    F::load(path).map(drop)
+}
 
-    #[test]
-    fn a_file_outside_of_the_folders_is_told_by_its_keys() {
-        for (keys, want) in [
-            (vec!["field", "team"], Kind::Game),
-            (vec!["width_m", "depth_m"], Kind::Field),
-            (vec!["points"], Kind::Rules),
-            (vec!["hull", "typo"], Kind::Boat),
-            (vec!["current"], Kind::Sea),
-            (vec!["roles", "base"], Kind::Strategy),
-            (vec!["game", "entry", "sea", "seed"], Kind::Tournament),
-            (vec!["order_ttl_s", "fence", "limits"], Kind::Gateway),
-            (vec!["boat", "enemy", "potential"], Kind::Rewards),
-            (vec!["stage", "observation", "seed"], Kind::Training),
-            (vec!["game", "opponent", "axis"], Kind::Sweep),
-            (vec!["base"], Kind::Game),
-            (vec![], Kind::Game),
-        ] {
-            let keys = keys.into_iter().map(str::to_owned).collect();
-            assert_eq!(Kind::by_keys(&keys), want, "{keys:?}");
-        }
-        let keys = |keys: &[&str]| keys.iter().map(|key| (*key).to_owned()).collect::<BTreeSet<String>>();
-        assert_eq!(Kind::Game.other_by_keys(&keys(&["about", "game", "opponent", "axis"])), Some(Kind::Sweep));
-        assert_eq!(Kind::Game.other_by_keys(&keys(&["field", "team", "typo"])), None);
-        assert_eq!(Kind::Sea.other_by_keys(&keys(&["typo", "other"])), None);
-        assert_eq!(Kind::by_folder(Path::new("x/seas/calm.toml")), Some(Kind::Sea));
-        assert_eq!(Kind::by_folder(Path::new("calm.toml")), None);
+// Two kinds of one name would be two owners of one folder: the name alone counts.
+impl PartialEq for Kind {
+    fn eq(&self, other: &Kind) -> bool {
+        self.name == other.name
+    }
+}
+
+impl Eq for Kind {}
+
+impl PartialOrd for Kind {
+    fn partial_cmp(&self, other: &Kind) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Kind {
+    fn cmp(&self, other: &Kind) -> Ordering {
+        self.name.cmp(other.name)
+    }
+}
+
+impl fmt::Debug for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name)
+    }
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name)
+    }
+}
+
+impl ScenarioFile for Scenario {
+    type Keys = raw::Game;
+    const NAME: &'static str = "game";
+    const FOLDER: &'static str = "games";
+
+    fn check(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) -> Option<Scenario> {
+        check::game(diagnostics, document)
+    }
+
+    fn load(path: &Path) -> Result<Scenario, Problems> {
+        load::load(path)
+    }
+}
+
+impl ScenarioFile for Field {
+    type Keys = raw::Field;
+    const NAME: &'static str = "field";
+    const FOLDER: &'static str = "fields";
+
+    fn check(diagnostics: &mut Diagnostics, document: &Document<raw::Field>) -> Option<Field> {
+        check::field(diagnostics, document)
+    }
+}
+
+impl ScenarioFile for Rules {
+    type Keys = Rules;
+    const NAME: &'static str = "rules";
+    const FOLDER: &'static str = "rules";
+
+    fn check(diagnostics: &mut Diagnostics, document: &Document<Rules>) -> Option<Rules> {
+        check::rules(diagnostics, document)
+    }
+}
+
+impl ScenarioFile for Boat {
+    type Keys = raw::Boat;
+    const NAME: &'static str = "boat";
+    const FOLDER: &'static str = "boats";
+
+    fn check(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>) -> Option<Boat> {
+        check::boat(diagnostics, document)
+    }
+}
+
+impl ScenarioFile for Sea {
+    type Keys = raw::Sea;
+    const NAME: &'static str = "sea";
+    const FOLDER: &'static str = "seas";
+
+    fn check(diagnostics: &mut Diagnostics, document: &Document<raw::Sea>) -> Option<Sea> {
+        check::sea(diagnostics, document)
+    }
+}
+
+impl ScenarioFile for Strategy {
+    type Keys = raw::Strategy;
+    const NAME: &'static str = "strategy";
+    const FOLDER: &'static str = "strategies";
+
+    fn check(diagnostics: &mut Diagnostics, document: &Document<raw::Strategy>) -> Option<Strategy> {
+        check::strategy(diagnostics, document)
+    }
+}
+
+impl ScenarioFile for Tournament {
+    type Keys = Tournament;
+    const NAME: &'static str = "tournament";
+    const FOLDER: &'static str = "tournaments";
+
+    fn check(diagnostics: &mut Diagnostics, document: &Document<Tournament>) -> Option<Tournament> {
+        check::tournament(diagnostics, document)
+    }
+}
+
+impl ScenarioFile for Sweep {
+    type Keys = Sweep;
+    const NAME: &'static str = "sweep";
+    const FOLDER: &'static str = "sweeps";
+
+    fn check(diagnostics: &mut Diagnostics, document: &Document<Sweep>) -> Option<Sweep> {
+        check::sweep(diagnostics, document)
+    }
+
+    fn load(path: &Path) -> Result<Sweep, Problems> {
+        load::load_sweep(path)
     }
 }

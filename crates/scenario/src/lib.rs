@@ -15,9 +15,9 @@ mod draw;
 pub mod fault;
 mod field_value;
 mod files;
-pub mod gateway;
 mod guess;
 mod kept;
+pub mod keys;
 mod kind;
 pub mod link;
 mod load;
@@ -31,7 +31,6 @@ mod raw;
 mod read;
 mod real_boats;
 mod reference;
-pub mod rewards;
 mod schema;
 pub mod sea;
 pub mod sensor;
@@ -41,24 +40,26 @@ pub mod strategy;
 mod sweep;
 mod syntax;
 mod tournament;
-pub mod training;
 mod tree;
 mod validate;
 
 pub use boat::Boat;
 pub use built_in::{BuiltIn, built_in, set_built_in};
+pub use check::{StrategyFiles, check_corners, check_thrust_map};
+pub use diagnostics::Diagnostics;
 pub use draw::{Drawn, Recipe};
 pub use files::Files;
 pub use guess::did_you_mean;
-pub use kind::Kind;
+pub use kind::{Kind, ScenarioFile};
 pub use load::{
-    check_file, default_gateway, draw_boat, draw_sea, load, load_boat, load_field, load_gateway, load_rewards,
-    load_strategy, load_sweep, load_tournament, load_training, load_with, load_with_files, other_kind,
+    check_file, default_of, draw_boat, draw_sea, load, load_boat, load_field, load_file, load_strategy, load_sweep,
+    load_tournament, load_with, load_with_files, other_kind,
 };
 pub use outcome::Outcome;
 pub use overrides::Overrides;
 pub use packed::{Packed, UnpackError, digest_of};
 pub use problem::{Problem, Problems};
+pub use read::Document;
 pub use real_boats::RealBoats;
 pub use reference::{file_reference, reference};
 pub use schema::schema;

@@ -4,20 +4,16 @@ use super::diagnostics::Diagnostics;
 use super::draw::{Drawing, Drawn, Recipe};
 use super::files::Files;
 use super::kept::Reading;
-use super::kind::Kind;
+use super::kind::{Kind, ScenarioFile};
 use super::overrides::Overrides;
 use super::problem::Problems;
-use super::read::{self, Document};
+use super::read;
 use super::tree::Node;
 use super::{Scenario, Sweep, Tournament, check};
 use crate::boat::Boat;
-use crate::gateway::Gateway;
-use crate::rewards::Rewards;
 use crate::sea::Sea;
 use crate::strategy::Strategy;
-use crate::training::Training;
 use rules::field::Field;
-use serde::de::DeserializeOwned;
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
@@ -67,7 +63,7 @@ pub fn load_with_files(path: &Path, overrides: &Overrides, files: &Arc<Files>) -
 
 fn game_of(diagnostics: &mut Diagnostics, path: &Path) -> Result<Scenario, Problems> {
     let value =
-        read::document(diagnostics, Kind::Game, path, None).and_then(|document| check::game(diagnostics, &document));
+        read::document(diagnostics, Kind::GAME, path, None).and_then(|document| check::game(diagnostics, &document));
     let mut scenario = diagnostics.close(value)?;
     scenario.drawn = std::mem::take(&mut diagnostics.drawn);
     Ok(scenario)
@@ -99,12 +95,36 @@ impl Scenario {
     }
 }
 
+/// Reads and checks the file at `path` as one of its kind: for types that implement [`ScenarioFile`].
+///
+/// # Errors
+/// Everything that is wrong in it, its bases and the files it names, by file, line and column.
+pub fn load_file<F: ScenarioFile>(path: &Path) -> Result<F, Problems> {
+    F::load(path)
+}
+
+/// Reads and checks the strategy file at `path` and the files of the roles that it deals.
+///
+/// # Errors
+/// Everything that is wrong in any of them and their bases.
+pub fn load_strategy(path: &Path) -> Result<Strategy, Problems> {
+    Strategy::load(path)
+}
+
+/// Reads and checks the tournament file at `path` and every file it names.
+///
+/// # Errors
+/// Everything that is wrong in any of them.
+pub fn load_tournament(path: &Path) -> Result<Tournament, Problems> {
+    Tournament::load(path)
+}
+
 /// Reads and checks the field file at `path`.
 ///
 /// # Errors
 /// Everything that is wrong in it and its bases.
 pub fn load_field(path: &Path) -> Result<Field, Problems> {
-    one(Kind::Field, path, check::field, 1).map(|(field, _)| field)
+    Field::load(path)
 }
 
 /// Reads and checks the boat file at `path`. Where it gives distributions, the numbers are those of seed 1.
@@ -120,7 +140,7 @@ pub fn load_boat(path: &Path) -> Result<Boat, Problems> {
 /// # Errors
 /// Everything that is wrong in it and its bases.
 pub fn draw_boat(path: &Path, seed: u64) -> Result<(Boat, Vec<Drawn>), Problems> {
-    one(Kind::Boat, path, check::boat, seed)
+    of_seed(path, seed)
 }
 
 /// Reads and checks the sea file at `path`, and draws its numbers with this seed: those of a game of that seed.
@@ -128,49 +148,7 @@ pub fn draw_boat(path: &Path, seed: u64) -> Result<(Boat, Vec<Drawn>), Problems>
 /// # Errors
 /// Everything that is wrong in it and its bases.
 pub fn draw_sea(path: &Path, seed: u64) -> Result<(Sea, Vec<Drawn>), Problems> {
-    one(Kind::Sea, path, check::sea, seed)
-}
-
-/// Reads and checks the strategy file at `path` and the files of the roles that it deals.
-///
-/// # Errors
-/// Everything that is wrong in any of them and their bases.
-pub fn load_strategy(path: &Path) -> Result<Strategy, Problems> {
-    let mut diagnostics = Diagnostics::new(Drawing::Seed(1));
-    let strategy = check::strategy_file(&mut diagnostics, path, None, "");
-    diagnostics.close(strategy)
-}
-
-/// Reads and checks the tournament file at `path` and every file it names.
-///
-/// # Errors
-/// Everything that is wrong in any of them.
-pub fn load_tournament(path: &Path) -> Result<Tournament, Problems> {
-    one(Kind::Tournament, path, check::tournament, 1).map(|(tournament, _)| tournament)
-}
-
-/// Reads and checks the gateway file at `path`.
-///
-/// # Errors
-/// Everything that is wrong in it and its bases.
-pub fn load_gateway(path: &Path) -> Result<Gateway, Problems> {
-    one(Kind::Gateway, path, check::gateway, 1).map(|(gateway, _)| gateway)
-}
-
-/// Reads and checks the rewards file at `path`.
-///
-/// # Errors
-/// Everything that is wrong in it and its bases.
-pub fn load_rewards(path: &Path) -> Result<Rewards, Problems> {
-    one(Kind::Rewards, path, check::rewards, 1).map(|(rewards, _)| rewards)
-}
-
-/// Reads and checks the training file at `path` and every file it names.
-///
-/// # Errors
-/// Everything that is wrong in any of them.
-pub fn load_training(path: &Path) -> Result<Training, Problems> {
-    one(Kind::Training, path, check::training, 1).map(|(training, _)| training)
+    of_seed(path, seed)
 }
 
 /// Reads and checks the sweep file at `path` and every file it names, and the game with every level of every axis, one at a time.
@@ -178,7 +156,7 @@ pub fn load_training(path: &Path) -> Result<Training, Problems> {
 /// # Errors
 /// Everything that is wrong in any of them.
 pub fn load_sweep(path: &Path) -> Result<Sweep, Problems> {
-    let (sweep, _) = one(Kind::Sweep, path, check::sweep, 1)?;
+    let (sweep, _) = of_seed::<Sweep>(path, 1)?;
     let teams: Vec<String> = load(&sweep.game)?.teams.into_iter().map(|team| team.name).collect();
     let nominal: Vec<_> = sweep.axes.iter().map(super::Axis::nominal).collect();
     let mut problems: Vec<_> = vec![];
@@ -201,65 +179,46 @@ pub fn load_sweep(path: &Path) -> Result<Sweep, Problems> {
     if problems.is_empty() { Ok(sweep) } else { Err(Problems(problems)) }
 }
 
-/// The gateway of a file that says nothing.
+/// What a file of a kind that says nothing is.
 ///
-/// # Panics
-/// Never: every key has a default.
-#[must_use]
-pub fn default_gateway() -> Gateway {
+/// # Errors
+/// A key has no default.
+pub fn default_of<F: ScenarioFile>() -> Result<F, Problems> {
     let path = Path::new("default.toml");
     let mut diagnostics = Diagnostics::new(Drawing::Least);
     diagnostics.texts = Some(vec![(path.to_owned(), String::new())]);
-    let document = read::document(&mut diagnostics, Kind::Gateway, path, None);
-    document.and_then(|document| check::gateway(&mut diagnostics, &document)).expect("every key has a default")
+    let document = read::document(&mut diagnostics, Kind::of::<F>(), path, None);
+    let value = document.and_then(|document| F::check(&mut diagnostics, &document));
+    diagnostics.close(value)
 }
 
-/// Reads and checks a scenario file of any kind, and says which kind it is.
+/// Reads and checks a scenario file of any of these kinds, and says which kind it is.
 ///
-/// The folder it lies in tells (`games`, `fields`, `rules`, `boats`, `seas`, `strategies`, `tournaments`, `gateways`).
-/// In any other folder it is the kind that knows most of its top-level keys, its bases' included; where
-/// several know as many, the first of [`Kind::ALL`].
+/// The folder it lies in tells. In any other folder it is the kind that knows most of its top-level keys, its bases'
+/// included; where several know as many, the first of `kinds`.
 ///
 /// # Errors
 /// Everything that is wrong in it, its bases and the files it names.
-pub fn check_file(path: &Path) -> Result<Kind, Problems> {
-    let kind = Kind::by_folder(path).unwrap_or_else(|| Kind::by_keys(&top_keys(path)));
-    match kind {
-        Kind::Game => load(path).map(drop),
-        Kind::Field => load_field(path).map(drop),
-        Kind::Rules => one(Kind::Rules, path, check::rules, 1).map(drop),
-        Kind::Boat => load_boat(path).map(drop),
-        Kind::Sea => draw_sea(path, 1).map(drop),
-        Kind::Strategy => load_strategy(path).map(drop),
-        Kind::Tournament => load_tournament(path).map(drop),
-        Kind::Gateway => load_gateway(path).map(drop),
-        Kind::Rewards => load_rewards(path).map(drop),
-        Kind::Training => load_training(path).map(drop),
-        Kind::Sweep => load_sweep(path).map(drop),
-    }?;
-    Ok(kind)
+pub fn check_file(kinds: &[Kind], path: &Path) -> Result<Kind, Problems> {
+    let kind = Kind::by_folder(kinds, path).unwrap_or_else(|| Kind::by_keys(kinds, &top_keys(path)));
+    kind.check(path).map(|()| kind)
 }
 
-/// The kind of a file by its folder or its keys, if it is clearly another than the one that is expected.
+/// Which of `kinds` a file is by its folder or its keys, if it is clearly another than the one that is expected.
 #[must_use]
-pub fn other_kind(path: &Path, expected: Kind) -> Option<Kind> {
-    match Kind::by_folder(path) {
+pub fn other_kind(kinds: &[Kind], path: &Path, expected: Kind) -> Option<Kind> {
+    match Kind::by_folder(kinds, path) {
         Some(kind) => (kind != expected).then_some(kind),
-        None => expected.other_by_keys(&top_keys(path)),
+        None => expected.other_by_keys(kinds, &top_keys(path)),
     }
 }
 
-/// A file of one kind, and what was drawn for it.
-fn one<R: DeserializeOwned, T>(
-    kind: Kind,
-    path: &Path,
-    check: fn(&mut Diagnostics, &Document<R>) -> Option<T>,
-    seed: u64,
-) -> Result<(T, Vec<Drawn>), Problems> {
+/// A file of one kind, its numbers drawn with this seed, and what was drawn for it.
+pub(super) fn of_seed<F: ScenarioFile>(path: &Path, seed: u64) -> Result<(F, Vec<Drawn>), Problems> {
     let read = |drawing: Drawing| {
         let mut diagnostics = Diagnostics::new(drawing);
-        let value =
-            read::document(&mut diagnostics, kind, path, None).and_then(|document| check(&mut diagnostics, &document));
+        let value = read::document(&mut diagnostics, Kind::of::<F>(), path, None)
+            .and_then(|document| F::check(&mut diagnostics, &document));
         diagnostics.close(value).map(|value| (value, std::mem::take(&mut diagnostics.drawn)))
     };
     let (value, drawn) = read(Drawing::Least)?;

@@ -16,11 +16,11 @@ use toml::de::DeTable;
 
 /// A file, laid over its bases and read by its schema.
 #[derive(Debug)]
-pub(super) struct Document<T> {
+pub struct Document<T> {
     /// Its stem.
-    pub(super) name: String,
+    pub name: String,
     /// What it says; see `validate` for what stands in the place of mistakes.
-    pub(super) raw: T,
+    pub raw: T,
     /// How much was wrong before this file was read.
     faults: usize,
     tree: Arc<Node>,
@@ -29,17 +29,20 @@ pub(super) struct Document<T> {
 
 impl<T> Document<T> {
     /// Where the value at `path` stands, for example at `team.1.name`, or else the innermost table that lacks it.
-    pub(super) fn at(&self, path: &str) -> usize {
+    #[must_use]
+    pub fn at(&self, path: &str) -> usize {
         self.tree.find(path).0.at
     }
 
     /// Whether the file or a base of it says something there.
-    pub(super) fn has(&self, path: &str) -> bool {
+    #[must_use]
+    pub fn has(&self, path: &str) -> bool {
         self.tree.find(path).1
     }
 
     /// Whether what stands there, or is left out there, is as the schema wants it: in it, and around it.
-    pub(super) fn is_sound(&self, path: &str) -> bool {
+    #[must_use]
+    pub fn is_sound(&self, path: &str) -> bool {
         let is_below = |long: &str, short: &str| {
             long.strip_prefix(short).is_some_and(|rest| rest.is_empty() || short.is_empty() || rest.starts_with('.'))
         };
@@ -47,7 +50,8 @@ impl<T> Document<T> {
     }
 
     /// Whether nothing was wrong in it, or in anything that was checked since it was read.
-    pub(super) fn is_faultless(&self, diagnostics: &Diagnostics) -> bool {
+    #[must_use]
+    pub fn is_faultless(&self, diagnostics: &Diagnostics) -> bool {
         diagnostics.faults() == self.faults
     }
 }
@@ -82,7 +86,7 @@ pub(super) fn document_of<T: DeserializeOwned>(
     if let Some(kept) = kept.document(kind, path, owner) {
         return document_of_tree(diagnostics, kind, path, kept.clone(), (owner, faults));
     }
-    let own = if kind == Kind::Strategy { OWN } else { &[] };
+    let own = if kind == Kind::STRATEGY { OWN } else { &[] };
     let mut tree = tree(diagnostics, path, asked_at, own)?;
     put_settings(diagnostics, (kind, owner), &mut tree);
     let document = KeptDocument { tree: Arc::new(tree), value: None };

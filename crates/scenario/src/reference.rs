@@ -15,12 +15,12 @@ const OPENING: &str = include_str!("reference/strategies.md");
 /// How expressions are written.
 const EXPRESSIONS: &str = include_str!("reference/expressions.md");
 
-/// The page of all kinds of files but strategies, in Markdown.
+/// The page of these kinds of files but strategies, in Markdown.
 #[must_use]
-pub fn file_reference() -> String {
+pub fn file_reference(kinds: &[Kind]) -> String {
     let mut page = FILES.to_owned();
-    for kind in Kind::ALL.into_iter().filter(|kind| *kind != Kind::Strategy) {
-        let root = declared(kind);
+    for kind in kinds.iter().filter(|kind| **kind != Kind::STRATEGY) {
+        let root = declared(*kind);
         tables(&mut page, &format!("## `{}/`", kind.folder()), "", root);
     }
     page
@@ -47,7 +47,7 @@ fn tables(page: &mut String, heading: &str, path: &str, about: &Value) {
 /// The page of strategies, in Markdown.
 #[must_use]
 pub fn reference() -> String {
-    let root = declared(Kind::Strategy);
+    let root = declared(Kind::STRATEGY);
     let mut page = OPENING.to_owned();
     table(&mut page, "## The file", root, |_| true);
     for (name, heading) in [

@@ -21,34 +21,17 @@
 //! [`declared`] is the schema in this form, by which files are read (see `validate`); [`schema`] is the one for editors.
 
 use super::kind::Kind;
-use super::{Sweep, Tournament, raw};
-use crate::gateway::Gateway;
-use crate::rewards::Rewards;
-use crate::training::Training;
-use rules::Rules;
 use schemars::{JsonSchema, generate::SchemaSettings};
 use serde_json::{Map, Value, json};
-use std::sync::OnceLock;
+use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
 
-/// The schema that files of a kind are read by.
+/// The schema that files of a kind are read by, made once in a process.
 pub(super) fn declared(kind: Kind) -> &'static Value {
-    static SCHEMAS: [OnceLock<Value>; Kind::ALL.len()] = [const { OnceLock::new() }; Kind::ALL.len()];
-    SCHEMAS[kind as usize].get_or_init(|| match kind {
-        Kind::Game => generated::<raw::Game>(kind),
-        Kind::Field => generated::<raw::Field>(kind),
-        // The type that the program believes, wherever it has the same form as in files: two
-        // types for everything were twice the text, and the copying between them hid the few
-        // values that really change.
-        Kind::Rules => generated::<Rules>(kind),
-        Kind::Boat => generated::<raw::Boat>(kind),
-        Kind::Sea => generated::<raw::Sea>(kind),
-        Kind::Strategy => generated::<raw::Strategy>(kind),
-        Kind::Tournament => generated::<Tournament>(kind),
-        Kind::Gateway => generated::<Gateway>(kind),
-        Kind::Rewards => generated::<Rewards>(kind),
-        Kind::Training => generated::<Training>(kind),
-        Kind::Sweep => generated::<Sweep>(kind),
-    })
+    static SCHEMAS: Mutex<BTreeMap<&str, &Value>> = Mutex::new(BTreeMap::new());
+    let mut schemas = SCHEMAS.lock().unwrap_or_else(PoisonError::into_inner);
+    // There are as many as there are kinds, and they are needed to the end.
+    schemas.entry(kind.name()).or_insert_with(|| Box::leak(Box::new((kind.keys)(kind))))
 }
 
 /// The JSON Schema of a kind of file, for editors.
@@ -125,7 +108,7 @@ fn publish(value: &mut Value, is_drawn: bool, is_item: bool) {
 }
 
 /// The schema that is generated from `T`, with what all files have in common.
-fn generated<T: JsonSchema>(kind: Kind) -> Value {
+pub(super) fn generated<T: JsonSchema>(kind: Kind) -> Value {
     // Draft 7 is what editors' TOML extensions understand.
     let generator = SchemaSettings::draft07().into_generator();
     let mut schema = generator.into_root_schema_for::<T>().to_value();

@@ -76,13 +76,13 @@ impl Setting {
         }
         let (first, rest) = self.key.split_once('.')?;
         Some(match first {
-            "sea" => (Kind::Sea, rest),
-            "boat" => (Kind::Boat, rest),
-            "rules" => (Kind::Rules, rest),
-            "field" => (Kind::Field, rest),
-            "game" => (Kind::Game, rest),
-            "link" | "fault" => (Kind::Game, self.key.as_str()),
-            "strategy" => (Kind::Strategy, rest.split_once('.')?.1),
+            "sea" => (Kind::SEA, rest),
+            "boat" => (Kind::BOAT, rest),
+            "rules" => (Kind::RULES, rest),
+            "field" => (Kind::FIELD, rest),
+            "game" => (Kind::GAME, rest),
+            "link" | "fault" => (Kind::GAME, self.key.as_str()),
+            "strategy" => (Kind::STRATEGY, rest.split_once('.')?.1),
             _ => return None,
         })
     }
@@ -114,10 +114,10 @@ mod tests {
     #[test]
     fn a_setting_of_the_command_line_has_a_kind_a_key_and_a_value() {
         for (text, kind, key, value) in [
-            ("sea.waves.hs_m=0.3", Kind::Sea, "waves.hs_m", "0.3"),
-            ("link.delay_s = 2", Kind::Game, "link.delay_s", "2"),
-            ("game.field=../fields/a.toml", Kind::Game, "field", "\"../fields/a.toml\""),
-            ("boat.gps.noise_m={ uniform = [0, 2] }", Kind::Boat, "gps.noise_m", "{ uniform = [0, 2] }"),
+            ("sea.waves.hs_m=0.3", Kind::SEA, "waves.hs_m", "0.3"),
+            ("link.delay_s = 2", Kind::GAME, "link.delay_s", "2"),
+            ("game.field=../fields/a.toml", Kind::GAME, "field", "\"../fields/a.toml\""),
+            ("boat.gps.noise_m={ uniform = [0, 2] }", Kind::BOAT, "gps.noise_m", "{ uniform = [0, 2] }"),
         ] {
             let setting = Setting::parse(text).unwrap_or_else(|error| panic!("{text}: {error}"));
             assert_eq!((setting.target(), setting.value.as_str()), (Some((kind, key)), value), "{text}");

@@ -241,7 +241,7 @@ fn required(kind: &str) -> &'static str {
 
 #[test]
 fn numbers_of_behaviours_have_the_ranges_and_defaults_that_are_declared() {
-    let schema = scenario::schema(Kind::Strategy);
+    let schema = scenario::schema(Kind::STRATEGY);
     let (mut kinds, mut ranges, mut defaults) = (0, 0, 0);
     for about in schema["properties"]["behaviour"]["additionalProperties"]["anyOf"].as_array().unwrap() {
         let kind = about["properties"]["kind"]["const"].as_str().unwrap();

@@ -3,10 +3,10 @@
 //! Nothing of this stops the boat: people should see it, and decide.
 
 use super::Event;
+use crate::config::CurrentWatch;
 use crate::protocol::{Command, Power};
 use crate::set_point::SetPoint;
 use primitives::SimTime;
-use scenario::gateway::CurrentWatch;
 
 /// A thruster that is ordered this much draws a current, per cent.
 const ORDERED_MIN_PCT: f64 = 20.0;

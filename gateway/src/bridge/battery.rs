@@ -1,7 +1,7 @@
 //! The boat's battery, by its own report.
 
+use crate::config::BatteryWatch;
 use primitives::SimTime;
-use scenario::gateway::BatteryWatch;
 
 /// A battery that is not reported for this long is worth a warning, s.
 pub(super) const SILENCE_S: f64 = 10.0;

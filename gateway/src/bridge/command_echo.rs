@@ -3,11 +3,11 @@
 //! A boat that shows an older command than it should does not listen any more. One that shows a command that it was never sent, after it
 //! has shown ours, gets orders from somebody else at the same port.
 
+use crate::config::ControlWatch;
 use crate::nmea::Mode;
 use crate::protocol::Shown;
 use primitives::SimTime;
 use primitives::angle::wrap_pi;
-use scenario::gateway::ControlWatch;
 use std::collections::VecDeque;
 
 /// In mode G speeds and headings are the same if they are as near as this, kn and degrees: ArduPilot leaves out all after the comma.

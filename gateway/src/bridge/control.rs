@@ -1,11 +1,11 @@
 //! Who commands the boat, and whether it follows its commands: by its own report.
 
 use super::command_echo::CommandEcho;
+use crate::config::ControlWatch;
 use crate::nmea::{Mode, Operator};
 use crate::protocol::{ControlReport, Shown};
 use crate::supervisor::Control;
 use primitives::SimTime;
-use scenario::gateway::ControlWatch;
 
 /// The boat's last control state.
 #[derive(Clone, Copy, Debug)]

@@ -1,12 +1,12 @@
 //! The interface of a bridge: its inputs and outputs.
 
+use crate::config::{CompassFrame, Gateway};
 use messages::Order;
 use messages::external::{FleetCommand, OperatorCommand};
 use messages::picture::Nav;
 use primitives::SimTime;
 use primitives::frame::Ned;
 use rules::Field;
-use scenario::gateway::{CompassFrame, Gateway};
 use serde::{Deserialize, Serialize};
 
 /// What a bridge is made for; constant.

@@ -23,6 +23,7 @@ use crate::supervisor::{
 };
 pub use interface::{Event, Input, NavOut, Output, Plan, Preflight, Site};
 
+use crate::config::{Gateway, SwitchWord};
 use alarms::Alarms;
 use battery::BatteryLog;
 use clock_watch::ClockWatch;
@@ -34,7 +35,6 @@ use operator_request::request_from;
 use primitives::SimTime;
 use primitives::frame::Ned;
 use recovery_point::RecoveryPoint;
-use scenario::gateway::{Gateway, SwitchWord};
 use status::Counters;
 use std::collections::VecDeque;
 

@@ -2,6 +2,7 @@
 
 use super::Site;
 use crate::bow_watch::BowWatch;
+use crate::config::{BoatProtocol, Gateway};
 use crate::geodesy::LocalFrame;
 use crate::geofence::GeofenceWatch;
 use crate::nav_estimate::NavEstimator;
@@ -10,7 +11,6 @@ use crate::supervisor::Task;
 use messages::external::{BoatMode, GeofenceReport, Mission};
 use primitives::SimTime;
 use primitives::frame::Ned;
-use scenario::gateway::{BoatProtocol, Gateway};
 
 /// What only works where the field is known.
 pub(super) struct OnSite {

@@ -1,10 +1,10 @@
 //! The emulated boat's own controller: set-points, station keeping, missions.
 
+use crate::config::SURVEYOR_THRUST_MAP;
 use messages::Order;
 use primitives::angle::wrap_pi;
 use primitives::frame::{Ned, Pose};
 use primitives::math;
-use scenario::gateway::SURVEYOR_THRUST_MAP;
 use std::collections::BTreeMap;
 
 /// A position is reached, or kept, within this distance, m.

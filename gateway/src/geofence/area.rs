@@ -1,10 +1,10 @@
 //! The water where a boat may be: a polygon, without the keep-outs in it.
 
+use crate::config::Geofence;
 use crate::geodesy::LocalFrame;
 use primitives::frame::{LatLon, Ned};
 use primitives::{VehicleId, math};
 use rules::field::{Field, distance_to_outline, do_meet, is_within, sides};
-use scenario::gateway::Geofence;
 use scenario::{Scenario, StartPosition};
 use thiserror::Error;
 

@@ -6,10 +6,10 @@ mod tests;
 
 pub use area::{GeofenceArea, GeofenceError};
 
+use crate::config::Geofence;
 use primitives::SimTime;
 use primitives::frame::Ned;
 use rules::field::Field;
-use scenario::gateway::Geofence;
 
 /// Watches that a boat is inside of the geofence and can stop there.
 #[derive(Clone, Debug)]

@@ -13,7 +13,7 @@ fn field() -> Field {
 }
 
 fn rules() -> Geofence {
-    scenario::default_gateway().geofence
+    crate::config::default_gateway().geofence
 }
 
 fn at(seconds: f64) -> SimTime {

@@ -2,6 +2,7 @@
 
 use super::{NodeError, NodeEvent, declination_rad, pace_factor};
 use crate::bridge::Event;
+use crate::config::BoatProtocol;
 use crate::emulator::{ArduPilot, Emulator, Extra, FrontSeat, Plan, Port};
 use crate::link::{Link, LinkAddress, LinkEvent, LinkSettings};
 use crate::nmea::Operator;
@@ -13,7 +14,6 @@ use messages::topic::{self, GameName};
 use messages::{Order, Picture, Role};
 use primitives::{SimTime, VehicleId, codec};
 use recording::utc;
-use scenario::gateway::BoatProtocol;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;

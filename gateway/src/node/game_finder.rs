@@ -3,13 +3,13 @@
 use super::loop_input::{Call, LoopInput};
 use super::{NodeError, Settings, declination_rad, external_vehicle, pace_factor};
 use crate::bridge::Site;
+use crate::config::Gateway;
 use crate::geofence::GeofenceArea;
 use bus::game_search::{self, GameSearch};
 use bus::{Bus, NodeThread, Place};
 use messages::topic::GameName;
 use messages::{GameInfo, Role};
 use primitives::VehicleId;
-use scenario::gateway::Gateway;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;

@@ -24,6 +24,7 @@ pub use machine_check::machine_checks;
 pub use terminal_key::on_enter;
 
 use crate::bridge::{Bridge, Event, Plan, Preflight};
+use crate::config::Gateway;
 use crate::declination::{DeclinationError, declination_deg};
 use crate::game_clock::GameClock;
 use crate::geofence::GeofenceError;
@@ -49,7 +50,6 @@ use payload::Payloads;
 use primitives::frame::LatLon;
 use primitives::{SimTime, VehicleId, codec};
 use recording::{NewFile, RecordError, Recorder, utc};
-use scenario::gateway::Gateway;
 use scenario::{Source, UnknownVehicle};
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};

@@ -2,6 +2,7 @@
 
 use super::Check;
 use super::fix_scatter::FixScatter;
+use crate::config::Gateway;
 use crate::geodesy::LocalFrame;
 use crate::geofence::GeofenceArea;
 use crate::nmea::{Mode, Operator, TimeOfDay, quality_in_words};
@@ -9,7 +10,6 @@ use crate::sensor_check::SensorCheck;
 use primitives::SimTime;
 use primitives::frame::LatLon;
 use rules::Field;
-use scenario::gateway::Gateway;
 
 /// Fixes of a boat at rest may be so far from their mean, 95 of 100, and their mean may drift so far, m.
 const SCATTER_MAX_M: f64 = 2.5;
@@ -177,14 +177,14 @@ mod tests {
     fn water() -> Water {
         let game = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/pav01_vs_pav01.toml");
         let field = scenario::load(&game).unwrap_or_else(|problems| panic!("{problems}")).field;
-        let area = GeofenceArea::new(&field, &scenario::default_gateway().geofence);
+        let area = GeofenceArea::new(&field, &crate::config::default_gateway().geofence);
         Water { field, area }
     }
 
     /// A minute of a boat about this place of the field, with its GGA from the fifth field on and what else it says.
     fn seen(water: &Water, [x, y]: [f64; 2], fix: &str, more: &[&str]) -> SensorCheck {
         let frame = LocalFrame::new(water.field.plan.datum);
-        let mut check = SensorCheck::new(&scenario::default_gateway());
+        let mut check = SensorCheck::new(&crate::config::default_gateway());
         for i in 0..120_u32 {
             let at = frame.lat_lon(Ned::from_xy(x + 0.1 * f64::from(i % 3), y));
             let minutes = |deg: f64| (deg.abs().trunc(), deg.abs().fract() * 60.0);
@@ -249,7 +249,7 @@ mod tests {
         ] {
             let seen = seen(&water, place, fix, &more);
             let now = (SimTime::from_s(59.5), TimeOfDay(54_360_000));
-            let checks = boat_checks(&seen, now, &scenario::default_gateway(), Some(&water));
+            let checks = boat_checks(&seen, now, &crate::config::default_gateway(), Some(&water));
             let wrong: Vec<_> = checks.iter().filter(|check| check.verdict != Verdict::Passed).collect();
             if failed.is_empty() {
                 assert!(wrong.is_empty(), "{wrong:?}");
@@ -264,10 +264,10 @@ mod tests {
 
     #[test]
     fn what_a_short_look_cannot_tell_is_not_checked() {
-        let mut check = SensorCheck::new(&scenario::default_gateway());
+        let mut check = SensorCheck::new(&crate::config::default_gateway());
         check.take(SimTime::ZERO, b"$GPGGA,150502.00,4221.50616,N,07105.24688,W,2,11,0.98,5.5,M,-33.2,M,,*62\r\n");
         let now = (SimTime::ZERO, TimeOfDay(54_302_400));
-        let checks = boat_checks(&check, now, &scenario::default_gateway(), None);
+        let checks = boat_checks(&check, now, &crate::config::default_gateway(), None);
         let not_checked = checks.iter().filter(|check| check.verdict == Verdict::NotChecked);
         let names: Vec<&str> = not_checked.map(|check| check.name.as_str()).collect();
         assert_eq!(names, ["scatter", "geofence", "compass", "battery", "bilge"], "{checks:?}");

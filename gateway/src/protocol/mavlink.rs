@@ -9,6 +9,7 @@ use super::mavlink_boat::Boat;
 use super::mavlink_upload::{Next, Upload};
 use super::report::{Report, Shown};
 use super::{Command, UploadStep, mission_check};
+use crate::config::{Gateway, Mavlink as Settings};
 use crate::mavlink::dialect::{
     ATTITUDE_DATA, AttitudeTargetTypemask, COMMAND_LONG_DATA, GLOBAL_POSITION_INT_DATA, GPS_RAW_INT_DATA,
     HEARTBEAT_DATA, HOME_POSITION_DATA, MISSION_ACK_DATA, MavAutopilot, MavCmd, MavFrame, MavMessage, MavMissionResult,
@@ -23,7 +24,6 @@ use crate::supervisor::Task;
 use ::mavlink::MessageData;
 use messages::external::Mission;
 use primitives::{SimTime, math};
-use scenario::gateway::{Gateway, Mavlink as Settings};
 
 /// How often we say that we are there, s.
 const HEARTBEAT_S: f64 = 1.0;

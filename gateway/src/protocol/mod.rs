@@ -10,13 +10,13 @@ mod report;
 mod surveyor;
 mod surveyor_upload;
 
+use crate::config::{BoatProtocol, Gateway, SwitchWord};
 use crate::set_point::SetPoint;
 use crate::supervisor::Task;
 use mavlink::Mavlink;
 use messages::external::Mission;
 use primitives::SimTime;
 pub use report::{ControlReport, Fix, Heading, North, Power, Report, Shown};
-use scenario::gateway::{BoatProtocol, Gateway, SwitchWord};
 use surveyor::Surveyor;
 
 /// What a boat is told.

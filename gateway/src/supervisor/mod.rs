@@ -28,9 +28,9 @@ mod cause;
 
 pub use cause::{Cause, NavFault};
 
+use crate::config::{FailsafeAction, FailsafeActions};
 use crate::thrust_check::ThrustFault;
 use messages::external::BoatMode;
-use scenario::gateway::{FailsafeAction, FailsafeActions};
 use thiserror::Error;
 
 /// What is true now.

@@ -58,7 +58,7 @@ pub(crate) fn plan(file: &str, arms_itself: bool) -> Plan {
     let gateway = scenarios.join("gateways").join(file);
     Plan {
         vehicle: "blue_one".to_owned(),
-        gateway: scenario::load_gateway(&gateway).unwrap_or_else(|e| panic!("{e}")),
+        gateway: scenario::load_file::<gateway::config::Gateway>(&gateway).unwrap_or_else(|e| panic!("{e}")),
         site: Some(Site { length_m: 1.83, field: game.field, declination_rad: (-12.5_f64).to_radians() }),
         arms_itself,
         dry_run: false,

@@ -2,6 +2,7 @@
 
 use crate::rig::{Rig, plan};
 use gateway::bridge::{Event, Input};
+use gateway::config::Drive;
 use gateway::emulator::ArduPilot;
 use gateway::geodesy::LocalFrame;
 use gateway::mavlink::dialect::{
@@ -12,7 +13,6 @@ use messages::Order;
 use messages::external::{Mission, OperatorCommand};
 use primitives::angle::wrap_pi;
 use primitives::frame::Ned;
-use scenario::gateway::Drive;
 
 const HOLD: (RoverMode, bool) = (RoverMode::Hold, false);
 

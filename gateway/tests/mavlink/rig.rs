@@ -38,7 +38,7 @@ pub(crate) struct Rig {
 pub(crate) fn plan() -> Plan {
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios");
     let game = scenario::load(&scenarios.join("games/pav01_vs_pav01.toml")).unwrap_or_else(|e| panic!("{e}"));
-    let gateway = scenario::load_gateway(&scenarios.join("gateways/blueboat.toml"));
+    let gateway = scenario::load_file::<gateway::config::Gateway>(&scenarios.join("gateways/blueboat.toml"));
     Plan {
         vehicle: "blue_one".to_owned(),
         gateway: gateway.unwrap_or_else(|e| panic!("{e}")),

@@ -2,7 +2,7 @@
 
 use super::{Target, binaries};
 use primitives::SimTime;
-use scenario::gateway::{BoatProtocol, Gateway};
+use gateway::config::{BoatProtocol, Gateway};
 use gateway::emulator::ArduPilot;
 use gateway::mavlink::{Counts, FRAME_MAX, Framer, Received, Writer};
 use gateway::protocol::Protocol;
@@ -42,7 +42,7 @@ fn framed<'a>(pieces: impl IntoIterator<Item = &'a [u8]>) -> (Vec<String>, Count
 
 /// Arbitrary payloads of every message that is read, in frames that are right: boat and ground station take them all.
 fn repaired(bytes: &[u8]) {
-    let gateway = Gateway { protocol: BoatProtocol::Mavlink, ..scenario::default_gateway() };
+    let gateway = Gateway { protocol: BoatProtocol::Mavlink, ..gateway::config::default_gateway() };
     let (mut protocol, mut boat) =
         (Protocol::new(&gateway), ArduPilot::new(primitives::LatLon { lat_deg: 42.0, lon_deg: -71.0 }, None));
     let (mut messages, mut framer, now) = (Vec::new(), Framer::new(), SimTime::from_s(1.0));

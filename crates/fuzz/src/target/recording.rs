@@ -56,7 +56,7 @@ fn seeds() -> Vec<Vec<u8>> {
 /// A short recording of a gateway.
 fn gateway_recording() -> Vec<u8> {
     let (scenario, vehicle) = (mixed(), "blue_one".to_owned());
-    let gateway = scenario::default_gateway();
+    let gateway = gateway::config::default_gateway();
     let field = scenario.field.clone();
     let site = Some(Site { field, length_m: 2.0, declination_rad: 0.1 });
     let plan = Plan { vehicle, gateway, site, arms_itself: true, dry_run: false, preflight: Preflight::NotRequired };

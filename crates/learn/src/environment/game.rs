@@ -3,6 +3,7 @@
 use super::games::Standing;
 use super::setup::{Control, Player, Setup};
 use super::watch::{Moment, Watch};
+use crate::rewards::{BoatProgress, Placed, progress};
 use agent::{Action, Mind, MindRunner, Pilot};
 use messages::Picture;
 use primitives::stream::Stream;
@@ -10,7 +11,6 @@ use primitives::{Ned, TeamId, VehicleId};
 use rules::count::Tally;
 use rules::event::EventCursor;
 use scenario::Scenario;
-use scenario::rewards::{BoatProgress, Placed, progress};
 use sim::Contest;
 
 /// Who plays whom in a game.

@@ -13,8 +13,8 @@ mod truth;
 mod vector;
 mod watch;
 
+pub use crate::training::CriticInput;
 pub use agent::{Action, ActionSpace, ObservationSpace, Spaces};
-pub use scenario::training::CriticInput;
 
 pub use game::Side;
 pub use games::{Finished, Games, Rows, Standing};

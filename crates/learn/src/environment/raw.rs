@@ -1,12 +1,12 @@
 //! A setup as a person gives it: paths of files, seconds and names.
 
 use super::setup::{Control, Player, Setup, SetupError};
+use crate::rewards::Rewards;
+use crate::training::CriticInput;
 use agent::{ActionSpace, ObservationSpace, Spaces};
 use primitives::TeamId;
 use scenario::Scenario;
-use scenario::rewards::Rewards;
 use scenario::strategy::Strategy;
-use scenario::training::CriticInput;
 use std::path::{Path, PathBuf};
 
 /// What policies see, before it is known how large the teams are.
@@ -90,7 +90,7 @@ impl RawSetup {
             mates: self.mates.as_deref().map(strategy).transpose()?,
             opponents: self.opponents.iter().map(opponent).collect::<Result<_, SetupError>>()?,
             rewards: match &self.rewards {
-                Some(file) => scenario::load_rewards(file)?,
+                Some(file) => scenario::load_file::<crate::rewards::Rewards>(file)?,
                 None => Rewards::default(),
             },
             discount: self.discount,

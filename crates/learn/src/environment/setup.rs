@@ -1,12 +1,12 @@
 //! What is played in an environment: the game, who learns, what a policy sees and may do, and against whom.
 
 use super::truth;
+use crate::rewards::Rewards;
+use crate::training::CriticInput;
 use agent::{ActionSpace, Spaces};
 use primitives::{TeamId, VehicleId};
 use scenario::policy::PolicyModel;
-use scenario::rewards::Rewards;
 use scenario::strategy::{Program, Strategy, Task};
-use scenario::training::CriticInput;
 use scenario::{Problems, Scenario};
 use std::collections::BTreeMap;
 use thiserror::Error;

@@ -2,9 +2,9 @@
 
 use super::raw::{decisions_per_step, steps_max};
 use super::setup::{Control, Player, Setup, SetupError, Teacher};
+use crate::training::{self, Stage, Training};
 use agent::Spaces;
 use scenario::Overrides;
-use scenario::training::{self, Stage, Training};
 use std::collections::{BTreeMap, BTreeSet};
 
 impl Setup {
@@ -41,7 +41,7 @@ impl Setup {
             learner: None,
             mates: stage.mates.as_deref().map(strategy).transpose()?,
             opponents,
-            rewards: scenario::load_rewards(&stage.rewards)?,
+            rewards: scenario::load_file::<crate::rewards::Rewards>(&stage.rewards)?,
             discount: f64::from(training.algorithm().discount()),
             scenario,
         };

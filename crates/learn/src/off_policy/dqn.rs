@@ -4,9 +4,9 @@
 use super::{Minibatch, Replay, Slope};
 use crate::nn::{Adam, AdamSettings, Perceptron, SHARD, Trace};
 use crate::ppo::choice::likeliest;
+use crate::training::Dqn;
 use primitives::stream::Stream;
 use rayon::prelude::*;
-use scenario::training::Dqn;
 use serde::{Deserialize, Serialize};
 
 /// A network with its target and its optimiser: all that learning goes on from, but for the replay buffer.

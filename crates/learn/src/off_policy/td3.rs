@@ -3,10 +3,10 @@
 
 use super::{Minibatch, Replay, Slope};
 use crate::nn::{Adam, AdamSettings, Perceptron, SHARD, Trace};
+use crate::training::Td3;
 use onnx::tanh;
 use primitives::stream::Stream;
 use rayon::prelude::*;
-use scenario::training::Td3;
 use serde::{Deserialize, Serialize};
 
 /// Numbers of an action.

@@ -7,10 +7,10 @@ pub mod choice;
 pub use advantage::{Steps, advantages};
 
 use crate::nn::{Adam, AdamSettings, Perceptron, SHARD, Trace};
+use crate::training::Ppo;
 use choice::log_probabilities;
 use primitives::stream::Stream;
 use rayon::prelude::*;
-use scenario::training::Ppo;
 use serde::{Deserialize, Serialize};
 
 /// A policy and what it expects, with their optimisers: all that a run goes on from.

@@ -1,8 +1,8 @@
 //! Opponents of a policy that learns, and how often each is drawn: by how often it wins.
 
 use crate::environment::Finished;
+use crate::training::{self, Stage};
 use scenario::policy::{PartialSpec, PolicyModel};
-use scenario::training::{self, Stage};
 use serde::{Deserialize, Serialize};
 
 /// Of the weight of its kind, an opponent that never wins has this share of an equal part.

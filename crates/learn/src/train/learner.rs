@@ -7,9 +7,9 @@ use crate::off_policy::Replay;
 use crate::off_policy::dqn::DqnLearner;
 use crate::off_policy::td3::{Numbers, Td3Learner, action};
 use crate::ppo::ActorCritic;
+use crate::training::{Algorithm, Dqn, Td3, Training};
 use agent::Action;
 use onnx::NetworkError;
-use scenario::training::{Algorithm, Dqn, Td3, Training};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

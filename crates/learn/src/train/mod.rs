@@ -19,10 +19,10 @@ use crate::nn::{Perceptron, SHARD, Trace};
 use crate::ppo::{ActorCritic, Batch, Lesson};
 use scenario::policy::{PolicySpec, options_metadata};
 
+use crate::training::{CriticInput, Ppo, Stage, Training};
 use primitives::stream::Stream;
 use rayon::prelude::*;
 use rollout::Rollout;
-use scenario::training::{CriticInput, Ppo, Stage, Training};
 use state::State;
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -7,10 +7,10 @@ use crate::environment::{SetupError, VectorEnvironment};
 use crate::off_policy::dqn::{self, DqnLearner};
 use crate::off_policy::td3::{self, NUMBERS, Numbers, Td3Learner};
 use crate::off_policy::{Replay, Transition};
+use crate::training::{Dqn, Td3};
 use agent::Action;
 use primitives::stream::Stream;
 use rayon::ThreadPool;
-use scenario::training::{Dqn, Td3};
 use serde::{Deserialize, Serialize};
 
 /// A learner with its settings and its replay buffer.

@@ -3,9 +3,9 @@
 use super::outputs;
 use crate::environment::{Finished, SetupError, VectorEnvironment};
 use crate::ppo::{ActorCritic, Steps, advantages, choice};
+use crate::training::Ppo;
 use agent::Action;
 use primitives::stream::Stream;
-use scenario::training::Ppo;
 
 /// What was played, each steps × rows.
 pub(super) struct Rollout {

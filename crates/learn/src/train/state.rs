@@ -4,7 +4,7 @@ use super::evaluation::Played;
 use super::league::League;
 use super::learner::Learner;
 use crate::environment::SetupError;
-use scenario::training::Training;
+use crate::training::Training;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 

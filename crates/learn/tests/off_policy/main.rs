@@ -82,6 +82,6 @@ fn the_gradient_of_double_dqn_is_the_slope_of_its_loss() {
     learner.network = Perceptron::new(&[3, 6, 5, 4], 1.0, stream);
     learner.target = Perceptron::new(&[3, 6, 5, 4], 1.0, stream);
     let minibatch = random(11, stream, |stream| stream.below(4) as u16);
-    let settings = scenario::training::Dqn::default();
+    let settings = learn::training::Dqn::default();
     assert_slopes(&learner, |learner| &mut learner.network, |learner| learner.gradient(&minibatch, &settings));
 }

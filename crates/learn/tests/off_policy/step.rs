@@ -4,7 +4,7 @@ use learn::nn::Perceptron;
 use learn::off_policy::Minibatch;
 use learn::off_policy::dqn::DqnLearner;
 use learn::off_policy::td3::{NUMBERS, Numbers, Td3Learner};
-use scenario::training::{Dqn, Td3};
+use learn::training::{Dqn, Td3};
 
 const ROWS: usize = 300;
 /// Of numbers of about 1, which two steps of 0.001 change; ours are in single precision.

@@ -4,8 +4,8 @@ use learn::nn::Trace;
 use learn::off_policy::dqn::DqnLearner;
 use learn::off_policy::td3::{self, Td3Learner};
 use learn::off_policy::{Replay, Transition};
+use learn::training::{Dqn, Td3};
 use primitives::stream::Stream;
-use scenario::training::{Dqn, Td3};
 
 fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads").install(work)

@@ -14,7 +14,6 @@ use primitives::id::TeamId;
 use primitives::time::SimTime;
 use rules::Rules;
 use rules::field::Field;
-use serde::de::DeserializeOwned;
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -48,8 +47,8 @@ struct Fleet<'a> {
 /// Checks a game.
 pub(crate) fn game(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) -> Option<Scenario> {
     let raw = &document.raw;
-    let field = referenced(diagnostics, document, Kind::Field, &raw.field.0, super::field);
-    let rules = referenced(diagnostics, document, Kind::Rules, &raw.rules.0, super::rules);
+    let field = diagnostics.referenced::<Field, _>(document, "field", &raw.field.0);
+    let rules = diagnostics.referenced::<Rules, _>(document, "rules", &raw.rules.0);
     let sea = sea(diagnostics, document);
     let (tick, ticks_per_decision) = clock(diagnostics, document);
     check_teams(diagnostics, document);
@@ -57,7 +56,7 @@ pub(crate) fn game(diagnostics: &mut Diagnostics, document: &Document<raw::Game>
         document,
         field: field.as_ref(),
         boats: FileCache::new(|diagnostics, path, place, owner| {
-            let document = read::document_of(diagnostics, Kind::Boat, path, place, owner)?;
+            let document = read::document_of(diagnostics, Kind::BOAT, path, place, owner)?;
             super::boat(diagnostics, &document)
         }),
         strategies: FileCache::by_owner(super::strategy_file),
@@ -141,47 +140,18 @@ fn check_reseed(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) {
 /// The game's sea, or the one that takes its place.
 fn sea(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) -> Option<Sea> {
     if let Some(path) = diagnostics.overrides.sea.clone() {
-        let document = read::document(diagnostics, Kind::Sea, &path, None)?;
+        let document = read::document(diagnostics, Kind::SEA, &path, None)?;
         return super::sea(diagnostics, &document);
     }
     match &document.raw.sea {
-        Some(given) => referenced(diagnostics, document, Kind::Sea, &given.0, super::sea),
-        None if diagnostics.overrides.has_settings(Kind::Sea) => {
+        Some(given) => diagnostics.referenced::<Sea, _>(document, "sea", &given.0),
+        None if diagnostics.overrides.has_settings(Kind::SEA) => {
             let path = Path::new("at_rest.toml");
-            let document = read::document_of_text(diagnostics, Kind::Sea, path, "water_density_kg_m3 = 1000")?;
+            let document = read::document_of_text(diagnostics, Kind::SEA, path, "water_density_kg_m3 = 1000")?;
             super::sea(diagnostics, &document)
         }
         None => Some(Sea::at_rest()),
     }
-}
-
-/// Checks the file of this kind that the key of the same name refers to.
-pub(super) fn referenced<D, R: DeserializeOwned, T>(
-    diagnostics: &mut Diagnostics,
-    document: &Document<D>,
-    kind: Kind,
-    given: impl AsRef<Path>,
-    check: fn(&mut Diagnostics, &Document<R>) -> Option<T>,
-) -> Option<T> {
-    referenced_at(diagnostics, document, kind, kind.name(), given, check)
-}
-
-/// Checks the file of this kind that the value at `key` refers to.
-pub(super) fn referenced_at<D, R: DeserializeOwned, T>(
-    diagnostics: &mut Diagnostics,
-    document: &Document<D>,
-    kind: Kind,
-    key: &str,
-    given: impl AsRef<Path>,
-    check: fn(&mut Diagnostics, &Document<R>) -> Option<T>,
-) -> Option<T> {
-    if !document.is_sound(key) {
-        return None;
-    }
-    let place = document.at(key);
-    let path = diagnostics.sources.resolve(place, given);
-    let document = read::document(diagnostics, kind, &path, Some(place))?;
-    check(diagnostics, &document)
 }
 
 /// The physics tick, and how many of them a decision lasts.
@@ -466,5 +436,5 @@ fn is_room(diagnostics: &mut Diagnostics, place: usize, total: usize) -> bool {
 /// The path of a strategy that is given by a path, or by the name of one in the folder of strategies.
 fn strategy_path(given: &str) -> String {
     let is_name = !given.contains(['/', '\\', '.']);
-    if is_name { format!("../{}/{given}.toml", Kind::Strategy.folder()) } else { given.to_owned() }
+    if is_name { format!("../{}/{given}.toml", Kind::STRATEGY.folder()) } else { given.to_owned() }
 }

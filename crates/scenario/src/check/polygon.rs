@@ -3,8 +3,11 @@
 use primitives::frame::Ned;
 use rules::field::{do_meet, turn};
 
-/// Whether no two sides of a polygon meet but neighbours at their corner; which corner is at fault, and why.
-pub(super) fn check_corners(corners: &[Ned]) -> Result<(), (usize, String)> {
+/// Whether no two sides of a polygon meet but neighbours at their corner.
+///
+/// # Errors
+/// Which corner is at fault, and why.
+pub fn check_corners(corners: &[Ned]) -> Result<(), (usize, String)> {
     let count = corners.len();
     let side = |i: usize| (corners[i], corners[(i + 1) % count]);
     for i in 0..count {

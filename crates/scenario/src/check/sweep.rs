@@ -1,10 +1,9 @@
 //! A sweep file and the files it names, checked. What the values of its axes make of the game is seen where that is read.
 
-use super::file_cache::FileCache;
-use super::game::referenced;
+use super::StrategyFiles;
 use crate::diagnostics::Diagnostics;
 use crate::read::Document;
-use crate::{Axis, AxisValue, Kind, Sweep};
+use crate::{Axis, AxisValue, Scenario, Sweep};
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -12,21 +11,14 @@ use std::path::Path;
 pub(crate) fn sweep(diagnostics: &mut Diagnostics, document: &Document<Sweep>) -> Option<Sweep> {
     let mut sweep = document.raw.clone();
     sweep.path = diagnostics.sources.problem(document.at(""), String::new()).path;
-    referenced(diagnostics, document, Kind::Game, &sweep.game, super::game);
-    sweep.game = diagnostics.sources.resolve(document.at("game"), &sweep.game);
-    let mut strategies = FileCache::new(super::strategy_file);
-    let mut strategy = |diagnostics: &mut Diagnostics, at: &str, path: &mut std::path::PathBuf| {
-        let place = document.at(at);
-        *path = diagnostics.sources.resolve(place, &*path);
-        if document.is_sound(at) {
-            strategies.index_at(diagnostics, path, Some(place), "");
-        }
-    };
-    strategy(diagnostics, "opponent", &mut sweep.opponent);
+    diagnostics.referenced::<Scenario, _>(document, "game", &sweep.game);
+    sweep.game = diagnostics.resolve(document.at("game"), &sweep.game);
+    let mut strategies = StrategyFiles::default();
+    sweep.opponent = strategies.read(diagnostics, document, "opponent", &sweep.opponent);
     let mut names = BTreeSet::new();
     for (i, entry) in sweep.entries.iter_mut().enumerate() {
         let name_path = format!("entry.{i}.name");
-        strategy(diagnostics, &format!("entry.{i}.strategy"), &mut entry.strategy);
+        entry.strategy = strategies.read(diagnostics, document, &format!("entry.{i}.strategy"), &entry.strategy);
         if document.is_sound(&name_path) && !names.insert(&entry.name) {
             let message = format!("name is {:?} again, expected a different one for each entry", entry.name);
             diagnostics.note(document.at(&name_path), message);

@@ -1,30 +1,26 @@
 //! A tournament file and all the files it names, checked.
 
-use super::file_cache::FileCache;
-use super::game::referenced;
+use super::StrategyFiles;
 use crate::diagnostics::Diagnostics;
 use crate::read::Document;
-use crate::{Kind, Tournament};
+use crate::sea::Sea;
+use crate::{Scenario, Tournament};
 use std::collections::BTreeSet;
 
 /// Checks a tournament.
 pub(crate) fn tournament(diagnostics: &mut Diagnostics, document: &Document<Tournament>) -> Option<Tournament> {
     let mut tournament = document.raw.clone();
-    referenced(diagnostics, document, Kind::Game, &tournament.game, super::game);
-    tournament.game = diagnostics.sources.resolve(document.at("game"), &tournament.game);
+    diagnostics.referenced::<Scenario, _>(document, "game", &tournament.game);
+    tournament.game = diagnostics.resolve(document.at("game"), &tournament.game);
     if let Some(sea) = &mut tournament.sea {
-        referenced(diagnostics, document, Kind::Sea, &*sea, super::sea);
-        *sea = diagnostics.sources.resolve(document.at("sea"), &*sea);
+        diagnostics.referenced::<Sea, _>(document, "sea", &*sea);
+        *sea = diagnostics.resolve(document.at("sea"), &*sea);
     }
-    let mut strategies = FileCache::new(super::strategy_file);
+    let mut strategies = StrategyFiles::default();
     let mut names = BTreeSet::new();
     for (i, entry) in tournament.entries.iter_mut().enumerate() {
         let [name_path, path] = ["name", "strategy"].map(|key| format!("entry.{i}.{key}"));
-        let place = document.at(&path);
-        entry.strategy = diagnostics.sources.resolve(place, &entry.strategy);
-        if document.is_sound(&path) {
-            strategies.index_at(diagnostics, &entry.strategy, Some(place), "");
-        }
+        entry.strategy = strategies.read(diagnostics, document, &path, &entry.strategy);
         if document.is_sound(&name_path) && !names.insert(&entry.name) {
             let message = format!("name is {:?} again, expected a different one for each entry", entry.name);
             diagnostics.note(document.at(&name_path), message);

@@ -9,7 +9,7 @@ use serde::Deserialize;
 /// ahead, y to starboard, yaw clockwise. Any number may be drawn for every game.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[schemars(extend("x-drawn" = true))]
-pub(crate) struct Boat {
+pub struct Boat {
     /// Length over all, m.
     #[schemars(range(min = 0.1, max = 100))]
     pub(crate) length_m: f64,

@@ -7,7 +7,7 @@ use serde::Deserialize;
 /// A rectangle on the water. The first team has the end at `corner`; the flags, the scrimmage line and the
 /// named points follow from it. Positions are [x east, y north] in metres from the datum.
 #[derive(Debug, Deserialize, JsonSchema)]
-pub(crate) struct Field {
+pub struct Field {
     #[serde(flatten)]
     pub(crate) plan: Plan,
     /// What stands in the water.

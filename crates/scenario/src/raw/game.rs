@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 
 /// A game: where, by which rules, on what water, and who plays. Paths are relative to the file they stand in.
 #[derive(Debug, Deserialize, JsonSchema)]
-pub(crate) struct Game {
+pub struct Game {
     /// The field file.
     pub(crate) field: FilePath,
     /// The rules file.

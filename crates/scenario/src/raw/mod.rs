@@ -10,20 +10,16 @@ mod game;
 mod sea;
 mod strategy;
 
-pub(super) use boat::{Boat, SettingAndThrust, Thruster};
-pub(super) use field::{Circle, Field, Flag, Obstacle, Side};
-
-pub(super) use game::Fleet;
-
-pub(super) use game::Game;
-
-pub(super) use game::Spawn;
-
-pub(super) use game::Team;
-
-pub(super) use game::Vehicle;
-pub(super) use sea::{Current, Gusts, Sea, Spectrum, Spreading, Waves, Wind};
-pub(super) use strategy::{Rule, Strategy, Value, Values, Variable, VariableTable};
+pub(crate) use boat::Boat;
+pub(super) use boat::{SettingAndThrust, Thruster};
+pub(crate) use field::Field;
+pub(super) use field::{Circle, Flag, Obstacle, Side};
+pub(crate) use game::Game;
+pub(super) use game::{Fleet, Spawn, Team, Vehicle};
+pub(crate) use sea::Sea;
+pub(super) use sea::{Current, Gusts, Spectrum, Spreading, Waves, Wind};
+pub(crate) use strategy::Strategy;
+pub(super) use strategy::{Rule, Value, Values, Variable, VariableTable};
 
 use super::diagnostics::NAME_PATTERN;
 use schemars::JsonSchema;
@@ -32,12 +28,12 @@ use serde::Deserialize;
 /// The path of another file, relative to the one it stands in. Empty where it was wrong or missing.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[schemars(inline, extend("minLength" = 1, "x-expected" = "the path of a file"))]
-pub(crate) struct FilePath(pub(crate) String);
+pub struct FilePath(pub(crate) String);
 
 /// A name. Empty where it was wrong or missing.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[schemars(inline, extend("pattern" = NAME_PATTERN))]
-pub(crate) struct Name(pub(crate) String);
+pub struct Name(pub(crate) String);
 
 /// A position, or the name of one.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]

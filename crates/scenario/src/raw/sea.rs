@@ -7,7 +7,7 @@ use serde::Deserialize;
 /// The water and the air above it: waves, wind and current. Any number may be drawn for every game.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[schemars(extend("x-drawn" = true))]
-pub(crate) struct Sea {
+pub struct Sea {
     /// Density, kg/m³; that of fresh water is 1000.
     #[schemars(range(min = 900, max = 1300), extend("default" = 1000))]
     pub(crate) water_density_kg_m3: f64,

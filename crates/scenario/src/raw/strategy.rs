@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 
 /// How the boats of a team play: either roles and how they are dealt, or the program that everybody follows.
 #[derive(Debug, Deserialize, JsonSchema)]
-pub(crate) struct Strategy {
+pub struct Strategy {
     /// What the strategy is, in a line.
     #[schemars(extend("default" = ""))]
     pub(crate) about: String,

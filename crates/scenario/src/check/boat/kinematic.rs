@@ -16,12 +16,7 @@ pub(super) fn check_kinematic(diagnostics: &mut Diagnostics, document: &Document
 }
 
 /// Checks a map of thrust in per cent and speed in m/s, given at `path`.
-pub(in crate::check) fn check_thrust_map<T>(
-    diagnostics: &mut Diagnostics,
-    document: &Document<T>,
-    path: &str,
-    points: &[(f64, f64)],
-) {
+pub fn check_thrust_map<T>(diagnostics: &mut Diagnostics, document: &Document<T>, path: &str, points: &[(f64, f64)]) {
     if !document.is_sound(path) {
         return;
     }

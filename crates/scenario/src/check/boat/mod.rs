@@ -3,7 +3,7 @@
 mod kinematic;
 mod thruster;
 
-pub(super) use kinematic::check_thrust_map;
+pub use kinematic::check_thrust_map;
 
 use crate::boat::{Boat, Drive, Propeller, ThrustCurve};
 use crate::diagnostics::Diagnostics;

@@ -42,7 +42,7 @@ fn one(scope: &mut Scope<'_>, modes: Option<&[Mode]>, name: &str, given: &Json) 
         modes.map(|modes| in_modes(scope, &path, modes, given["in"].as_array().map(Vec::as_slice))).unwrap_or_default();
     let when = scope.condition(&format!("{path}.when"), given["when"].as_str());
     let posts = posts(scope, &path, given);
-    let mut kinds = declared(Kind::Strategy)["definitions"].as_object()?.iter();
+    let mut kinds = declared(Kind::STRATEGY)["definitions"].as_object()?.iter();
     let (variant, about) = kinds.find(|(_, about)| about["properties"]["kind"]["const"] == given["kind"])?;
     let mut keys = checked_table(scope, &path, given.as_object()?, about);
     check_order(scope, &path, &keys);

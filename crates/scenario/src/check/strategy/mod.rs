@@ -10,6 +10,7 @@ mod safety;
 mod scope;
 mod variable;
 
+use super::file_cache::FileCache;
 use crate::Kind;
 use crate::diagnostics::Diagnostics;
 use crate::raw;
@@ -30,13 +31,13 @@ pub(crate) fn strategy_file(
     if let Some(kept) = diagnostics.kept.strategy(path, owner) {
         return Some(kept.clone());
     }
-    let document = read::document_of(diagnostics, Kind::Strategy, path, asked_at, owner)?;
+    let document = read::document_of(diagnostics, Kind::STRATEGY, path, asked_at, owner)?;
     let strategy = strategy(diagnostics, &document)?;
     Arc::make_mut(&mut diagnostics.kept).keep_strategy(path, owner, strategy.clone());
     Some(strategy)
 }
 
-fn strategy(diagnostics: &mut Diagnostics, document: &Document<raw::Strategy>) -> Option<Strategy> {
+pub(crate) fn strategy(diagnostics: &mut Diagnostics, document: &Document<raw::Strategy>) -> Option<Strategy> {
     let raw = &document.raw;
     let roles = match &raw.roles {
         Some(given) => {
@@ -54,6 +55,33 @@ fn strategy(diagnostics: &mut Diagnostics, document: &Document<raw::Strategy>) -
     let strategy =
         Strategy { name: document.name.clone(), about: raw.about.clone(), roles, assignment: raw.assignment };
     document.is_faultless(diagnostics).then_some(strategy)
+}
+
+/// Strategy files that a file names, each read once.
+pub struct StrategyFiles(FileCache<Strategy>);
+
+impl Default for StrategyFiles {
+    fn default() -> StrategyFiles {
+        StrategyFiles(FileCache::new(strategy_file))
+    }
+}
+
+impl StrategyFiles {
+    /// Reads and checks the strategy that the value at `key` of a file names; gives its path.
+    pub fn read<D>(
+        &mut self,
+        diagnostics: &mut Diagnostics,
+        document: &Document<D>,
+        key: &str,
+        given: &Path,
+    ) -> PathBuf {
+        let place = document.at(key);
+        let path = diagnostics.resolve(place, given);
+        if document.is_sound(key) {
+            self.0.index_at(diagnostics, &path, Some(place), "");
+        }
+        path
+    }
 }
 
 /// Notes what a program says in a file that deals roles.
@@ -80,7 +108,7 @@ fn roles(diagnostics: &mut Diagnostics, document: &Document<raw::Strategy>, give
 }
 
 fn one_role(diagnostics: &mut Diagnostics, at: usize, role: &str, path: &Path) -> Option<Program> {
-    let document = read::document::<raw::Strategy>(diagnostics, Kind::Strategy, path, Some(at))?;
+    let document = read::document::<raw::Strategy>(diagnostics, Kind::STRATEGY, path, Some(at))?;
     if document.raw.roles.is_some() {
         let message = format!("roles names {role:?}, which deals roles itself, expected the file of one program");
         diagnostics.note(at, message);

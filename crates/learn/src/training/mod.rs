@@ -1,8 +1,10 @@
 //! Training files: which games a policy learns in, from what it starts, and how it learns.
 //!
-//! [`Training`] is data, from `scenarios/training/*.toml`, whose keys it declares; the crate `learn` trains by it.
+//! [`Training`] is data, from `scenarios/training/*.toml`, whose keys it declares.
 
 mod algorithm;
+mod check;
+mod check_algorithm;
 mod dqn;
 mod td3;
 
@@ -10,9 +12,10 @@ pub use algorithm::Algorithm;
 pub use dqn::Dqn;
 pub use td3::Td3;
 
-use crate::action::ActionSpace;
-use crate::observation::ObservationSpace;
-use crate::raw::{FilePath, Name};
+use scenario::action::ActionSpace;
+use scenario::keys::{FilePath, Name};
+use scenario::observation::ObservationSpace;
+use scenario::{Diagnostics, Document, ScenarioFile};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -56,6 +59,16 @@ pub struct Training {
     /// What is played, one stage after the other.
     #[schemars(length(min = 1, max = 100))]
     pub stage: Vec<Stage>,
+}
+
+impl ScenarioFile for Training {
+    type Keys = Training;
+    const NAME: &'static str = "training";
+    const FOLDER: &'static str = "training";
+
+    fn check(diagnostics: &mut Diagnostics, document: &Document<Training>) -> Option<Training> {
+        check::training(diagnostics, document)
+    }
 }
 
 /// What a critic is given, who learns what the rest of a game is worth. It is of use in training alone.

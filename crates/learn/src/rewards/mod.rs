@@ -6,9 +6,10 @@ mod progress;
 
 pub use progress::{Among, BoatProgress, Placed, progress};
 
-use crate::Scenario;
 use primitives::id::{TeamId, VehicleId};
 use rules::event::{Event, Logged, TagCause};
+use scenario::Scenario;
+use scenario::{Diagnostics, Document, ScenarioFile};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -30,6 +31,21 @@ pub struct Rewards {
     /// Each second of the game.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub second: f64,
+}
+
+impl ScenarioFile for Rewards {
+    type Keys = Rewards;
+    const NAME: &'static str = "rewards";
+    const FOLDER: &'static str = "rewards";
+
+    fn check(diagnostics: &mut Diagnostics, document: &Document<Rewards>) -> Option<Rewards> {
+        let rewards = document.raw;
+        if rewards == Rewards::default() && document.is_sound("") {
+            let message = "everything is worth 0, expected a number for one thing at least".to_owned();
+            diagnostics.note(document.at(""), message);
+        }
+        document.is_faultless(diagnostics).then_some(rewards)
+    }
 }
 
 /// What events of a boat are worth.

@@ -1,27 +1,22 @@
 //! A training file and all the files it names, checked.
 
-use super::file_cache::FileCache;
-use super::game::referenced_at;
-use crate::diagnostics::Diagnostics;
-use crate::read::Document;
-use crate::training::{Stage, Training};
-use crate::{Kind, Scenario};
+use super::{Stage, Training};
+use crate::rewards::Rewards;
+use scenario::sea::Sea;
+use scenario::{Diagnostics, Document, Scenario, StrategyFiles};
+use std::path::PathBuf;
 
 /// Checks a training.
-pub(crate) fn training(diagnostics: &mut Diagnostics, document: &Document<Training>) -> Option<Training> {
+pub(super) fn training(diagnostics: &mut Diagnostics, document: &Document<Training>) -> Option<Training> {
     let mut training = document.raw.clone();
-    let mut strategies = FileCache::new(super::strategy_file);
-    let mut strategy = |diagnostics: &mut Diagnostics, at: &str, path: &mut std::path::PathBuf| {
-        let place = document.at(at);
-        *path = diagnostics.sources.resolve(place, &*path);
-        if document.is_sound(at) {
-            strategies.index_at(diagnostics, path, Some(place), "");
-        }
+    let mut strategies = StrategyFiles::default();
+    let mut strategy = |diagnostics: &mut Diagnostics, key: &str, path: &mut PathBuf| {
+        *path = strategies.read(diagnostics, document, key, path);
     };
     for (i, path) in training.evaluation.opponents.iter_mut().enumerate() {
         strategy(diagnostics, &format!("evaluation.opponents.{i}"), path);
     }
-    super::algorithm::check(diagnostics, document);
+    super::check_algorithm::check(diagnostics, document);
     let mut scenarios = vec![];
     for (i, stage) in training.stage.iter_mut().enumerate() {
         let at = format!("stage.{i}");
@@ -64,16 +59,16 @@ fn files(
     stage: &mut Stage,
 ) -> Option<Scenario> {
     let path = format!("{at}.game");
-    let game = referenced_at(diagnostics, document, Kind::Game, &path, &stage.game, super::game);
-    stage.game = diagnostics.sources.resolve(document.at(&path), &stage.game);
+    let game = diagnostics.referenced::<Scenario, _>(document, &path, &stage.game);
+    stage.game = diagnostics.resolve(document.at(&path), &stage.game);
     if let Some(sea) = &mut stage.sea {
         let path = format!("{at}.sea");
-        referenced_at(diagnostics, document, Kind::Sea, &path, &sea, super::sea);
-        *sea = diagnostics.sources.resolve(document.at(&path), &*sea);
+        diagnostics.referenced::<Sea, _>(document, &path, &*sea);
+        *sea = diagnostics.resolve(document.at(&path), &*sea);
     }
     let path = format!("{at}.rewards");
-    referenced_at(diagnostics, document, Kind::Rewards, &path, &stage.rewards, super::rewards);
-    stage.rewards = diagnostics.sources.resolve(document.at(&path), &stage.rewards);
+    diagnostics.referenced::<Rewards, _>(document, &path, &stage.rewards);
+    stage.rewards = diagnostics.resolve(document.at(&path), &stage.rewards);
     game
 }
 

@@ -1,8 +1,7 @@
 //! The algorithm of a training, checked: there is one, and it chooses from the actions there are.
 
-use crate::diagnostics::Diagnostics;
-use crate::read::Document;
-use crate::training::{Algorithm, CriticInput, Training};
+use super::{Algorithm, CriticInput, Training};
+use scenario::{Diagnostics, Document};
 
 /// The tables of algorithms.
 const TABLES: [&str; 3] = ["ppo", "td3", "dqn"];

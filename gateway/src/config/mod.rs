@@ -1,9 +1,12 @@
 //! How a gateway drives a real boat, and when it stops it.
 //!
 //! Everything is SI but for what the boat's own sentences count in: thrust is in per cent of full ahead. These
-//! types also declare the keys of gateway files, as those in [`crate::boat`] do.
+//! types also declare the keys of gateway files, as those in [`scenario::boat`] do.
 
-use crate::boat::ThrustAndSpeed;
+mod check;
+
+use scenario::boat::ThrustAndSpeed;
+use scenario::{Diagnostics, Document, ScenarioFile};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -62,6 +65,25 @@ pub struct Gateway {
     pub upload_gap_s: f64,
     /// For a boat that speaks MAVLink.
     pub mavlink: Mavlink,
+}
+
+impl ScenarioFile for Gateway {
+    type Keys = Gateway;
+    const NAME: &'static str = "gateway";
+    const FOLDER: &'static str = "gateways";
+
+    fn check(diagnostics: &mut Diagnostics, document: &Document<Gateway>) -> Option<Gateway> {
+        check::gateway(diagnostics, document)
+    }
+}
+
+/// The gateway of a file that says nothing.
+///
+/// # Panics
+/// Never: every key has a default.
+#[must_use]
+pub fn default_gateway() -> Gateway {
+    scenario::default_of().expect("every key has a default")
 }
 
 /// What a boat speaks.

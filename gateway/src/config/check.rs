@@ -1,14 +1,10 @@
 //! A gateway file, checked.
 
-use super::boat::check_thrust_map;
-use super::polygon::check_corners;
-use crate::diagnostics::Diagnostics;
-use crate::gateway::{BoatProtocol, Gateway};
-use crate::read::Document;
+use super::{BoatProtocol, Gateway};
 use primitives::angle::wrap_pi;
-use primitives::frame::Ned;
-use primitives::math;
+use primitives::{Ned, math};
 use rules::field::{distance_to_line, sides};
+use scenario::{Diagnostics, Document, check_corners, check_thrust_map};
 
 /// The farthest that a corner of a geofence may be from its first, m: farther ones have latitude and longitude exchanged, or a
 /// digit too many.
@@ -17,7 +13,7 @@ const EXTENT_MAX_M: f64 = 50_000.0;
 const EARTH_RADIUS_M: f64 = 6_371_000.0;
 
 /// Checks a gateway.
-pub(crate) fn gateway(diagnostics: &mut Diagnostics, document: &Document<Gateway>) -> Option<Gateway> {
+pub(super) fn gateway(diagnostics: &mut Diagnostics, document: &Document<Gateway>) -> Option<Gateway> {
     check_thrust_map(diagnostics, document, "loops.thrust_map", &document.raw.loops.thrust_map);
     check_geofence(diagnostics, document);
     if document.raw.protocol == BoatProtocol::Mavlink && !document.raw.startup_words.is_empty() {

@@ -1,0 +1,18 @@
+//! The kinds of scenario files that the program knows, in the order of the reference.
+
+use scenario::Kind;
+
+pub(crate) const KINDS: &[Kind] = &[
+    Kind::GAME,
+    Kind::FIELD,
+    Kind::RULES,
+    Kind::BOAT,
+    Kind::SEA,
+    Kind::STRATEGY,
+    Kind::TOURNAMENT,
+    #[cfg(feature = "network")]
+    Kind::of::<gateway::config::Gateway>(),
+    Kind::of::<learn::rewards::Rewards>(),
+    Kind::of::<learn::training::Training>(),
+    Kind::SWEEP,
+];
