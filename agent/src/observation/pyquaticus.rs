@@ -13,6 +13,7 @@ use super::numbers::Numbers;
 use crate::situation::{OtherBoat, Situation};
 use game::angle::wrap_pi;
 use game::observation::pyquaticus::OTHER;
+use game::rules::tag_wait_s;
 use game::strategy::{Fact, Values};
 use game::{Ned, SimTime};
 use std::f64::consts::PI;
@@ -69,7 +70,8 @@ fn toward(situation: &Situation, place: Ned, out: &mut Numbers<'_>) {
     out.push(unit(situation.at.distance(place), diagonal_m));
 }
 
-/// Whether a place is on a team's side of the scrimmage line, on the field or not.
+/// Whether a place is on a team's side of the scrimmage line, on the field or not: unlike `Field::is_own_side`, and as Pyquaticus
+/// judges it.
 fn is_own_side(situation: &Situation, at: Ned, team: usize) -> bool {
     let field = &situation.model.field;
     let beyond_m = (at - field.middle()).dot(field.along);
@@ -84,8 +86,8 @@ fn nearest_of((a, b): (Ned, Ned), at: Ned) -> Ned {
 
 /// The time since the last tag, no more than the cooldown.
 fn since_tag(situation: &Situation, ready: SimTime) -> f64 {
-    let cooldown_s = situation.model.tag_cooldown.as_s();
-    let wait_s = (ready - situation.now).as_s().clamp(0.0, cooldown_s);
+    let cooldown_s = situation.model.rules.tag_cooldown.as_s();
+    let wait_s = tag_wait_s(ready, situation.now).min(cooldown_s);
     unit(cooldown_s - wait_s, cooldown_s)
 }
 

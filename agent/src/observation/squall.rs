@@ -109,7 +109,7 @@ fn game(situation: &Situation, out: &mut Numbers<'_>) {
     }
     let ahead = situation.fact(Fact::Score) - situation.fact(Fact::EnemyScore);
     out.push((ahead / POINTS).clamp(-1.0, 1.0));
-    let limit_s = situation.model.time_limit.as_s().max(1.0);
+    let limit_s = situation.model.rules.time_limit.as_s().max(1.0);
     out.push((situation.fact(Fact::TimeLeftS) / limit_s).clamp(0.0, 1.0));
     out.push(situation.model.rank as f64 / (situation.model.mates.len() + 1) as f64);
 }
@@ -135,8 +135,7 @@ fn other_boat(situation: &Situation, other: &OtherBoat, out: &mut Numbers<'_>) {
     out.flag(other.carrying.is_some());
     out.flag(other.intrudes);
     out.flag(situation.model.is_own_side(other.at));
-    let wait_s = (other.tag_ready - situation.now).as_s().max(0.0);
-    out.push((wait_s / situation.model.tag_cooldown.as_s().max(1.0)).min(1.0));
+    out.push(situation.model.rules.tag_wait_share(other.tag_ready, situation.now));
     out.push((other.age_s / AGE_S).min(1.0));
     let home = situation.model.own_flag();
     out.push(NEAR_M / (NEAR_M + other.at.distance(home)));

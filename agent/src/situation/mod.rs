@@ -14,7 +14,7 @@ use crate::own_motion::OwnMotion;
 use game::event::{EventRecord, TagCause};
 use game::frame::{Body, Rotation, ned_from_body};
 use game::picture::{Contact, OwnBoat};
-use game::rules::Ability;
+use game::rules::{Ability, TaggedBoat, tag_wait_s};
 use game::strategy::{Boat, Expression, Fact, Mark, Measure, Place, Program, Values};
 use game::{Event, FlagId, Ned, Picture, SimTime, VehicleId};
 use interception::{Interceptor, Intruder, Pair};
@@ -177,7 +177,11 @@ impl Situation {
         self.at = own.nav.at();
         self.ahead = own.nav.pose().rotation().ahead();
         self.velocity = own.nav.velocity_m_s();
-        self.motion.observe(own, self.step_s, !(own.disabled || own.tagged && self.model.tagged_is_driven));
+        self.motion.observe(
+            own,
+            self.step_s,
+            !(own.disabled || own.tagged && self.model.rules.tagged_boat == TaggedBoat::IsDriven),
+        );
         self.note_tags(picture);
         self.others.clear();
         for mate in picture.own.iter().filter(|boat| boat.vehicle != self.model.me) {
@@ -225,7 +229,7 @@ impl Situation {
         let ours = picture.score.get(self.model.team.index()).copied();
         self.score = f64::from(ours.unwrap_or(0));
         self.enemy_score = picture.score.iter().copied().map(f64::from).sum::<f64>() - self.score;
-        let from_home = self.at.distance(self.model.untag_centre(self.at)) / self.model.untag_radius_m;
+        let from_home = self.at.distance(self.model.untag_centre(self.at)) / self.model.rules.untag_radius_m;
         self.leaving = own.tagged && (from_home < WELL_INSIDE || self.leaving && from_home <= WELL_OUTSIDE);
         true
     }
@@ -236,7 +240,7 @@ impl Situation {
             if let Event::Tagged { cause: TagCause::Opponent(by), .. } = logged.event {
                 let i = by.index();
                 self.tag_ready.resize(self.tag_ready.len().max(i + 1), SimTime::ZERO);
-                self.tag_ready[i] = logged.at + self.model.tag_cooldown;
+                self.tag_ready[i] = self.model.rules.tag_ready_after(logged.at);
             }
         }
     }
@@ -300,7 +304,7 @@ impl Situation {
             vehicle,
             at,
             speed_m_s: self.model.boat_speeds_m_s[vehicle.index()],
-            unready_s: (tag_ready - self.now).as_s().max(0.0),
+            unready_s: tag_wait_s(tag_ready, self.now),
         };
         let is_free = !self.own.tagged && self.own.carried_flag().is_none();
         let own = is_free.then(|| boat(self.model.me, self.at, self.own.tag_ready_ns));
@@ -388,7 +392,7 @@ impl Values for Situation {
             Fact::Score => self.score,
             Fact::EnemyScore => self.enemy_score,
             Fact::TimeS => self.now.as_s(),
-            Fact::TimeLeftS => (self.model.time_limit - self.now).as_s().max(0.0),
+            Fact::TimeLeftS => (self.model.rules.time_limit - self.now).as_s().max(0.0),
             Fact::ModeS => (self.now - self.mode_since).as_s(),
             Fact::StepS => self.step_s,
             Fact::SpeedMS => self.velocity.length(),

@@ -9,6 +9,8 @@
 //!              along ▶
 //! ```
 
+mod own;
+
 use crate::boat::number_or_nan;
 use crate::frame::{LatLon, Ned};
 use crate::id::TeamId;

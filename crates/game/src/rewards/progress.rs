@@ -84,7 +84,7 @@ impl Posts {
             let home = field.flags[team].home;
             nearest_enemy(boats, TeamId(team as u8), home).map(|enemy| between(home, enemy, stand_off_m))
         });
-        let abroad = |boat: &Placed| !boat.tagged && field.zones[1 - boat.team.index()].contains(boat.at);
+        let abroad = |boat: &Placed| !boat.tagged && field.is_own_side(TeamId(1 - boat.team.0), boat.at);
         let post = |(i, boat): (usize, &Placed)| {
             let enemy = nearest_enemy(boats, boat.team, boat.at)?;
             Some((i, boat.at.distance(enemy), between(boat.at, enemy, stand_off_m)))
@@ -96,9 +96,8 @@ impl Posts {
     fn among(&self, field: &Field, boats: &[Placed], i: usize) -> Among {
         let (width_m, me) = (field.plan.width_m, &boats[i]);
         let near = |place: Ned, reach: f64| (1.0 - me.at.distance(place) / (reach * width_m)).max(0.0);
-        let intruders = boats
-            .iter()
-            .filter(|boat| boat.team != me.team && !boat.tagged && field.zones[me.team.index()].contains(boat.at));
+        let intruders =
+            boats.iter().filter(|boat| boat.team != me.team && !boat.tagged && field.is_own_side(me.team, boat.at));
         let of_team = self.mates.iter().filter(|(mate, ..)| *mate != i && boats[*mate].team == me.team);
         Among {
             at_intruder: intruders.map(|boat| near(boat.at, 1.0)).fold(0.0, f64::max),

@@ -14,15 +14,15 @@ mod end;
 mod flag;
 mod home;
 mod keepout;
+mod place;
 mod power_play;
 mod referee;
 mod standing;
 mod tag;
 
-pub use ability::Ability;
+pub use ability::{Ability, tag_wait_s};
 pub use ask::{Asks, asks_of};
 pub use directive::Directive;
-pub use home::corner_inset_m;
 pub use referee::{Look, Notes, Referee};
 pub use standing::{FlagStanding, Standing, VehicleStanding};
 
