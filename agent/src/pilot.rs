@@ -253,10 +253,6 @@ impl Mind for Pilot {
         }
     }
 
-    fn pilot(&mut self) -> Option<&mut Pilot> {
-        Some(self)
-    }
-
     fn show(&mut self, shown: bool) {
         if let Some(helm) = helm_of_mut(&mut self.control) {
             helm.show(shown);

@@ -1,6 +1,7 @@
 //! Policy: lets a model, or somebody outside of the helm, propose course and speed, weighed with everything else.
 
-use super::{BehaviourLogic, BehaviourOutput};
+use super::logic::BehaviourLogic;
+use super::output::BehaviourOutput;
 use crate::ivp::{Objective, Peak};
 use crate::policy::{BoardPolicy, Chosen};
 use crate::situation::Situation;

@@ -1,9 +1,9 @@
 //! The loop of an agent process: pictures come in, its minds decide, messages to mates and orders go out.
 
-use super::Settings;
 use super::error::NodeError;
 use super::helm_queries::HelmQueries;
 use super::policy_inbox::PolicyInbox;
+use super::settings::Settings;
 use super::talk::Talk;
 use crate::{MindRunner, mind_by, mind_of};
 use bus::game_search::Joined;

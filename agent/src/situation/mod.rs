@@ -2,11 +2,13 @@
 
 mod game_model;
 mod interception;
+mod moving_point;
 mod team_messages;
 mod turn_estimate;
 
 pub(crate) use game_model::GameModel;
 pub(crate) use interception::meeting_time_s;
+pub(crate) use moving_point::MovingPoint;
 pub(crate) use team_messages::TeamMessages;
 
 use crate::mind::Proposal;
@@ -73,14 +75,6 @@ impl OtherBoat {
     pub(crate) fn turning_on(&self) -> MovingPoint {
         turning_on(MovingPoint { at: self.at, velocity: self.velocity() }, self.yaw_rate_rad_s)
     }
-}
-
-/// A place, and how it moves.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct MovingPoint {
-    pub(crate) at: Ned,
-    /// Velocity over the ground, m/s.
-    pub(crate) velocity: Ned,
 }
 
 /// What the helm knows now.

@@ -1,6 +1,6 @@
 //! How boats turn, and where that takes them.
 
-use super::MovingPoint;
+use super::moving_point::MovingPoint;
 use game::SimTime;
 use game::angle::wrap_pi;
 use game::frame::{Body, Rotation, ned_from_body};
