@@ -1,6 +1,8 @@
 //! The emulator's node: joins a game as the agent of a simulated boat, which a back seat drives by the boat's own protocol.
 
-use super::{NodeError, NodeEvent, declination_rad, pace_factor};
+use super::error::NodeError;
+use super::game_terms::{declination_rad, pace_factor};
+use super::node_event::NodeEvent;
 use crate::bridge::Event;
 use crate::emulator::{ArduPilot, Emulator, Extra, FrontSeat, Plan, Port};
 use crate::link::{Link, LinkAddress, LinkEvent, LinkSettings};

@@ -1,12 +1,15 @@
 //! The gateway loop: inputs from the boat, the sim and operators go to the core, its outputs go out.
 
 use super::clock::{Clock, LastRun};
-use super::game_finder::FoundGame;
+use super::error::NodeError;
+use super::found_game::FoundGame;
 use super::guard::{Guarded, HEARTBEAT, HUNG};
 use super::join::Join;
 use super::latency::Latency;
 use super::loop_input::{Call, LoopInput, LoopOutput, Stop};
-use super::{NodeError, NodeEvent, Settings, subscribe};
+use super::node_event::NodeEvent;
+use super::settings::Settings;
+use super::subscriptions::subscribe;
 use crate::bridge::{Bridge, Event, Input, Output};
 use crate::game_clock::{GameClock, OrderTime};
 use crate::link::{BoatLink, LinkEvent};

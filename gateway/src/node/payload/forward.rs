@@ -1,7 +1,8 @@
 //! A client of a payload behind a TCP port: it has a connection of its own to the payload, over which its bytes and those for it pass.
 
+use super::limit::{ANSWER_PAUSE, CONNECT_MAX, LOOK, WRITE_MAX};
+use super::passed_payload::Payload;
 use super::tap::Tap;
-use super::{ANSWER_PAUSE, CONNECT_MAX, LOOK, Payload, WRITE_MAX};
 use crate::link::HostPort;
 use bus::{Slot, clock};
 use socket2::{SockRef, TcpKeepalive};

@@ -1,10 +1,11 @@
 //! A sonde that is asked by the gateway itself, as long as no client is connected, so that its values are recorded all the same.
 
 use super::forward::{connect, is_pause};
+use super::passed_payload::Payload;
 use super::shared_line::SharedLine;
 use super::tap::Tap;
 use super::turn::PollTurn;
-use super::{Payload, Way};
+use super::way::Way;
 use crate::link::HostPort;
 use crate::payload::Exo2Port;
 use crate::payload::exo2::{Command, Sonde};

@@ -1,8 +1,9 @@
 //! A payload on a serial line or UDP port, which its clients share: all are sent what it says, and it is sent what each of them says.
 
 use super::forward::{is_pause, prepare};
+use super::limit::{ANSWER_PAUSE, CONNECT_MAX};
+use super::passed_payload::Payload;
 use super::tap::Tap;
-use super::{ANSWER_PAUSE, CONNECT_MAX, Payload};
 use crate::link::{Link, LinkAddress, LinkError, LinkEvent, LinkSettings};
 use bus::{Slot, Watched, clock};
 use parking_lot::Mutex;

@@ -2,8 +2,8 @@
 
 use super::super::clock::Clock;
 use super::super::machine_check::free_mib;
-use super::Shell;
 use super::remarks::Remarks;
+use super::shell::Shell;
 use crate::payload::exo2::{Conversation, Measurement, Sonde};
 use crate::payload::{PayloadEncoder, PayloadPort};
 use bus::clock;
