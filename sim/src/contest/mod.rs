@@ -5,10 +5,12 @@
 //! is physics alone: what a boat does in a tick is worked out in [`Contest::effective_command`].
 
 mod faults;
+mod hold_cause;
 mod order;
 mod snapshot;
 mod state;
 
+pub use hold_cause::HoldCause;
 pub use snapshot::RestoreError;
 
 use crate::external::{self, BadReport, Track};
