@@ -14,15 +14,15 @@ use crate::situation::{OtherBoat, Situation};
 use game::angle::wrap_pi;
 use game::observation::pyquaticus::OTHER;
 use game::rules::tag_wait_s;
-use game::strategy::{Fact, Values};
+use game::strategy::{Fact, Mark, Place, Values};
 use game::{Ned, SimTime};
 use std::f64::consts::PI;
 
 /// Writes all numbers.
 pub(super) fn write(situation: &Situation, out: &mut Numbers<'_>) {
     let model = &situation.model;
-    let enemy_flag = model.targets.first().map_or(situation.at, |(_, home)| *home);
-    for place in [enemy_flag, model.own_flag()] {
+    for mark in [Mark::EnemyFlag, Mark::OwnFlag] {
+        let place = situation.locate(&Place::Mark(mark)).map_or(situation.at, |point| point.at);
         toward(situation, place, out);
     }
     // Corner 0 is to starboard of the first team's end, and corners go on clockwise: the walls from 3 to 0, 0 to 1, 1 to 2, 2 to 3.

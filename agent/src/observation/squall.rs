@@ -88,7 +88,8 @@ fn edges(situation: &Situation, out: &mut Numbers<'_>) {
 /// 16 numbers: where the enemies' flag is, the own one, the place to bring a flag or to be untagged, and which of them to go to now.
 fn goals(situation: &Situation, out: &mut Numbers<'_>) {
     let at = |mark| situation.locate(&Place::Mark(mark)).map_or(situation.at, |point| point.at);
-    let (enemy_flag, capture, untag) = (at(Mark::EnemyFlag), at(Mark::CapturePlace), at(Mark::UntagPlace));
+    let (enemy_flag, own_flag) = (at(Mark::EnemyFlag), at(Mark::OwnFlag));
+    let (capture, untag) = (at(Mark::CapturePlace), at(Mark::UntagPlace));
     let own = &situation.own;
     let goal = if own.tagged {
         untag
@@ -97,7 +98,7 @@ fn goals(situation: &Situation, out: &mut Numbers<'_>) {
     } else {
         enemy_flag
     };
-    for place in [enemy_flag, situation.model.own_flag(), untag, goal] {
+    for place in [enemy_flag, own_flag, untag, goal] {
         toward(situation, place, out);
     }
 }
@@ -137,7 +138,7 @@ fn other_boat(situation: &Situation, other: &OtherBoat, out: &mut Numbers<'_>) {
     out.flag(situation.model.is_own_side(other.at));
     out.push(situation.model.rules.tag_wait_share(other.tag_ready, situation.now));
     out.push((other.age_s / AGE_S).min(1.0));
-    let home = situation.model.own_flag();
+    let home = situation.model.own_flag_near(other.at);
     out.push(NEAR_M / (NEAR_M + other.at.distance(home)));
 }
 

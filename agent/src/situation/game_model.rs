@@ -1,6 +1,6 @@
 //! The game as one boat sees it: everything that does not change while it is played.
 
-use game::rules::{CaptureAt, Rules, UntagAt};
+use game::rules::Rules;
 use game::scenario::Scenario;
 use game::strategy::Program;
 use game::{Field, FlagId, Ned, TeamId, VehicleId};
@@ -71,9 +71,9 @@ impl GameModel {
         }
     }
 
-    /// The home of the own flag.
-    pub(crate) fn own_flag(&self) -> Ned {
-        self.own_flags.first().expect(HAS_ALL).1
+    /// The home of the own flag that is nearest to a place.
+    pub(crate) fn own_flag_near(&self, at: Ned) -> Ned {
+        self.field.nearest_own_flag(self.team, at).expect(HAS_ALL)
     }
 
     /// A named point of the own team.
@@ -84,26 +84,17 @@ impl GameModel {
 
     /// Where a flag must be brought, from here.
     pub(crate) fn capture_place(&self, at: Ned) -> Ned {
-        match self.rules.capture_at {
-            CaptureAt::OwnFlag | CaptureAt::OwnSide => self.own_flag(),
-            CaptureAt::OwnCorners => self.rules.capture_place(&self.field, self.team, at).expect(HAS_ALL),
-        }
+        self.rules.capture_place(&self.field, self.team, at).expect(HAS_ALL)
     }
 
     /// Where a tagged boat steers to be freed, from here.
     pub(crate) fn untag_place(&self, at: Ned) -> Ned {
-        match self.rules.untag_at {
-            UntagAt::OwnFlag => self.own_flag(),
-            UntagAt::OwnCorners => self.rules.untag_place(&self.field, self.team, at).expect(HAS_ALL),
-        }
+        self.rules.untag_place(&self.field, self.team, at).expect(HAS_ALL)
     }
 
     /// The middle of the circle in which a tagged boat is freed, from here.
     pub(crate) fn untag_centre(&self, at: Ned) -> Ned {
-        match self.rules.untag_at {
-            UntagAt::OwnFlag => self.own_flag(),
-            UntagAt::OwnCorners => self.rules.untag_centre(&self.field, self.team, at).expect(HAS_ALL),
-        }
+        self.rules.untag_centre(&self.field, self.team, at).expect(HAS_ALL)
     }
 
     /// Whether `at` is on the own team's side.

@@ -267,11 +267,13 @@ impl Situation {
     /// The boat that `boat` is just now.
     pub(crate) fn boat(&self, boat: Boat) -> Option<&OtherBoat> {
         let of_ours = |other: &&OtherBoat| other.carrying.is_some_and(|flag| self.is_own_flag(flag));
-        let home = self.model.own_flag();
         match boat {
             Boat::NearestEnemy => nearest(self.at, self.enemies().filter(|enemy| !enemy.tagged)),
             Boat::NearestIntruder => nearest(self.at, self.intruders()),
-            Boat::NearestAttacker => nearest(home, self.enemies().filter(|enemy| !enemy.tagged)),
+            Boat::NearestAttacker => {
+                let attackers = self.enemies().filter(|enemy| !enemy.tagged);
+                attackers.min_by(|a, b| self.flag_distance_squared(a.at).total_cmp(&self.flag_distance_squared(b.at)))
+            }
             Boat::NearestDefender => nearest(self.enemy_flag(), self.enemies()),
             Boat::AssignedIntruder => {
                 let pairs = self.interception.get_or_init(|| self.intercepted());
@@ -289,11 +291,16 @@ impl Situation {
         }
     }
 
+    /// The squared distance of a place from the nearest own flag, m².
+    fn flag_distance_squared(&self, at: Ned) -> f64 {
+        self.model.own_flag_near(at).distance_squared(at)
+    }
+
     /// Who meets which intruder.
     fn intercepted(&self) -> Vec<Pair> {
-        let home = self.model.own_flag();
         let mut intruders: Vec<Intruder> = self.intruders().map(Intruder::from).collect();
-        intruders.sort_by(|a, b| home.distance_squared(a.at).total_cmp(&home.distance_squared(b.at)));
+        // By the flag that each is nearest to, and not the one nearest to this boat: all boats of the team find the same order.
+        intruders.sort_by(|a, b| self.flag_distance_squared(a.at).total_cmp(&self.flag_distance_squared(b.at)));
         let boat = |vehicle: VehicleId, at: Ned, tag_ready: SimTime| Interceptor {
             vehicle,
             at,
@@ -326,7 +333,7 @@ impl Situation {
 
     fn mark(&self, mark: Mark) -> Ned {
         match mark {
-            Mark::OwnFlag => self.model.own_flag(),
+            Mark::OwnFlag => self.model.own_flag_near(self.at),
             Mark::EnemyFlag => self.enemy_flag(),
             Mark::CapturePlace => self.model.capture_place(self.at),
             Mark::UntagPlace if self.leaving => self.enemy_flag(),
