@@ -7,7 +7,7 @@ use crate::situation::Situation;
 /// What a behaviour does while it runs; when it runs is the helm's matter.
 pub(crate) trait BehaviourLogic: Send {
     /// Takes in the situation of a decision, whether it runs or not.
-    fn look(&mut self, _situation: &Situation) {}
+    fn observe(&mut self, _situation: &Situation) {}
 
     /// The variable that it sets, and to which of its texts, whether it runs or not.
     fn option(&self) -> Option<(u16, usize)> {

@@ -41,9 +41,9 @@ impl PolicyBehaviour {
 }
 
 impl BehaviourLogic for PolicyBehaviour {
-    fn look(&mut self, situation: &Situation) {
+    fn observe(&mut self, situation: &Situation) {
         if let Some(policy) = &mut self.policy {
-            policy.look(situation);
+            policy.choose_if_due(situation);
         }
     }
 

@@ -167,13 +167,13 @@ impl Search<'_> {
         let sums = self.sums.tile(self.cells, (course_tile, speed_tile), self.clear(sector));
         let value = sums.most();
         if value >= best.value {
-            self.take(&sums, value, (SIDE * course_tile, SIDE * speed_tile), best);
+            self.keep_best(&sums, value, (SIDE * course_tile, SIDE * speed_tile), best);
         }
     }
 
     /// Takes the best of points that are as good as what was found or better.
     #[inline(never)]
-    fn take(&self, sums: &Lanes<i32>, value: i32, (course, speed): (usize, usize), best: &mut Best) {
+    fn keep_best(&self, sums: &Lanes<i32>, value: i32, (course, speed): (usize, usize), best: &mut Best) {
         for (lane, &sum) in sums.0.iter().enumerate() {
             let point = Best { value, course: course + lane / SIDE, speed: speed + lane % SIDE };
             if sum == value && (value > best.value || self.is_nearer(&point, best)) {

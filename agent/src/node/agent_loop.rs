@@ -151,7 +151,7 @@ impl AgentLoop {
             self.policies.give(&mut self.runner, stamp);
             let pictures = &self.pictures;
             self.runner.decide(stamp, |vehicle| pictures.iter().flatten().find(|p| p.own(vehicle).is_some()));
-            self.talk.take(self.runner.sent(), stamp);
+            self.talk.publish_words(self.runner.sent(), stamp);
         }
         // Messages to mates before orders: the sim goes on when it has the orders, and then the messages are under way.
         self.talk.send()?;

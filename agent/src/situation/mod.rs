@@ -153,16 +153,16 @@ impl Situation {
     }
 
     /// Takes in the picture that is decided on next, before it is.
-    pub(crate) fn look_ahead(&mut self, picture: &Picture) {
-        self.is_seen = Some(self.take_now(picture));
+    pub(crate) fn preview(&mut self, picture: &Picture) {
+        self.is_seen = Some(self.apply_picture(picture));
     }
 
     /// Takes the newest picture in, if that was not done before; `false` if the own boat is not in it.
-    pub(crate) fn take(&mut self, picture: &Picture) -> bool {
-        self.is_seen.take().unwrap_or_else(|| self.take_now(picture))
+    pub(crate) fn update(&mut self, picture: &Picture) -> bool {
+        self.is_seen.take().unwrap_or_else(|| self.apply_picture(picture))
     }
 
-    fn take_now(&mut self, picture: &Picture) -> bool {
+    fn apply_picture(&mut self, picture: &Picture) -> bool {
         let Some(own) = picture.own(self.model.me) else { return false };
         let now = picture.stamp.valid_ns;
         self.step_s = if self.begun { (now - self.now).as_s().max(0.0) } else { 0.0 };

@@ -24,7 +24,7 @@ impl GameServer<'_> {
     /// Takes in what comes, waiting up to `limit` for the first of it. Commands come first.
     pub(in crate::node) fn listen(&mut self, limit: Duration) {
         self.time.pass(clock::now(), Duration::ZERO);
-        let mut next = self.inbox.take(limit);
+        let mut next = self.inbox.next_within(limit);
         self.time.pass(clock::now(), limit);
         self.obey();
         self.answer();
@@ -53,7 +53,7 @@ impl GameServer<'_> {
 
     /// Follows the commands that wait.
     fn obey(&mut self) {
-        while let Some(command) = self.controls.take() {
+        while let Some(command) = self.controls.pop_command() {
             match command {
                 Command::Stop(control) => self.control(control).unwrap_or_default(),
                 Command::Ask(query) => self.asked_to_control(query),
@@ -147,7 +147,7 @@ impl GameServer<'_> {
             Checked::Garbage(e) => JoinReply::Refused { reason: format!("the request is not understood: {e}") },
         };
         // Before the node can show its ticket.
-        self.inbox.let_in(self.agents.tickets().chain(self.gateways.tickets()).collect());
+        self.inbox.accept_tickets(self.agents.tickets().chain(self.gateways.tickets()).collect());
         query.answer(token::answer(&reply));
     }
 
