@@ -121,7 +121,7 @@ impl SensorCheck {
     }
 
     /// Takes bytes as they come.
-    pub fn take(&mut self, now: SimTime, bytes: &[u8]) {
+    pub fn receive(&mut self, now: SimTime, bytes: &[u8]) {
         self.count(now, bytes);
         let mut reports = vec![];
         self.protocol.read(now, bytes, &mut |report| reports.push(report));
@@ -129,7 +129,7 @@ impl SensorCheck {
     }
 
     /// Appends what a boat must be asked for before it sends anything: nothing for a Surveyor, its telemetry by MAVLink.
-    pub fn ask(&mut self, now: SimTime, out: &mut Vec<u8>) {
+    pub fn write_questions(&mut self, now: SimTime, out: &mut Vec<u8>) {
         self.protocol.keep_up(now, out);
     }
 
@@ -368,7 +368,7 @@ mod tests {
     fn checked(text: &str, hz: f64) -> SensorCheck {
         let mut check = SensorCheck::new(&game::scenario::default_gateway());
         for i in 0..10 {
-            check.take(SimTime::from_s(f64::from(i) / hz), text.as_bytes());
+            check.receive(SimTime::from_s(f64::from(i) / hz), text.as_bytes());
         }
         check
     }

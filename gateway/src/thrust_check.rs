@@ -99,7 +99,7 @@ struct Turn {
 
 impl Turn {
     /// Takes a step of this length; returns how fast the boat turns for a difference of all, rad/s, and its standard deviation.
-    fn take(&mut self, difference: f64, step_s: f64, turned_rad: f64) -> Option<(f64, f64)> {
+    fn observe(&mut self, difference: f64, step_s: f64, turned_rad: f64) -> Option<(f64, f64)> {
         self.difference += (difference - self.difference) * (step_s / TURN_LAG_S).min(1.0);
         self.piece_s += step_s;
         self.turned_rad += turned_rad;
@@ -131,7 +131,7 @@ struct Sway {
 
 impl Sway {
     /// Takes the sway after a step of this length; returns its variance, m²/s².
-    fn take(&mut self, step_s: f64, sway_m_s: f64) -> f64 {
+    fn observe(&mut self, step_s: f64, sway_m_s: f64) -> f64 {
         let share = (step_s / SWAY_MEMORY_S).min(1.0);
         self.mean += (sway_m_s - self.mean) * share;
         self.square += (sway_m_s * sway_m_s - self.square) * share;
@@ -158,7 +158,7 @@ pub(crate) struct ThrustCheck {
 
 impl ThrustCheck {
     /// The boat is sent this now, with what is known of its motion: heading, rad, and speed ahead over the ground, m/s.
-    pub(crate) fn take(&mut self, now: SimTime, ordered: Ordered, nav: &Nav) {
+    pub(crate) fn observe(&mut self, now: SimTime, ordered: Ordered, nav: &Nav) {
         let Nav { psi_rad, surge_m_s: ahead_m_s, .. } = *nav;
         let before = self.last.replace((now, psi_rad)).filter(|(at, _)| (now - *at).as_s() <= GAP_MAX_S);
         let Some((before, before_rad)) = before else {
@@ -166,7 +166,7 @@ impl ThrustCheck {
             return;
         };
         let turned_rad = wrap_pi(psi_rad - before_rad);
-        let known = self.turn.take(0.01 * ordered.turn_pct, (now - before).as_s(), turned_rad);
+        let known = self.turn.observe(0.01 * ordered.turn_pct, (now - before).as_s(), turned_rad);
         if let Some((slope, sigma)) = known
             && slope + SIGMAS * sigma < TURN_MIN_RAD_S
         {
@@ -180,7 +180,7 @@ impl ThrustCheck {
     fn take_against(&mut self, step_s: f64, ordered: Ordered, nav: &Nav, turned_rad: f64) {
         let Nav { surge_m_s, sway_m_s, psi_rad, .. } = *nav;
         self.turn_rad_s += (turned_rad - step_s * self.turn_rad_s) / step_s.max(TURN_LAG_S);
-        let unrest = self.sway.take(step_s, sway_m_s);
+        let unrest = self.sway.observe(step_s, sway_m_s);
         let heading_rad = ordered.heading_rad.filter(|_| ordered.ahead_m_s >= AGAINST_FROM_M_S);
         let astern_m = self.astern_m - (surge_m_s + ASTERN_DRIFT_M_S) * step_s;
         self.astern_m = if ordered.ahead_m_s < AGAINST_FROM_M_S { 0.0 } else { astern_m.max(0.0) };
@@ -249,7 +249,7 @@ mod tests {
             let time_s = 0.1 * f64::from(i);
             psi_deg += 0.1 * turn_deg_s(time_s);
             let psi_rad = wrap_pi(f64::to_radians(psi_deg));
-            check.take(SimTime::from_s(time_s), ordered(time_s), &nav(psi_rad, ahead_m_s));
+            check.observe(SimTime::from_s(time_s), ordered(time_s), &nav(psi_rad, ahead_m_s));
             check.fault(SimTime::from_s(time_s)).map(|fault| (time_s, fault))
         })
     }
@@ -291,7 +291,7 @@ mod tests {
         (0..300).map(|i| 0.1 * f64::from(i)).find(|time_s| {
             let (psi_deg, ahead_m_s) = motion(*time_s);
             let nav = nav(wrap_pi(psi_deg.to_radians()), ahead_m_s);
-            check.take(SimTime::from_s(*time_s), Ordered { ahead_m_s: 2.0, turn_pct: 0.0, heading_rad }, &nav);
+            check.observe(SimTime::from_s(*time_s), Ordered { ahead_m_s: 2.0, turn_pct: 0.0, heading_rad }, &nav);
             matches!(check.fault(SimTime::from_s(*time_s)), Some(ThrustFault::Against(_)))
         })
     }
@@ -326,9 +326,9 @@ mod tests {
     fn a_fault_is_over_when_the_boat_is_not_driven_and_begins_anew() {
         let mut check = ThrustCheck::default();
         let at = |tenths: i32| SimTime::from_s(0.1 * f64::from(tenths));
-        (0..410).for_each(|i| check.take(at(i), held(2.0, 0.0)(0.0), &nav(0.0, 0.0)));
+        (0..410).for_each(|i| check.observe(at(i), held(2.0, 0.0)(0.0), &nav(0.0, 0.0)));
         assert!(check.fault(at(410)).is_some() && check.fault(at(430)).is_none());
-        check.take(at(430), held(2.0, 0.0)(0.0), &nav(0.0, 0.0));
+        check.observe(at(430), held(2.0, 0.0)(0.0), &nav(0.0, 0.0));
         assert_eq!(check.fault(at(430)), None);
     }
 }

@@ -137,7 +137,7 @@ impl Listener {
     /// Asks the boat for what it has to be asked for.
     fn ask(&mut self) {
         let (now, mut bytes) = (self.now(), vec![]);
-        self.check.ask(now, &mut bytes);
+        self.check.write_questions(now, &mut bytes);
         if !bytes.is_empty() {
             self.link.send(bytes, 0);
         }
@@ -157,7 +157,7 @@ impl Listener {
         while !self.stop.load(Ordering::Relaxed) {
             self.ask();
             match self.events.recv_timeout(Duration::from_millis(100)) {
-                Ok(LinkEvent::Bytes { at, bytes, .. }) => self.check.take(self.at(at), &bytes),
+                Ok(LinkEvent::Bytes { at, bytes, .. }) => self.check.receive(self.at(at), &bytes),
                 Ok(LinkEvent::Up { name, .. }) => screen::remark(&format!("connected to {name}; {}", self.hello)),
                 Ok(LinkEvent::Failed { reason: why, .. } | LinkEvent::Down { reason: why, .. }) => {
                     if why != self.reason {

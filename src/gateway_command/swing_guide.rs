@@ -92,7 +92,7 @@ fn swing(guide: &Guide, listener: &mut Listener, gateway: &Gateway) -> Check {
     let what = "Turn the boat slowly through two full circles, or sail them at 1 m/s or more where it reports no true heading.";
     guide.until_enter(what, listener, &mut |listener| {
         if let (Some(compass_deg), Some(true_deg)) = (listener.check.compass_deg(), listener.check.true_deg()) {
-            swing.take(compass_deg.to_radians() + declination_rad, true_deg.to_radians());
+            swing.add_reading(compass_deg.to_radians() + declination_rad, true_deg.to_radians());
         }
     });
     match swing.fit() {

@@ -29,7 +29,7 @@ impl BatteryLog {
         *self = BatteryLog::new(self.watch, now);
     }
 
-    pub(super) fn take(&mut self, now: SimTime, volts: Option<f64>) {
+    pub(super) fn observe(&mut self, now: SimTime, volts: Option<f64>) {
         self.silence = (now, false);
         if let Some(volts) = volts {
             self.volts = Some((now, volts));

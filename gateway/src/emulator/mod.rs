@@ -107,7 +107,7 @@ impl Emulator {
     }
 
     /// Takes bytes from a port.
-    pub fn take(&mut self, now: SimTime, port: Port, bytes: &[u8]) {
+    pub fn receive(&mut self, now: SimTime, port: Port, bytes: &[u8]) {
         let mut framer = std::mem::take(self.framer(port));
         framer.push(bytes, &mut |body| {
             // Unknown sentences are ignored.

@@ -118,7 +118,7 @@ fn write_on(peer: &Peer, threads: &Threads) {
         match peer.port.write(request.bytes(), || peer.is_over()) {
             Ok(Wrote::All) => {
                 let at = clock::now();
-                if let Some(tag) = request.take() {
+                if let Some(tag) = request.settle() {
                     threads.emit(LinkEvent::Written { tag, at });
                 }
             }

@@ -132,11 +132,11 @@ pub fn emulate(settings: &EmulatorSettings, notify: &mut dyn FnMut(NodeEvent<'_>
 fn open(address: &LinkAddress, port: Port, incoming: &Arc<Watched<Incoming>>) -> Result<Link, NodeError> {
     let shared = Arc::clone(incoming);
     let settings = LinkSettings { silence: None, ..LinkSettings::default() };
-    Ok(Link::open(address, settings, move |event| shared.visit(|incoming| incoming.take(port, event)))?)
+    Ok(Link::open(address, settings, move |event| shared.visit(|incoming| incoming.handle_event(port, event)))?)
 }
 
 impl Incoming {
-    fn take(&mut self, port: Port, event: LinkEvent) {
+    fn handle_event(&mut self, port: Port, event: LinkEvent) {
         match event {
             LinkEvent::Bytes { bytes, .. } if self.unread + bytes.len() <= UNREAD_MAX => {
                 self.unread += bytes.len();
@@ -196,7 +196,7 @@ impl EmulatorNode {
             remarks.into_iter().for_each(|text| self.remark(text, notify));
             for (port, bytes) in &bytes {
                 let now = self.now;
-                self.front_seat().take(now, *port, bytes);
+                self.front_seat().receive(now, *port, bytes);
             }
             self.report_operator(notify);
             if let Some(text) = self.front_seat().take_remark() {

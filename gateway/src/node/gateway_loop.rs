@@ -135,7 +135,7 @@ impl GatewayLoop<'_> {
             // That it was suspended comes before what came meanwhile.
             beat_at = self.beat(beat_at)?;
             match call {
-                Some(call) => self.take(call)?,
+                Some(call) => self.handle_call(call)?,
                 None => self.step(Input::Tick, None)?,
             }
             if clock::now() >= self.counters.status_at {
@@ -259,7 +259,7 @@ impl GatewayLoop<'_> {
         self.in_game.as_ref().map(|in_game| in_game.vehicle)
     }
 
-    fn take(&mut self, call: Call) -> Result<(), NodeError> {
+    fn handle_call(&mut self, call: Call) -> Result<(), NodeError> {
         match call {
             Call::Link(event) => self.take_link(event),
             Call::Order => self.take_order(),
@@ -404,7 +404,7 @@ impl GatewayLoop<'_> {
     fn step_core(&mut self, input: Input, read: Option<Instant>) -> Result<Option<String>, NodeError> {
         let now = self.clock.now();
         let mut out = Output::default();
-        self.bridge.take(now, &input, &mut out);
+        self.bridge.process(now, &input, &mut out);
         // The boat first.
         if !out.bytes.is_empty() {
             self.counters.tag += 1;

@@ -33,7 +33,7 @@ pub struct Deviation {
 
 impl CompassSwing {
     /// Takes the heading by the compass, with the declination, and a true one of the same moment, rad.
-    pub fn take(&mut self, compass_rad: f64, true_rad: f64) {
+    pub fn add_reading(&mut self, compass_rad: f64, true_rad: f64) {
         if self.pairs.len() < PAIRS_MAX && compass_rad.is_finite() && true_rad.is_finite() {
             self.pairs.push((true_rad.rem_euclid(TAU), wrap_pi(true_rad - compass_rad)));
         }
@@ -111,7 +111,7 @@ mod tests {
             let psi_rad = (f64::from(i) * 0.97).to_radians();
             let deviation_deg: f64 = basis(psi_rad).iter().zip(a_to_e_deg).map(|(base, factor)| base * factor).sum();
             let noise_deg = if i % 2 == 0 { noise_deg } else { -noise_deg };
-            swing.take(psi_rad - (deviation_deg + noise_deg).to_radians(), psi_rad);
+            swing.add_reading(psi_rad - (deviation_deg + noise_deg).to_radians(), psi_rad);
         }
         swing
     }
@@ -133,7 +133,7 @@ mod tests {
     #[test]
     fn half_a_circle_is_no_swing() {
         let mut swing = CompassSwing::default();
-        (0..180).for_each(|deg| swing.take(f64::from(deg).to_radians(), f64::from(deg).to_radians()));
+        (0..180).for_each(|deg| swing.add_reading(f64::from(deg).to_radians(), f64::from(deg).to_radians()));
         assert_eq!(swing.fit(), Err("6 of 12 sectors of 30 degrees were swept, expected all of them".to_owned()));
     }
 

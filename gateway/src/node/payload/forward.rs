@@ -99,7 +99,7 @@ impl Forward<'_> {
                 Ok(count) => {
                     received = clock::now();
                     self.slot.touch();
-                    self.tap.take(self.number, outward, &piece[..count]);
+                    self.tap.record_bytes(self.number, outward, &piece[..count]);
                     if let Err(e) = (&mut &*to).write_all(&piece[..count]) {
                         self.tell_stall(outward, &e);
                         return self.close();

@@ -52,7 +52,7 @@ impl SharedLine {
         let ends = Arc::new(ends);
         let settings = LinkSettings { silence: None, ..LinkSettings::default() };
         let theirs = Arc::clone(&ends);
-        let link = Link::open(address, settings, move |event| theirs.take(event))?;
+        let link = Link::open(address, settings, move |event| theirs.handle_event(event))?;
         Ok(SharedLine { link, writing: Mutex::new(()), ends })
     }
 
@@ -64,7 +64,7 @@ impl SharedLine {
     /// Sends the payload something, behind what others send; whether the line took it.
     pub(super) fn send(&self, connection: u32, bytes: &[u8]) -> bool {
         let _writing = self.writing.lock();
-        self.ends.tap.take(connection, true, bytes);
+        self.ends.tap.record_bytes(connection, true, bytes);
         self.link.send_and_wait(bytes, WRITE_LIMIT)
     }
 
@@ -117,11 +117,11 @@ impl SharedLine {
 }
 
 impl Ends {
-    fn take(&self, event: LinkEvent) {
+    fn handle_event(&self, event: LinkEvent) {
         match event {
             LinkEvent::Up { .. } => self.is_up.visit(|is_up| *is_up = true),
             LinkEvent::Bytes { bytes, .. } => {
-                self.tap.take(TO_ALL, false, &bytes);
+                self.tap.record_bytes(TO_ALL, false, &bytes);
                 self.give(&bytes.into());
             }
             LinkEvent::Down { reason, .. } | LinkEvent::Failed { reason, .. } => {
