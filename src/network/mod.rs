@@ -53,8 +53,8 @@ pub(crate) enum Command {
     /// Shows a recorded game again, or checks that the same comes of it.
     #[command(after_help = "Examples:\n  squall replay runs/game.mcap\n  squall replay runs/game.mcap --check")]
     Replay(replay_command::Args),
-    /// Dumps one decision of a boat's helm: a table, numbers, pictures.
-    #[command(after_help = "Examples:\n  squall helm --vehicle blue_1 --png helm.png")]
+    /// Dumps one decision of a boat's helm: a table, numbers.
+    #[command(after_help = "Examples:\n  squall helm --vehicle blue_1 --csv helm.csv")]
     Helm(helm_command::Args),
     /// Brings real boats into games, and lets real back seats drive simulated ones.
     #[command(after_help = "Examples:\n  squall gateway emulate --help\n  squall gateway surveyor --help")]

@@ -1,6 +1,5 @@
 //! `squall train`: trains a policy as a training file says.
 
-mod events;
 mod files;
 
 use crate::progress::Progress;
@@ -26,7 +25,7 @@ pub(crate) struct Args {
     /// The training: a file or a name
     #[arg(value_parser = crate::scenario_files::training)]
     training: PathBuf,
-    /// The folder for the policy, its curves and all tables [default: runs/train/NAME]
+    /// The folder for the policy and all tables [default: runs/train/NAME]
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
     /// Goes on with the training that this folder holds; what comes of it is the same as if it had never stopped
