@@ -7,7 +7,7 @@ use game::scenario::{Sweep, load_sweep};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use sweep::{Condition, FindError, Journal, Plan, Search, Study, UntilError};
+use sweep::{Condition, FindError, Journal, Plan, Study, UntilError};
 
 /// Which sweep, and how.
 #[derive(clap::Args)]
@@ -38,17 +38,13 @@ pub(crate) struct Args {
     /// With --until: the key of the axis to search along [default: the only one with numbers]
     #[arg(long, value_name = "KEY", requires = "until")]
     along: Option<String>,
-    /// Searches the space of the axes for games in which this holds, however rare, and says how rare, as in
-    /// "strategy_5.contacts > 0"; `collision` and `out_of_bounds` stand for conditions on the first entry
+    /// Draws games evenly from the space of the axes, says in how many of them this holds, and names them, as in
+    /// "strategy_5.contacts > 0"; `collision` and `out_of_bounds` are conditions on the first entry
     #[arg(long, value_name = "CONDITION")]
     find: Option<String>,
-    /// With --find: about how many games
-    #[arg(long, value_name = "N", requires = "find", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(20..=10_000_000))]
+    /// With --find: how many games
+    #[arg(long, value_name = "N", requires = "find", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     search_games: u32,
-    /// With --find: games that came near to the failure are played again from there with other futures; with `out_of_bounds`, `collision`
-    /// and other conditions on a distance
-    #[arg(long, requires = "find")]
-    split: bool,
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
@@ -137,15 +133,10 @@ fn find(args: &Args, plan: &Plan, text: &str, (folder, jobs): (&Path, NonZeroUsi
         other => other.to_owned(),
     };
     let condition = Condition::parse(&condition, plan.sweep())?;
-    anyhow::ensure!(
-        !args.split || condition.has_nearness(),
-        "--split with {condition}: no distance says how near a game is to it, expected a condition on {}",
-        Condition::NEARNESS
-    );
     let stop = stop::on_ctrl_c()?;
     let mut journal = journal(args, folder, plan)?;
-    let search = Search { games: args.search_games as usize, learns: true, splits: args.split };
-    let found = sweep::find(plan, &condition, search, &mut journal, (jobs, &stop), |games, failures| {
+    let games = args.search_games as usize;
+    let found = sweep::find(plan, &condition, games, &mut journal, (jobs, &stop), |games, failures| {
         screen::remark(&format!("{failures} of {games} games with {condition}"));
     });
     let found = match found {

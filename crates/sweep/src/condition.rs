@@ -1,6 +1,6 @@
 //! A condition on a metric of an entry, as people type it: `strategy_5.win_share < 0.5`.
 
-use crate::metric::{METRICS, Nearness, index_of};
+use crate::metric::{METRICS, index_of};
 use game::scenario::Sweep;
 use std::fmt;
 use thiserror::Error;
@@ -53,24 +53,6 @@ impl Condition {
         };
         let metric = index_of(metric).ok_or_else(|| ConditionError::Metric(metric.to_owned()))?;
         Ok(Condition { entry, metric, is_below: text[at..].starts_with('<'), threshold })
-    }
-
-    /// The metrics of conditions that have a distance to them, for people.
-    pub const NEARNESS: &str = "closest_m or edge_m below a number, or contacts, near_misses, collisions, out_of_bounds or outside_s above one";
-
-    /// Whether a distance says at any time of a game how near it is to the condition.
-    #[must_use]
-    pub fn has_nearness(&self) -> bool {
-        self.nearness().is_some()
-    }
-
-    /// The distance that says at any time of a game how near it is to the condition, if one does.
-    pub(crate) fn nearness(&self) -> Option<Nearness> {
-        match (METRICS[self.metric].name, self.is_below) {
-            ("closest_m", true) | ("contacts" | "near_misses" | "collisions", false) => Some(Nearness::Boats),
-            ("edge_m", true) | ("out_of_bounds" | "outside_s", false) => Some(Nearness::Edge),
-            _ => None,
-        }
     }
 
     /// By how much a number is on the side where it does not hold: below 0 where it does.

@@ -1,8 +1,7 @@
 //! The games of a search, written down as they are played: a search that was stopped, or another one over the same sweep, does not play them
 //! again.
 
-use crate::approach::Approach;
-use crate::metric::{METRICS, Nearness};
+use crate::metric::METRICS;
 use crate::plan::{Job, Plan};
 use crate::play::play_jobs;
 use crate::study::{StudyError, cell, io, number_of, record};
@@ -16,17 +15,8 @@ use std::sync::atomic::AtomicBool;
 /// The file.
 const NAME: &str = "search.csv";
 
-/// What is kept of a game.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Measured {
-    /// By metric, NaN where there is none.
-    pub(crate) numbers: Vec<f64>,
-    /// By [`Nearness`].
-    pub(crate) approaches: [Approach; Nearness::ALL.len()],
-}
-
-/// What came of a game, or why it could not start.
-pub(crate) type Outcome = Result<Measured, String>;
+/// What came of a game, by metric, NaN where there is none; or why it could not start.
+pub(crate) type Outcome = Result<Vec<f64>, String>;
 
 /// The games of searches over one sweep, in a folder.
 pub struct Journal {
@@ -101,44 +91,34 @@ impl Journal {
         let new: Vec<Job> = order.iter().zip(&keys).filter(is_new).map(|(job, _)| *job).collect();
         play_jobs(plan, &new, jobs, stop, |played| {
             let key = key(plan, &played.job);
-            let (result, approaches) = (played.result, played.approaches);
-            let outcome = result.map(|numbers| Measured { numbers, approaches });
-            self.file.write_all(line_of(&key, &outcome).as_bytes()).map_err(io("write", &self.path))?;
-            self.known.insert(key, outcome);
+            self.file.write_all(line_of(&key, &played.result).as_bytes()).map_err(io("write", &self.path))?;
+            self.known.insert(key, played.result);
             Ok::<(), StudyError>(())
         })?;
         Ok(keys.iter().map_while(|key| self.known.get(key).cloned()).collect())
     }
 }
 
-/// What a game is: its entry, its seed, the entry's side, the values of the axes, and the seeds that take over.
+/// What a game is: its entry, its seed, the entry's side and the values of the axes.
 fn key(plan: &Plan, job: &Job) -> Vec<String> {
     let point = &plan.points()[job.point];
-    let values = point.values.iter().map(game::scenario::AxisValue::toml).chain(point.reseed_toml());
+    let values = point.values.iter().map(game::scenario::AxisValue::toml);
     let first = [plan.sweep().entries[job.entry].name.clone(), job.seed.to_string(), job.side.to_string()];
     first.into_iter().chain(values).collect()
 }
 
-/// A line: the numbers, how near it came, why there are none, and what the game is.
+/// A line: the numbers, why there are none, and what the game is.
 fn line_of(key: &[String], result: &Outcome) -> String {
-    let numbers = (0..METRICS.len()).map(|m| cell(result.as_ref().map_or(f64::NAN, |measured| measured.numbers[m])));
-    let near = |nearness: Nearness| {
-        result.as_ref().map_or(String::new(), |measured| measured.approaches[nearness as usize].to_cell())
-    };
+    let numbers = (0..METRICS.len()).map(|m| cell(result.as_ref().map_or(f64::NAN, |numbers| numbers[m])));
     let why = result.as_ref().err().cloned().unwrap_or_default();
-    let cells: Vec<String> = numbers.chain(Nearness::ALL.map(near)).chain([why]).chain(key.iter().cloned()).collect();
+    let cells: Vec<String> = numbers.chain([why]).chain(key.iter().cloned()).collect();
     record(&cells)
 }
 
 /// What a line says.
 fn game_of(line: &csv::StringRecord) -> Option<(Vec<String>, Outcome)> {
     let numbers: Option<Vec<f64>> = (0..METRICS.len()).map(|m| number_of(line.get(m)?)).collect();
-    let mut approaches: [Approach; Nearness::ALL.len()] = Default::default();
-    for nearness in Nearness::ALL {
-        approaches[nearness as usize] = Approach::of_cell(line.get(METRICS.len() + nearness as usize)?)?;
-    }
-    let first = METRICS.len() + Nearness::ALL.len();
-    let why = line.get(first)?;
-    let result = if why.is_empty() { Ok(Measured { numbers: numbers?, approaches }) } else { Err(why.to_owned()) };
-    Some((line.iter().skip(first + 1).map(str::to_owned).collect(), result))
+    let why = line.get(METRICS.len())?;
+    let result = if why.is_empty() { Ok(numbers?) } else { Err(why.to_owned()) };
+    Some((line.iter().skip(METRICS.len() + 1).map(str::to_owned).collect(), result))
 }

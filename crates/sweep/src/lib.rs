@@ -4,7 +4,6 @@
 //! A [`Study`] keeps what came of them in a folder and is taken up again from it; [`Report`] is what all of it says. Everything
 //! depends on the plan alone: not on the number of threads, not on who played which games, not on when it was stopped.
 
-mod approach;
 mod condition;
 mod effects;
 mod find;
@@ -15,14 +14,13 @@ mod parquet_file;
 mod plan;
 mod play;
 mod report;
-mod split;
 mod study;
 mod text;
 mod until;
 
 pub use condition::{Condition, ConditionError};
 pub use effects::{Effect, Interaction, Level};
-pub use find::{Densities, FindError, Found, Search, find};
+pub use find::{FindError, Found, find};
 pub use html::served;
 pub use journal::Journal;
 pub use metric::{METRICS, Metric};

@@ -71,26 +71,3 @@ pub(crate) const HEADLINES: [&str; 5] = ["win_share", "score", "opponent_score",
 pub(crate) fn index_of(name: &str) -> Option<usize> {
     METRICS.iter().position(|metric| metric.name == name)
 }
-
-/// A distance that says at any time of a game how near it is to a failure.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Nearness {
-    /// Of any two boats' centres: to a collision.
-    Boats,
-    /// Of the entry's boats to the edge of the field: to leaving it.
-    Edge,
-}
-
-impl Nearness {
-    /// All of them, in order.
-    pub(crate) const ALL: [Nearness; 2] = [Nearness::Boats, Nearness::Edge];
-
-    /// The metric that is its least value in a game.
-    pub(crate) fn metric(self) -> usize {
-        let name = match self {
-            Nearness::Boats => "closest_m",
-            Nearness::Edge => "edge_m",
-        };
-        index_of(name).expect("it is one of them")
-    }
-}

@@ -1,7 +1,6 @@
 //! Which games a sweep consists of.
 
 use game::Scenario;
-use game::reseed::Reseed;
 use game::scenario::{
     Axis, AxisValue, Design, Entrant, Files, Overrides, Packed, Problem, Problems, Setting, Sweep, UnpackError,
     digest_of, load_with_files,
@@ -33,22 +32,11 @@ pub struct Plan {
 pub struct Point {
     /// By axis.
     pub values: Vec<AxisValue>,
-    /// Seeds that take over in the midst of the game, in place of those that the game says; none is those.
-    pub reseed: Vec<Reseed>,
 }
 
 impl From<Vec<AxisValue>> for Point {
     fn from(values: Vec<AxisValue>) -> Point {
-        Point { values, reseed: vec![] }
-    }
-}
-
-impl Point {
-    /// Its seeds as TOML; none without any.
-    pub(crate) fn reseed_toml(&self) -> Option<String> {
-        let one = |one: &Reseed| format!("{{ after_s = {:?}, seed = {} }}", one.after_s, one.seed);
-        let all: Vec<String> = self.reseed.iter().map(one).collect();
-        (!all.is_empty()).then(|| format!("[{}]", all.join(", ")))
+        Point { values }
     }
 }
 
@@ -168,13 +156,7 @@ impl Plan {
     }
 
     fn overrides(&self, point: usize, entry: usize, side: usize) -> Overrides {
-        let point = &self.points[point];
-        let mut overrides = self.sweep.overrides(&self.teams, entry, side, &point.values);
-        if let Some(value) = point.reseed_toml() {
-            let setting = Setting::new("game.reseed", value, self.sweep.path.clone(), (1, 1));
-            overrides.settings.push(setting.expect("a key of the game"));
-        }
-        overrides
+        self.sweep.overrides(&self.teams, entry, side, &self.points[point].values)
     }
 
     fn problem(&self, message: String) -> Problems {

@@ -1,7 +1,6 @@
 //! The games of a sweep, played on several threads, and what is measured of each.
 
-use crate::approach::Approach;
-use crate::metric::{METRICS, Nearness};
+use crate::metric::METRICS;
 use crate::plan::{Job, Plan};
 use agent::MindRunner;
 use analysis::quality::GameQuality;
@@ -26,8 +25,6 @@ pub struct Played {
     pub digest: String,
     /// By vehicle.
     pub boats: Vec<BoatRow>,
-    /// By [`Nearness`].
-    pub(crate) approaches: [Approach; Nearness::ALL.len()],
 }
 
 /// What a boat did in a game.
@@ -144,13 +141,7 @@ pub fn play_one(plan: &Plan, index: usize) -> Played {
 }
 
 fn one(plan: &Plan, job: Job, loaded: &mut Loaded, is_stopped: &dyn Fn() -> bool) -> Played {
-    let failed = |why: String| Played {
-        job,
-        result: Err(why),
-        digest: String::new(),
-        boats: vec![],
-        approaches: Default::default(),
-    };
+    let failed = |why: String| Played { job, result: Err(why), digest: String::new(), boats: vec![] };
     let scenario = match loaded.scenario(plan, &job) {
         Ok(scenario) => scenario.of_seed(job.seed).map_err(|problems| problems.to_string()),
         Err(why) => Err(why.clone()),
@@ -176,10 +167,10 @@ struct Watch<'a> {
     cursor: EventCursor,
     quality: GameQuality,
     statistics: StatisticsBuilder<'a>,
-    /// The least distances, by [`Nearness`], m.
-    least_m: [f64; Nearness::ALL.len()],
-    approaches: [Approach; Nearness::ALL.len()],
-    opponents_edge_m: f64,
+    /// The least distance of any two boats' centres, m.
+    closest_m: f64,
+    /// The least distances to the edge of the field, of the entry's boats and of its opponent's, m.
+    edges_m: [f64; 2],
     /// The entry's team.
     side: usize,
     /// By vehicle: energy taken from its battery, kJ.
@@ -193,9 +184,8 @@ impl<'a> Watch<'a> {
             cursor: EventCursor::default(),
             quality: GameQuality::new(scenario),
             statistics: StatisticsBuilder::new(scenario),
-            least_m: [f64::INFINITY; Nearness::ALL.len()],
-            approaches: Default::default(),
-            opponents_edge_m: f64::INFINITY,
+            closest_m: f64::INFINITY,
+            edges_m: [f64::INFINITY; 2],
             side,
             energies_kj: vec![f64::NAN; scenario.vehicles.len()],
         }
@@ -206,22 +196,14 @@ impl<'a> Watch<'a> {
         let step = Step::of_frame(self.scenario, &contest.frame(&mut self.cursor), orders);
         self.quality.add(&step, &[]);
         self.statistics.add(&step);
-        let (mut closest_m, mut edges_m) = (f64::INFINITY, [f64::INFINITY; 2]);
         for (i, one) in step.samples.iter().enumerate() {
             let at = one.truth.at();
             for other in &step.samples[..i] {
-                closest_m = at.distance(other.truth.at()).min(closest_m);
+                self.closest_m = at.distance(other.truth.at()).min(self.closest_m);
             }
-            let edge_m = &mut edges_m[usize::from(self.scenario.vehicles[i].team.index() != self.side)];
+            let edge_m = &mut self.edges_m[usize::from(self.scenario.vehicles[i].team.index() != self.side)];
             *edge_m = edge_m.min(self.scenario.field.inside_by_m(at));
         }
-        let now_s = contest.now().as_s();
-        for (nearness, now_m) in Nearness::ALL.into_iter().zip([closest_m, edges_m[0]]) {
-            let place = nearness as usize;
-            self.least_m[place] = self.least_m[place].min(now_m);
-            self.approaches[place].add(now_s, now_m);
-        }
-        self.opponents_edge_m = self.opponents_edge_m.min(edges_m[1]);
         for (i, energy_kj) in self.energies_kj.iter_mut().enumerate() {
             if let Drive::Thrusters { thruster, .. } = &self.scenario.boat_of(VehicleId::at(i)).drive
                 && let Some(battery) = &thruster.flaws.battery
@@ -233,8 +215,7 @@ impl<'a> Watch<'a> {
     }
 
     fn end(self, job: Job, outcome: &Outcome) -> Played {
-        let Watch { scenario, quality, statistics, energies_kj, .. } = self;
-        let [closest_m, edge_m] = self.least_m;
+        let Watch { scenario, quality, statistics, energies_kj, closest_m, .. } = self;
         let nearness = quality.end().encounters.all();
         let own = &scenario.teams[job.side].name;
         let boat = |(statistics, energy_kj): (BoatStatistics, f64)| BoatRow {
@@ -263,7 +244,7 @@ impl<'a> Watch<'a> {
                 edge_m,
             ]
         };
-        let (ours, theirs) = (team(true, edge_m), team(false, self.opponents_edge_m));
+        let (ours, theirs) = (team(true, self.edges_m[0]), team(false, self.edges_m[1]));
         let won = match &outcome.winner {
             Some(winner) => f64::from(u8::from(winner == own)),
             None => 0.5,
@@ -275,6 +256,6 @@ impl<'a> Watch<'a> {
         numbers.extend([nearness.contacts as f64, nearness.near_misses as f64]);
         numbers.extend([if closest_m.is_finite() { closest_m } else { f64::NAN }, outcome.duration_s]);
         assert_eq!(numbers.len(), METRICS.len(), "a number for each metric");
-        Played { job, result: Ok(numbers), digest: outcome.digest.clone(), boats, approaches: self.approaches }
+        Played { job, result: Ok(numbers), digest: outcome.digest.clone(), boats }
     }
 }

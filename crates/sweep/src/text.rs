@@ -111,27 +111,10 @@ fn interactions(all: &[Interaction], line: &mut impl FnMut(String)) {
 /// What a search for rare failures found, for people.
 #[must_use]
 pub fn found_text(found: &Found) -> String {
-    let Found { entry, condition, games, failures, branches, rate, .. } = found;
-    let mut text = match rate.half_width() {
-        // Without a failure nothing is known of how rare they are.
-        _ if *failures == 0 => format!("{entry}: {condition} in none of {games} games that were played\n"),
-        half => format!(
-            "{entry}: {condition} in {:.4} ± {:.4} of all games; {failures} of {games} that were played\n",
-            rate.mean,
-            half.unwrap_or(f64::NAN)
-        ),
-    };
-    if *branches > 0 {
-        let _ = writeln!(text, "{branches} of them are others up to a time and have another future from then on");
-    }
-    if let Some(factor) = found.factor {
-        let _ = writeln!(text, "one of these games tells as much as {factor:.1} games drawn evenly");
-    }
-    for densities in &found.densities {
-        let pieces =
-            densities.pieces.iter().zip(&densities.times).map(|(piece, times)| format!("{piece} ({times:.1}x)"));
-        let _ = writeln!(text, "{}: from {}", densities.axis, pieces.collect::<Vec<_>>().join(", "));
-    }
+    let Found { entry, condition, games, failures, rate, .. } = found;
+    let interval = rate.low.zip(rate.high).map(|(low, high)| format!(" ({low:.4} to {high:.4})"));
+    let interval = interval.unwrap_or_default();
+    let mut text = format!("{entry}: {condition} in {failures} of {games} games, {:.4}{interval} of all\n", rate.mean);
     for named in found.named.iter().take(SHOWN) {
         let _ = writeln!(text, "  {:.3} at {}\n    {}", named.value, named.values.join(", "), named.command);
     }

@@ -161,7 +161,7 @@ fn try_value(
             return Err(UntilError::Stopped);
         }
         let numbers: Result<Vec<f64>, String> =
-            played.into_iter().map(|result| result.map(|measured| measured.numbers[condition.metric])).collect();
+            played.into_iter().map(|result| result.map(|numbers| numbers[condition.metric])).collect();
         observations.extend(numbers.map_err(UntilError::Game)?.chunks(2).map(|sides| 0.5 * (sides[0] + sides[1])));
         let holds = verdict(condition, &observations, alpha);
         if holds.is_some() || until >= most {
