@@ -3,7 +3,6 @@
 use crate::trial_command::usual_tick_s;
 use crate::{plot, screen, water_args};
 use anyhow::{Context, Result};
-use arena::trial::{self, Drift, Manoeuvre, Plan, Sample, Start, TrialBoat};
 use game::angle::compass_deg_from_rad;
 use game::boat::Drive;
 use game::sea::Sea;
@@ -11,6 +10,7 @@ use game::{Boat, Ned, SimTime};
 use sim::sea::{SeaModel, Summary, WaveSummary, WindSummary};
 use std::path::PathBuf;
 use std::process::ExitCode;
+use trial::{Drift, Manoeuvre, Plan, Sample, Start, TrialBoat};
 
 /// Which sea, and for which boat.
 #[derive(clap::Args)]

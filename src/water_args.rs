@@ -29,10 +29,10 @@ impl WaterArgs {
     pub(crate) fn sea(&self) -> Result<Sea> {
         let mut sea = match &self.sea {
             Some(path) => sea(path, self.seed)?,
-            None => arena::trial::still_sea(),
+            None => trial::still_sea(),
         };
         if let Some(speed_m_s) = self.current_m_s {
-            arena::trial::set_mean_current(&mut sea, speed_m_s, self.current_toward_deg);
+            trial::set_mean_current(&mut sea, speed_m_s, self.current_toward_deg);
         }
         Ok(sea)
     }

@@ -8,7 +8,7 @@ use crate::tree::Tree;
 pub(crate) const LINES_MAX: usize = 500;
 
 /// What each crate of ours may depend on, whatever the section. Folders that are planned are in here already.
-const MAY_IMPORT: [(&str, &[&str]); 16] = [
+const MAY_IMPORT: [(&str, &[&str]); 17] = [
     ("onnx", &[]),
     ("game", &["onnx"]),
     ("bus", &["game"]),
@@ -17,10 +17,11 @@ const MAY_IMPORT: [(&str, &[&str]); 16] = [
     ("agent", &["onnx", "game", "bus"]),
     ("gateway", &["game", "bus", "recording", "agent"]),
     ("gateway/crosscheck", &["game", "gateway"]),
-    ("fuzz", &["onnx", "game", "bus", "recording", "sim", "agent", "gateway", "arena", "analysis", "shore"]),
+    ("fuzz", &["onnx", "game", "bus", "recording", "sim", "agent", "gateway", "arena", "analysis", "shore", "trial"]),
     // `analysis` for examples: what games in one process tell.
     ("arena", &["game", "sim", "agent", "analysis"]),
     ("analysis", &["game", "recording"]),
+    ("trial", &["game", "sim"]),
     // `analysis` for the curves below the time line of a replay.
     ("shore", &["game", "bus", "recording", "analysis"]),
     ("learn", &["onnx", "game", "sim", "agent", "arena", "recording"]),
@@ -41,6 +42,7 @@ const MAY_IMPORT: [(&str, &[&str]); 16] = [
             "learn",
             "shore",
             "sweep",
+            "trial",
         ],
     ),
 ];

@@ -2,9 +2,7 @@
 //!
 //! The same world and the same minds as across processes, and the same bytes.
 
-pub mod identify;
 pub mod tournament;
-pub mod trial;
 
 use agent::{Mind, MindRunner};
 use game::{Outcome, Scenario, VehicleId};

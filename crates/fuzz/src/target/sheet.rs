@@ -2,8 +2,8 @@
 
 use super::{Target, check_shown, texts};
 use crate::played::scenarios;
-use arena::identify::Log;
-use arena::trial::{Engine, LONGEST_S, Mistake, Orders, Sheet};
+use trial::identify::Log;
+use trial::{Engine, LONGEST_S, Mistake, Orders, Sheet};
 use game::SimTime;
 use game::boat::Boat;
 use std::fmt::Write;

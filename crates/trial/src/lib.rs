@@ -1,9 +1,11 @@
 //! Sea trials: one boat in open water, commanded by a recorded series or put through a standard manoeuvre.
 //!
-//! Open [`replay`] first. Files, units and plots are the shell's; here is what happens to the boat.
+//! Open [`replay`] first. Files, units and plots are the shell's; here is what happens to the boat. [`identify`]
+//! fits a boat file to what a recorded boat did.
 
 mod command;
 mod drift;
+pub mod identify;
 mod manoeuvre;
 mod measure;
 mod orders;

@@ -49,7 +49,7 @@ const STAYS_M_S: f64 = 1e-8;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::trial::{Command, ROW, Start, TrialBoat, still_sea, ticks_per_row};
+    use crate::{Command, ROW, Start, TrialBoat, still_sea, ticks_per_row};
     use game::SimTime;
     use game::sea::{Gusts, Wind};
     use sim::sea::Summary;
@@ -68,8 +68,7 @@ mod tests {
             let gusts = Gusts::None;
             let wind = Wind { speed_10m_m_s: wind_m_s, from_rad, profile_exponent: 0.12, gusts };
             let sea = game::sea::Sea { wind: Some(wind), ..still_sea() };
-            let want_m_s =
-                Summary::new(&sea, &boat, &crate::trial::open_field(), 1).wind.expect("there is wind").drift_m_s;
+            let want_m_s = Summary::new(&sea, &boat, &crate::open_field(), 1).wind.expect("there is wind").drift_m_s;
 
             let mut trial_boat = TrialBoat::new(&boat, &sea, tick, 1, &Start::default());
             let per_row = ticks_per_row(tick).expect("it divides");

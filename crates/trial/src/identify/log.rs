@@ -1,6 +1,6 @@
 //! A log of a boat: what it was told, and what was measured of it.
 
-use crate::trial::{Engine, LONGEST_S, Mistake, Orders, Sheet};
+use crate::{Engine, LONGEST_S, Mistake, Orders, Sheet};
 use game::SimTime;
 use game::angle::wrap_pi;
 use game::boat::{Boat, Drive};

@@ -1,7 +1,7 @@
 //! The model sailed along a log: what it says at each of the log's rows.
 
 use super::log::{HEADING, Log, SURGE, SWAY, YAW_RATE};
-use crate::trial::{Command, Start, TrialBoat};
+use crate::{Command, Start, TrialBoat};
 use game::angle::wrap_pi;
 use game::boat::Boat;
 use game::sea::Sea;

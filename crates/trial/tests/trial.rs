@@ -1,9 +1,9 @@
 //! A boat in a trial is the boat of a game: same law, same sea.
 
-use arena::trial::{self, Command, Start, TrialBoat};
 use game::{Ned, Order, Pose, Scenario, SimTime, scenario};
 use sim::World;
 use std::path::Path;
+use trial::{Command, Start, TrialBoat};
 
 fn scenarios() -> std::path::PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios")

@@ -1,11 +1,11 @@
 //! Known parameters come back from noisy data, and a log that does not say them is noticed.
 
-use arena::identify::{self, Fit, Log, NoFit, Setting};
-use arena::trial::{self, Engine, Orders, Sheet, Start, TrialBoat};
 use game::boat::{Boat, Drive};
 use game::stream::Stream;
 use game::{SimTime, scenario};
 use std::path::Path;
+use trial::identify::{self, Fit, Log, NoFit, Setting};
+use trial::{Engine, Orders, Sheet, Start, TrialBoat};
 
 const TICK: SimTime = SimTime(50_000_000);
 /// Standard deviation of the noise on each measured column of a trial: x, y, heading, surge, sway, yaw rate.
