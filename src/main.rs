@@ -13,6 +13,7 @@ mod gateway_command;
 mod helm_text;
 mod identify_command;
 mod in_process;
+mod jobs_args;
 mod league_file;
 mod log_command;
 mod minds;

@@ -153,7 +153,7 @@ fn is_written(control: &str, text: &str) -> bool {
 /// The columns of the terminal; a width that most have where there is none.
 pub(crate) fn columns() -> usize {
     terminal_size::terminal_size()
-        .map_or(arena::tournament::WIDTH, |(terminal_size::Width(columns), _)| usize::from(columns))
+        .map_or(experiment::tournament::WIDTH, |(terminal_size::Width(columns), _)| usize::from(columns))
 }
 
 /// Prints what went wrong, a text that may have colours.

@@ -1,13 +1,13 @@
 //! `squall sweep`: how much sea, noise and failure a team stands.
 
+use crate::jobs_args::JobsArgs;
 use crate::progress::Progress;
 use crate::{output_file, screen, stop};
 use anyhow::{Context, Result};
+use experiment::sweep::{self, Condition, FindError, Journal, Plan, Study, UntilError};
 use game::scenario::{Sweep, load_sweep};
-use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use sweep::{Condition, FindError, Journal, Plan, Study, UntilError};
 
 /// Which sweep, and how.
 #[derive(clap::Args)]
@@ -21,9 +21,8 @@ pub(crate) struct Args {
     /// The first seed [default: as the file says]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
     seed: Option<u64>,
-    /// Threads; what comes of it is the same on any number of them [default: one for each core]
-    #[arg(long, value_name = "N")]
-    jobs: Option<NonZeroUsize>,
+    #[command(flatten)]
+    jobs: JobsArgs,
     /// The folder for the tables and the report [default: runs/sweep/NAME]
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
@@ -51,12 +50,11 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let plan = planned(args)?;
     let folder = args.out.clone().unwrap_or_else(|| PathBuf::from("runs/sweep").join(&plan.sweep().name));
     output_file::make_folder(&folder)?;
-    let jobs = args.jobs.or(std::thread::available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN);
     if let Some(condition) = &args.until {
-        return until(args, &plan, condition, (&folder, jobs));
+        return until(args, &plan, condition, &folder);
     }
     if let Some(condition) = &args.find {
-        return find(args, &plan, condition, (&folder, jobs));
+        return find(args, &plan, condition, &folder);
     }
     let mut study = if args.resume { Study::resume(&folder, &plan)? } else { Study::begin(&folder, &plan)? };
     let (points, per_point) = (plan.points().len(), plan.games_per_point());
@@ -67,6 +65,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let stop = stop::on_ctrl_c()?;
     let mut progress = Progress::of_games((plan.games() - study.done()) as u64);
     let from = study.done();
+    let jobs = args.jobs.threads(plan.games() - from);
     let played = sweep::play(&plan, (from, plan.games()), jobs, &stop, |played| {
         progress.add();
         study.add(&plan, &played)
@@ -85,10 +84,11 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 }
 
 /// Searches for the breaking point.
-fn until(args: &Args, plan: &Plan, text: &str, (folder, jobs): (&Path, NonZeroUsize)) -> Result<ExitCode> {
+fn until(args: &Args, plan: &Plan, text: &str, folder: &Path) -> Result<ExitCode> {
     let condition = Condition::parse(text, plan.sweep())?;
     let stop = stop::on_ctrl_c()?;
     let mut journal = journal(args, folder, plan)?;
+    let jobs = args.jobs.threads(plan.games_per_point());
     let result = sweep::breaking_point(plan, &condition, args.along.as_deref(), &mut journal, (jobs, &stop), |tried| {
         let half = tried.mean.half_width().map_or("?".to_owned(), |half| format!("{half:.3}"));
         let verdict = tried.holds.map_or("cannot be told", |holds| if holds { "holds" } else { "does not hold" });
@@ -122,7 +122,7 @@ fn until(args: &Args, plan: &Plan, text: &str, (folder, jobs): (&Path, NonZeroUs
 }
 
 /// Searches for rare failures.
-fn find(args: &Args, plan: &Plan, text: &str, (folder, jobs): (&Path, NonZeroUsize)) -> Result<ExitCode> {
+fn find(args: &Args, plan: &Plan, text: &str, folder: &Path) -> Result<ExitCode> {
     let first = &plan.sweep().entries[0].name;
     let condition = match text {
         "collision" => {
@@ -136,6 +136,7 @@ fn find(args: &Args, plan: &Plan, text: &str, (folder, jobs): (&Path, NonZeroUsi
     let stop = stop::on_ctrl_c()?;
     let mut journal = journal(args, folder, plan)?;
     let games = args.search_games as usize;
+    let jobs = args.jobs.threads(games);
     let found = sweep::find(plan, &condition, games, &mut journal, (jobs, &stop), |games, failures| {
         screen::remark(&format!("{failures} of {games} games with {condition}"));
     });

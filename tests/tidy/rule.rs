@@ -17,7 +17,23 @@ const MAY_IMPORT: [(&str, &[&str]); 17] = [
     ("agent", &["onnx", "game", "bus"]),
     ("gateway", &["game", "bus", "recording", "agent"]),
     ("gateway/crosscheck", &["game", "gateway"]),
-    ("fuzz", &["onnx", "game", "bus", "recording", "sim", "agent", "gateway", "arena", "analysis", "shore", "trial"]),
+    (
+        "fuzz",
+        &[
+            "onnx",
+            "game",
+            "bus",
+            "recording",
+            "sim",
+            "agent",
+            "gateway",
+            "arena",
+            "analysis",
+            "experiment",
+            "shore",
+            "trial",
+        ],
+    ),
     // `analysis` for examples: what games in one process tell.
     ("arena", &["game", "sim", "agent", "analysis"]),
     ("analysis", &["game", "recording"]),
@@ -25,8 +41,8 @@ const MAY_IMPORT: [(&str, &[&str]); 17] = [
     // `analysis` for the curves below the time line of a replay.
     ("shore", &["game", "bus", "recording", "analysis"]),
     ("learn", &["onnx", "game", "sim", "agent", "arena", "recording"]),
-    ("sweep", &["game", "sim", "agent", "analysis", "arena"]),
-    ("python", &["arena", "game", "learn", "sweep"]),
+    ("experiment", &["game", "sim", "agent", "analysis", "arena"]),
+    ("python", &["experiment", "game", "learn"]),
     (
         "",
         &[
@@ -41,7 +57,7 @@ const MAY_IMPORT: [(&str, &[&str]); 17] = [
             "analysis",
             "learn",
             "shore",
-            "sweep",
+            "experiment",
             "trial",
         ],
     ),

@@ -2,8 +2,6 @@
 //!
 //! The same world and the same minds as across processes, and the same bytes.
 
-pub mod tournament;
-
 use agent::{Mind, MindRunner};
 use game::{Outcome, Scenario, VehicleId};
 use sim::Contest;

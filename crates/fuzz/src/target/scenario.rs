@@ -100,7 +100,7 @@ fn accepted(kind: Kind, path: &Path) {
         }
         Kind::Tournament => {
             let tournament = scenario::load_tournament(path).expect("it was accepted");
-            if let Err(problems) = arena::tournament::Plan::new(&tournament) {
+            if let Err(problems) = experiment::tournament::Plan::new(&tournament) {
                 check_shown(&problems);
             }
         }

@@ -2,12 +2,12 @@
 
 use super::{Target, check_shown, texts};
 use crate::played::scenarios;
-use trial::identify::Log;
-use trial::{Engine, LONGEST_S, Mistake, Orders, Sheet};
 use game::SimTime;
 use game::boat::Boat;
 use std::fmt::Write;
 use std::sync::LazyLock;
+use trial::identify::Log;
+use trial::{Engine, LONGEST_S, Mistake, Orders, Sheet};
 
 pub(super) const TARGET: Target = Target { name: "sheet", seeds, change: texts, check, allocated_max: (1 << 20, 1000) };
 

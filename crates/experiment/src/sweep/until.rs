@@ -4,11 +4,11 @@
 //! are played in batches, until the interval of the metric's mean leaves the threshold, or the games of a point are spent. The
 //! chance of any wrong verdict is shared among all looks (Bonferroni), so that the interval that comes of it is one of 95 % at least.
 
-use crate::condition::Condition;
-use crate::journal::Journal;
-use crate::plan::{Job, Plan, Point};
-use crate::study::StudyError;
-use arena::tournament::Estimate;
+use super::condition::Condition;
+use super::journal::Journal;
+use super::plan::{Job, Plan, Point};
+use super::study::StudyError;
+use crate::estimate::Estimate;
 use game::scenario::AxisValue;
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
@@ -161,7 +161,7 @@ fn try_value(
             return Err(UntilError::Stopped);
         }
         let numbers: Result<Vec<f64>, String> =
-            played.into_iter().map(|result| result.map(|numbers| numbers[condition.metric])).collect();
+            played.into_iter().map(|result| result.map(|metrics| condition.metric.of(&metrics))).collect();
         observations.extend(numbers.map_err(UntilError::Game)?.chunks(2).map(|sides| 0.5 * (sides[0] + sides[1])));
         let holds = verdict(condition, &observations, alpha);
         if holds.is_some() || until >= most {
@@ -218,12 +218,13 @@ fn found(plan: &Plan, condition: &Condition, axis: usize, mut tried: Vec<Tried>)
 
 #[cfg(test)]
 mod tests {
+    use super::super::metric::METRICS;
     use super::*;
 
     #[test]
     fn a_verdict_is_as_seldom_wrong_as_it_says() {
         // Coins of which 50 % fall right: whether they do so less than half the time cannot be told, and is told in error seldom.
-        let condition = Condition { entry: 0, metric: 0, is_below: true, threshold: 0.5 };
+        let condition = Condition { entry: 0, metric: &METRICS[0], is_below: true, threshold: 0.5 };
         let mut wrong = 0;
         for trial in 0..2000 {
             let mut stream = game::stream::Stream::new(trial, "coins");

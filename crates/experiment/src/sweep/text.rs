@@ -1,10 +1,10 @@
 //! The report for the terminal.
 
-use crate::effects::{Effect, Interaction};
-use crate::find::Found;
-use crate::metric::index_of;
-use crate::report::Report;
-use arena::tournament::Estimate;
+use super::effects::{Effect, Interaction};
+use super::find::Found;
+use super::metric::Metric;
+use super::report::{PointReport, Report};
+use crate::estimate::Estimate;
 use std::fmt::Write;
 
 /// What is shown of each level: the metric, its heading, and by what it is multiplied.
@@ -59,7 +59,7 @@ fn table(effect: &Effect, line: &mut impl FnMut(String)) {
     line(format!("{:<14}{heads}", ""));
     for level in &effect.levels {
         let cell = |(metric, _, times): &(&str, &str, f64)| {
-            let estimate = index_of(metric).and_then(|i| level.metrics[i]);
+            let estimate = Metric::place(metric).and_then(|i| level.metrics[i]);
             format!("{:>13}", estimate.map_or("-".to_owned(), |estimate| shown(&estimate, *times)))
         };
         let label: String = level.label.chars().take(13).collect();
@@ -75,9 +75,9 @@ fn shown(estimate: &Estimate, times: f64) -> String {
 
 /// What an entry wins more often than the first, at the points where it is sure.
 fn differences(report: &Report, line: &mut impl FnMut(String)) {
-    let Some(index) = index_of("win_share") else { return };
+    let Some(index) = Metric::place("win_share") else { return };
     for (k, entry) in report.entries.iter().enumerate().skip(1) {
-        let of_point = |point: &crate::report::PointReport| point.differences[k - 1].metrics[index];
+        let of_point = |point: &PointReport| point.differences[k - 1].metrics[index];
         let all: Vec<Estimate> = report.points.iter().filter_map(of_point).collect();
         let sure = |is: fn(&Estimate) -> bool| all.iter().filter(|one| is(one)).count();
         let better = sure(|one| one.low.is_some_and(|low| low > 0.0));

@@ -3,15 +3,15 @@
 //! All points play the same seeds, so that a difference is taken within each seed and its interval is over seeds alone: it says how
 //! surely the difference is there at these points, and not how other points of a sampled design would come out.
 
-use crate::metric::{HEADLINES, METRICS, index_of};
-use crate::plan::{Plan, Point};
-use arena::tournament::Estimate;
+use super::metric::{HEADLINES, METRICS, Metric, Metrics};
+use super::plan::{Plan, Point};
+use crate::estimate::Estimate;
 use game::scenario::{Axis, AxisValue, Design};
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// The observation of a seed: by metric, the mean of both sides; none unless all its games were played.
-pub(crate) type Observation = Option<Vec<f64>>;
+/// The observation of a seed: the mean of both sides; none unless all its games were played.
+pub(crate) type Observation = Option<Metrics>;
 
 /// What was observed, by point, entry and seed.
 pub(crate) struct Observations {
@@ -79,10 +79,10 @@ const SEEDS_MIN: usize = 5;
 
 impl Observations {
     /// By seed, what is observed of an entry in the mean over points: none for seeds that are not whole at all of them.
-    fn mean(&self, points: &[usize], entry: usize, metric: usize) -> Vec<Option<f64>> {
+    fn mean(&self, points: &[usize], entry: usize, metric: &Metric) -> Vec<Option<f64>> {
         let seeds = self.by_point.first().and_then(|entries| entries.first()).map_or(0, Vec::len);
         let of_seed = |seed: usize| {
-            let of_point = |point: &usize| Some(self.by_point[*point][entry][seed].as_ref()?[metric]);
+            let of_point = |point: &usize| Some(metric.of(self.by_point[*point][entry][seed].as_ref()?));
             let all = points.iter().map(of_point).collect::<Option<Vec<f64>>>()?;
             let mean = all.iter().sum::<f64>() / all.len() as f64;
             mean.is_finite().then_some(mean)
@@ -91,12 +91,12 @@ impl Observations {
     }
 
     /// The estimate of an entry's metric over points.
-    pub(crate) fn estimate(&self, points: &[usize], entry: usize, metric: usize) -> Option<Estimate> {
+    pub(crate) fn estimate(&self, points: &[usize], entry: usize, metric: &Metric) -> Option<Estimate> {
         estimate(self.mean(points, entry, metric).into_iter().flatten().collect())
     }
 
     /// The estimate of how much more of a metric one entry has than another at a point.
-    pub(crate) fn difference(&self, point: usize, [one, other]: [usize; 2], metric: usize) -> Option<Estimate> {
+    pub(crate) fn difference(&self, point: usize, [one, other]: [usize; 2], metric: &Metric) -> Option<Estimate> {
         difference(&self.mean(&[point], one, metric), &self.mean(&[point], other, metric))
     }
 }
@@ -123,9 +123,9 @@ pub(crate) fn effects(plan: &Plan, observed: &Observations) -> Vec<Effect> {
                 label: group.label.clone(),
                 value: group.value,
                 points: group.points.len(),
-                metrics: (0..METRICS.len()).map(|m| observed.estimate(&group.points, entry, m)).collect(),
+                metrics: METRICS.iter().map(|metric| observed.estimate(&group.points, entry, metric)).collect(),
             };
-            let contrast = |metric: usize| {
+            let contrast = |metric: &Metric| {
                 let [first, last] = [groups.first()?, groups.last()?];
                 let of = |group: &Group| observed.mean(&group.points, entry, metric);
                 (groups.len() > 1).then(|| difference(&of(last), &of(first)))?
@@ -134,7 +134,7 @@ pub(crate) fn effects(plan: &Plan, observed: &Observations) -> Vec<Effect> {
                 axis: axis.key.clone(),
                 entry: entrant.name.clone(),
                 levels: groups.iter().map(level).collect(),
-                contrasts: (0..METRICS.len()).map(contrast).collect(),
+                contrasts: METRICS.iter().map(contrast).collect(),
             });
         }
     }
@@ -236,8 +236,8 @@ fn interaction(
     entry: usize,
     metric: &'static str,
 ) -> Option<(&'static str, [f64; 4], Estimate, f64)> {
-    let index = index_of(metric)?;
-    let means = [0, 1, 2, 3].map(|cell| observed.mean(&cells[cell], entry, index));
+    let about = Metric::named(metric)?;
+    let means = [0, 1, 2, 3].map(|cell| observed.mean(&cells[cell], entry, about));
     let contrast = |seed: usize| {
         let [low, second, first, both] = [0, 1, 2, 3].map(|cell| means[cell][seed]);
         Some(both? - first? - second? + low?)

@@ -1,9 +1,10 @@
 //! What came of a tournament: entries, who beats whom, and every game.
 
-use super::estimate::Estimate;
 use super::plan::Plan;
-use super::play::{Game, Record};
+use super::play::Record;
 use super::rating::{Meeting, Rating, ratings};
+use crate::estimate::Estimate;
+use crate::pipeline::Game;
 use game::count::Counts;
 use game::scenario::Packed;
 use serde::{Deserialize, Serialize};

@@ -53,7 +53,7 @@ impl Estimate {
 }
 
 /// How many standard errors reach to the end of a 95 % interval, by Student's t; none without a degree of freedom.
-pub(super) fn quantile(degrees: f64) -> Option<f64> {
+pub(crate) fn quantile(degrees: f64) -> Option<f64> {
     StudentsT::new(0.0, 1.0, degrees).ok().map(|student| student.inverse_cdf(0.975))
 }
 

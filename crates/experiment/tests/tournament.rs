@@ -1,7 +1,8 @@
 //! Tournaments: the same on any number of threads, fair to both sides, and with honest intervals.
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
-use arena::tournament::{Game, Match, Plan, Record, Report, play};
+use experiment::Game;
+use experiment::tournament::{Match, Plan, Record, Report, play};
 use game::count::Counts;
 use game::scenario::{Entrant, Overrides, Tournament, load_tournament, load_with};
 use std::num::NonZeroUsize;
@@ -33,7 +34,16 @@ fn tournament(game: &str, games: u32, strategies: &[&str]) -> Tournament {
 }
 
 fn records(plan: &Plan, jobs: usize) -> Vec<Record> {
-    play(plan, NonZeroUsize::new(jobs).unwrap(), &AtomicBool::new(false), |_| {})
+    played(plan, jobs, &AtomicBool::new(false), |_| {})
+}
+
+fn played(plan: &Plan, jobs: usize, stop: &AtomicBool, mut watch: impl FnMut(&Record)) -> Vec<Record> {
+    let (games, mut records): (Vec<usize>, _) = ((0..plan.games()).collect(), vec![]);
+    play(plan, &games, NonZeroUsize::new(jobs).unwrap(), stop, |record| {
+        watch(&record);
+        records.push(record);
+    });
+    records
 }
 
 #[test]
@@ -210,7 +220,7 @@ fn a_tournament_that_is_stopped_keeps_whole_seeds() {
     let plan = Plan::new(&tournament("attack_1v1", 40, &["idle", "easy_attackers"])).unwrap();
     let stop = AtomicBool::new(false);
     let mut shown = 0;
-    let records = play(&plan, NonZeroUsize::new(1).unwrap(), &stop, |_| {
+    let records = played(&plan, 1, &stop, |_| {
         shown += 1;
         stop.store(shown >= 3, Ordering::Relaxed);
     });

@@ -3,7 +3,6 @@
 //! A [`Plan`] says which games are played, [`play()`] plays them on several threads, and a [`Report`] says what came of
 //! it. The report depends on the plan alone, not on the number of threads.
 
-mod estimate;
 mod league;
 mod plan;
 mod play;
@@ -11,10 +10,9 @@ mod rating;
 mod report;
 mod table;
 
-pub use estimate::Estimate;
 pub use league::{League, LeagueError};
 pub use plan::{Match, Plan};
-pub use play::{Game, Observer, Record, play, play_observed, play_some, play_these};
+pub use play::{Observer, Record, play, play_observed};
 pub use rating::{Meeting, Rating, ratings};
 pub use report::{Cell, Failure, MatchRow, Report, Row, Seeds};
 pub use table::{WIDTH, csv, text};

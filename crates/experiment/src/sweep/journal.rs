@@ -1,10 +1,11 @@
 //! The games of a search, written down as they are played: a search that was stopped, or another one over the same sweep, does not play them
 //! again.
 
-use crate::metric::METRICS;
-use crate::plan::{Job, Plan};
-use crate::play::play_jobs;
-use crate::study::{StudyError, cell, io, number_of, record};
+use super::metric::{METRICS, Metric, Metrics};
+use super::plan::{Job, Plan};
+use super::play::play_jobs;
+use super::study::{StudyError, io};
+use super::table::{cell_of, number_of, record};
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
 use std::io::Write;
@@ -15,8 +16,8 @@ use std::sync::atomic::AtomicBool;
 /// The file.
 const NAME: &str = "search.csv";
 
-/// What came of a game, by metric, NaN where there is none; or why it could not start.
-pub(crate) type Outcome = Result<Vec<f64>, String>;
+/// What was measured of a game, or why it could not start.
+pub(crate) type Outcome = Result<Metrics, String>;
 
 /// The games of searches over one sweep, in a folder.
 pub struct Journal {
@@ -90,9 +91,9 @@ impl Journal {
         let is_new = |(_, key): &(&Job, &Vec<String>)| !self.known.contains_key(*key);
         let new: Vec<Job> = order.iter().zip(&keys).filter(is_new).map(|(job, _)| *job).collect();
         play_jobs(plan, &new, jobs, stop, |played| {
-            let key = key(plan, &played.job);
-            self.file.write_all(line_of(&key, &played.result).as_bytes()).map_err(io("write", &self.path))?;
-            self.known.insert(key, played.result);
+            let key = key(plan, &played.row.job);
+            self.file.write_all(line_of(&key, &played.row.result).as_bytes()).map_err(io("write", &self.path))?;
+            self.known.insert(key, played.row.result);
             Ok::<(), StudyError>(())
         })?;
         Ok(keys.iter().map_while(|key| self.known.get(key).cloned()).collect())
@@ -109,16 +110,16 @@ fn key(plan: &Plan, job: &Job) -> Vec<String> {
 
 /// A line: the numbers, why there are none, and what the game is.
 fn line_of(key: &[String], result: &Outcome) -> String {
-    let numbers = (0..METRICS.len()).map(|m| cell(result.as_ref().map_or(f64::NAN, |numbers| numbers[m])));
+    let number = |metric: &Metric| cell_of(result.as_ref().map_or(f64::NAN, |all| metric.of(all)));
     let why = result.as_ref().err().cloned().unwrap_or_default();
-    let cells: Vec<String> = numbers.chain([why]).chain(key.iter().cloned()).collect();
-    record(&cells)
+    record(METRICS.iter().map(number).chain([why]).chain(key.iter().cloned()))
 }
 
 /// What a line says.
 fn game_of(line: &csv::StringRecord) -> Option<(Vec<String>, Outcome)> {
-    let numbers: Option<Vec<f64>> = (0..METRICS.len()).map(|m| number_of(line.get(m)?)).collect();
+    let mut numbers = line.iter();
+    let metrics = Metrics::from_each(|_| numbers.next().and_then(number_of).ok_or(()));
     let why = line.get(METRICS.len())?;
-    let result = if why.is_empty() { Ok(numbers?) } else { Err(why.to_owned()) };
+    let result = if why.is_empty() { Ok(metrics.ok()?) } else { Err(why.to_owned()) };
     Some((line.iter().skip(METRICS.len() + 1).map(str::to_owned).collect(), result))
 }

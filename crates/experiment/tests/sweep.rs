@@ -1,10 +1,10 @@
 //! A sweep in a folder: whole, cut off and taken up again, on any number of threads; what is wrong with it is said before a game.
 
+use experiment::sweep::{self, Condition, FindError, Journal, Plan, Study, StudyError, UntilError};
 use game::scenario::{Overrides, load_sweep, load_with};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
-use sweep::{Condition, FindError, Journal, Plan, Study, StudyError, UntilError};
 
 fn shipped(file: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(file).canonicalize().expect("it can be")
@@ -95,7 +95,13 @@ fn a_game_of_the_report_is_the_one_that_its_command_plays() {
     let dir = tempfile::tempdir().unwrap();
     let plan = plan_of(dir.path(), WIND);
     let job = plan.job(22);
-    let played = sweep::play_one(&plan, 22);
+    let mut played = None;
+    sweep::play(&plan, (22, 23), NonZeroUsize::MIN, &AtomicBool::new(false), |one| {
+        played = Some(one.row);
+        Ok::<(), StudyError>(())
+    })
+    .unwrap();
+    let played = played.expect("a game");
     assert_eq!((job.point, job.entry, job.seed, job.side), (2, 1, 6, 0));
     let command = plan.command(&job);
     // What the program makes of these words: the same files, values and seed.
@@ -114,7 +120,7 @@ fn a_game_of_the_report_is_the_one_that_its_command_plays() {
     let scenario = load_with(&shipped("games/surveyor_2v2.toml"), &overrides).unwrap().of_seed(6).unwrap();
     let outcome = arena::play(&scenario, agent::minds_of(&scenario), 6).unwrap();
     assert_eq!(outcome.digest, played.digest);
-    let score = played.result.unwrap()[1];
+    let score = played.result.unwrap().own.score;
     assert_eq!(score, f64::from(outcome.score.teams["blue"]));
 }
 

@@ -1,8 +1,8 @@
 //! The report of a tournament as tables: for people, and one for spreadsheets.
 
-use super::estimate::Estimate;
 use super::rating::Rating;
 use super::report::{Cell, Report, Row};
+use crate::estimate::Estimate;
 use game::printable::add_line;
 
 /// A column: its name in the CSV file, its heading for people, and its value.

@@ -3,11 +3,11 @@
 //! `games.csv` is written a line a game, in order, and is all that a study is taken up again from; `boats.csv` has a line for each boat
 //! of each game. What was torn off when the machine stopped is dropped.
 
-use crate::metric::METRICS;
-use crate::plan::Plan;
-use crate::play::Played;
-use crate::report::Report;
-use crate::{html, parquet_file};
+use super::html;
+use super::plan::Plan;
+use super::play::{BoatRow, Played};
+use super::report::Report;
+use super::table::{self, Row};
 use std::fs::{File, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -21,10 +21,6 @@ const BOATS: &str = "boats.csv";
 const PLAN: &str = "plan.txt";
 /// The plan with all that its games need, so that any of them can be played again.
 pub const PACKED_PLAN: &str = "plan.json";
-/// The columns of the table of games before those of the axes.
-const FIRST: [&str; 6] = ["game", "point", "entry", "seed", "side", "boats"];
-/// Its last columns.
-const LAST: [&str; 2] = ["digest", "error"];
 /// The columns of the table of boats.
 const BOAT_COLUMNS: [&str; 17] = [
     "game",
@@ -52,17 +48,6 @@ pub struct Study {
     games: File,
     boats: File,
     done: usize,
-}
-
-/// A line of the table of games.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Row {
-    /// The game's place in the order of the sweep.
-    pub index: usize,
-    /// Digest of its final state and of all events; empty if it could not start.
-    pub digest: String,
-    /// By metric, NaN where there is none; or why it could not start.
-    pub result: Result<Vec<f64>, String>,
 }
 
 /// Why a study cannot be kept.
@@ -131,8 +116,8 @@ impl Study {
         let packed = serde_json::to_string(&plan.pack());
         let packed = packed.map_err(|error| StudyError::Table { what: PACKED_PLAN, why: error.to_string() })?;
         write(&folder.join(PACKED_PLAN), &(packed + "\n"))?;
-        write(&folder.join(GAMES), &record(&columns(plan)))?;
-        write(&folder.join(BOATS), &record(&BOAT_COLUMNS.map(str::to_owned)))?;
+        write(&folder.join(GAMES), &table::csv_head(plan))?;
+        write(&folder.join(BOATS), &table::record(BOAT_COLUMNS.map(str::to_owned)))?;
         Study::open(folder, 0)
     }
 
@@ -189,7 +174,7 @@ impl Study {
     /// If it is not the next one.
     pub fn add(&mut self, plan: &Plan, played: &Played) -> Result<(), StudyError> {
         let (games, boats) = lines(plan, played);
-        self.add_lines(played.job.index, &games, &boats)
+        self.add_lines(played.row.job.index, &games, &boats)
     }
 
     /// Adds the lines of the next game, as [`lines`] makes them.
@@ -221,7 +206,7 @@ impl Study {
         write(&self.folder.join("report.html"), &html::page(&report.sweep, &json))?;
         write(&self.folder.join("report.json"), &json)?;
         let path = self.folder.join("games.parquet");
-        let table = parquet_file::bytes(plan, &rows);
+        let table = table::parquet(plan, &rows);
         let table = table.map_err(|error| StudyError::Table { what: "games.parquet", why: error.to_string() })?;
         std::fs::write(&path, table).map_err(io("write", &path))?;
         Ok(report)
@@ -231,104 +216,41 @@ impl Study {
 /// The line of a game in the table of games, and those of its boats.
 #[must_use]
 pub fn lines(plan: &Plan, played: &Played) -> (String, String) {
-    let job = &played.job;
-    let mut cells = vec![
-        job.index.to_string(),
-        job.point.to_string(),
-        plan.sweep().entries[job.entry].name.clone(),
-        job.seed.to_string(),
-        plan.teams()[job.side].clone(),
-        played.boats.len().to_string(),
-    ];
-    cells.extend(plan.points()[job.point].values.iter().map(ToString::to_string));
-    match &played.result {
-        Ok(numbers) => cells.extend(numbers.iter().map(|number| cell(*number))),
-        Err(_) => cells.extend(METRICS.map(|_| String::new())),
-    }
-    let why = played.result.as_ref().err().cloned().unwrap_or_default();
-    // A line is a game.
-    cells.extend([played.digest.clone(), why.split_whitespace().collect::<Vec<_>>().join(" ")]);
-    let boat = |boat: &crate::play::BoatRow| {
+    let index = played.row.job.index;
+    let boat = |boat: &BoatRow| {
         let (of, counts) = (&boat.statistics, &boat.statistics.counts);
         let counts =
             [counts.grabs, counts.captures, counts.tags, counts.tagged, counts.out_of_bounds, counts.collisions];
-        let mut cells =
-            vec![job.index.to_string(), of.boat.clone(), of.team.clone(), u8::from(boat.is_own).to_string()];
+        let mut cells = vec![index.to_string(), of.boat.clone(), of.team.clone(), u8::from(boat.is_own).to_string()];
         cells.extend(counts.map(|count| count.to_string()));
         let numbers = [of.tagged_s, of.outside_s, of.carrying_s, of.distance_m, of.speed_mean_m_s, of.speed_max_m_s];
-        cells.extend(numbers.into_iter().chain([boat.energy_kj]).map(cell));
-        record(&cells)
+        cells.extend(numbers.into_iter().chain([boat.energy_kj]).map(table::cell_of));
+        table::record(cells)
     };
-    (record(&cells), played.boats.iter().map(boat).collect())
-}
-
-/// A number that is read again to the bit; nothing where there is none.
-pub(crate) fn cell(number: f64) -> String {
-    if number.is_finite() { number.to_string() } else { String::new() }
-}
-
-/// The number that [`cell`] wrote.
-pub(crate) fn number_of(cell: &str) -> Option<f64> {
-    if cell.is_empty() { Some(f64::NAN) } else { cell.parse().ok() }
-}
-
-/// A line of a table.
-pub(crate) fn record(cells: &[String]) -> String {
-    let mut writer = csv::WriterBuilder::new().from_writer(vec![]);
-    writer.write_record(cells).expect("memory takes it");
-    String::from_utf8(writer.into_inner().expect("memory takes it")).expect("cells are text")
-}
-
-fn columns(plan: &Plan) -> Vec<String> {
-    let axes = plan.sweep().axes.iter().map(|axis| axis.key.clone());
-    let names = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
-    let metrics = METRICS.iter().map(|metric| metric.name.to_owned());
-    names(&FIRST).into_iter().chain(axes).chain(metrics).chain(names(&LAST)).collect()
-}
-
-/// The games whose lines are whole, from the first on, each with where its line ends and how many boats it has.
-fn parsed<'a>(plan: &'a Plan, text: &'a str) -> impl Iterator<Item = (Row, usize, usize)> + 'a {
-    let whole = text.rsplit_once('\n').map_or("", |(whole, _)| whole);
-    let text = &text[..(whole.len() + 1).min(text.len())];
-    let metrics_from = FIRST.len() + plan.sweep().axes.len();
-    let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(text.as_bytes());
-    let mut record = csv::StringRecord::new();
-    let mut index = 0;
-    std::iter::from_fn(move || {
-        let is_there = reader.read_record(&mut record).ok()?;
-        if !is_there || record.len() != metrics_from + METRICS.len() + LAST.len() || record[0].parse() != Ok(index) {
-            return None;
-        }
-        let numbers: Option<Vec<f64>> = (0..METRICS.len()).map(|m| number_of(&record[metrics_from + m])).collect();
-        let [digest, why] = [0, 1].map(|i| record[metrics_from + METRICS.len() + i].to_owned());
-        let result = if why.is_empty() { Ok(numbers?) } else { Err(why) };
-        let boats: usize = record[5].parse().ok()?;
-        index += 1;
-        Some((Row { index: index - 1, digest, result }, reader.position().byte() as usize, boats))
-    })
+    (table::csv_line(plan, &played.row), played.boats.iter().map(boat).collect())
 }
 
 /// The games of a table, whose text is that of `games.csv`, from the first on as far as its lines are whole and of this plan.
 #[must_use]
 pub fn rows_in(plan: &Plan, text: &str) -> Vec<Row> {
-    parsed(plan, text).map(|(row, ..)| row).take(plan.games()).collect()
+    table::csv_rows(plan, text).map(|(row, _)| row).collect()
 }
 
 /// How many games are whole in both tables, and how long these are then.
 fn whole(plan: &Plan, games: &str, boats: &str) -> (usize, [usize; 2]) {
     let head = |text: &str| text.find('\n').map_or(text.len(), |at| at + 1);
     let (mut done, mut lengths) = (0, [head(games), head(boats)]);
-    for (row, end, count) in parsed(plan, games).take(plan.games()) {
+    for (row, end) in table::csv_rows(plan, games) {
         let mut boats_end = lengths[1];
-        for _ in 0..count {
+        for _ in 0..row.boats {
             let rest = &boats[boats_end..];
             let Some(length) = rest.find('\n') else { return (done, lengths) };
-            if rest.split(',').next().and_then(|game| game.parse().ok()) != Some(row.index) {
+            if rest.split(',').next().and_then(|game| game.parse().ok()) != Some(row.job.index) {
                 return (done, lengths);
             }
             boats_end += length + 1;
         }
-        (done, lengths) = (row.index + 1, [end, boats_end]);
+        (done, lengths) = (row.job.index + 1, [end, boats_end]);
     }
     (done, lengths)
 }

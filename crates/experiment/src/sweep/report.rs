@@ -1,10 +1,10 @@
 //! What came of a sweep.
 
-use crate::effects::{Effect, Interaction, Observations, effects, interactions};
-use crate::metric::{METRICS, Metric, index_of};
-use crate::plan::{Job, Plan};
-use crate::study::Row;
-use arena::tournament::Estimate;
+use super::effects::{Effect, Interaction, Observations, effects, interactions};
+use super::metric::{METRICS, Metric, Metrics};
+use super::plan::Plan;
+use super::table::Row;
+use crate::estimate::Estimate;
 use game::scenario::Design;
 use serde::Serialize;
 
@@ -129,7 +129,7 @@ impl Report {
         let names: Vec<String> = sweep.entries.iter().map(|entry| entry.name.clone()).collect();
         let failures = rows.iter().filter_map(|row| {
             let why = row.result.as_ref().err()?.clone();
-            Some(Failure { game: row.index, why, command: plan.command(&plan.job(row.index)) })
+            Some(Failure { game: row.job.index, why, command: plan.command(&row.job) })
         });
         Report {
             sweep: sweep.name.clone(),
@@ -157,25 +157,22 @@ impl Report {
 /// By point, entry and seed: the mean of both sides.
 fn observations(plan: &Plan, rows: &[Row]) -> Observations {
     let (entries, seeds) = (plan.sweep().entries.len(), plan.seeds() as usize);
-    let of_seed = |point: usize, seed: usize| -> Option<Vec<Vec<f64>>> {
+    let of_seed = |point: usize, seed: usize| -> Option<Vec<Metrics>> {
         let first = point * plan.games_per_point() + seed * 2 * entries;
         let games = rows.get(first..first + 2 * entries)?;
-        let numbers = games.iter().map(|row| row.result.as_ref().ok()).collect::<Option<Vec<_>>>()?;
-        let of_entry = |sides: &[&Vec<f64>]| {
-            (0..METRICS.len()).map(|m| sides.iter().map(|side| side[m]).sum::<f64>() / sides.len() as f64).collect()
-        };
-        Some(numbers.chunks(2).map(of_entry).collect())
+        let games = games.iter().map(|row| row.result.as_ref().ok().copied()).collect::<Option<Vec<Metrics>>>()?;
+        Some(games.chunks(2).map(Metrics::mean).collect())
     };
     let of_point = |point: usize| {
-        let seeds: Vec<Option<Vec<Vec<f64>>>> = (0..seeds).map(|seed| of_seed(point, seed)).collect();
-        let of_entry = |entry: usize| seeds.iter().map(|seed| Some(seed.as_ref()?[entry].clone())).collect();
+        let seeds: Vec<Option<Vec<Metrics>>> = (0..seeds).map(|seed| of_seed(point, seed)).collect();
+        let of_entry = |entry: usize| seeds.iter().map(|seed| Some(seed.as_ref()?[entry])).collect();
         (0..entries).map(of_entry).collect()
     };
     Observations { by_point: (0..plan.points().len()).map(of_point).collect() }
 }
 
 fn point_report(plan: &Plan, observed: &Observations, names: &[String], point: usize) -> PointReport {
-    let all = |of: &dyn Fn(usize) -> Option<Estimate>| (0..METRICS.len()).map(of).collect();
+    let all = |of: &dyn Fn(&Metric) -> Option<Estimate>| METRICS.iter().map(of).collect();
     let entries = names.iter().enumerate().map(|(entry, name)| EntryAtPoint {
         entry: name.clone(),
         metrics: all(&|metric| observed.estimate(&[point], entry, metric)),
@@ -194,38 +191,25 @@ fn point_report(plan: &Plan, observed: &Observations, names: &[String], point: u
     }
 }
 
-/// The points of the entry of a game, and of its opponent, among the numbers of its [`Row`].
-#[must_use]
-pub fn score(numbers: &[f64]) -> [f64; 2] {
-    ["score", "opponent_score"].map(|name| number_of(numbers, name))
-}
-
-fn number_of(numbers: &[f64], metric: &str) -> f64 {
-    index_of(metric).map_or(f64::NAN, |i| numbers[i])
-}
-
 /// The games that each entry lost by most, or won by least.
 fn worst(plan: &Plan, rows: &[Row]) -> Vec<Worst> {
     let mut worst = vec![];
     for (entry, entrant) in plan.sweep().entries.iter().enumerate() {
-        let mut games: Vec<(Job, &Vec<f64>, &String)> = rows
-            .iter()
-            .filter_map(|row| Some((plan.job(row.index), row.result.as_ref().ok()?, &row.digest)))
-            .filter(|(job, ..)| job.entry == entry)
-            .collect();
-        games.sort_by(|(a, one, _), (b, other, _)| {
-            let by = number_of(one, "score_difference").total_cmp(&number_of(other, "score_difference"));
-            by.then(a.index.cmp(&b.index))
+        let of_entry = rows.iter().filter(|row| row.job.entry == entry);
+        let mut games: Vec<(&Row, &Metrics)> =
+            of_entry.filter_map(|row| Some((row, row.result.as_ref().ok()?))).collect();
+        games.sort_by(|(a, one), (b, other)| {
+            one.score_difference.total_cmp(&other.score_difference).then(a.job.index.cmp(&b.job.index))
         });
-        worst.extend(games.into_iter().take(WORST).map(|(job, numbers, digest)| Worst {
+        worst.extend(games.into_iter().take(WORST).map(|(Row { job, digest, .. }, metrics)| Worst {
             entry: entrant.name.clone(),
             game: job.index,
             values: plan.points()[job.point].values.iter().map(ToString::to_string).collect(),
-            score: score(numbers),
-            contacts: number_of(numbers, "contacts"),
-            out_of_bounds: number_of(numbers, "out_of_bounds"),
+            score: metrics.score(),
+            contacts: metrics.contacts,
+            out_of_bounds: metrics.own.out_of_bounds,
             digest: digest.clone(),
-            command: plan.command(&job),
+            command: plan.command(job),
         }));
     }
     worst

@@ -4,7 +4,7 @@
 //! strength's logarithm, 400 points for a factor of 10. A draw is half a win for each. The most likely strengths are found at once from
 //! all games, so that their order does not matter.
 
-use super::estimate::quantile;
+use crate::estimate::quantile;
 use game::math;
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};

@@ -4,11 +4,11 @@
 //! its own. Sampling that learns where failures are (cross-entropy) and populations that split at near failures were tried: with the same
 //! number of games their intervals were no narrower.
 
-use crate::condition::Condition;
-use crate::journal::Journal;
-use crate::plan::{Job, Plan, Point};
-use crate::study::StudyError;
-use arena::tournament::Estimate;
+use super::condition::Condition;
+use super::journal::Journal;
+use super::plan::{Job, Plan, Point};
+use super::study::StudyError;
+use crate::estimate::Estimate;
 use game::scenario::{Axis, AxisValue};
 use game::stream::Stream;
 use serde::Serialize;
@@ -108,7 +108,7 @@ pub fn find(
         }
         let before = failed.len();
         for (job, result) in order.into_iter().zip(played) {
-            let value = result.map_err(FindError::Game)?[condition.metric];
+            let value = condition.metric.of(&result.map_err(FindError::Game)?);
             let margin = condition.margin(value);
             if margin < 0.0 {
                 failed.push(Failed { value, margin, point: round.points()[job.point].clone(), job });

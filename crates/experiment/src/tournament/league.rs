@@ -4,7 +4,8 @@
 //! its seed: whoever changes a strategy gets new games, and whoever gives it another name does not.
 
 use super::plan::Plan;
-use super::play::{Game, Record};
+use super::play::Record;
+use crate::pipeline::Game;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use thiserror::Error;
