@@ -5,7 +5,6 @@
 
 use game::angle::wrap_pi;
 use game::math;
-use nalgebra::{Matrix5, Vector5};
 use std::f64::consts::TAU;
 
 /// The most pairs that are kept.
@@ -63,14 +62,16 @@ impl CompassSwing {
             [s + sin, c + cos]
         });
         let mean_rad = math::atan2(sin, cos);
-        let (mut normal, mut right) = (Matrix5::zeros(), Vector5::zeros());
+        let (mut normal, mut right) = ([[0.0; 5]; 5], [0.0; 5]);
         for (psi_rad, off_rad) in &self.pairs {
-            let row = Vector5::from(basis(*psi_rad));
-            right += row * wrap_pi(off_rad - mean_rad);
-            normal += row * row.transpose();
+            let (row, off_rad) = (basis(*psi_rad), wrap_pi(off_rad - mean_rad));
+            for i in 0..5 {
+                right[i] += row[i] * off_rad;
+                (0..5).for_each(|j| normal[i][j] += row[i] * row[j]);
+            }
         }
-        let solved = normal.cholesky().map(|normal| normal.solve(&right));
-        let mut found: [f64; 5] = solved.ok_or_else(|| "the headings do not tell a curve".to_owned())?.into();
+        let solved = solve_positive_definite(normal, right);
+        let mut found = solved.ok_or_else(|| "the headings do not tell a curve".to_owned())?;
         found[0] = wrap_pi(found[0] + mean_rad);
         let value = |psi_rad: f64| basis(psi_rad).iter().zip(found).map(|(base, factor)| base * factor).sum::<f64>();
         let squares = self.pairs.iter().map(|(psi_rad, off)| wrap_pi(off - value(*psi_rad))).map(|rest| rest * rest);
@@ -100,6 +101,32 @@ fn basis(psi_rad: f64) -> [f64; 5] {
     [1.0, sin, cos, sin_2, cos_2]
 }
 
+/// Solves a symmetric system by Cholesky's factors (Golub and Van Loan, *Matrix Computations*, 4.2.3 and 3.1); nothing if it
+/// is not positive definite. Five lines and columns are no reason to have a library of matrices on the boat.
+fn solve_positive_definite(matrix: [[f64; 5]; 5], right: [f64; 5]) -> Option<[f64; 5]> {
+    let (mut lower, mut x) = (matrix, right);
+    for j in 0..5 {
+        for k in 0..j {
+            (j..5).for_each(|i| lower[i][j] -= lower[j][k] * lower[i][k]);
+        }
+        if lower[j][j].is_nan() || lower[j][j] <= 0.0 {
+            return None;
+        }
+        let pivot = lower[j][j].sqrt();
+        lower[j][j] = pivot;
+        (j + 1..5).for_each(|i| lower[i][j] /= pivot);
+    }
+    for i in 0..5 {
+        x[i] /= lower[i][i];
+        (i + 1..5).for_each(|k| x[k] -= x[i] * lower[k][i]);
+    }
+    for i in (0..5).rev() {
+        let known: f64 = (i + 1..5).map(|k| lower[k][i] * x[k]).sum();
+        x[i] = (x[i] - known) / lower[i][i];
+    }
+    Some(x)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -127,6 +154,15 @@ mod tests {
                 prop_assert!(wrap_pi((got - want).to_radians()).to_degrees().abs() < 0.3, "{got}, expected {want}");
             }
             prop_assert!((got.residual_deg - noise_deg).abs() < 0.1, "{} of {noise_deg}", got.residual_deg);
+        }
+    }
+
+    #[test]
+    fn a_system_that_is_not_positive_definite_has_no_solution() {
+        let scaled = |factor: f64| std::array::from_fn(|i| std::array::from_fn(|j| if i == j { factor } else { 0.0 }));
+        assert_eq!(solve_positive_definite(scaled(4.0), [4.0; 5]), Some([1.0; 5]));
+        for factor in [0.0, -1.0, f64::NAN] {
+            assert_eq!(solve_positive_definite(scaled(factor), [4.0; 5]), None, "{factor}");
         }
     }
 
