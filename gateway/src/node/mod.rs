@@ -1,10 +1,11 @@
 //! The network shell: connects a real boat with a game, and emulates a boat for real back seats.
 //!
-//! [`serve`] is for a real boat, [`emulate`] for a simulated one. All decisions are made in [`crate::bridge`] and
-//! [`crate::emulator`]; here are the sockets, the clocks and the threads.
+//! [`serve`] is for a real boat, `emulate` for a simulated one. All decisions are made in [`crate::bridge`] and
+//! `crate::emulator`; here are the sockets, the clocks and the threads.
 
 mod clock;
 mod control_port;
+#[cfg(feature = "emulator")]
 mod emulator;
 mod game_finder;
 mod gateway_loop;
@@ -18,6 +19,7 @@ mod report;
 mod tcp_port;
 mod terminal_key;
 
+#[cfg(feature = "emulator")]
 pub use emulator::{EmulatorSettings, emulate};
 pub use guard::guard;
 pub use machine_check::machine_checks;
