@@ -1,7 +1,7 @@
 //! The hardware loop, closed on one machine: water of its own, an emulated boat and a gateway for every real one.
 
 use super::child_process::{self, ChildProcess, option};
-use super::net_args::{free_port, unique_game_name};
+use super::hub_args::{free_port, unique_game_name};
 use super::pace_args::PaceArgs;
 use crate::game_args::GameArgs;
 use crate::output_file;

@@ -1,7 +1,6 @@
 //! `squall helm`: one decision of a boat's helm, in a table, as numbers and as pictures.
 
-use super::net_args::LeafArgs;
-use super::observer::Observer;
+use super::{helm_page, helm_query};
 use crate::plot::Page;
 use crate::{helm_text, plot, screen};
 use anyhow::{Context, Result, bail};
@@ -13,6 +12,8 @@ use std::process::ExitCode;
 
 mod polar;
 
+use command_line::leaf_args::LeafArgs;
+use command_line::observer::Observer;
 use polar::PolarPlot;
 
 /// Whose, and into which files.
@@ -40,12 +41,12 @@ const COLLECTIVE: &str = "collective";
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let observer = Observer::connect(&args.leaf)?;
     let vehicle = observer.vehicle(&args.vehicle)?;
-    let report = observer.helm_of_agent(vehicle, HelmQuestion { functions: true })?;
+    let report = helm_query::report_of_agent(&observer, vehicle, HelmQuestion { functions: true })?;
     let scenario = &observer.info.scenario;
     if report.functions.iter().any(|function| function.utilities.is_empty()) {
         bail!("the helm of {} has not decided since it was asked; ask again", args.vehicle);
     }
-    screen::print(&helm_text::page(scenario, &report));
+    screen::print(&helm_page::page(scenario, &report));
     if let Some(path) = &args.csv {
         write_csv(path, scenario, &report)
             .with_context(|| format!("cannot write the functions to {}", path.display()))?;

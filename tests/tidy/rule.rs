@@ -8,7 +8,7 @@ use crate::tree::Tree;
 pub(crate) const LINES_MAX: usize = 500;
 
 /// What each crate of ours may depend on, whatever the section. Folders that are planned are in here already.
-const MAY_IMPORT: [(&str, &[&str]); 16] = [
+const MAY_IMPORT: [(&str, &[&str]); 18] = [
     ("onnx", &[]),
     ("game", &["onnx"]),
     ("bus", &["game"]),
@@ -16,6 +16,9 @@ const MAY_IMPORT: [(&str, &[&str]); 16] = [
     ("sim", &["game", "bus", "recording"]),
     ("agent", &["onnx", "game", "bus"]),
     ("gateway", &["game", "bus", "recording", "agent"]),
+    ("command_line", &["game", "bus", "recording"]),
+    // Neither a web server nor anything that plays or learns: what drives a boat is read by itself.
+    ("gateway/cli", &["game", "bus", "recording", "gateway", "command-line"]),
     ("gateway/crosscheck", &["game", "gateway"]),
     ("fuzz", &["onnx", "game", "bus", "recording", "sim", "agent", "gateway", "arena", "analysis", "shore"]),
     // `analysis` for examples: what games in one process tell.
@@ -36,6 +39,8 @@ const MAY_IMPORT: [(&str, &[&str]); 16] = [
             "sim",
             "agent",
             "gateway",
+            "gateway-cli",
+            "command-line",
             "arena",
             "analysis",
             "learn",
@@ -84,8 +89,7 @@ fn dependencies(tree: &Tree) -> Breaches {
         let entries = manifest_entries(text).into_iter().filter(|(_, section, _)| section != "workspace.dependencies");
         for (number, section, name) in entries {
             let place = format!("{path}:{number}");
-            let of_ours =
-                MAY_IMPORT.iter().any(|(ours, _)| !ours.is_empty() && *ours == name) || name.starts_with("squall");
+            let of_ours = MAY_IMPORT.iter().any(|(folder, _)| dependency(folder) == name) || name.starts_with("squall");
             if of_ours && !allowed.contains(&name.as_str()) {
                 let allowed = if allowed.is_empty() { "nothing of ours".to_owned() } else { allowed.join(", ") };
                 breaches.push(format!("{place}: {folder} depends on {name}, allowed: {allowed}"));
@@ -102,6 +106,11 @@ fn dependencies(tree: &Tree) -> Breaches {
         }
     }
     breaches
+}
+
+/// What manifests call the crate in a folder: `gateway-cli` that in `gateway/cli`.
+fn dependency(folder: &str) -> String {
+    folder.replace(['/', '_'], "-")
 }
 
 fn bus_in_shells(tree: &Tree) -> Breaches {
@@ -250,7 +259,7 @@ fn reasons(tree: &Tree) -> Breaches {
     let cells: Vec<&str> = rows.iter().filter_map(|row| row.split('|').nth(1)).map(str::trim).collect();
     let named = |name: &str| cells.contains(&format!("`{name}`").as_str());
     let foreign = |(_, section, name): &(usize, String, String)| {
-        section == "workspace.dependencies" && !MAY_IMPORT.iter().any(|(ours, _)| ours == name)
+        section == "workspace.dependencies" && !MAY_IMPORT.iter().any(|(folder, _)| dependency(folder) == *name)
     };
     let entries = manifest_entries(manifest).into_iter().filter(foreign);
     let unexplained = entries.filter(|(_, _, name)| !named(name));

@@ -97,10 +97,18 @@ pub struct Outside {
     pub silence: Duration,
     /// Where the control port listens; port 0 is any that is free.
     pub control: SocketAddr,
-    /// The program whose `gateway guard` stops the boat when this process cannot; `None` is without.
-    pub guard: Option<PathBuf>,
+    /// Starts the process that calls [`guard()`] and stops the boat when this one cannot; `None` is without.
+    pub guard: Option<GuardCommand>,
     /// The payloads of the boat that are passed through.
     pub payloads: Vec<PayloadPort>,
+}
+
+/// A command whose process calls [`guard()`].
+pub struct GuardCommand {
+    /// The file of the program.
+    pub program: PathBuf,
+    /// Its arguments.
+    pub args: Vec<String>,
 }
 
 /// What a link tells its gateway.
@@ -235,8 +243,9 @@ pub fn serve(settings: &Settings, outside: &Outside, notify: &mut dyn FnMut(Node
 
 /// The guard, where there is to be one. A boat is not left alone since it cannot be started.
 fn start_guard(settings: &Settings, outside: &Outside, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Option<Guarded> {
-    let mut command = Command::new(outside.guard.as_ref()?);
-    command.args(["gateway", "guard"]).env_clear();
+    let GuardCommand { program, args } = outside.guard.as_ref()?;
+    let mut command = Command::new(program);
+    command.args(args).env_clear();
     let started = Guarded::start(command, &Protocol::new(&settings.gateway).guard_message());
     if let Err(e) = &started {
         let text = format!("there is no guard, so if the gateway is killed, nobody stops the boat: {e}");

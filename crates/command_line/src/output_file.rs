@@ -6,12 +6,12 @@ use std::fs::OpenOptions;
 use std::path::Path;
 
 /// Writes a file; `what` stands in the error.
-pub(crate) fn write(path: &Path, what: &str, bytes: impl AsRef<[u8]>) -> Result<()> {
+pub fn write(path: &Path, what: &str, bytes: impl AsRef<[u8]>) -> Result<()> {
     std::fs::write(path, bytes).with_context(|| format!("cannot write {what} to {}", path.display()))
 }
 
 /// Whether a file can be written, to be asked before hours of games; it is as before then.
-pub(crate) fn check(path: &Path, what: &str) -> Result<()> {
+pub fn check(path: &Path, what: &str) -> Result<()> {
     let is_new = match std::fs::metadata(path) {
         // A pipe would be waited for.
         Ok(metadata) if !metadata.is_file() && !metadata.is_dir() => return Ok(()),
@@ -26,12 +26,12 @@ pub(crate) fn check(path: &Path, what: &str) -> Result<()> {
 }
 
 /// Writes a value as JSON that people can read.
-pub(crate) fn write_json(path: &Path, what: &str, value: &impl Serialize) -> Result<()> {
+pub fn write_json(path: &Path, what: &str, value: &impl Serialize) -> Result<()> {
     let text = serde_json::to_string_pretty(value).with_context(|| format!("{what} is not JSON"))?;
     write(path, what, text + "\n")
 }
 
 /// A folder that is there.
-pub(crate) fn make_folder(dir: &Path) -> Result<()> {
+pub fn make_folder(dir: &Path) -> Result<()> {
     std::fs::create_dir_all(dir).with_context(|| format!("cannot make the folder {}", dir.display()))
 }

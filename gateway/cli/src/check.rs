@@ -1,13 +1,13 @@
-//! `squall gateway check`: the sensor check of a boat, and with a vehicle the pre-flight check before arming.
+//! `gateway check`: the sensor check of a boat, and with a vehicle the pre-flight check before arming.
 
 use super::preflight_report;
 use super::swing_guide::{Guide, guided_checks};
-use crate::net_args::LeafArgs;
-use crate::screen;
-use crate::sim_command::seconds;
-use crate::stop;
 use anyhow::{Context, Result, anyhow, bail};
 use bus::game_search::GameSearch;
+use command_line::leaf_args::LeafArgs;
+use command_line::number::seconds;
+use command_line::stop;
+use command_line::terminal;
 use game::SimTime;
 use game::gateway::{BoatProtocol, Gateway};
 use gateway::geofence::GeofenceArea;
@@ -33,7 +33,7 @@ const GAME_WAIT: Duration = Duration::from_secs(5);
 
 /// Which boat.
 #[derive(clap::Args)]
-pub(crate) struct Args {
+pub struct Args {
     /// Where the boat is: tcp://HOST:PORT, udp://HOST:PORT, serial:///dev/ttyUSB0?baud=38400
     #[arg(long, value_name = "URL")]
     link: String,
@@ -44,7 +44,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "NAME")]
     vehicle: Option<String>,
     /// By which gateway file it will be driven, a file or a name [default: a Surveyor with careful limits]
-    #[arg(long, value_name = "FILE", value_parser = crate::scenario_files::gateway)]
+    #[arg(long, value_name = "FILE", value_parser = command_line::scenario_files::gateway)]
     config: Option<PathBuf>,
     /// Guides through compass swing and propeller test, under remote control; asks before each
     #[arg(long, requires = "vehicle")]
@@ -76,7 +76,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         bail!("nothing to be read from {address} in {for_s} s: {reason} ({counts})");
     }
     let host = date_and_time(utc::now_ns()).1;
-    screen::print(&report(check, listener.now(), host));
+    terminal::print(&report(check, listener.now(), host));
     let Some(vehicle) = &args.vehicle else {
         return Ok(if check.missing().is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE });
     };
@@ -90,21 +90,21 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let now_ns = utc::now_ns();
     let (at_unix_s, at) = (now_ns / 1_000_000_000, utc::text(now_ns));
     let made = Report { vehicle: vehicle.clone(), link: address.to_string(), at_unix_s, at, checks };
-    screen::print(&format!("\n{}", made.text()));
+    terminal::print(&format!("\n{}", made.text()));
     preflight_report::write(&path, &made)?;
-    screen::remark(&format!("report in {}", path.display()));
+    terminal::remark(&format!("report in {}", path.display()));
     Ok(if made.faults().is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
 /// Where the game plays, if there is one now.
 fn water(args: &Args, vehicle: &str, gateway: &Gateway, stop: &AtomicBool) -> Result<Option<Water>> {
-    let mut tell = |reason: &str| screen::remark(&format!("looking for the game: {reason}"));
+    let mut tell = |reason: &str| terminal::remark(&format!("looking for the game: {reason}"));
     let place = args.leaf.place()?;
     let found = GameSearch::new(GAME_WAIT, stop).game(&mut tell, &place, args.leaf.game.as_ref());
     let (bus, _, info) = match found {
         Ok(found) => found,
         Err(e) => {
-            screen::remark(&format!("without a game: {e}"));
+            terminal::remark(&format!("without a game: {e}"));
             return Ok(None);
         }
     };
@@ -158,10 +158,10 @@ impl Listener {
             self.ask();
             match self.events.recv_timeout(Duration::from_millis(100)) {
                 Ok(LinkEvent::Bytes { at, bytes, .. }) => self.check.take(self.at(at), &bytes),
-                Ok(LinkEvent::Up { name, .. }) => screen::remark(&format!("connected to {name}; {}", self.hello)),
+                Ok(LinkEvent::Up { name, .. }) => terminal::remark(&format!("connected to {name}; {}", self.hello)),
                 Ok(LinkEvent::Failed { reason: why, .. } | LinkEvent::Down { reason: why, .. }) => {
                     if why != self.reason {
-                        screen::remark(&why);
+                        terminal::remark(&why);
                     }
                     self.reason = why;
                 }

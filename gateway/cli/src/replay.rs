@@ -1,14 +1,14 @@
-//! `squall gateway replay`: a recording through the codec and the supervisor again.
+//! `gateway replay`: a recording through the codec and the supervisor again.
 
 use super::log_line::{full, text_of};
-use crate::{recording_file, screen};
 use anyhow::{Context, Result};
+use command_line::{recording_file, terminal};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Which recording.
 #[derive(clap::Args)]
-pub(crate) struct Args {
+pub struct Args {
     /// The recording
     file: PathBuf,
 }
@@ -18,11 +18,11 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let bag = recording_file::open_any(&args.file, "replay")?;
     let replay = gateway::replay::replay(&bag).with_context(name)?;
     for (at, event) in &replay.events {
-        screen::show(&format!("{:>8.1} s  {}\n", at.as_s(), text_of(event)));
+        terminal::show(&format!("{:>8.1} s  {}\n", at.as_s(), text_of(event)));
     }
-    screen::show(&full(&replay.status));
+    terminal::show(&full(&replay.status));
     let cut = if replay.is_cut { " (the file ends abruptly)" } else { "" };
-    screen::print(&format!(
+    terminal::print(&format!(
         "{} inputs over {:.1} s, {} bytes from the boat, {} to it{cut}\n",
         replay.inputs,
         replay.lasted.as_s(),
@@ -30,10 +30,10 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         replay.bytes_out
     ));
     let Some(difference) = replay.difference else {
-        screen::print("the replay is the recording, byte for byte\n");
+        terminal::print("the replay is the recording, byte for byte\n");
         return Ok(ExitCode::SUCCESS);
     };
-    screen::print(&format!(
+    terminal::print(&format!(
         "at {:.3} s the replay differs\n  recorded  {}\n  replayed  {}\n",
         difference.at.as_s(),
         difference.recorded,

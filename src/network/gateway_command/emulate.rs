@@ -1,16 +1,15 @@
 //! `squall gateway emulate`: a simulated boat for a real back seat or ground station.
 
-use super::log_line::Log;
-use crate::net_args::LeafArgs;
-use crate::sim_command::seconds;
 use crate::stop;
-use crate::water_args::within;
 use anyhow::{Context, Result, anyhow, bail};
 use clap::ValueEnum;
-use game::gateway::BoatProtocol;
+use command_line::leaf_args::LeafArgs;
+use command_line::number::{seconds, within};
 use gateway::emulator::Extra;
 use gateway::link::LinkAddress;
 use gateway::node::{EmulatorSettings, NodeEvent};
+use gateway_cli::log_line::Log;
+use gateway_cli::protocol_arg::ProtocolArg;
 use std::process::ExitCode;
 use std::time::Duration;
 
@@ -58,23 +57,6 @@ pub(crate) struct Args {
     /// Prints errors only, and stops when standard input ends
     #[arg(long, hide = true)]
     for_parent: bool,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
-pub(super) enum ProtocolArg {
-    /// The sentences of a SeaRobotics Surveyor
-    Surveyor,
-    /// MAVLink, as ArduPilot's boats speak it
-    Mavlink,
-}
-
-impl ProtocolArg {
-    pub(super) fn protocol(self) -> BoatProtocol {
-        match self {
-            ProtocolArg::Surveyor => BoatProtocol::Surveyor,
-            ProtocolArg::Mavlink => BoatProtocol::Mavlink,
-        }
-    }
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]

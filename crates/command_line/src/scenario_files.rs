@@ -1,32 +1,33 @@
 //! The scenario files that the program has inside of itself, and what a word of the command line names: a path, or the name of one.
 
+use crate::program;
 use anyhow::{Result, anyhow, bail};
 use game::scenario::{Kind, built_in, did_you_mean, other_kind, set_built_in};
 use include_dir::{Dir, include_dir};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-static FILES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/scenarios");
+static FILES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../scenarios");
 /// The folder in which files are looked for by name, here and in folders above.
 const FOLDER: &str = "scenarios";
 
 /// What is inside of the program stands in for what is not on the disk.
-pub(crate) fn install() {
+pub fn install() {
     set_built_in(|name| FILES.get_file(name).map(include_dir::File::contents));
 }
 
 /// What a file inside of the program says, if there is one of this name.
-pub(crate) fn contents(kind: Kind, name: &str) -> Option<&'static [u8]> {
+pub fn contents(kind: Kind, name: &str) -> Option<&'static [u8]> {
     FILES.get_file(format!("{}/{name}.toml", kind.folder())).map(include_dir::File::contents)
 }
 
 /// The file of a kind that a word names: a path, or a name in the folder `scenarios` here, in one above, or inside of the program.
-pub(crate) fn find(word: &str, kind: Kind) -> Result<PathBuf> {
+pub fn find(word: &str, kind: Kind) -> Result<PathBuf> {
     find_beside(word, kind, None)
 }
 
 /// The same, where a name is first looked for in a folder.
-pub(crate) fn find_beside(word: &str, kind: Kind, beside: Option<&Path>) -> Result<PathBuf> {
+pub fn find_beside(word: &str, kind: Kind, beside: Option<&Path>) -> Result<PathBuf> {
     let given = PathBuf::from(word);
     if word.contains(['/', '\\']) || given.extension().is_some_and(|end| end == "toml") || given.is_file() {
         return match other_kind(&given, kind) {
@@ -68,22 +69,23 @@ fn unknown(word: &str, kind: Kind, folders: &[PathBuf]) -> anyhow::Error {
 }
 
 /// Where a file of a kind is asked for.
-fn where_it_goes(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Game => ": squall run plays it",
-        Kind::Strategy => ": --blue and --red take it",
-        Kind::Sea => ": --sea takes it",
-        Kind::Field => ": --field takes it",
-        Kind::Tournament => ": squall tournament plays it",
-        Kind::Sweep => ": squall sweep plays it",
-        Kind::Training => ": squall train takes it",
-        Kind::Gateway => ": squall gateway surveyor --config takes it",
-        Kind::Boat | Kind::Rules | Kind::Rewards => "",
-    }
+fn where_it_goes(kind: Kind) -> String {
+    let place = match kind {
+        Kind::Game => "squall run plays it",
+        Kind::Strategy => "--blue and --red take it",
+        Kind::Sea => "--sea takes it",
+        Kind::Field => "--field takes it",
+        Kind::Tournament => "squall tournament plays it",
+        Kind::Sweep => "squall sweep plays it",
+        Kind::Training => "squall train takes it",
+        Kind::Gateway => "{gateway} surveyor --config takes it",
+        Kind::Boat | Kind::Rules | Kind::Rewards => return String::new(),
+    };
+    format!(": {}", program::text(place))
 }
 
 /// The names of the files of a kind inside of the program.
-pub(crate) fn names(kind: Kind) -> BTreeSet<String> {
+pub fn names(kind: Kind) -> BTreeSet<String> {
     let files = FILES.get_dir(kind.folder()).into_iter().flat_map(Dir::files);
     files.filter_map(|file| name_of(file.path())).collect()
 }
@@ -103,7 +105,7 @@ macro_rules! finders {
     ($($name:ident $kind:ident,)*) => {
         $(
             /// What an argument for a file of this kind names.
-            pub(crate) fn $name(word: &str) -> Result<PathBuf> {
+            pub fn $name(word: &str) -> Result<PathBuf> {
                 find(word, Kind::$kind)
             }
         )*

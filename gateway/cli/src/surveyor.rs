@@ -1,13 +1,12 @@
-//! `squall gateway surveyor`: a real boat in a game.
+//! `gateway surveyor`: a real boat in a game.
 
 use super::log_line::{Log, full};
-use super::preflight_report;
-use crate::child_process;
-use crate::net_args::LeafArgs;
-use crate::sim_command::seconds;
-use crate::stop;
+use super::{guard, preflight_report};
 use anyhow::{Context, Result, anyhow};
 use bus::{Registration, Token};
+use command_line::leaf_args::LeafArgs;
+use command_line::number::seconds;
+use command_line::{program, stop};
 use game::external::{GatewayCommand, OperatorCommand};
 use game::gateway::Gateway;
 use gateway::bridge::Preflight;
@@ -26,7 +25,7 @@ const KEY_ANSWER: Duration = Duration::from_secs(2);
 
 /// Which boat, and where.
 #[derive(clap::Args)]
-pub(crate) struct Args {
+pub struct Args {
     /// The vehicle in the game, by name; there it has source = "external"
     #[arg(long, value_name = "NAME")]
     vehicle: String,
@@ -41,7 +40,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "HOST:PORT", default_value = "127.0.0.1:0", value_parser = control_address)]
     control_listen: SocketAddr,
     /// How it is driven and stopped: a gateway file or its name [default: a Surveyor with careful limits]
-    #[arg(long, value_name = "FILE", value_parser = crate::scenario_files::gateway)]
+    #[arg(long, value_name = "FILE", value_parser = command_line::scenario_files::gateway)]
     config: Option<PathBuf>,
     /// Arms by itself, once, as soon as it is ready; after a failsafe it has to be armed by command
     #[arg(long)]
@@ -77,7 +76,7 @@ pub(crate) struct Args {
     for_parent: bool,
 }
 
-pub(crate) fn run(args: &Args) -> Result<ExitCode> {
+pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
     let link = LinkAddress::to_connect(&args.link).map_err(|e| anyhow!("--link: {e}"))?;
     let gateway = super::gateway_file(args.config.as_deref())?;
     PayloadPort::check(&args.payload).map_err(|e| anyhow!("--payload: {e}"))?;
@@ -102,13 +101,13 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         preflight,
         at_game_pace: args.at_game_pace,
         record,
-        commit: env!("SQUALL_COMMIT"),
+        commit,
         wait: args.wait_s.map_or(Duration::MAX, Duration::from_secs_f64),
         stop: stop.clone(),
     };
     let silence = Duration::from_secs_f64(args.silence_s);
     // An emulated boat in a hurry is stopped by nobody: a busy machine would look like a gateway that hangs.
-    let guard = if args.at_game_pace { None } else { Some(child_process::own_program()?) };
+    let guard = if args.at_game_pace { None } else { Some(guard::own_command()?) };
     let payloads = args.payload.clone();
     let outside = Outside { link, silence, control: args.control_listen, guard, payloads };
     let (mut last, mut registration) = (String::new(), None::<Registration>);
@@ -160,7 +159,7 @@ fn preflight(args: &Args, link: &LinkAddress, gateway: &Gateway) -> Result<Prefl
     if let Some(person) = &args.without_preflight {
         return Ok(Preflight::WaivedBy(person.clone()));
     }
-    let how = "squall gateway check --vehicle, then --preflight FILE; or --without-preflight PERSON";
+    let how = program::text("{gateway} check --vehicle, then --preflight FILE; or --without-preflight PERSON");
     Ok(match &args.preflight {
         Some(path) => {
             let (report, now_s) = (preflight_report::read(path)?, utc::now_ns() / 1_000_000_000);

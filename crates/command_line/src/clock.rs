@@ -4,12 +4,12 @@ use std::time::{Duration, Instant};
 
 /// This moment.
 #[expect(clippy::disallowed_methods, reason = "how long something takes is told to people")]
-pub(crate) fn now() -> Instant {
+pub fn now() -> Instant {
     Instant::now()
 }
 
 /// Waits where there is no condition to wait for.
 #[expect(clippy::disallowed_methods, reason = "between two looks at whether somebody wants it to stop")]
-pub(crate) fn rest(time: Duration) {
+pub fn rest(time: Duration) {
     std::thread::sleep(time);
 }

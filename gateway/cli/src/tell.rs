@@ -1,18 +1,18 @@
-//! `squall gateway tell`: an operator command to a boat's gateway.
+//! `gateway tell`: an operator command to a boat's gateway.
 //!
 //! What stops boats takes every path at once. The rest goes straight to the gateway's control port where that is known, and over
 //! the network of the game otherwise; to all boats it goes both ways.
 
 use super::log_line::full;
 use super::mission_file;
-use crate::net_args::LeafArgs;
-use crate::observer::Observer;
-use crate::screen;
-use crate::water_args::within;
 use anyhow::{Context, Error, Result, anyhow, bail};
 use bus::stop::{StopClient, StopCommand, StopNews, StopOrders};
 use bus::{Bus, BusError, Token, ask_gateway, clock};
 use clap::ValueEnum;
+use command_line::leaf_args::LeafArgs;
+use command_line::number::within;
+use command_line::observer::Observer;
+use command_line::terminal;
 use game::external::{BoatMode, FleetCommand, GatewayCommand, OperatorCommand, OperatorReply};
 use game::message::Control;
 use game::topic::{self, GameName};
@@ -35,7 +35,7 @@ const STOP_MAX: Duration = Duration::from_secs(10);
 
 /// Whom, and what.
 #[derive(clap::Args)]
-pub(crate) struct Args {
+pub struct Args {
     #[command(flatten)]
     words: Words,
     /// The gateway's control port, as it shows it [default: those of this machine's gateways, or by way of the game]
@@ -103,7 +103,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         return tell_all(args);
     }
     let reply = tell(args, &command)?;
-    screen::show(&full(&reply.status));
+    terminal::show(&full(&reply.status));
     match reply.refused {
         None => Ok(ExitCode::SUCCESS),
         Some(reason) => Err(anyhow!("{} refuses: {reason}", args.words.vehicle)),
@@ -197,7 +197,7 @@ fn tell(args: &Args, command: &OperatorCommand) -> Result<OperatorReply> {
     if let Some(port) = ports_meant(args)?.first() {
         match port.ask(&GatewayCommand::Boat { name: vehicle.clone(), command: command.clone() }) {
             // It may be ending; the one that comes after it is found by way of the game.
-            Err(error @ BusError::Use { .. }) if args.gateway.is_none() => screen::remark(&error.to_string()),
+            Err(error @ BusError::Use { .. }) if args.gateway.is_none() => terminal::remark(&error.to_string()),
             reply => return Ok(reply?),
         }
     }
@@ -279,13 +279,13 @@ fn tell_stop(args: &Args, command: StopCommand) -> Result<ExitCode> {
     let left = client.finish(if is_alone { Duration::ZERO } else { STOP_MAX });
     for news in client.visit(StopOrders::take_news) {
         if let StopNews::Done { vehicle, state, after, .. } = news {
-            screen::show(&format!("{vehicle}: {} after {} ms\n", super::log_line::state(&state), after.as_millis()));
+            terminal::show(&format!("{vehicle}: {} after {} ms\n", super::log_line::state(&state), after.as_millis()));
         }
     }
     match (left.is_empty(), no_game.get()) {
         (true, None) if client.visit(|orders| orders.is_done(clock::now())) => {}
-        (true, None) => screen::remark("the game does not answer: only the gateways that are known were told"),
-        (true, Some(reason)) => screen::remark(&format!("only gateways were told, and no game: {reason}")),
+        (true, None) => terminal::remark("the game does not answer: only the gateways that are known were told"),
+        (true, Some(reason)) => terminal::remark(&format!("only gateways were told, and no game: {reason}")),
         (false, None) => return Err(anyhow!(left.join("; "))),
         (false, Some(reason)) => return Err(anyhow!("{}; {reason}", left.join("; "))),
     }
@@ -348,7 +348,7 @@ fn tell_all(args: &Args) -> Result<ExitCode> {
             Ok(Outcome::Failed(error)) => failed.push(format!("{error:#}")),
             Ok(Outcome::Reply(reply)) => {
                 is_done = true;
-                screen::show(&full(&reply.status));
+                terminal::show(&full(&reply.status));
                 failed.extend(reply.refused.map(|reason| format!("{} refuses: {reason}", reply.status.vehicle)));
             }
             Err(RecvTimeoutError::Disconnected) => break,
@@ -359,7 +359,7 @@ fn tell_all(args: &Args) -> Result<ExitCode> {
         }
     }
     match no_game {
-        Some(error) if is_done => screen::remark(&format!("only gateways were told, and no game: {error:#}")),
+        Some(error) if is_done => terminal::remark(&format!("only gateways were told, and no game: {error:#}")),
         Some(error) => failed.push(format!("{error:#}")),
         None => {}
     }

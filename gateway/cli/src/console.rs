@@ -1,14 +1,14 @@
-//! `squall gateway console`: operator commands, line by line, over paths that stay open.
+//! `gateway console`: operator commands, line by line, over paths that stay open.
 
 use super::log_line::full;
 use super::tell::{ALL, CommandArg, Port, Words, release_all, to_boat};
-use crate::net_args::LeafArgs;
-use crate::{screen, stop};
 use anyhow::{Result, bail};
 use bus::game_search::find_game;
 use bus::stop::{StopClient, StopCommand, StopNews, StopOrders};
 use bus::{Bus, Patience, SimState, SimWatch, Watched, clock};
 use clap::Parser;
+use command_line::leaf_args::LeafArgs;
+use command_line::{program, stop, terminal};
 use game::external::OperatorReply;
 use game::topic::GameName;
 use std::io::{BufRead, IsTerminal};
@@ -34,25 +34,25 @@ const HELP: &str = "\
   (empty line), estop     E-stop of all boats
   all estop               the same; also all disarm, all release, all status
   NAME estop              E-stop of one boat; NAME disarm puts it into standby
-  NAME arm, NAME release  and every other command of `squall gateway tell`
+  NAME arm, NAME release  and every other command of `{gateway} tell`
   status                  how all boats are, and how long ago they were heard
   quit                    ends; so does the end of the input
 ";
 
 /// Which game, and which gateways.
 #[derive(clap::Args)]
-#[command(after_help = concat!(
+#[command(after_help = program::text(concat!(
     "It reads commands from standard input, one a line, and prints what boats\n",
     "report, with the time since it was asked for:\n",
     "  blue_one  e-stopped  after 63 ms\n",
     "Type help for the commands. An empty line is an E-stop of all boats.\n\n",
     "It ends with 0 if every boat has reported the stops that were asked for.\n\n",
     "Examples:\n",
-    "  squall gateway console --game day\n",
-    "  squall gateway console --connect tcp/10.0.0.5:7447 --gateway 10.0.0.21:7001\n",
-    "  echo all estop | squall gateway console --game day",
-))]
-pub(crate) struct Args {
+    "  {gateway} console --game day\n",
+    "  {gateway} console --connect tcp/10.0.0.5:7447 --gateway 10.0.0.21:7001\n",
+    "  echo all estop | {gateway} console --game day",
+)))]
+pub struct Args {
     /// A gateway's control port, as it shows it; of each boat one [default: those of this machine's gateways, and those
     /// that the game names]
     #[arg(long, value_name = "HOST:PORT")]
@@ -105,7 +105,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     // A thread that panicked prints no more.
     drop(printing.join());
     console.client.visit(StopOrders::take_news).iter().for_each(show);
-    left.iter().for_each(|left| screen::remark(left));
+    left.iter().for_each(|left| terminal::remark(left));
     Ok(if left.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
@@ -123,17 +123,17 @@ impl Console {
             }
         });
         if is_terminal {
-            screen::print("type help for the commands; Enter alone is an E-stop of all boats\n> ");
+            terminal::print("type help for the commands; Enter alone is an E-stop of all boats\n> ");
         }
         while !self.is_over.load(Ordering::Relaxed) {
             match lines.recv_timeout(LOOK) {
                 Ok(line) if line == "quit" => return,
-                Ok(line) => self.obey(&line).unwrap_or_else(|e| screen::complain(&format!("{e:#}"))),
+                Ok(line) => self.obey(&line).unwrap_or_else(|e| terminal::complain(&format!("{e:#}"))),
                 Err(std::sync::mpsc::RecvTimeoutError::Timeout) => continue,
                 Err(std::sync::mpsc::RecvTimeoutError::Disconnected) => return,
             }
             if is_terminal {
-                screen::print("> ");
+                terminal::print("> ");
             }
         }
     }
@@ -141,8 +141,8 @@ impl Console {
     fn obey(&self, line: &str) -> Result<()> {
         match line {
             "" | "estop" => self.client.stop(None, StopCommand::EStop),
-            "help" => screen::print(HELP),
-            "status" => screen::print(&self.client.visit(|orders| boats_text(orders, clock::now()))),
+            "help" => terminal::print(&program::text(HELP)),
+            "status" => terminal::print(&self.client.visit(|orders| boats_text(orders, clock::now()))),
             line => match Line::try_parse_from(line.split_whitespace()) {
                 Ok(Line { words }) => self.command(words)?,
                 Err(e) => bail!("{}", e.to_string().trim_end().trim_start_matches("error: ")),
@@ -180,13 +180,13 @@ impl Console {
             let reply = to_boat(&ports, session.as_ref().map(|(bus, game)| (bus, game)), &name, &command);
             match reply {
                 Ok(OperatorReply { refused: None, status }) if words.command == CommandArg::Status => {
-                    screen::show(&full(&status));
+                    terminal::show(&full(&status));
                 }
                 Ok(OperatorReply { refused: None, status }) => tell(&name, brief(&status.state), asked),
                 Ok(OperatorReply { refused: Some(reason), .. }) => {
-                    screen::complain(&format!("{name} refuses: {reason}"))
+                    terminal::complain(&format!("{name} refuses: {reason}"))
                 }
-                Err(e) => screen::complain(&format!("{name}: {e:#}")),
+                Err(e) => terminal::complain(&format!("{name}: {e:#}")),
             }
         });
         Ok(())
@@ -197,7 +197,7 @@ impl Console {
         std::thread::spawn(move || {
             let session = console.session.visit(|session| session.clone());
             let failed = release_all(&console.ports(), session.as_ref().map(|(bus, game)| (bus, game)));
-            failed.iter().for_each(|failed| screen::complain(failed));
+            failed.iter().for_each(|failed| terminal::complain(failed));
             if failed.is_empty() {
                 tell(ALL, "released", asked);
             }
@@ -222,8 +222,8 @@ impl Console {
                     said.clear();
                     match self.stay(&bus, &game, &boats) {
                         Ok(()) if self.is_over.load(Ordering::Relaxed) => {}
-                        Ok(()) => screen::remark(&format!("the game {} is gone: looking for it", game.as_str())),
-                        Err(e) => screen::remark(&e.to_string()),
+                        Ok(()) => terminal::remark(&format!("the game {} is gone: looking for it", game.as_str())),
+                        Err(e) => terminal::remark(&e.to_string()),
                     }
                     bus.close();
                     session = None;
@@ -232,7 +232,7 @@ impl Console {
                     // What will never be there may yet be replaced by something else.
                     let reason = missing.to_string();
                     if reason != said {
-                        screen::remark(&format!("no game: {reason}"));
+                        terminal::remark(&format!("no game: {reason}"));
                         said = reason;
                     }
                     attempts += 1;
@@ -251,7 +251,7 @@ impl Console {
         self.client.join(bus, game, boats)?;
         self.session.visit(|session| *session = Some((bus.clone(), game.clone())));
         let boats = if boats.is_empty() { "no real boats".to_owned() } else { boats.join(", ") };
-        screen::remark(&format!("in the game {}: {boats}", game.as_str()));
+        terminal::remark(&format!("in the game {}: {boats}", game.as_str()));
         while !self.is_over.load(Ordering::Relaxed) && sim.state() == SimState::Alive {
             self.read_registry();
             clock::rest(LOOK_AGAIN);
@@ -279,11 +279,11 @@ impl Console {
 
 /// A line with the time since it was asked for.
 fn tell(name: &str, what: &str, asked: Instant) {
-    screen::print(&format!("{name}  {what}  after {} ms\n", clock::since(asked).as_millis()));
+    terminal::print(&format!("{name}  {what}  after {} ms\n", clock::since(asked).as_millis()));
 }
 
 fn show(news: &StopNews) {
-    screen::print(&match news {
+    terminal::print(&match news {
         StopNews::Done { vehicle, state, after, .. } => {
             format!("{vehicle}  {}  after {} ms\n", brief(state), after.as_millis())
         }

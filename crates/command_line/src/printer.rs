@@ -8,27 +8,27 @@ use std::thread::JoinHandle;
 const WAITING_MAX: usize = 1024;
 
 /// Prints in a thread of its own.
-pub(crate) struct Printer<M> {
+pub struct Printer<M> {
     messages: SyncSender<M>,
     thread: JoinHandle<()>,
 }
 
 impl<M: Send + 'static> Printer<M> {
     /// Begins to print what comes, by `print`.
-    pub(crate) fn start(mut print: impl FnMut(&M) + Send + 'static) -> Printer<M> {
+    pub fn start(mut print: impl FnMut(&M) + Send + 'static) -> Printer<M> {
         let (messages, waiting) = sync_channel::<M>(WAITING_MAX);
         let thread = std::thread::spawn(move || waiting.iter().for_each(|message| print(&message)));
         Printer { messages, thread }
     }
 
     /// Prints a message, if there is room for it.
-    pub(crate) fn print(&self, message: M) {
+    pub fn print(&self, message: M) {
         // All events are in the result of a game too, and in the recording of a gateway.
         drop(self.messages.try_send(message));
     }
 
     /// Prints the last message, after all that wait.
-    pub(crate) fn end(self, message: M) {
+    pub fn end(self, message: M) {
         // The thread takes messages for as long as this is there; if it panics, it has said so.
         drop(self.messages.send(message));
         drop(self.messages);

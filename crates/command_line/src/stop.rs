@@ -10,12 +10,12 @@ use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
 /// What a shell says of a program that Ctrl-C ended.
-pub(crate) fn interrupted() -> ExitCode {
+pub fn interrupted() -> ExitCode {
     ExitCode::from(130)
 }
 
 /// A flag that Ctrl-C or SIGTERM sets; pressed a second time they end the process at once.
-pub(crate) fn on_ctrl_c() -> anyhow::Result<Arc<AtomicBool>> {
+pub fn on_ctrl_c() -> anyhow::Result<Arc<AtomicBool>> {
     let stop = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stop);
     let pressed = move || {
@@ -28,7 +28,7 @@ pub(crate) fn on_ctrl_c() -> anyhow::Result<Arc<AtomicBool>> {
 }
 
 /// The same flag; in a child, the end of standard input sets it too.
-pub(crate) fn on_ctrl_c_or_parent(for_parent: bool) -> anyhow::Result<Arc<AtomicBool>> {
+pub fn on_ctrl_c_or_parent(for_parent: bool) -> anyhow::Result<Arc<AtomicBool>> {
     let stop = on_ctrl_c()?;
     if for_parent {
         with_parent(&stop);
@@ -38,7 +38,7 @@ pub(crate) fn on_ctrl_c_or_parent(for_parent: bool) -> anyhow::Result<Arc<Atomic
 
 /// Sets the flag when standard input ends: a child whose parent has died, however it died, must not stay. Gives what the
 /// parent sends before, line by line.
-pub(crate) fn with_parent(stop: &Arc<AtomicBool>) -> Receiver<String> {
+pub fn with_parent(stop: &Arc<AtomicBool>) -> Receiver<String> {
     let flag = Arc::clone(stop);
     let (sender, lines) = channel();
     std::thread::spawn(move || {
@@ -52,12 +52,12 @@ pub(crate) fn with_parent(stop: &Arc<AtomicBool>) -> Receiver<String> {
 }
 
 /// Whether the flag is set, after a little while.
-pub(crate) fn is_set_soon(stop: &AtomicBool) -> bool {
+pub fn is_set_soon(stop: &AtomicBool) -> bool {
     clock::rest(Duration::from_millis(100));
     stop.load(Ordering::Relaxed)
 }
 
 /// Waits for the flag.
-pub(crate) fn wait(stop: &AtomicBool) {
+pub fn wait(stop: &AtomicBool) {
     while !is_set_soon(stop) {}
 }

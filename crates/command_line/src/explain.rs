@@ -10,7 +10,7 @@ use game::scenario::{Problem, Problems};
 const COLUMNS: usize = 100;
 
 /// An error with all its causes; of files in full.
-pub(crate) fn error(error: &Error) -> String {
+pub fn error(error: &Error) -> String {
     let Some(problems) = error.chain().find_map(|cause| cause.downcast_ref()) else {
         return printable::message(&format!("{error:#}"));
     };
@@ -22,7 +22,7 @@ pub(crate) fn error(error: &Error) -> String {
 }
 
 /// All that is wrong, with the lines.
-pub(crate) fn problems(Problems(problems): &Problems) -> String {
+pub fn problems(Problems(problems): &Problems) -> String {
     problems.iter().map(problem).collect::<Vec<_>>().join("\n")
 }
 

@@ -1,7 +1,7 @@
 //! The parts of a pre-flight check for which somebody moves the boat: compass swing and propeller test, by remote control.
 
 use super::check::Listener;
-use crate::screen;
+use command_line::terminal;
 use game::gateway::{BoatProtocol, CompassFrame, Gateway};
 use gateway::declination::declination_deg;
 use gateway::nmea::{Operator, date_and_time};
@@ -48,7 +48,7 @@ impl Guide {
 
     /// Asks, and listens on to the boat until there is an answer.
     fn is_agreed(&self, question: &str, listener: &mut Listener) -> bool {
-        screen::remark(&format!("{question} [y/N]"));
+        terminal::remark(&format!("{question} [y/N]"));
         let (start, mut answer) = (listener.now(), None);
         listener.listen(&mut |listener| {
             answer = self.typed();
@@ -59,7 +59,7 @@ impl Guide {
 
     /// Says what to do, and listens until Enter is pressed.
     fn until_enter(&self, what: &str, listener: &mut Listener, take: &mut dyn FnMut(&Listener)) {
-        screen::remark(&format!("{what} Press Enter when it is done."));
+        terminal::remark(&format!("{what} Press Enter when it is done."));
         let start = listener.now();
         listener.listen(&mut |listener| {
             take(listener);
@@ -98,7 +98,7 @@ fn swing(guide: &Guide, listener: &mut Listener, gateway: &Gateway) -> Check {
     match swing.fit() {
         Err(why) => Check::not_done(name, why),
         Ok(deviation) => {
-            screen::print(&format!("\nfor the boat's file:\n\n{}", deviation.toml()));
+            terminal::print(&format!("\nfor the boat's file:\n\n{}", deviation.toml()));
             let found = format!(
                 "deviation up to {:.1} degrees, {:.1} left unexplained; expected up to {DEVIATION_MAX_DEG}",
                 deviation.largest_deg, deviation.residual_deg

@@ -1,10 +1,10 @@
-//! `squall gateway stop`: stops a boat with nothing else running, straight over its link.
+//! `gateway stop`: stops a boat with nothing else running, straight over its link.
 
-use super::emulate::ProtocolArg;
-use crate::screen;
-use crate::sim_command::seconds;
+use crate::protocol_arg::ProtocolArg;
 use anyhow::{Result, anyhow, bail};
 use bus::{LinkLock, ask_gateway, clock};
+use command_line::number::seconds;
+use command_line::terminal;
 use game::SimTime;
 use game::external::{GatewayCommand, OperatorCommand};
 use game::gateway::Gateway;
@@ -27,7 +27,7 @@ const EVENTS_MAX: usize = 4096;
 
 /// Which boat.
 #[derive(clap::Args)]
-pub(crate) struct Args {
+pub struct Args {
     /// Where the boat is: tcp://HOST:PORT, udp://HOST:PORT, serial:///dev/ttyUSB0?baud=38400
     link: String,
     /// What the boat speaks
@@ -56,7 +56,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     while clock::since(start) < limit {
         match events.recv_timeout(due.saturating_duration_since(clock::now()).min(AGAIN)) {
             Ok(LinkEvent::Up { name, .. }) => {
-                screen::remark(&format!("connected to {name}: thrust zero and standby"));
+                terminal::remark(&format!("connected to {name}: thrust zero and standby"));
                 (connected, due) = (Some(clock::now()), clock::now());
             }
             Ok(LinkEvent::Bytes { bytes, .. }) => protocol.read(SimTime::ZERO, &bytes, &mut |report| {
@@ -75,7 +75,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             link.send(protocol.forced_stop_message(), 0);
         }
         if clock::since(since) >= SAY && boat.is_some_and(|boat| boat.shown.mode == Mode::Standby) {
-            screen::print("the boat reports standby\n");
+            terminal::print("the boat reports standby\n");
             return Ok(ExitCode::SUCCESS);
         }
     }
@@ -102,15 +102,18 @@ fn stopped_by_its_gateway(address: &LinkAddress) -> bool {
     let command = GatewayCommand::Boat { name: entry.vehicle.clone(), command: OperatorCommand::EStop };
     match ask_gateway(entry.control, None, &command, ANSWER) {
         Ok(reply) if reply.refused.is_none() && reply.status.link == "up" => {
-            screen::print(&format!("the gateway of {} has the link: {}\n", entry.vehicle, reply.status.state));
+            terminal::print(&format!("the gateway of {} has the link: {}\n", entry.vehicle, reply.status.state));
             true
         }
         Ok(reply) => {
-            screen::remark(&format!("the gateway of {} has the link, and it is {}", entry.vehicle, reply.status.link));
+            terminal::remark(&format!(
+                "the gateway of {} has the link, and it is {}",
+                entry.vehicle, reply.status.link
+            ));
             false
         }
         Err(e) => {
-            screen::remark(&format!("the gateway of {} has the link, and does not answer: {e}", entry.vehicle));
+            terminal::remark(&format!("the gateway of {} has the link, and does not answer: {e}", entry.vehicle));
             false
         }
     }

@@ -1,13 +1,13 @@
 //! The log of a gateway on the terminal: events line by line, the status as one line that is overwritten.
 
-use crate::printer::Printer;
-use crate::{screen, style};
+use command_line::printer::Printer;
+use command_line::{style, terminal};
 use game::external::{GatewayStatus, GeofenceReport};
 use gateway::bridge::Event;
 use std::io::IsTerminal;
 
 /// Prints a gateway's log. The gateway waits for none of it.
-pub(super) struct Log {
+pub struct Log {
     is_live: bool,
     is_quiet: bool,
     printer: Printer<Line>,
@@ -24,55 +24,55 @@ enum Line {
 
 impl Log {
     /// A log; a quiet one prints errors only.
-    pub(super) fn new(is_quiet: bool) -> Log {
+    pub fn new(is_quiet: bool) -> Log {
         let is_live = std::io::stdout().is_terminal();
         let mut status = String::new();
         let printer = Printer::start(move |line| match line {
-            Line::Lasting(line) if is_live => screen::overwrite(&format!("{line}{status}")),
-            Line::Lasting(line) => screen::show(line),
+            Line::Lasting(line) if is_live => terminal::overwrite(&format!("{line}{status}")),
+            Line::Lasting(line) => terminal::show(line),
             Line::Status(line) => {
                 status.clone_from(line);
-                screen::overwrite(line);
+                terminal::overwrite(line);
             }
-            Line::Remark(text) => screen::remark(text),
+            Line::Remark(text) => terminal::remark(text),
         });
         Log { is_live, is_quiet, printer }
     }
 
     /// A line that stays.
-    pub(super) fn event(&self, at_s: f64, event: &Event) {
+    pub fn event(&self, at_s: f64, event: &Event) {
         if !self.is_quiet {
             self.print(format!("{at_s:>8.1} s  {}\n", text_of(event)));
         }
     }
 
     /// A line that the next one overwrites; only on a terminal.
-    pub(super) fn status(&self, status: &GatewayStatus) {
+    pub fn status(&self, status: &GatewayStatus) {
         if self.is_live && !self.is_quiet {
             self.printer.print(Line::Status(brief(status)));
         }
     }
 
     /// Something that is not of the log.
-    pub(super) fn remark(&self, text: String) {
+    pub fn remark(&self, text: String) {
         if !self.is_quiet {
             self.printer.print(Line::Remark(text));
         }
     }
 
     /// Lines that stay, of a quiet log too.
-    pub(super) fn print(&self, lines: String) {
+    pub fn print(&self, lines: String) {
         self.printer.print(Line::Lasting(lines));
     }
 
     /// Prints the last lines, after all that wait.
-    pub(super) fn end(self, lines: String) {
+    pub fn end(self, lines: String) {
         self.printer.end(Line::Lasting(lines));
     }
 }
 
 /// A state, in red where the boat was stopped.
-pub(super) fn state(text: &str) -> String {
+pub fn state(text: &str) -> String {
     if ["failsafe", "e-stopped"].iter().any(|stopped| text.starts_with(stopped)) {
         style::bad(text)
     } else {
@@ -81,7 +81,7 @@ pub(super) fn state(text: &str) -> String {
 }
 
 /// An event in words.
-pub(super) fn text_of(event: &Event) -> String {
+pub fn text_of(event: &Event) -> String {
     match event {
         Event::State { from, to } => format!("{} (was {from})", state(to)),
         Event::Blocked(true) => style::warning("another boat is in the way: thrust zero"),
@@ -131,7 +131,7 @@ fn geofence(report: &GeofenceReport) -> Option<String> {
 }
 
 /// The full status of a gateway.
-pub(super) fn full(status: &GatewayStatus) -> String {
+pub fn full(status: &GatewayStatus) -> String {
     let or_none = |text: Option<String>| text.unwrap_or_else(|| "unknown".to_owned());
     let nav = status.nav.map(|nav| {
         format!(

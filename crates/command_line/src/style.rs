@@ -11,22 +11,22 @@ const GOOD: &str = "\x1b[32m";
 const PLAIN: &str = "\x1b[0m";
 
 /// Text of a team.
-pub(crate) fn team(team: usize, text: &str) -> String {
+pub fn team(team: usize, text: &str) -> String {
     within(TEAMS[team % TEAMS.len()], text)
 }
 
 /// Text about what went wrong.
-pub(crate) fn bad(text: &str) -> String {
+pub fn bad(text: &str) -> String {
     within(BAD, text)
 }
 
 /// Text about what may go wrong.
-pub(crate) fn warning(text: &str) -> String {
+pub fn warning(text: &str) -> String {
     within(WARNING, text)
 }
 
 /// Text about what is as it should be.
-pub(crate) fn good(text: &str) -> String {
+pub fn good(text: &str) -> String {
     within(GOOD, text)
 }
 
@@ -36,18 +36,18 @@ fn within(colour: &str, text: &str) -> String {
 
 /// The names of a game's teams and boats.
 #[derive(Default)]
-pub(crate) struct Names(BTreeMap<String, usize>);
+pub struct Names(BTreeMap<String, usize>);
 
 impl Names {
     /// Those of this game.
-    pub(crate) fn of(scenario: &Scenario) -> Names {
+    pub fn of(scenario: &Scenario) -> Names {
         let teams = scenario.teams.iter().enumerate().map(|(i, team)| (team.name.clone(), i));
         let boats = scenario.vehicles.iter().map(|vehicle| (vehicle.name.clone(), vehicle.team.index()));
         Names(boats.chain(teams).collect())
     }
 
     /// Text in which each word that is one of these names has its team's colour.
-    pub(crate) fn paint(&self, text: &str) -> String {
+    pub fn paint(&self, text: &str) -> String {
         let is_end = |character: char| !(character.is_ascii_alphanumeric() || character == '_');
         let word = |piece: &str| {
             let (word, rest) = piece.split_at(piece.find(is_end).unwrap_or(piece.len()));

@@ -1,12 +1,14 @@
-//! `squall gateway`: real boats in games, emulated boats for real back seats, and tools for the link between.
+//! The commands of the boat's program: a real boat in a game, its checks, and how operators stop and command it.
+//!
+//! `squall gateway` has the same commands. Open [`surveyor`] first: it drives a boat.
 
 mod check;
 mod console;
-mod emulate;
 mod guard;
-mod log_line;
+pub mod log_line;
 mod mission_file;
 mod preflight_report;
+pub mod protocol_arg;
 mod replay;
 mod stop_boat;
 mod surveyor;
@@ -20,18 +22,10 @@ use std::path::Path;
 use std::process::ExitCode;
 
 /// What a gateway is to do.
-#[derive(clap::Args)]
-pub(crate) struct Args {
-    #[command(subcommand)]
-    command: Command,
-}
-
 #[derive(Subcommand)]
-enum Command {
+pub enum Command {
     /// Connects a real boat with a game: agents drive it as any other.
     Surveyor(surveyor::Args),
-    /// Emulates a boat for a real back seat, with the real one's sentences.
-    Emulate(emulate::Args),
     /// Checks a boat before arming, without sending anything; with --vehicle, the pre-flight check.
     Check(check::Args),
     /// Stops a boat with nothing else running: thrust zero and standby, straight over its link.
@@ -55,14 +49,17 @@ fn gateway_file(path: Option<&Path>) -> Result<game::gateway::Gateway> {
 }
 
 /// The mission in the text of a mission file, or what is wrong with it.
-pub(crate) fn read_mission(text: &str) -> Result<Mission, String> {
+pub fn read_mission(text: &str) -> Result<Mission, String> {
     mission_file::parse(text)
 }
 
-pub(crate) fn run(args: &Args) -> Result<ExitCode> {
-    match &args.command {
-        Command::Surveyor(args) => surveyor::run(args),
-        Command::Emulate(args) => emulate::run(args),
+/// Does it. The recording of a gateway names the commit of the program.
+///
+/// # Errors
+/// What went wrong.
+pub fn run(command: &Command, commit: &'static str) -> Result<ExitCode> {
+    match command {
+        Command::Surveyor(args) => surveyor::run(args, commit),
         Command::Check(args) => check::run(args),
         Command::Stop(args) => stop_boat::run(args),
         Command::Tell(args) => tell::run(args),
