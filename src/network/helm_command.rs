@@ -10,6 +10,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+mod heat;
 mod polar;
 
 use command_line::leaf_args::LeafArgs;

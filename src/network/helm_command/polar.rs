@@ -1,6 +1,7 @@
 //! Polar plots of a helm's objective functions: coloured discs with north on top.
 
-use crate::plot::{self, Area, Diagram, Drawn, colour};
+use super::heat;
+use crate::plot::{self, Area, Diagram, Drawn};
 use game::math;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -154,7 +155,7 @@ fn shade(value: f64, (low, high): (f64, f64)) -> usize {
 }
 
 fn colour_of(shade: usize) -> RGBColor {
-    colour::of_share(shade as f64 / (SHADES - 1) as f64)
+    heat::of_share(shade as f64 / (SHADES - 1) as f64)
 }
 
 #[cfg(test)]
