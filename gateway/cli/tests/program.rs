@@ -4,6 +4,8 @@
 
 use gateway::link::{Link, LinkAddress, LinkEvent, LinkSettings};
 use std::process::{Child, Command, Output, Stdio};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
@@ -62,10 +64,11 @@ impl Drop for Running {
     }
 }
 
-/// A boat's end of a link: it reports that it stands by whenever it is sent something.
+/// A boat's end of a link: it reports that it stands by, and notes what it is sent.
 struct Boat {
-    link: Link,
+    link: Arc<Link>,
     received: Receiver<String>,
+    is_gone: Arc<AtomicBool>,
 }
 
 impl Boat {
@@ -78,19 +81,31 @@ impl Boat {
         };
         let address = LinkAddress::to_listen("tcp://127.0.0.1:0").expect("an address");
         let settings = LinkSettings { silence: None, ..LinkSettings::default() };
-        Boat { link: Link::open(&address, settings, take).expect("it listens"), received }
+        let link = Arc::new(Link::open(&address, settings, take).expect("it listens"));
+        let (reporter, is_gone) = (Arc::clone(&link), Arc::<AtomicBool>::default());
+        let ended = Arc::clone(&is_gone);
+        std::thread::spawn(move || {
+            while !ended.load(Ordering::Relaxed) {
+                reporter.send(b"$PSEAG,N*22\r\n".to_vec(), 0);
+                std::thread::sleep(Duration::from_millis(100));
+            }
+        });
+        Boat { link, received, is_gone }
     }
 
-    /// Reports until this was received, from the last time on.
+    /// Waits until this was received, from the last time on.
     fn wait_for(&self, what: &str) {
         let (start, mut text) = (Instant::now(), String::new());
         while !text.contains(what) {
             assert!(start.elapsed() < LIMIT, "{what:?} does not come: {text:?}");
-            self.link.send(b"$PSEAG,N*22\r\n".to_vec(), 0);
-            if let Ok(more) = self.received.recv_timeout(Duration::from_millis(100)) {
-                text.push_str(&more);
-            }
+            text.extend(self.received.recv_timeout(Duration::from_millis(100)));
         }
+    }
+}
+
+impl Drop for Boat {
+    fn drop(&mut self) {
+        self.is_gone.store(true, Ordering::Relaxed);
     }
 }
 
