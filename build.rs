@@ -1,34 +1,43 @@
-//! Says which commit the program is built from.
+//! Says which commit a program is built from: of `squall`, and of `squall-gateway` in a folder below.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What the program is made of.
+/// What the programs are made of.
 const SOURCES: [&str; 9] =
     ["Cargo.toml", "Cargo.lock", "build.rs", "src", "scenarios", "crates", "sim", "agent", "gateway"];
 
 fn main() {
-    let commit = commit();
+    let root = root();
+    let commit = commit(&root);
     println!("cargo::rustc-env=SQUALL_COMMIT={}", commit.as_deref().unwrap_or("unknown"));
     // Of a new commit HEAD's log tells; whether the sources are as committed may change with any of them.
-    let watched = ["HEAD", "logs/HEAD"].into_iter().filter_map(|file| git(&["rev-parse", "--git-path", file]));
-    let watched = watched.filter(|path| Path::new(path).exists());
-    for path in watched.chain(SOURCES.map(str::to_owned)) {
-        println!("cargo::rerun-if-changed={path}");
+    let watched = ["HEAD", "logs/HEAD"].into_iter().filter_map(|file| git(&root, &["rev-parse", "--git-path", file]));
+    let watched = watched.map(|path| root.join(path)).filter(|path| path.exists());
+    for path in watched.chain(SOURCES.map(|path| root.join(path))) {
+        println!("cargo::rerun-if-changed={}", path.display());
     }
 }
 
+/// The folder of the workspace: the one above the package that has the lock file.
+fn root() -> PathBuf {
+    let package = PathBuf::from(std::env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets it"));
+    let root = package.ancestors().find(|folder| folder.join("Cargo.lock").exists()).map(Path::to_owned);
+    root.unwrap_or(package)
+}
+
 /// The commit, marked if what is built is not what was committed; none outside of our repository.
-fn commit() -> Option<String> {
+fn commit(root: &Path) -> Option<String> {
     // A packed copy inside of somebody else's repository is not theirs.
-    git(&["ls-files", "--error-unmatch", "build.rs"])?;
-    let commit = git(&["rev-parse", "--short=12", "HEAD"])?;
-    let is_clean = git(&[&["diff", "--quiet", "HEAD", "--"], &SOURCES[..]].concat()).is_some();
+    git(root, &["ls-files", "--error-unmatch", "build.rs"])?;
+    let commit = git(root, &["rev-parse", "--short=12", "HEAD"])?;
+    let is_clean = git(root, &[&["diff", "--quiet", "HEAD", "--"], &SOURCES[..]].concat()).is_some();
     Some(if is_clean { commit } else { format!("{commit}-dirty") })
 }
 
-/// What git says, if all is well.
-fn git(args: &[&str]) -> Option<String> {
-    let output = Command::new("git").args(args).output().ok().filter(|output| output.status.success())?;
+/// What git says in this folder, if all is well.
+fn git(root: &Path, args: &[&str]) -> Option<String> {
+    let command = Command::new("git").current_dir(root).args(args).output();
+    let output = command.ok().filter(|output| output.status.success())?;
     Some(String::from_utf8(output.stdout).ok()?.trim().to_owned())
 }

@@ -5,11 +5,11 @@ use crate::trial_command::{read_sheet, tick, usual_tick_s};
 use crate::water_args::{self, WaterArgs, within};
 use crate::{output_file, screen};
 use anyhow::{Context, Result, bail};
-use arena::identify::{self, Fit, Log, Setting, Step};
 use primitives::SimTime;
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use trial::identify::{self, Fit, Log, Setting, Step};
 
 /// Which boat, to which log.
 #[derive(clap::Args)]

@@ -2,7 +2,7 @@
 
 use crate::output_file;
 use anyhow::{Context, Result, bail};
-use arena::tournament::{League, Plan, Record};
+use experiment::tournament::{League, Plan, Record};
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};

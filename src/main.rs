@@ -1,40 +1,30 @@
 //! `squall`: one program, a table of subcommands.
 
-#![cfg_attr(not(feature = "network"), allow(dead_code, reason = "helpers that only commands of `network` need"))]
-
 mod both_sides;
 mod check_command;
 mod cli;
-mod clock;
-mod explain;
 mod game_args;
-#[cfg(feature = "network")]
-mod gateway_command;
 mod helm_text;
 mod identify_command;
 mod in_process;
+mod jobs_args;
 mod kinds;
 mod league_file;
 mod log_command;
 mod minds;
-#[cfg_attr(not(feature = "network"), path = "without_network.rs")]
+#[cfg(feature = "network")]
 mod network;
 mod new_command;
-mod output_file;
 mod plot;
 mod policy_command;
 mod progress;
 mod record_args;
-mod recording_file;
 mod replay_command;
 mod result_table;
 mod run_command;
-mod scenario_files;
 mod screen;
 mod sea_command;
-mod stop;
 mod strategy_command;
-mod style;
 mod sweep_command;
 mod tournament_command;
 mod train_command;
@@ -42,10 +32,9 @@ mod trial_command;
 mod watch_files;
 mod water_args;
 
-#[cfg(feature = "network")]
-use network::{child_process, net_args, observer, printer, sim_command};
-
 use clap::{ColorChoice, FromArgMatches, Parser, Subcommand};
+use command_line::program::{self, Program};
+use command_line::{clock, explain, output_file, recording_file, scenario_files, stop, style};
 use std::process::ExitCode;
 
 /// The version, and the commit it was built from.
@@ -64,8 +53,19 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    #[cfg(feature = "network")]
     #[command(flatten)]
     Network(network::Command),
+    #[cfg(not(feature = "network"))]
+    /// Plays a whole game, shows what happens, prints the result.
+    #[command(
+        after_help = "Examples:\n  squall run strategy_4_vs_3\n  squall run surveyor_2v2 --sea gale --blue learned --red strategy_3\n  squall run surveyor_2v2 --set link.delay_s=1 --seed 7 --both-sides"
+    )]
+    Run(Box<run_command::Args>),
+    #[cfg(not(feature = "network"))]
+    /// Plays a recorded game again, and checks that the same comes of it.
+    #[command(after_help = "Examples:\n  squall replay runs/game.mcap --check")]
+    Replay(replay_command::Args),
     /// Plays every strategy against every other over many seeds, and says who is better, and how surely.
     #[command(
         after_help = "Examples:\n  squall tournament paper_2023 --games 20\n  squall tournament simple --json report.json --quality\n  squall tournament simple --league league"
@@ -123,12 +123,22 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    scenario_files::install();
+    program::set(Program { name: "squall", gateway: "squall gateway" });
+    scenario_files::install(kinds::KINDS);
     let cli = Cli::from_arg_matches(&cli::matches::<Cli>()).unwrap_or_else(|error| error.exit());
     screen::set_colour(cli.color);
     let Some(command) = cli.command else { return cli::first::<Cli>() };
     let done = match command {
+        #[cfg(feature = "network")]
         Command::Network(command) => network::run(&command),
+        #[cfg(not(feature = "network"))]
+        Command::Run(args) => run_command::run(&args, &mut run_command::InProcess),
+        #[cfg(not(feature = "network"))]
+        Command::Replay(args) if args.check => replay_command::check(&args.file),
+        #[cfg(not(feature = "network"))]
+        Command::Replay(_) => {
+            Err(anyhow::anyhow!("{}; --check plays it again", cli::not_built("the page that shows recordings")))
+        }
         Command::Tournament(args) => tournament_command::run(&args),
         Command::Sweep(args) => sweep_command::run(&args),
         Command::Train(args) => train_command::run(&args),

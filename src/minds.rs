@@ -2,11 +2,10 @@
 
 use agent::{Mind, MindRunner, mind_of};
 use messages::helm::HelmReport;
-use messages::input::{Input, Inputs};
 use messages::picture::Picture;
 use messages::{Order, PolicyProposal};
 use primitives::{SimTime, TeamId, VehicleId};
-use recording::{INPUTS, Recording, picture};
+use recording::{Recording, picture};
 use scenario::Scenario;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -15,8 +14,6 @@ use std::sync::Arc;
 pub(crate) struct Minds {
     recording: Arc<Recording>,
     teams: Vec<Team>,
-    /// The places of the inputs that came of each decision.
-    inputs: BTreeMap<u64, usize>,
     /// What was proposed for each vehicle, and when it came.
     proposals: BTreeMap<VehicleId, Vec<(SimTime, PolicyProposal)>>,
 }
@@ -32,17 +29,13 @@ impl Minds {
     pub(crate) fn new(recording: Arc<Recording>) -> Minds {
         let scenario = recording.scenario();
         let teams = (0..scenario.teams.len()).map(|team| Team::new(&recording, TeamId(team as u8))).collect();
-        // Inputs stand with the frame that came of them, one decision later.
-        let decision =
-            |place| Some((recording.bag().message(place).read::<Inputs>().ok()?.stamp.seq.saturating_sub(1), place));
-        let inputs = recording.bag().places(INPUTS).filter_map(decision).collect();
         let proposals = (0..scenario.vehicles.len()).map(VehicleId::at).filter_map(|vehicle| {
             let topic = format!("policy/{}", scenario.vehicles[vehicle.index()].name);
             let messages = recording.bag().on(&topic);
             let proposals: Vec<_> = messages.filter_map(|message| Some((message.at, message.read().ok()?))).collect();
             (!proposals.is_empty()).then_some((vehicle, proposals))
         });
-        Minds { teams, inputs, proposals: proposals.collect(), recording: Arc::clone(&recording) }
+        Minds { teams, proposals: proposals.collect(), recording: Arc::clone(&recording) }
     }
 
     /// What the vehicle's mind tells of itself when it decides again, and what it orders, if it can.
@@ -55,20 +48,6 @@ impl Minds {
     pub(crate) fn report(&self, vehicle: VehicleId) -> Option<HelmReport> {
         let team = &self.teams[self.recording.scenario().team_of(vehicle).index()];
         team.runner.mind(vehicle).and_then(Mind::report)
-    }
-
-    /// The vehicles of the game.
-    pub(crate) fn vehicles(&self) -> impl Iterator<Item = VehicleId> + use<> {
-        (0..self.recording.scenario().vehicles.len()).map(VehicleId::at)
-    }
-
-    /// The order for the vehicle at this decision, as recorded.
-    pub(crate) fn recorded(&self, vehicle: VehicleId, decision: u64) -> Option<Order> {
-        let inputs: Inputs = self.recording.bag().message(*self.inputs.get(&decision)?).read().ok()?;
-        inputs.inputs.iter().rev().find_map(|record| match record.input() {
-            Some(Input::Ordered { vehicle: of, order, .. }) if of == vehicle => Some(order),
-            _ => None,
-        })
     }
 
     /// What the vehicle's mind orders when it decides again, if it can.

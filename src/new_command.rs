@@ -108,7 +108,7 @@ mod tests {
 
     #[test]
     fn every_template_is_a_good_file_with_nothing_else_on_the_disk() {
-        scenario_files::install();
+        scenario_files::install(KINDS);
         let folder = tempfile::tempdir().expect("a folder");
         for (kind, text) in TEMPLATES {
             let file = folder.path().join("scenarios").join(kind.folder()).join("mine.toml");
@@ -120,7 +120,7 @@ mod tests {
 
     #[test]
     fn names_are_found_inside_of_the_program_and_what_is_meant_is_guessed() {
-        scenario_files::install();
+        scenario_files::install(KINDS);
         let find = |word: &str, kind| scenario_files::find(word, kind).map_err(|error| error.to_string());
         assert!(find("gale", Kind::SEA).is_ok_and(|path| path.ends_with("scenarios/seas/gale.toml")));
         assert_eq!(

@@ -6,7 +6,7 @@ use crate::record_args::RecordArgs;
 use crate::screen::{self, Screen};
 use crate::style::Names;
 use crate::watch_files::WatchedFiles;
-use crate::{clock, explain, in_process, network, stop};
+use crate::{clock, explain, in_process, stop};
 use anyhow::{Result, bail};
 use scenario::Scenario;
 use sim::{ProgressMessage, Report, Reporter};
@@ -33,6 +33,9 @@ pub(crate) struct Args {
     #[arg(long)]
     pub(crate) in_process: bool,
 }
+
+/// What shows a recorded game, or tells of it in a build without the page.
+const LOOK: &str = if cfg!(feature = "network") { "squall replay" } else { "squall log" };
 
 /// The request to stop, and where everything is shown.
 pub(crate) type Shell<'a> = (&'a AtomicBool, &'a mut Screen);
@@ -115,7 +118,7 @@ fn play(
     if let Some(file) = &file {
         let is_whole = report.as_ref().is_some_and(|report| report.run.recording_problem.is_none());
         let recorded = if is_whole { "recorded" } else { "recorded in part" };
-        screen.line(&format!("{recorded}; look at it with: {} {}", network::LOOK, file.display()));
+        screen.line(&format!("{recorded}; look at it with: {} {}", LOOK, file.display()));
     }
     Ok((file, report))
 }

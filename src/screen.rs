@@ -1,11 +1,10 @@
 //! The terminal: events as lines, how the game stands as one line that is written over.
 
 use crate::result_table;
-use crate::style::{self, Names};
-use anstream::AutoStream;
-use primitives::printable;
+use crate::style::Names;
+pub(crate) use command_line::terminal::*;
 use sim::{Progress, ProgressMessage};
-use std::io::{IsTerminal, Write};
+use std::io::IsTerminal;
 
 /// Shows the progress of a game to a person.
 pub(crate) struct Screen {
@@ -107,62 +106,8 @@ fn waiting(agents: &[String], gateways: &[String]) -> Option<String> {
     (!parts.is_empty()).then(|| format!("waiting for {}", parts.join(" and ")))
 }
 
-/// Prints text. A reader that went away is no reason to stop a game.
-pub(crate) fn print(text: &str) {
-    is_read(text);
-}
-
-/// Prints text that may have colours.
-pub(crate) fn show(text: &str) {
-    is_written("", &printable::coloured(text));
-}
-
-/// Prints text, and says whether anybody still reads. Nothing in it steers the terminal.
-pub(crate) fn is_read(text: &str) -> bool {
-    is_written("", &printable::text(text))
-}
-
-/// Prints over the line that was printed last without an end.
-pub(crate) fn overwrite(text: &str) {
-    is_written("\r\x1b[K", &printable::coloured(text));
-}
-
-/// Shows a page, which may have colours, instead of all that was on the terminal, and says whether anybody still looks.
-pub(crate) fn is_seen(page: &str) -> bool {
-    is_written("\x1b[H\x1b[J", &printable::coloured(page))
-}
-
-/// When texts have colours; left to itself where a terminal shows them and `NO_COLOR` does not forbid it.
-pub(crate) fn set_colour(choice: clap::ColorChoice) {
-    let choice = match choice {
-        clap::ColorChoice::Auto => anstream::ColorChoice::Auto,
-        clap::ColorChoice::Always => anstream::ColorChoice::Always,
-        clap::ColorChoice::Never => anstream::ColorChoice::Never,
-    };
-    choice.write_global();
-}
-
-/// Writes what steers the terminal, and a text whose colours are left out where nobody can see them.
-fn is_written(control: &str, text: &str) -> bool {
-    let mut out = std::io::stdout().lock();
-    let is_steered = out.write_all(control.as_bytes()).is_ok();
-    let mut out = AutoStream::auto(out);
-    is_steered && out.write_all(text.as_bytes()).and_then(|()| out.flush()).is_ok()
-}
-
 /// The columns of the terminal; a width that most have where there is none.
 pub(crate) fn columns() -> usize {
     terminal_size::terminal_size()
-        .map_or(arena::tournament::WIDTH, |(terminal_size::Width(columns), _)| usize::from(columns))
-}
-
-/// Prints what went wrong, a text that may have colours.
-pub(crate) fn complain(text: &str) {
-    let text = printable::coloured_message(text);
-    drop(writeln!(anstream::stderr(), "{} {text}", style::bad("squall:")));
-}
-
-/// Prints something to standard error, where it does not mix with results.
-pub(crate) fn remark(text: &str) {
-    drop(writeln!(anstream::stderr(), "{}", printable::message(text)));
+        .map_or(experiment::tournament::WIDTH, |(terminal_size::Width(columns), _)| usize::from(columns))
 }

@@ -3,7 +3,6 @@
 use crate::trial_command::usual_tick_s;
 use crate::{plot, screen, water_args};
 use anyhow::{Context, Result};
-use arena::trial::{self, Drift, Manoeuvre, Plan, Sample, Start, TrialBoat};
 use primitives::angle::compass_deg_from_rad;
 use primitives::{Ned, SimTime};
 use scenario::Boat;
@@ -12,6 +11,7 @@ use scenario::sea::Sea;
 use sim::sea::{SeaModel, Summary, WaveSummary, WindSummary};
 use std::path::PathBuf;
 use std::process::ExitCode;
+use trial::{Drift, Manoeuvre, Plan, Sample, Start, TrialBoat};
 
 /// Which sea, and for which boat.
 #[derive(clap::Args)]

@@ -1,13 +1,13 @@
 //! `squall sweep`: how much sea, noise and failure a team stands.
 
+use crate::jobs_args::JobsArgs;
 use crate::progress::Progress;
 use crate::{output_file, screen, stop};
 use anyhow::{Context, Result};
+use experiment::sweep::{self, Condition, FindError, Journal, Plan, Study, UntilError};
 use scenario::{Sweep, load_sweep};
-use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use sweep::{Condition, FindError, Journal, Plan, Search, Study, UntilError};
 
 /// Which sweep, and how.
 #[derive(clap::Args)]
@@ -21,9 +21,8 @@ pub(crate) struct Args {
     /// The first seed [default: as the file says]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
     seed: Option<u64>,
-    /// Threads; what comes of it is the same on any number of them [default: one for each core]
-    #[arg(long, value_name = "N")]
-    jobs: Option<NonZeroUsize>,
+    #[command(flatten)]
+    jobs: JobsArgs,
     /// The folder for the tables and the report [default: runs/sweep/NAME]
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
@@ -38,29 +37,24 @@ pub(crate) struct Args {
     /// With --until: the key of the axis to search along [default: the only one with numbers]
     #[arg(long, value_name = "KEY", requires = "until")]
     along: Option<String>,
-    /// Searches the space of the axes for games in which this holds, however rare, and says how rare, as in
-    /// "strategy_5.contacts > 0"; `collision` and `out_of_bounds` stand for conditions on the first entry
+    /// Draws games evenly from the space of the axes, says in how many of them this holds, and names them, as in
+    /// "strategy_5.contacts > 0"; `collision` and `out_of_bounds` are conditions on the first entry
     #[arg(long, value_name = "CONDITION")]
     find: Option<String>,
-    /// With --find: about how many games
-    #[arg(long, value_name = "N", requires = "find", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(20..=10_000_000))]
+    /// With --find: how many games
+    #[arg(long, value_name = "N", requires = "find", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     search_games: u32,
-    /// With --find: games that came near to the failure are played again from there with other futures; with `out_of_bounds`, `collision`
-    /// and other conditions on a distance
-    #[arg(long, requires = "find")]
-    split: bool,
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let plan = planned(args)?;
     let folder = args.out.clone().unwrap_or_else(|| PathBuf::from("runs/sweep").join(&plan.sweep().name));
     output_file::make_folder(&folder)?;
-    let jobs = args.jobs.or(std::thread::available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN);
     if let Some(condition) = &args.until {
-        return until(args, &plan, condition, (&folder, jobs));
+        return until(args, &plan, condition, &folder);
     }
     if let Some(condition) = &args.find {
-        return find(args, &plan, condition, (&folder, jobs));
+        return find(args, &plan, condition, &folder);
     }
     let mut study = if args.resume { Study::resume(&folder, &plan)? } else { Study::begin(&folder, &plan)? };
     let (points, per_point) = (plan.points().len(), plan.games_per_point());
@@ -71,6 +65,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let stop = stop::on_ctrl_c()?;
     let mut progress = Progress::of_games((plan.games() - study.done()) as u64);
     let from = study.done();
+    let jobs = args.jobs.threads(plan.games() - from);
     let played = sweep::play(&plan, (from, plan.games()), jobs, &stop, |played| {
         progress.add();
         study.add(&plan, &played)
@@ -89,10 +84,11 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 }
 
 /// Searches for the breaking point.
-fn until(args: &Args, plan: &Plan, text: &str, (folder, jobs): (&Path, NonZeroUsize)) -> Result<ExitCode> {
+fn until(args: &Args, plan: &Plan, text: &str, folder: &Path) -> Result<ExitCode> {
     let condition = Condition::parse(text, plan.sweep())?;
     let stop = stop::on_ctrl_c()?;
     let mut journal = journal(args, folder, plan)?;
+    let jobs = args.jobs.threads(plan.games_per_point());
     let result = sweep::breaking_point(plan, &condition, args.along.as_deref(), &mut journal, (jobs, &stop), |tried| {
         let half = tried.mean.half_width().map_or("?".to_owned(), |half| format!("{half:.3}"));
         let verdict = tried.holds.map_or("cannot be told", |holds| if holds { "holds" } else { "does not hold" });
@@ -126,7 +122,7 @@ fn until(args: &Args, plan: &Plan, text: &str, (folder, jobs): (&Path, NonZeroUs
 }
 
 /// Searches for rare failures.
-fn find(args: &Args, plan: &Plan, text: &str, (folder, jobs): (&Path, NonZeroUsize)) -> Result<ExitCode> {
+fn find(args: &Args, plan: &Plan, text: &str, folder: &Path) -> Result<ExitCode> {
     let first = &plan.sweep().entries[0].name;
     let condition = match text {
         "collision" => {
@@ -137,15 +133,11 @@ fn find(args: &Args, plan: &Plan, text: &str, (folder, jobs): (&Path, NonZeroUsi
         other => other.to_owned(),
     };
     let condition = Condition::parse(&condition, plan.sweep())?;
-    anyhow::ensure!(
-        !args.split || condition.has_nearness(),
-        "--split with {condition}: no distance says how near a game is to it, expected a condition on {}",
-        Condition::NEARNESS
-    );
     let stop = stop::on_ctrl_c()?;
     let mut journal = journal(args, folder, plan)?;
-    let search = Search { games: args.search_games as usize, learns: true, splits: args.split };
-    let found = sweep::find(plan, &condition, search, &mut journal, (jobs, &stop), |games, failures| {
+    let games = args.search_games as usize;
+    let jobs = args.jobs.threads(games);
+    let found = sweep::find(plan, &condition, games, &mut journal, (jobs, &stop), |games, failures| {
         screen::remark(&format!("{failures} of {games} games with {condition}"));
     });
     let found = match found {

@@ -1,5 +1,6 @@
 //! `squall tournament`: every strategy against every other, in this process.
 
+use crate::jobs_args::JobsArgs;
 use crate::league_file::LeagueFile;
 use crate::progress::Progress;
 use crate::{output_file, screen, stop};
@@ -7,7 +8,7 @@ use agent::MindRunner;
 use analysis::Step;
 use analysis::quality::{GameQuality, MindState, Quality};
 use anyhow::{Context, Result};
-use arena::tournament::{self, Observer, Plan, Record, Report, play, play_observed, play_these};
+use experiment::tournament::{self, Observer, Plan, Record, Report, play, play_observed};
 use rules::event::EventCursor;
 use scenario::{Scenario, Tournament, load_tournament};
 use serde::Serialize;
@@ -29,9 +30,8 @@ pub(crate) struct Args {
     /// The first seed [default: as the file says]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
     seed: Option<u64>,
-    /// Threads [default: one for each core]
-    #[arg(long, value_name = "N")]
-    jobs: Option<NonZeroUsize>,
+    #[command(flatten)]
+    jobs: JobsArgs,
     /// Writes everything to this file, every game and what it takes to play it again; `squall view FILE` shows it
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -63,9 +63,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         output_file::check(path, "the report")?;
     }
     let stop = stop::on_ctrl_c()?;
-    let jobs = args.jobs.or(std::thread::available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN);
     let mut league = args.league.as_deref().map(LeagueFile::open).transpose()?;
-    let Played { records, quality, rate } = play_all(args, &plan, (jobs, &stop), league.as_mut());
+    let Played { records, quality, rate } = play_all(args, &plan, &stop, league.as_mut());
 
     let mut report = Report::new(&plan, &records);
     report.commit = env!("SQUALL_COMMIT").to_owned();
@@ -99,41 +98,41 @@ struct Played {
 }
 
 /// Plays the games of a plan, of a league only those that it does not know.
-fn play_all(
-    args: &Args,
-    plan: &Plan,
-    (jobs, stop): (NonZeroUsize, &AtomicBool),
-    league: Option<&mut LeagueFile>,
-) -> Played {
-    let Some(league) = league else {
-        let mut progress = Progress::of_games(plan.games() as u64);
-        let (records, quality) = if args.quality {
-            let (records, quality) = play_judged(plan, jobs, stop, |_| progress.add());
-            (records, Some(quality))
-        } else {
-            (play(plan, jobs, stop, |_| progress.add()), None)
-        };
-        return Played { records, quality, rate: progress.end_of_games(jobs.get().min(plan.games())) };
-    };
+fn play_all(args: &Args, plan: &Plan, stop: &AtomicBool, league: Option<&mut LeagueFile>) -> Played {
+    let all = || (0..plan.games()).collect::<Vec<usize>>();
     let pairings = plan.pairings();
-    let (mut records, new) = league.league.split(plan, &pairings);
-    screen::remark(&format!("{} of {} games were played before", records.len(), plan.games()));
-    let mut progress = Progress::of_games(new.len() as u64);
-    records.extend(play_these(plan, &new, jobs, stop, |record| {
-        league.add(plan, &pairings, record);
-        progress.add();
-    }));
+    let (mut records, games) =
+        league.as_ref().map_or_else(|| (vec![], all()), |file| file.league.split(plan, &pairings));
+    if league.is_some() {
+        screen::remark(&format!("{} of {} games were played before", records.len(), plan.games()));
+    }
+    let jobs = args.jobs.threads(games.len());
+    let mut progress = Progress::of_games(games.len() as u64);
+    let quality = if args.quality {
+        Some(play_judged(plan, &games, (jobs, stop), |record| {
+            progress.add();
+            records.push(record);
+        }))
+    } else {
+        let mut league = league;
+        play(plan, &games, jobs, stop, |record| {
+            league.iter_mut().for_each(|file| file.add(plan, &pairings, &record));
+            progress.add();
+            records.push(record);
+        });
+        None
+    };
     records.sort_by_key(|record| plan.place_of(record.of));
-    Played { records, quality: None, rate: progress.end_of_games(jobs.get().min(new.len().max(1))) }
+    Played { records, quality, rate: progress.end_of_games(jobs.get()) }
 }
 
-/// Plays the games of a plan and judges how sensibly boats play in them.
+/// Plays games of a plan and judges how sensibly boats play in them.
 fn play_judged(
     plan: &Plan,
-    jobs: NonZeroUsize,
-    stop: &AtomicBool,
-    watch: impl FnMut(&Record),
-) -> (Vec<Record>, Quality) {
+    games: &[usize],
+    threads: (NonZeroUsize, &AtomicBool),
+    mut take: impl FnMut(Record),
+) -> Quality {
     let observer = Observer {
         begin: |scenario: &Scenario| (GameQuality::new(scenario), EventCursor::default()),
         see: |(quality, cursor): &mut (GameQuality, EventCursor), contest: &Contest, runner: &MindRunner| {
@@ -142,12 +141,12 @@ fn play_judged(
             quality.add(&Step::of_frame(contest.scenario(), &contest.frame(cursor), orders), &minds);
         },
     };
-    let (mut records, mut sum) = (vec![], Quality::default());
-    for (record, seen) in play_observed(plan, jobs, stop, &observer, watch) {
+    let mut sum = Quality::default();
+    play_observed(plan, games, threads, &observer, |record, seen| {
         seen.into_iter().for_each(|(quality, _)| sum.merge(&quality.end()));
-        records.push(record);
-    }
-    (records, sum)
+        take(record);
+    });
+    sum
 }
 
 fn planned(args: &Args) -> Result<Plan> {

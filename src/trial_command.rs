@@ -4,7 +4,6 @@ use crate::plot::trial as plot;
 use crate::screen;
 use crate::water_args::{self, WaterArgs, degrees, within};
 use anyhow::{Context, Result, anyhow, bail};
-use arena::trial::{self, Engine, Manoeuvre, Orders, Plan, Sample, Sheet, Start, TrialBoat};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use primitives::{SimTime, angle};
 use scenario::boat::{Boat, Drive};
@@ -13,6 +12,7 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use trial::{Engine, Manoeuvre, Orders, Plan, Sample, Sheet, Start, TrialBoat};
 
 /// Which boat, on which water, doing what.
 #[derive(clap::Args)]

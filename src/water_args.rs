@@ -1,5 +1,7 @@
 //! Which boat sails on which water: what `trial` and `identify` ask alike.
 
+pub(crate) use command_line::number::within;
+
 use crate::{scenario_files, screen};
 use anyhow::{Context, Result};
 use scenario::sea::Sea;
@@ -28,10 +30,10 @@ impl WaterArgs {
     pub(crate) fn sea(&self) -> Result<Sea> {
         let mut sea = match &self.sea {
             Some(path) => sea(path, self.seed)?,
-            None => arena::trial::still_sea(),
+            None => trial::still_sea(),
         };
         if let Some(speed_m_s) = self.current_m_s {
-            arena::trial::set_mean_current(&mut sea, speed_m_s, self.current_toward_deg);
+            trial::set_mean_current(&mut sea, speed_m_s, self.current_toward_deg);
         }
         Ok(sea)
     }
@@ -57,15 +59,6 @@ pub(crate) fn boat(named: &str, seed: u64) -> Result<(Boat, PathBuf, Vec<Drawn>)
 pub(crate) fn tell_drawn(seed: u64, drawn: &[Drawn]) {
     for Drawn { parameter, value } in drawn {
         screen::print(&format!("drawn by seed {seed}: {parameter} = {value}\n"));
-    }
-}
-
-/// Reads a number from the command line, within limits.
-pub(crate) fn within(low: f64, high: f64, unit: &'static str) -> impl Fn(&str) -> Result<f64, String> + Clone {
-    move |text: &str| {
-        let number = text.parse().map_err(|_| format!("{text:?} is not a number, expected {low} to {high} {unit}"))?;
-        let is_within = (low..=high).contains(&number);
-        if is_within { Ok(number) } else { Err(format!("{text} is not within {low} to {high} {unit}")) }
     }
 }
 

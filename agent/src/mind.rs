@@ -1,6 +1,5 @@
 //! A mind: what decides for one boat.
 
-use crate::pilot::Pilot;
 use messages::helm::HelmReport;
 use messages::{Order, Picture, Word};
 use primitives::SimTime;
@@ -36,11 +35,6 @@ pub trait Mind: Send {
     /// Whether somebody looks inside: from the next decision on the utilities of all functions are kept for
     /// [`Mind::report`].
     fn show(&mut self, _shown: bool) {}
-
-    /// Itself, if its decisions are made outside of it.
-    fn pilot(&mut self) -> Option<&mut Pilot> {
-        None
-    }
 
     /// The state of its helm, if it has one.
     fn report(&self) -> Option<HelmReport> {

@@ -107,8 +107,8 @@ impl Pilot {
     /// Asks the model, if there is one and it is time to.
     fn ask_model(&mut self, picture: &Picture) {
         let Some(policy) = self.policy.as_mut().filter(|policy| policy.is_due(picture.stamp.valid_ns)) else { return };
-        look_ahead(&mut self.control, picture);
-        policy.look(situation_of(&self.control));
+        preview(&mut self.control, picture);
+        policy.choose_if_due(situation_of(&self.control));
         if let Ok(chosen) = policy.chosen() {
             self.follow(chosen);
         } else {
@@ -128,7 +128,7 @@ impl Pilot {
 
     /// Takes in the picture on which it will decide next, and gives the observation.
     pub fn observe(&mut self, picture: &Picture) -> &[f32] {
-        look_ahead(&mut self.control, picture);
+        preview(&mut self.control, picture);
         if let Control::Taught(teacher) = &mut self.control {
             (teacher.did, teacher.is_observed) = (None, true);
         }
@@ -180,11 +180,11 @@ impl Teacher {
 }
 
 /// Takes in the picture on which it will decide next.
-fn look_ahead(control: &mut Control, picture: &Picture) {
+fn preview(control: &mut Control, picture: &Picture) {
     match control {
-        Control::Direct(situation) => situation.look_ahead(picture),
-        Control::Helm(helm) => helm.look_ahead(picture),
-        Control::Taught(teacher) => teacher.helm.look_ahead(picture),
+        Control::Direct(situation) => situation.preview(picture),
+        Control::Helm(helm) => helm.preview(picture),
+        Control::Taught(teacher) => teacher.helm.preview(picture),
     }
 }
 
@@ -226,7 +226,7 @@ impl Mind for Pilot {
             }
             Control::Taught(teacher) => return teacher.decide(picture, self.actions),
         };
-        if !situation.take(picture) {
+        if !situation.update(picture) {
             return Order::Hold;
         }
         let SetPoint { course_rad, speed_m_s } = self.set_point;
@@ -257,10 +257,6 @@ impl Mind for Pilot {
         if let Some(helm) = helm_of_mut(&mut self.control) {
             helm.receive(messages);
         }
-    }
-
-    fn pilot(&mut self) -> Option<&mut Pilot> {
-        Some(self)
     }
 
     fn show(&mut self, shown: bool) {

@@ -56,7 +56,7 @@ impl BoardPolicy {
     }
 
     /// Decides if it is time to.
-    pub(crate) fn look(&mut self, situation: &Situation) {
+    pub(crate) fn choose_if_due(&mut self, situation: &Situation) {
         if !self.is_due(situation.now) {
             return;
         }

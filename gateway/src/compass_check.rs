@@ -71,7 +71,7 @@ pub(crate) struct CompassCheck {
 
 impl CompassCheck {
     /// Takes what the compass shows, rad, the velocity over the ground and the speed ahead that is ordered.
-    pub(crate) fn take(&mut self, now: SimTime, psi_rad: f64, velocity: Ned, ordered_m_s: f64) {
+    pub(crate) fn observe(&mut self, now: SimTime, psi_rad: f64, velocity: Ned, ordered_m_s: f64) {
         let gap_s = self.began.map_or(f64::INFINITY, |(_, last)| (now - last).as_s());
         // The sums of a piece assume steady flow: across a gap the boat may have turned.
         if gap_s > GAP_MAX_S {
@@ -204,7 +204,7 @@ mod tests {
             let true_deg = headings_deg[i / 240];
             let velocity = Ned::toward_deg(true_deg).scaled(1.5 * share) + current;
             let psi_rad = wrap_pi((true_deg - off_deg).to_radians());
-            check.take(SimTime::from_s(0.1 * i as f64), psi_rad, velocity, 1.5);
+            check.observe(SimTime::from_s(0.1 * i as f64), psi_rad, velocity, 1.5);
         }
         check
     }

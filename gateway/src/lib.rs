@@ -1,7 +1,7 @@
 //! The gateway to real boats: Surveyor NMEA both ways, links, a safety supervisor, and an emulated boat.
 //!
 //! Open [`supervisor`] first (when a boat may be driven), then [`bridge`] (how reports, orders and navigation meet), then
-//! [`protocol`] and [`nmea`]. [`emulator`] is the boat's end of the link, [`payload`] what else is on board. Sockets and clocks are only
+//! [`protocol`] and [`nmea`]. `emulator` is the boat's end of the link, [`payload`] what else is on board. Sockets and clocks are only
 //! in [`link`] and `node`.
 
 pub mod bow_watch;
@@ -9,6 +9,7 @@ pub mod bridge;
 mod compass_check;
 pub mod config;
 pub mod declination;
+#[cfg(feature = "emulator")]
 pub mod emulator;
 pub mod game_clock;
 pub mod geodesy;

@@ -98,7 +98,7 @@ impl NavEstimator {
     }
 
     /// Takes a report; returns whether it changed the estimate.
-    pub fn take(&mut self, now: SimTime, report: &Report) -> bool {
+    pub fn update(&mut self, now: SimTime, report: &Report) -> bool {
         match report {
             Report::Fix(fix) => self.take_fix(now, fix),
             Report::Velocity(velocity) => {
@@ -117,7 +117,7 @@ impl NavEstimator {
             self.known.thrust_at = Some(now);
         }
         if let Some((nav, _)) = self.nav(now) {
-            self.known.thrust.take(now, ordered, &nav);
+            self.known.thrust.observe(now, ordered, &nav);
         }
     }
 
@@ -239,7 +239,7 @@ impl NavEstimator {
         self.known.fix = Some(Fix { at: now, raw: at, place });
         let ordered = self.known.ordered.filter(|(at, _)| (now - *at).as_s() <= ORDERED_MEMORY_S);
         if let (Some((_, ordered)), Some(heading), Some(velocity)) = (ordered, self.known.heading, reported) {
-            self.known.compass.take(now, heading.psi_rad, velocity, ordered.ahead_m_s);
+            self.known.compass.observe(now, heading.psi_rad, velocity, ordered.ahead_m_s);
         }
         true
     }

@@ -86,7 +86,7 @@ pub fn replay(bag: &Bag) -> Result<Replay, RecordingError> {
     let (mut events, mut difference) = (Vec::new(), None);
     for (i, step) in steps.iter().enumerate() {
         let mut out = Output::default();
-        bridge.take(step.at, &step.input, &mut out);
+        bridge.process(step.at, &step.input, &mut out);
         if let Input::Bytes(bytes) = &step.input {
             bytes_in += bytes.len() as u64;
         }
@@ -125,12 +125,16 @@ fn differing(step: &RecordedStep, out: &Output) -> Option<Difference> {
 /// The steps of the core.
 fn steps(bag: &Bag, link_topic: &str) -> Result<Vec<RecordedStep>, RecordingError> {
     let mut steps = Vec::new();
-    bag.messages().try_for_each(|message| take(&mut steps, link_topic, &message))?;
+    bag.messages().try_for_each(|message| add_step(&mut steps, link_topic, &message))?;
     Ok(steps)
 }
 
 /// Puts one message where it belongs.
-fn take(steps: &mut Vec<RecordedStep>, link_topic: &str, message: &RecordedMessage<'_>) -> Result<(), RecordingError> {
+fn add_step(
+    steps: &mut Vec<RecordedStep>,
+    link_topic: &str,
+    message: &RecordedMessage<'_>,
+) -> Result<(), RecordingError> {
     let at = message.at;
     let mut begin = |input: Input| steps.push(RecordedStep { at, input, out: vec![], events: vec![] });
     match message.topic {

@@ -121,7 +121,7 @@ impl SensorCheck {
     }
 
     /// Takes bytes as they come.
-    pub fn take(&mut self, now: SimTime, bytes: &[u8]) {
+    pub fn receive(&mut self, now: SimTime, bytes: &[u8]) {
         // Counted by name with a framer of its own; what is reported comes from the gateway's
         // codec, so that the check goes by what the gateway would.
         self.count(now, bytes);
@@ -131,7 +131,7 @@ impl SensorCheck {
     }
 
     /// Appends what a boat must be asked for before it sends anything: nothing for a Surveyor, its telemetry by MAVLink.
-    pub fn ask(&mut self, now: SimTime, out: &mut Vec<u8>) {
+    pub fn write_questions(&mut self, now: SimTime, out: &mut Vec<u8>) {
         self.protocol.keep_up(now, out);
     }
 
@@ -378,7 +378,7 @@ mod tests {
     fn checked(text: &str, hz: f64) -> SensorCheck {
         let mut check = SensorCheck::new(&crate::config::default_gateway());
         for i in 0..10 {
-            check.take(SimTime::from_s(f64::from(i) / hz), text.as_bytes());
+            check.receive(SimTime::from_s(f64::from(i) / hz), text.as_bytes());
         }
         check
     }

@@ -98,7 +98,7 @@ struct Turn {
 
 impl Turn {
     /// Takes a step of this length; returns how fast the boat turns for a difference of all, rad/s, and its standard deviation.
-    fn take(&mut self, difference: f64, step_s: f64, turned_rad: f64) -> Option<(f64, f64)> {
+    fn observe(&mut self, difference: f64, step_s: f64, turned_rad: f64) -> Option<(f64, f64)> {
         self.difference += (difference - self.difference) * (step_s / TURN_LAG_S).min(1.0);
         self.piece_s += step_s;
         self.turned_rad += turned_rad;
@@ -132,7 +132,7 @@ struct Sway {
 
 impl Sway {
     /// Takes the sway after a step of this length; returns its variance, m²/s².
-    fn take(&mut self, step_s: f64, sway_m_s: f64) -> f64 {
+    fn observe(&mut self, step_s: f64, sway_m_s: f64) -> f64 {
         let share = (step_s / SWAY_MEMORY_S).min(1.0);
         self.mean += (sway_m_s - self.mean) * share;
         self.square += (sway_m_s * sway_m_s - self.square) * share;
@@ -159,7 +159,7 @@ pub(crate) struct ThrustCheck {
 
 impl ThrustCheck {
     /// The boat is sent this now, with what is known of its motion: heading, rad, and speed ahead over the ground, m/s.
-    pub(crate) fn take(&mut self, now: SimTime, ordered: Ordered, nav: &Nav) {
+    pub(crate) fn observe(&mut self, now: SimTime, ordered: Ordered, nav: &Nav) {
         let Nav { psi_rad, surge_m_s: ahead_m_s, .. } = *nav;
         let before = self.last.replace((now, psi_rad)).filter(|(at, _)| (now - *at).as_s() <= GAP_MAX_S);
         let Some((before, before_rad)) = before else {
@@ -168,7 +168,7 @@ impl ThrustCheck {
             return;
         };
         let turned_rad = wrap_pi(psi_rad - before_rad);
-        let known = self.turn.take(0.01 * ordered.turn_pct, (now - before).as_s(), turned_rad);
+        let known = self.turn.observe(0.01 * ordered.turn_pct, (now - before).as_s(), turned_rad);
         if let Some((slope, sigma)) = known
             // No plain limit such as "full difference for 8 s and no turn": in a gale a
             // simulated Surveyor was held so, or turned the other way, for 15 s 28 times in two
@@ -185,7 +185,7 @@ impl ThrustCheck {
     fn take_against(&mut self, step_s: f64, ordered: Ordered, nav: &Nav, turned_rad: f64) {
         let Nav { surge_m_s, sway_m_s, psi_rad, .. } = *nav;
         self.turn_rad_s += (turned_rad - step_s * self.turn_rad_s) / step_s.max(TURN_LAG_S);
-        let unrest = self.sway.take(step_s, sway_m_s);
+        let unrest = self.sway.observe(step_s, sway_m_s);
         let heading_rad = ordered.heading_rad.filter(|_| ordered.ahead_m_s >= AGAINST_FROM_M_S);
         // Along the bow: a boat that turns about moves against its ordered heading, but never
         // astern.
@@ -258,7 +258,7 @@ mod tests {
             let time_s = 0.1 * f64::from(i);
             psi_deg += 0.1 * turn_deg_s(time_s);
             let psi_rad = wrap_pi(f64::to_radians(psi_deg));
-            check.take(SimTime::from_s(time_s), ordered(time_s), &nav(psi_rad, ahead_m_s));
+            check.observe(SimTime::from_s(time_s), ordered(time_s), &nav(psi_rad, ahead_m_s));
             check.fault(SimTime::from_s(time_s)).map(|fault| (time_s, fault))
         })
     }
@@ -300,7 +300,7 @@ mod tests {
         (0..300).map(|i| 0.1 * f64::from(i)).find(|time_s| {
             let (psi_deg, ahead_m_s) = motion(*time_s);
             let nav = nav(wrap_pi(psi_deg.to_radians()), ahead_m_s);
-            check.take(SimTime::from_s(*time_s), Ordered { ahead_m_s: 2.0, turn_pct: 0.0, heading_rad }, &nav);
+            check.observe(SimTime::from_s(*time_s), Ordered { ahead_m_s: 2.0, turn_pct: 0.0, heading_rad }, &nav);
             matches!(check.fault(SimTime::from_s(*time_s)), Some(ThrustFault::Against(_)))
         })
     }
@@ -335,9 +335,9 @@ mod tests {
     fn a_fault_is_over_when_the_boat_is_not_driven_and_begins_anew() {
         let mut check = ThrustCheck::default();
         let at = |tenths: i32| SimTime::from_s(0.1 * f64::from(tenths));
-        (0..410).for_each(|i| check.take(at(i), held(2.0, 0.0)(0.0), &nav(0.0, 0.0)));
+        (0..410).for_each(|i| check.observe(at(i), held(2.0, 0.0)(0.0), &nav(0.0, 0.0)));
         assert!(check.fault(at(410)).is_some() && check.fault(at(430)).is_none());
-        check.take(at(430), held(2.0, 0.0)(0.0), &nav(0.0, 0.0));
+        check.observe(at(430), held(2.0, 0.0)(0.0), &nav(0.0, 0.0));
         assert_eq!(check.fault(at(430)), None);
     }
 }

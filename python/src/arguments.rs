@@ -103,5 +103,5 @@ pub(crate) fn stretch(
         return Err(PyIndexError::new_err(format!("games {begin} to {end}, expected from 0 to {games} and in order")));
     }
     let threads = NonZeroUsize::new(threads).ok_or_else(|| refused("threads is 0, expected at least 1"))?;
-    Ok((begin..end, threads))
+    Ok((begin..end, experiment::threads(Some(threads), end - begin)))
 }

@@ -2,6 +2,7 @@
 
 use crate::arguments::{PackedParts, games_and_seed, packed_of, parts_of, refused, stretch};
 use crate::signals;
+use experiment::sweep::{self, Plan, Study, StudyError};
 use scenario::{Sweep, load_sweep};
 use pyo3::exceptions::{PyIndexError, PyOSError};
 use pyo3::prelude::*;
@@ -10,7 +11,6 @@ use std::num::NonZeroUsize;
 use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
-use sweep::{Plan, Study, StudyError};
 
 /// Which games a sweep consists of; the stub explains it.
 #[pyclass(frozen, module = "squall._native")]

@@ -2,7 +2,7 @@
 
 use crate::arguments::{PackedParts, games_and_seed, packed_of, parts_of, refused, stretch};
 use crate::signals;
-use arena::tournament::{Plan, Record, Report, WIDTH, csv, play_some, text};
+use experiment::tournament::{Plan, Record, Report, WIDTH, csv, play, text};
 use scenario::{Tournament, load_tournament};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
@@ -75,6 +75,12 @@ impl TournamentPlan {
 
 /// Plays games on other threads than this one, which has Python look after its signals.
 fn played(plan: &Plan, games: Range<usize>, threads: NonZeroUsize) -> PyResult<Vec<String>> {
-    let records = signals::heeded(|stop| play_some(plan, games, threads, stop, |_| {}))?;
-    Ok(records.iter().map(|record| serde_json::to_string(record).expect("it has names for keys")).collect())
+    let games: Vec<usize> = games.collect();
+    signals::heeded(|stop| {
+        let mut records = Vec::with_capacity(games.len());
+        play(plan, &games, threads, stop, |record| {
+            records.push(serde_json::to_string(&record).expect("it has names for keys"));
+        });
+        records
+    })
 }

@@ -79,7 +79,7 @@ impl Sightings {
     }
 
     /// Looks round at one decision: the truth about every boat. Reports of decisions before `oldest` are not to come.
-    pub(crate) fn look(&mut self, decision: u64, oldest: u64, boats: impl Iterator<Item = Contact>) {
+    pub(crate) fn record_truth(&mut self, decision: u64, oldest: u64, boats: impl Iterator<Item = Contact>) {
         let oldest = oldest.saturating_sub(self.late);
         while let Some(past) = self.state.past.pop_front_if(|past| past.decision < oldest) {
             self.spare.push(past.boats);
@@ -92,7 +92,7 @@ impl Sightings {
     }
 
     /// The report that `seer` sent at `decision` has come in: its team is shown what it had seen.
-    pub(crate) fn take(&mut self, seer: usize, decision: u64) {
+    pub(crate) fn show_sightings(&mut self, seer: usize, decision: u64) {
         let Sightings { sharing, late, noises, decision: length, state: SightingState { past, known }, .. } = self;
         let seen_at = decision.checked_sub(*late);
         let Some(place) = seen_at.and_then(|at| past.binary_search_by_key(&at, |past| past.decision).ok()) else {

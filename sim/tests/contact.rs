@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{afloat, among, came_together, digest, energy_joule, gap_m, hulls, put, shipped};
+use common::{afloat, among, came_together, digest, energy_joule, gap_m, hulls, place_boat, shipped};
 use messages::Order;
 use primitives::Ned;
 use primitives::stream::Stream;
@@ -30,7 +30,7 @@ fn boats_that_meet_head_on_stop_each_other() {
     for boat in BOATS {
         let scenario = among(boat, Vec::new());
         let mut world = afloat(&scenario, 1, (100.0, 100.0, 90.0), (2.0, 0.0, 0.0));
-        put(&mut world, 1, (110.0, 100.0, 270.0), (2.0, 0.0, 0.0));
+        place_boat(&mut world, 1, (110.0, 100.0, 270.0), (2.0, 0.0, 0.0));
         let least_m = sail(&mut world, &scenario, [AHEAD; 2], 200);
         assert!((-DEEPEST_M..0.05).contains(&least_m), "{boat}: hulls come as near as {least_m} m");
         let [first, second] = [0, 1].map(|i| world.state().boats[i].pose.at.east);
@@ -43,7 +43,7 @@ fn a_boat_that_rams_anothers_side_pushes_it_away() {
     for boat in BOATS {
         let scenario = among(boat, Vec::new());
         let mut world = afloat(&scenario, 1, (100.0, 100.0, 90.0), (2.0, 0.0, 0.0));
-        put(&mut world, 1, (106.0, 100.0, 0.0), (0.0, 0.0, 0.0));
+        place_boat(&mut world, 1, (106.0, 100.0, 0.0), (0.0, 0.0, 0.0));
         let least_m = sail(&mut world, &scenario, [AHEAD, Order::Hold], 120);
         assert!((-DEEPEST_M..0.05).contains(&least_m), "{boat}: hulls come as near as {least_m} m");
         let rammed = world.state().boats[1].pose.at;
@@ -63,8 +63,8 @@ fn collision_course(world: &mut World, seed: u64) {
     };
     let (rammer, rammed) = (nu(1.5, 0.5, 0.3), nu(-1.0, 1.0, 1.0));
     let heading_deg = stream.between(0.0, 360.0);
-    put(world, 0, (100.0 + distance_m * sin, 100.0 + distance_m * cos, aim_deg), rammer);
-    put(world, 1, (100.0, 100.0, heading_deg), rammed);
+    place_boat(world, 0, (100.0 + distance_m * sin, 100.0 + distance_m * cos, aim_deg), rammer);
+    place_boat(world, 1, (100.0, 100.0, heading_deg), rammed);
 }
 
 #[test]
@@ -213,7 +213,7 @@ fn mirrored_orders_make_a_mirrored_course() {
         let scenario = among(boat, Vec::new());
         // The mirror stands along the meridian of the datum, so that mirrored numbers are exact.
         let mut world = afloat(&scenario, 1, (20.0, 100.0, 30.0), (1.0, 0.3, -0.2));
-        put(&mut world, 1, (-20.0, 100.0, -30.0), (1.0, -0.3, 0.2));
+        place_boat(&mut world, 1, (-20.0, 100.0, -30.0), (1.0, -0.3, 0.2));
         let mut stream = Stream::new(1, "orders");
         let mut orders = [Order::Hold; 2];
         for tick in 0..800 {

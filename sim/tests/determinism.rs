@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{alone, digest, order, put, shipped};
+use common::{alone, digest, order, place_boat, shipped};
 use messages::Order;
 use messages::order::BadOrder;
 use primitives::{Pose, VehicleId};
@@ -100,8 +100,8 @@ fn a_game_goes_on_from_a_snapshot_as_if_it_had_never_stopped() {
 #[test]
 fn a_game_goes_on_from_a_snapshot_taken_while_hulls_touch() {
     let mut world = World::of_game(&alone("surveyor_m1_8", "calm"), 1).unwrap();
-    put(&mut world, 0, (100.0, 100.0, 90.0), (2.0, 0.0, 0.0));
-    put(&mut world, 1, (103.0, 100.3, 250.0), (2.0, 0.0, 0.0));
+    place_boat(&mut world, 0, (100.0, 100.0, 90.0), (2.0, 0.0, 0.0));
+    place_boat(&mut world, 1, (103.0, 100.3, 250.0), (2.0, 0.0, 0.0));
     let ahead = [Order::Thrust { port: 1.0, starboard: 0.9 }; 2];
     for tick in 0..100 {
         let (mut on, mut other) = (world.clone(), world.clone());
@@ -215,8 +215,8 @@ fn a_boat_whose_numbers_go_bad_is_taken_out_and_the_others_sail_on() {
 fn a_quarantined_boat_is_something_to_bump_into() {
     let scenario = alone("surveyor_m1_8", "calm");
     let mut world = World::of_game(&scenario, 1).unwrap();
-    put(&mut world, 0, (100.0, 100.0, 90.0), (2.0, 0.0, 0.0));
-    put(&mut world, 1, (106.0, 100.0, 0.0), (f64::INFINITY, 0.0, 0.0));
+    place_boat(&mut world, 0, (100.0, 100.0, 90.0), (2.0, 0.0, 0.0));
+    place_boat(&mut world, 1, (106.0, 100.0, 0.0), (f64::INFINITY, 0.0, 0.0));
     for _ in 0..200 {
         world.step(&[Order::Steer { heading_rad: std::f64::consts::FRAC_PI_2, speed_m_s: 2.0 }, Order::Hold]);
         assert!(common::gap_m(&world, &scenario, 0, 1) > -0.02);

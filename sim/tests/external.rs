@@ -11,7 +11,7 @@ use primitives::{FlagId, Ned, SimTime, VehicleId};
 use rules::event::{EventCursor, TagCause};
 use rules::{Event, TaggedBoat};
 use scenario::Scenario;
-use sim::{BadReport, Contest};
+use sim::{BadReport, Contest, HoldCause};
 
 /// A real boat, and a simulated one of the other team.
 const REAL: VehicleId = VehicleId(0);
@@ -95,6 +95,30 @@ fn a_real_boat_is_tagged_and_its_effective_command_is_what_the_rules_make_of_its
     // Nobody drives a boat without an agent.
     contest.lose_agent(REAL);
     assert_eq!(contest.effective_command(REAL), Order::Hold);
+}
+
+#[test]
+fn the_cause_for_which_a_boat_holds_is_known_and_the_first_of_several_counts() {
+    let mut contest = afloat(&game("at = [150, 5]", ""));
+    let shows = |contest: &Contest, want: [Option<HoldCause>; 2]| {
+        assert_eq!([REAL, OTHER].map(|vehicle| contest.hold_cause(vehicle)), want);
+        for (vehicle, want) in [REAL, OTHER].into_iter().zip(want) {
+            assert_eq!(contest.effective_command(vehicle) == Order::Hold, want.is_some(), "{want:?}");
+        }
+    };
+    // Nobody has reported the one, or ordered the other anything.
+    shows(&contest, [Some(HoldCause::NavLost), Some(HoldCause::Ordered)]);
+    report(&mut contest, nav(50.0, 40.0, 90.0, 0.0));
+    for vehicle in [REAL, OTHER] {
+        order(&mut contest, vehicle, Order::Steer { heading_rad: 1.0, speed_m_s: 1.0 });
+    }
+    shows(&contest, [None, None]);
+    [REAL, OTHER].into_iter().for_each(|vehicle| contest.lose_agent(vehicle));
+    shows(&contest, [Some(HoldCause::AgentLost), Some(HoldCause::Ordered)]);
+    contest.halt(true);
+    shows(&contest, [Some(HoldCause::Halted); 2]);
+    contest.e_stop(true);
+    shows(&contest, [Some(HoldCause::EStopped); 2]);
 }
 
 #[test]

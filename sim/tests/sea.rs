@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{afloat, alone, on_sea, put, scenarios, surveyor_on};
+use common::{afloat, alone, on_sea, place_boat, scenarios, surveyor_on};
 use messages::Order;
 use primitives::Ned;
 use scenario::sea::{GRAVITY_M_S2, Spreading, Waves};
@@ -166,7 +166,7 @@ fn point_boats_collide_in_a_current_as_they_do_in_still_water() {
         scenario.sea.current.mean_m_s = mean_m_s;
         // Blue runs into red's side.
         let mut world = afloat(&scenario, 1, (300.0, 200.0, 90.0), (0.0, 0.0, 0.0));
-        put(&mut world, 1, (308.0, 200.2, 0.0), (0.0, 0.0, 0.0));
+        place_boat(&mut world, 1, (308.0, 200.2, 0.0), (0.0, 0.0, 0.0));
         let ahead = Order::Steer { heading_rad: std::f64::consts::FRAC_PI_2, speed_m_s: 1.5 };
         run(&mut world, &[ahead, Order::Hold], 30.0);
         [0, 1].map(|i| world.state().boats[i].pose.at - mean_m_s.scaled(30.0))

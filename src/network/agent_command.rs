@@ -1,11 +1,11 @@
 //! `squall agent`: decides for boats in a game.
 
-use super::net_args::LeafArgs;
-use super::sim_command::seconds;
 use crate::screen;
 use crate::stop;
 use agent::node::{News, Settings};
 use anyhow::{Context, Result};
+use command_line::leaf_args::LeafArgs;
+use command_line::number::seconds;
 use scenario::strategy::Strategy;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;

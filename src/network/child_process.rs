@@ -4,7 +4,6 @@ use anyhow::{Context, Result};
 use bus::keys::Identity;
 use bus::token::TOKEN_VARIABLE;
 use bus::{Token, clock};
-use std::ffi::OsString;
 use std::fmt::Display;
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
@@ -12,18 +11,6 @@ use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::LazyLock;
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::time::Duration;
-
-/// Begins this program again with the threads that a process with keys must have, if it is given keys and has others.
-///
-/// # Errors
-/// If it cannot be begun.
-pub(crate) fn with_threads_for_keys() -> Result<()> {
-    let is_keys = |word: OsString| word.to_str().is_some_and(|word| word == "--keys" || word.starts_with("--keys="));
-    if std::env::args_os().skip(1).any(is_keys) {
-        bus::restart_for_keys()?;
-    }
-    Ok(())
-}
 
 /// This program with other arguments, to be started as a child.
 pub(crate) fn squall(args: &[&str]) -> Result<Command> {

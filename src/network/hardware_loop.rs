@@ -1,7 +1,7 @@
 //! The hardware loop, closed on one machine: water of its own, an emulated boat and a gateway for every real one.
 
 use super::child_process::{self, ChildProcess, option};
-use super::net_args::{free_port, unique_game_name};
+use super::hub_args::{free_port, unique_game_name};
 use super::pace_args::PaceArgs;
 use crate::game_args::GameArgs;
 use crate::output_file;
@@ -22,7 +22,7 @@ pub(crate) struct LoopArgs {
     #[arg(long, conflicts_with_all = ["in_process", "rehearse"])]
     emulate: bool,
     /// How the gateways drive them: a gateway file or its name [default: a Surveyor, carefully]
-    #[arg(long, value_name = "FILE", requires = "emulate", value_parser = crate::scenario_files::gateway)]
+    #[arg(long, value_name = "FILE", requires = "emulate", value_parser = crate::scenario_files::file_of::<gateway::config::Gateway>)]
     gateway: Option<PathBuf>,
     /// Records what goes through each gateway into this folder, as NAME.mcap
     #[arg(long, value_name = "DIR", requires = "emulate")]

@@ -1,21 +1,16 @@
-//! `squall helm`: one decision of a boat's helm, in a table, as numbers and as pictures.
+//! `squall helm`: one decision of a boat's helm, in a table and as numbers.
 
-use super::net_args::LeafArgs;
-use super::observer::Observer;
-use crate::plot::Page;
-use crate::{helm_text, plot, screen};
+use super::{helm_page, helm_query};
+use crate::screen;
 use anyhow::{Context, Result, bail};
+use command_line::leaf_args::LeafArgs;
+use command_line::observer::Observer;
 use messages::helm::{HelmQuestion, HelmReport};
 use scenario::Scenario;
-use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-mod polar;
-
-use polar::PolarPlot;
-
-/// Whose, and into which files.
+/// Whose, and into which file.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// The vehicle, by name
@@ -26,12 +21,6 @@ pub(crate) struct Args {
     /// Writes the utility of every course and speed, by behaviour and in all, into this file
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Draws the same into this file, as PNG
-    #[arg(long, value_name = "FILE")]
-    png: Option<PathBuf>,
-    /// Draws the same into this file, as SVG
-    #[arg(long, value_name = "FILE")]
-    svg: Option<PathBuf>,
 }
 
 /// What the sum of all behaviours is called.
@@ -40,30 +29,15 @@ const COLLECTIVE: &str = "collective";
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let observer = Observer::connect(&args.leaf)?;
     let vehicle = observer.vehicle(&args.vehicle)?;
-    let report = observer.helm_of_agent(vehicle, HelmQuestion { functions: true })?;
+    let report = helm_query::report_of_agent(&observer, vehicle, HelmQuestion { functions: true })?;
     let scenario = &observer.info.scenario;
     if report.functions.iter().any(|function| function.utilities.is_empty()) {
         bail!("the helm of {} has not decided since it was asked; ask again", args.vehicle);
     }
-    screen::print(&helm_text::page(scenario, &report));
+    screen::print(&helm_page::page(scenario, &report));
     if let Some(path) = &args.csv {
         write_csv(path, scenario, &report)
             .with_context(|| format!("cannot write the functions to {}", path.display()))?;
-    }
-    if args.png.is_some() || args.svg.is_some() {
-        let title = format!(
-            "{} ({}) at {:.1} s: {}; {}",
-            args.vehicle,
-            report.program,
-            report.at.as_s(),
-            report.mode,
-            helm_text::decision(&report)
-        );
-        let panels = plots(&report);
-        let columns = panels.len().min(polar::COLUMNS_MAX);
-        let page = Page { title, columns, panel: polar::PANEL, panels };
-        args.png.iter().try_for_each(|path| plot::write_png(path, &page))?;
-        args.svg.iter().try_for_each(|path| plot::write_svg(path, &page))?;
     }
     observer.bus.close();
     Ok(ExitCode::SUCCESS)
@@ -98,39 +72,4 @@ fn write_csv(path: &Path, scenario: &Scenario, report: &HelmReport) -> Result<()
     let weight: f64 = report.functions.iter().map(|function| function.weight).sum();
     write(COLLECTIVE, "", weight, &mut report.sum(report.functions.iter()).into_iter())?;
     Ok(csv.flush()?)
-}
-
-/// A picture of all together, then of each behaviour that asked for something.
-fn plots(report: &HelmReport) -> Vec<PolarPlot> {
-    let plot = |title: String, values: Vec<f64>, range: (f64, f64)| PolarPlot {
-        title,
-        courses: report.courses,
-        speed_max_m_s: report.speed_max_m_s,
-        values,
-        range,
-        chosen: report.course_deg.zip(report.speed_m_s),
-    };
-    let all = report.sum(report.functions.iter());
-    let range = all.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
-    let mut plots = vec![plot(format!("{COLLECTIVE}: sum of weight × utility"), all, range)];
-    for behaviour in &report.behaviours {
-        let of_it = || report.functions.iter().filter(|function| function.behaviour == behaviour.name);
-        let weight: f64 = of_it().map(|function| function.weight).sum();
-        let contacts = of_it().filter_map(|function| function.contact).collect::<BTreeSet<_>>().len();
-        if of_it().next().is_none() {
-            continue;
-        }
-        let about = match contacts {
-            0 => String::new(),
-            1 => ", 1 contact".to_owned(),
-            n => format!(", {n} contacts"),
-        };
-        let mean = report.sum(of_it()).into_iter().map(|v| v / weight.max(f64::MIN_POSITIVE)).collect();
-        plots.push(plot(
-            format!("{} ({}): weight {weight:.1}{about}", behaviour.name, behaviour.kind),
-            mean,
-            (0.0, 100.0),
-        ));
-    }
-    plots
 }

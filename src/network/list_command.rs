@@ -1,9 +1,9 @@
 //! `squall list`: which games there are.
 
-use super::net_args::LeafArgs;
 use crate::screen;
 use anyhow::Result;
 use bus::{Bus, BusError, Net, Watched};
+use command_line::leaf_args::LeafArgs;
 use messages::GameInfo;
 use messages::run_state::{Phase, RunState};
 use messages::topic::{self, GameName};

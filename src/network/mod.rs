@@ -1,29 +1,28 @@
 //! The commands that need a network or show a page: feature `network`.
 
 mod agent_command;
-pub(crate) mod child_process;
+mod child_process;
+mod gateway_command;
 mod hardware_loop;
 mod helm_command;
+mod helm_page;
+mod helm_query;
+mod hub_args;
 mod keys_command;
 mod list_command;
-pub(crate) mod net_args;
-pub(crate) mod observer;
 mod pace_args;
 mod page_args;
-pub(crate) mod printer;
 mod replay_command;
+mod replay_helms;
 mod run_command;
-pub(crate) mod sim_command;
+mod sim_command;
 mod view_command;
 mod watch_command;
 
-use crate::gateway_command;
 use anyhow::Result;
 use clap::Subcommand;
+use command_line::leaf_args;
 use std::process::ExitCode;
-
-/// What shows a recorded game.
-pub(crate) const LOOK: &str = "squall replay";
 
 /// The commands.
 #[derive(Subcommand)]
@@ -53,8 +52,8 @@ pub(crate) enum Command {
     /// Shows a recorded game again, or checks that the same comes of it.
     #[command(after_help = "Examples:\n  squall replay runs/game.mcap\n  squall replay runs/game.mcap --check")]
     Replay(replay_command::Args),
-    /// Dumps one decision of a boat's helm: a table, numbers, pictures.
-    #[command(after_help = "Examples:\n  squall helm --vehicle blue_1 --png helm.png")]
+    /// Dumps one decision of a boat's helm: a table, numbers.
+    #[command(after_help = "Examples:\n  squall helm --vehicle blue_1 --csv helm.csv")]
     Helm(helm_command::Args),
     /// Brings real boats into games, and lets real back seats drive simulated ones.
     #[command(after_help = "Examples:\n  squall gateway emulate --help\n  squall gateway surveyor --help")]
@@ -70,7 +69,7 @@ pub(crate) enum Command {
 pub(crate) fn run(command: &Command) -> Result<ExitCode> {
     // `run` only hands keys on: what it starts without keys must not have the threads of those with keys.
     if !matches!(command, Command::Run(_) | Command::Demo(_)) {
-        child_process::with_threads_for_keys()?;
+        leaf_args::restart_with_threads_for_keys()?;
     }
     match command {
         Command::Demo(args) => run_command::demo(args),

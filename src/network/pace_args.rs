@@ -1,9 +1,9 @@
 //! How fast a game is served, and for whom it waits: what `run` and `sim` ask alike.
 
 use super::child_process::{self, option};
-use super::sim_command::seconds;
 use crate::game_args::{GameArgs, speed};
 use anyhow::Result;
+use command_line::number::seconds;
 use scenario::Setting;
 use sim::node::Pace;
 use std::process::Command;

@@ -1,15 +1,13 @@
 //! `squall replay` on a page: a recorded game, and the helm reports of minds that are shown its pictures again.
 
 use super::page_args::PageArgs;
-use crate::minds::Minds;
+use super::replay_helms::ReplayHelms;
 use crate::replay_command;
 use crate::screen::{self, Screen};
 use crate::stop;
 use crate::style::Names;
 use anyhow::{Result, bail};
-use primitives::VehicleId;
-use shore::page::HelmAnswer;
-use shore::page::replay::{Helms, Recorded, ReplayView};
+use shore::page::replay::{Recorded, ReplayView};
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -51,32 +49,5 @@ pub(crate) fn show_about(file: &Path, about: Option<String>) -> Result<ReplayVie
     let recording = Arc::new(replay_command::open(file)?);
     let recorded = Recorded::new(Arc::clone(&recording), file.display().to_string());
     recorded.damaged().remark().iter().for_each(|remark| screen::remark(remark));
-    Ok(ReplayView::about(about, Arc::new(recorded), Some(Box::new(Minds::new(recording)))))
-}
-
-impl Helms for Minds {
-    fn report(&mut self, vehicle: VehicleId, decision: u64, _functions: bool) -> HelmAnswer {
-        // Decided again: to record all objective functions would be megabytes a second, and
-        // strategies are deterministic. The recorded order says whether that is so.
-        let Some(order) = self.decide(vehicle, decision) else {
-            let reason = "no picture of this moment was recorded".to_owned();
-            return HelmAnswer { reason: Some(reason), computed: true, ..HelmAnswer::default() };
-        };
-        HelmAnswer {
-            report: Minds::report(self, vehicle),
-            reason: None,
-            computed: true,
-            agrees: self.recorded(vehicle, decision).map(|recorded| recorded == order),
-        }
-    }
-
-    fn modes(&mut self, decision: u64) -> Vec<Option<String>> {
-        let vehicles = self.vehicles();
-        let mode = |vehicle: VehicleId| {
-            // Its mates have decided with the first of a team.
-            let (report, _) = self.report_of(vehicle, decision)?;
-            Some(report.mode).filter(|mode| !mode.is_empty())
-        };
-        vehicles.map(mode).collect()
-    }
+    Ok(ReplayView::about(about, Arc::new(recorded), Some(Box::new(ReplayHelms::new(recording)))))
 }

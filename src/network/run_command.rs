@@ -2,7 +2,7 @@
 
 use super::child_process::{self, ChildProcess, option};
 use super::hardware_loop::{HardwareLoop, LoopArgs};
-use super::net_args::{free_port, token_text, unique_game_name};
+use super::hub_args::{free_port, token_text, unique_game_name};
 use super::pace_args::PaceArgs;
 use super::page_args::PageArgs;
 use crate::game_args::GameArgs;

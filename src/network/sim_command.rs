@@ -1,15 +1,14 @@
 //! `squall sim`: serves one game.
 
-use super::net_args::{HubArgs, token_text, unique_game_name};
+use super::hub_args::{HubArgs, token_text, unique_game_name};
 use super::pace_args::PaceArgs;
-use super::printer::Printer;
 use crate::game_args::GameArgs;
 use crate::screen::{self, Screen};
 use crate::stop;
 use crate::style::Names;
-use crate::water_args::within;
 use anyhow::{Context, Result, bail};
 use bus::Token;
+use command_line::printer::Printer;
 use messages::topic::GameName;
 use sim::node::{GameRecorder, ProgressMessage, Settings};
 use std::path::PathBuf;
@@ -37,11 +36,6 @@ pub(crate) struct Args {
     /// Reports everything as JSON lines on standard output, and stops when standard input ends
     #[arg(long, hide = true)]
     for_parent: bool,
-}
-
-/// A number of seconds from the command line.
-pub(crate) fn seconds(text: &str) -> Result<f64, String> {
-    within(0.0, 1e6, "s")(text)
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {

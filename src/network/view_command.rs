@@ -1,13 +1,12 @@
 //! `squall view`: on a page, a running game from any machine, or a report with its games.
 
-use super::net_args::LeafArgs;
 use super::page_args::{self, PageArgs};
 use super::replay_command;
-use crate::gateway_command;
 use crate::screen::{self, Screen};
 use crate::stop;
 use crate::style::Names;
 use anyhow::{Context, Result, bail};
+use command_line::leaf_args::LeafArgs;
 use shore::page::View;
 use shore::page::live::LiveView;
 use std::path::{Path, PathBuf};
@@ -48,7 +47,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         }
     });
     let (place, game) = (args.leaf.place()?, args.leaf.game.clone());
-    let live = LiveView::open(place, game, tell, gateway_command::read_mission).context("cannot look for games")?;
+    let live = LiveView::open(place, game, tell, gateway_cli::read_mission).context("cannot look for games")?;
     let live = Arc::new(live);
     page.show(Arc::clone(&live) as Arc<dyn View>);
     Screen::new(Names::default()).line(&format!("look at it on {} (Ctrl-C ends it)", args.page.url(&page)));

@@ -1,12 +1,12 @@
 //! `squall watch`: a running game in the terminal, or one boat's helm.
 
-use super::net_args::LeafArgs;
-use super::observer::Observer;
 use crate::screen;
 use crate::stop;
 use crate::style::Names;
 use anyhow::{Result, bail};
 use bus::{Watched, clock};
+use command_line::leaf_args::LeafArgs;
+use command_line::observer::Observer;
 use messages::{Frame, topic};
 use primitives::{SimTime, codec};
 use rules::event::Logged;

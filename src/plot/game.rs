@@ -108,7 +108,7 @@ fn chart<'a>(header: &'a Header, series: &GameSeries) -> Chart<'a> {
 }
 
 /// The score as steps.
-fn score(header: &Header, series: &GameSeries) -> Page<Panel> {
+fn score(header: &Header, series: &GameSeries) -> Page {
     let steps = |team: usize| {
         let points = series.score.iter().map(|score| score.get(team).copied().unwrap_or(0));
         let mut line: Vec<(f64, f64)> = vec![];
@@ -129,7 +129,7 @@ fn score(header: &Header, series: &GameSeries) -> Page<Panel> {
 }
 
 /// Speed, heading and navigation of a boat.
-fn boat_page(header: &Header, series: &GameSeries, boat: &BoatSeries) -> Page<Panel> {
+fn boat_page(header: &Header, series: &GameSeries, boat: &BoatSeries) -> Page {
     let series = |of: &dyn Fn(&Sample) -> Option<f64>| -> Vec<(f64, f64)> {
         let samples = series.times_s.iter().zip(&boat.samples);
         samples.map(|(time_s, sample)| (*time_s, of(sample).unwrap_or(f64::NAN))).collect()

@@ -6,7 +6,6 @@ pub(crate) mod field;
 pub(crate) mod film;
 pub(crate) mod game;
 pub(crate) mod sea;
-pub(crate) mod training;
 pub(crate) mod trial;
 
 use crate::output_file;
@@ -20,8 +19,8 @@ use resvg::usvg::{Options, Tree, fontdb};
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
-/// A page of panels of one kind.
-pub(crate) struct Page<P> {
+/// A page of panels.
+pub(crate) struct Page {
     /// What stands on top.
     pub(crate) title: String,
     /// Panels per row.
@@ -29,7 +28,7 @@ pub(crate) struct Page<P> {
     /// Width and height of a panel, pixels.
     pub(crate) panel: (u32, u32),
     /// Row by row.
-    pub(crate) panels: Vec<P>,
+    pub(crate) panels: Vec<Panel>,
 }
 
 /// One diagram with lines.
@@ -123,12 +122,6 @@ pub(crate) trait Drawing {
     fn draw<B: DrawingBackend>(&self, root: &Area<B>) -> Drawn<B>;
 }
 
-/// Something that can be drawn onto a part of a page.
-pub(crate) trait Diagram {
-    /// Draws it onto a white ground of any size.
-    fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<B>;
-}
-
 /// What comes of drawing.
 pub(crate) type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
 
@@ -187,13 +180,13 @@ fn draw_on<B: DrawingBackend>(backend: B, drawing: &impl Drawing) -> Drawn<B> {
     root.present()
 }
 
-impl<P> Page<P> {
+impl Page {
     fn rows(&self) -> usize {
         self.panels.len().div_ceil(self.columns)
     }
 }
 
-impl<P: Diagram> Drawing for Page<P> {
+impl Drawing for Page {
     fn size(&self) -> (u32, u32) {
         (self.panel.0 * self.columns as u32, TITLE_HEIGHT + self.panel.1 * self.rows() as u32)
     }
@@ -206,7 +199,7 @@ impl<P: Diagram> Drawing for Page<P> {
     }
 }
 
-impl Diagram for Panel {
+impl Panel {
     fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<B> {
         if self.lines.is_empty() { draw_absent(area, self) } else { draw_lines(area, self) }
     }
@@ -363,7 +356,7 @@ fn provide_font() {
 mod tests {
     use super::*;
 
-    fn page(points: Vec<(f64, f64)>) -> Page<Panel> {
+    fn page(points: Vec<(f64, f64)>) -> Page {
         let line =
             |name: &str| Line { name: name.into(), points: points.clone(), filled: !name.is_empty(), colour: None };
         let mark = |at: &(f64, f64)| Mark { name: "here".into(), at: *at };
@@ -383,7 +376,7 @@ mod tests {
         svg(&page(points))
     }
 
-    fn svg(page: &Page<Panel>) -> String {
+    fn svg(page: &Page) -> String {
         let dir = tempfile::tempdir().expect("a temporary directory");
         let path = dir.path().join("plot.svg");
         write_svg(&path, page).expect("it can be drawn");

@@ -2,11 +2,11 @@
 
 use crate::plot::{self, Line, Mark, Page, Panel};
 use anyhow::Result;
-use arena::trial::Sample;
 use primitives::{Ned, SimTime, math};
 use scenario::sea::Sea;
 use sim::sea::{Band, SeaModel, band, spectrum};
 use std::path::Path;
+use trial::Sample;
 
 /// Bands of the spectrum: near the peak of a JONSWAP spectrum it takes 0.15 of the peak frequency to tell its shape.
 const BANDS: usize = 30;

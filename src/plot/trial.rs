@@ -2,8 +2,8 @@
 
 use crate::plot::{self, Line, Page, Panel};
 use anyhow::Result;
-use arena::trial::{self, Command, Sample};
 use std::path::Path;
+use trial::{Command, Sample};
 
 /// Draws a trial into a file.
 pub(crate) fn write(path: &Path, title: &str, samples: &[Sample]) -> Result<()> {

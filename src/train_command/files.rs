@@ -1,8 +1,6 @@
 //! What a training leaves in its folder.
 
-use super::events::Events;
 use crate::output_file;
-use crate::plot::training::{Learnt, svg};
 use anyhow::{Context, Result};
 use learn::environment::{Finished, recording_name};
 use learn::train::{Progress, Trainer};
@@ -25,10 +23,8 @@ pub(super) struct Files {
     folder: PathBuf,
     /// By the file's name.
     tables: [(&'static str, String); 3],
-    events: Events,
     /// The strategy through whose helm the policy plays, if there is one.
     base: Option<PathBuf>,
-    learnt: Vec<Learnt>,
 }
 
 impl Files {
@@ -40,9 +36,7 @@ impl Files {
         let mut files = Files {
             folder: folder.to_owned(),
             tables: tables.map(|(name, head)| (name, head.to_owned())),
-            events: Events::open(folder, samples)?,
             base: std::fs::canonicalize(base).ok(),
-            learnt: vec![],
         };
         if samples > 0 {
             for (name, table) in &mut files.tables {
@@ -55,7 +49,6 @@ impl Files {
                     let _ = writeln!(table, "{line}");
                 });
             }
-            files.learnt = files.tables[0].1.lines().skip(1).filter_map(learnt).collect();
         }
         for (name, table) in &files.tables {
             output_file::write(&folder.join(name), "the training", table)?;
@@ -95,7 +88,6 @@ impl Files {
                 .map(|(_, value)| value.map_or(",".to_owned(), |value| format!(",{value}")))
                 .concat()
         );
-        self.learnt.extend(learnt(lines[0].trim_end()));
         for (name, played) in progress.evaluated.iter().flat_map(|evaluated| &evaluated.played) {
             let ([won, drawn, lost], [own, theirs]) = (played.results, played.points);
             let _ = writeln!(
@@ -117,10 +109,6 @@ impl Files {
         }
         for ((name, _), lines) in self.tables.iter().zip(lines) {
             append(&self.folder.join(name), &lines)?;
-        }
-        self.events.update(progress)?;
-        if progress.evaluated.is_some() {
-            self.page(trainer)?;
         }
         Ok(())
     }
@@ -146,24 +134,9 @@ impl Files {
         );
         output_file::write(&self.folder.join("best.toml"), "the strategy", strategy)
     }
-
-    /// The page with the curves: it needs nothing but itself, and is loaded again by itself.
-    fn page(&self, trainer: &Trainer) -> Result<()> {
-        let (done, all) = trainer.samples();
-        let name = printable::line(&trainer.training().name);
-        let title = format!("{name}: {done} of {all} samples");
-        let curves = svg(&title, &self.learnt, trainer.evaluations())?;
-        let again = if trainer.is_over() { "" } else { "<meta http-equiv=\"refresh\" content=\"10\">" };
-        let page = format!(
-            "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\">{again}<title>{title}</title>\
-             <style>body{{margin:0;display:grid;place-items:center}}svg{{max-width:100%;height:auto}}</style></head>\
-             <body>{curves}</body></html>\n"
-        );
-        output_file::write(&self.folder.join("progress.html"), "the curves", page)
-    }
 }
 
-pub(super) fn append(path: &Path, bytes: impl AsRef<[u8]>) -> Result<()> {
+fn append(path: &Path, bytes: impl AsRef<[u8]>) -> Result<()> {
     use std::io::Write;
     let open = || std::fs::OpenOptions::new().append(true).open(path);
     let written = open().and_then(|mut file| file.write_all(bytes.as_ref()));
@@ -172,11 +145,4 @@ pub(super) fn append(path: &Path, bytes: impl AsRef<[u8]>) -> Result<()> {
 
 fn first_number(line: &str) -> Option<u64> {
     line.split(',').next()?.parse().ok()
-}
-
-/// A line of the table of updates.
-fn learnt(line: &str) -> Option<Learnt> {
-    let cells: Vec<&str> = line.split(',').collect();
-    let number = |i: usize| cells.get(i)?.parse::<f64>().ok();
-    Some(Learnt { samples: first_number(line)?, reward: number(2)?, entropy: number(5), value_loss: number(4) })
 }

@@ -1,8 +1,8 @@
 //! `squall train`: trains a policy as a training file says.
 
-mod events;
 mod files;
 
+use crate::jobs_args::JobsArgs;
 use crate::progress::Progress;
 use crate::{output_file, screen, stop};
 use anyhow::{Context, Result, bail};
@@ -11,7 +11,7 @@ use learn::environment::{RecordingLog, RecordingNames, Recordings, check_recordi
 use learn::train::{Evaluated, Played, Trainer};
 use learn::training::Training;
 use scenario::Kind;
-use std::num::{NonZeroU64, NonZeroUsize};
+use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -24,9 +24,9 @@ const STATE_BYTES_MAX: u64 = 4 << 30;
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// The training: a file or a name
-    #[arg(value_parser = crate::scenario_files::training)]
+    #[arg(value_parser = crate::scenario_files::file_of::<learn::training::Training>)]
     training: PathBuf,
-    /// The folder for the policy, its curves and all tables [default: runs/train/NAME]
+    /// The folder for the policy and all tables [default: runs/train/NAME]
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
     /// Goes on with the training that this folder holds; what comes of it is the same as if it had never stopped
@@ -38,9 +38,8 @@ pub(crate) struct Args {
     /// Another seed than the file's: another training
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
     seed: Option<u64>,
-    /// Threads; the policy is the same on any number of them [default: one for each core]
-    #[arg(long, value_name = "N")]
-    jobs: Option<NonZeroUsize>,
+    #[command(flatten)]
+    jobs: JobsArgs,
     /// Records each Nth episode into the folder's games/, for `squall replay`; the policy is the same with or without
     #[arg(long, value_name = "N")]
     record_every: Option<NonZeroU64>,
@@ -50,7 +49,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let mut training = scenario::load_file::<learn::training::Training>(&args.training)?;
     training.seed = args.seed.unwrap_or(training.seed);
     let folder = args.out.clone().unwrap_or_else(|| Path::new("runs/train").join(&training.name));
-    let jobs = args.jobs.or(std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
+    // Learning takes all of them, however few games there are.
+    let jobs = args.jobs.threads(usize::MAX).get();
     let stop = stop::on_ctrl_c()?;
     let mut trainer = begin(args, training, &folder, jobs)?;
     let mut files = Files::open(&folder, &base(&args.training, trainer.training()), &trainer)?;

@@ -79,7 +79,7 @@ fn serve(mut stream: TcpStream, datum: LatLon, commands: &Sender<(Instant, Mode)
             Err(_) => return,
         };
         let at = Instant::now();
-        emulator.take(now, Port::Secondary, read);
+        emulator.receive(now, Port::Secondary, read);
         framer.push(read, &mut |body| {
             if let Ok(Sentence::Command(command)) = Sentence::parse(body) {
                 let _ = commands.send((at, command.mode));

@@ -165,7 +165,7 @@ pub(crate) fn sail(wire: &Wire, datum: LatLon, cuts: &[(Duration, Duration)], st
             state.is_whole = is_whole;
             std::mem::take(&mut state.to_boat)
         });
-        emulator.take(now, Port::Secondary, &bytes);
+        emulator.receive(now, Port::Secondary, &bytes);
         let order = emulator.order(now);
         while (steps as f64) * STEP_S < passed.as_secs_f64() {
             boat.step(order);

@@ -91,14 +91,14 @@ impl Boat {
             failsafes: vec![],
             arm_at: SimTime::from_s(2.0),
         };
-        boat.put(SimTime::ZERO, &Input::LinkUp);
+        boat.give(SimTime::ZERO, &Input::LinkUp);
         boat
     }
 
-    fn put(&mut self, now: SimTime, input: &Input) {
+    fn give(&mut self, now: SimTime, input: &Input) {
         let mut out = Output::default();
-        self.bridge.take(now, input, &mut out);
-        self.emulator.take(now, Port::Secondary, &out.bytes);
+        self.bridge.process(now, input, &mut out);
+        self.emulator.receive(now, Port::Secondary, &out.bytes);
         for event in out.events {
             if let Event::State { to, .. } = event
                 && let Some(cause) = to.strip_prefix("failsafe: ")
@@ -136,7 +136,7 @@ impl Boat {
             }
             self.order = Order::Steer { heading_rad: self.at.bearing_rad(place), speed_m_s };
         }
-        self.put(now, &Input::Order(self.order, now));
+        self.give(now, &Input::Order(self.order, now));
     }
 }
 
@@ -176,16 +176,16 @@ impl Voyage {
             boat.emulator.observe(now, &own_boat(&self.world, VehicleId::at(i), fault));
             let mut bytes = vec![];
             boat.emulator.telemetry(now, &mut bytes);
-            boat.put(now, &Input::Bytes(bytes));
+            boat.give(now, &Input::Bytes(bytes));
             if now >= boat.arm_at {
                 boat.arm_at = SimTime::NEVER;
-                boat.put(now, &Input::Operator(OperatorCommand::Arm));
+                boat.give(now, &Input::Operator(OperatorCommand::Arm));
                 if boat.bridge.state() != gateway::supervisor::State::Armed {
                     boat.arm_at = now + SimTime::from_s(1.0);
                 }
             }
             boat.decide(now);
-            boat.put(now, &Input::Tick);
+            boat.give(now, &Input::Tick);
             orders.push(effective(boat.emulator.order(now), fault));
         }
         for _ in 0..self.ticks {

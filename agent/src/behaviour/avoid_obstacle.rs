@@ -1,9 +1,10 @@
 //! Obstacle avoidance: keeps clear of what stands in the water.
 
+use super::logic::BehaviourLogic;
 use super::nearest::{Nearest, nearness};
 use super::outline::{Outline, Passes};
+use super::output::BehaviourOutput;
 use super::steering::{keep_clear, lag};
-use super::{BehaviourLogic, BehaviourOutput};
 use crate::ivp::{Objective, Table};
 use crate::situation::{MovingPoint, Situation};
 use primitives::Ned;

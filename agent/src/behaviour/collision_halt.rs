@@ -1,7 +1,8 @@
 //! The collision halt: a boat that has come too near to another stops, whatever others want, until it is released. As at
 //! the games of 2023, where people then sorted the boats out.
 
-use super::{BehaviourLogic, BehaviourOutput};
+use super::logic::BehaviourLogic;
+use super::output::BehaviourOutput;
 use crate::situation::Situation;
 use primitives::SimTime;
 use scenario::strategy::{AvoidCollision, Parameter};

@@ -1,6 +1,7 @@
 //! Constant heading and constant speed.
 
-use super::{BehaviourLogic, BehaviourOutput};
+use super::logic::BehaviourLogic;
+use super::output::BehaviourOutput;
 use crate::ivp::{Objective, Peak};
 use crate::situation::Situation;
 use primitives::angle::rad_from_compass_deg;

@@ -1,6 +1,7 @@
 //! Cut range: closes in on a boat, by rate of closure now and closest point of approach later.
 
-use super::{BehaviourLogic, BehaviourOutput};
+use super::logic::BehaviourLogic;
+use super::output::BehaviourOutput;
 use crate::ivp::{Approach, Closest, Closing, Objective};
 use crate::situation::Situation;
 use scenario::strategy::CutRange;

@@ -1,6 +1,7 @@
 //! Full stop: prefers no speed, and lets safety have its way.
 
-use super::{BehaviourLogic, BehaviourOutput};
+use super::logic::BehaviourLogic;
+use super::output::BehaviourOutput;
 use crate::ivp::{Objective, Peak};
 use crate::situation::Situation;
 use scenario::strategy::FullStop;

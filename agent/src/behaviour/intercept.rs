@@ -1,7 +1,8 @@
 //! Intercept: steers for the point where a boat can be met soonest (lead pursuit).
 
+use super::logic::BehaviourLogic;
+use super::output::BehaviourOutput;
 use super::steering::steer_heading;
-use super::{BehaviourLogic, BehaviourOutput};
 use crate::situation::{MovingPoint, Situation, meeting_time_s};
 use primitives::Ned;
 use scenario::strategy::Intercept;

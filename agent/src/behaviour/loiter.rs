@@ -1,8 +1,9 @@
 //! Loiter: drives round and round a convex polygon.
 
 use super::arrival::Arrival;
+use super::logic::BehaviourLogic;
+use super::output::BehaviourOutput;
 use super::steering::toward;
-use super::{BehaviourLogic, BehaviourOutput};
 use crate::situation::Situation;
 use primitives::{Ned, math};
 use rules::field::{distance_to_outline, sides};

@@ -1,7 +1,8 @@
 //! Maximum speed: slows down near other boats, or always.
 
+use super::logic::BehaviourLogic;
 use super::nearest::is_meant;
-use super::{BehaviourLogic, BehaviourOutput};
+use super::output::BehaviourOutput;
 use crate::ivp::{Objective, SpeedLimit};
 use crate::situation::{OtherBoat, Situation};
 use primitives::angle::wrap_pi;

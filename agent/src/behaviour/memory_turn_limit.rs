@@ -1,6 +1,7 @@
 //! Memory turn limit: discourages turns away from the mean heading of the last while.
 
-use super::{BehaviourLogic, BehaviourOutput};
+use super::logic::BehaviourLogic;
+use super::output::BehaviourOutput;
 use crate::ivp::{Objective, Peak};
 use crate::situation::Situation;
 use primitives::{SimTime, math};

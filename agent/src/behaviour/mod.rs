@@ -10,6 +10,7 @@ mod constant;
 mod cut_range;
 mod full_stop;
 mod intercept;
+mod logic;
 mod loiter;
 mod max_speed;
 mod memory_turn_limit;
@@ -25,35 +26,11 @@ mod timer;
 mod trail;
 mod waypoint;
 
+pub(crate) use logic::BehaviourLogic;
 pub(crate) use loiter::corners_of;
-
 pub(crate) use output::{BehaviourOutput, Functions};
 
-use crate::policy::BoardPolicy;
-use crate::situation::Situation;
 use scenario::strategy::Task;
-
-/// What a behaviour does while it runs; when it runs is the helm's matter.
-pub(crate) trait BehaviourLogic: Send {
-    /// Takes in the situation of a decision, whether it runs or not.
-    fn look(&mut self, _situation: &Situation) {}
-
-    /// The variable that it sets, and to which of its texts, whether it runs or not.
-    fn option(&self) -> Option<(u16, usize)> {
-        None
-    }
-
-    /// It begins to run: forgets what was.
-    fn begin(&mut self, _situation: &Situation) {}
-
-    /// Produces the objective functions of this decision.
-    fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>);
-
-    /// The trained policy that it asks, if it does.
-    fn policy(&self) -> Option<&BoardPolicy> {
-        None
-    }
-}
 
 /// The logic of a behaviour with this task.
 pub(crate) fn logic_of(task: &Task) -> Box<dyn BehaviourLogic> {

@@ -1,7 +1,8 @@
 //! Operation region: keeps the boat on the field, and brings it back slowly if it got out.
 
 use super::clearance::Clearance;
-use super::{BehaviourLogic, BehaviourOutput};
+use super::logic::BehaviourLogic;
+use super::output::BehaviourOutput;
 use crate::ivp::{Objective, Peak, Table};
 use crate::own_motion::Handling;
 use crate::situation::Situation;

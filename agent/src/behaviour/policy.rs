@@ -1,6 +1,7 @@
 //! Policy: lets a model, or somebody outside of the helm, propose course and speed, weighed with everything else.
 
-use super::{BehaviourLogic, BehaviourOutput};
+use super::logic::BehaviourLogic;
+use super::output::BehaviourOutput;
 use crate::ivp::{Objective, Peak};
 use crate::policy::{BoardPolicy, Chosen};
 use crate::situation::Situation;
@@ -42,9 +43,9 @@ impl PolicyBehaviour {
 }
 
 impl BehaviourLogic for PolicyBehaviour {
-    fn look(&mut self, situation: &Situation) {
+    fn observe(&mut self, situation: &Situation) {
         if let Some(policy) = &mut self.policy {
-            policy.look(situation);
+            policy.choose_if_due(situation);
         }
     }
 

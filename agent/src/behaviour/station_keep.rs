@@ -1,6 +1,7 @@
 //! Station keeping: holds a place, the more eagerly the farther it has drifted off.
 
-use super::{BehaviourLogic, BehaviourOutput};
+use super::logic::BehaviourLogic;
+use super::output::BehaviourOutput;
 use crate::ivp::{Objective, Peak};
 use crate::situation::{MovingPoint, Situation};
 use primitives::Ned;

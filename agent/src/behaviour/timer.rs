@@ -1,6 +1,7 @@
 //! Timer: runs for a while and wants nothing.
 
-use super::{BehaviourLogic, BehaviourOutput};
+use super::logic::BehaviourLogic;
+use super::output::BehaviourOutput;
 use crate::situation::Situation;
 use scenario::strategy::Timer;
 

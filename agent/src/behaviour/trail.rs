@@ -1,7 +1,8 @@
 //! Trail: keeps a place relative to a boat that moves.
 
+use super::logic::BehaviourLogic;
+use super::output::BehaviourOutput;
 use super::steering::steer;
-use super::{BehaviourLogic, BehaviourOutput};
 use crate::situation::Situation;
 use primitives::{Ned, math};
 use scenario::strategy::Trail;

@@ -72,8 +72,8 @@ impl HelmMind {
     }
 
     /// Takes in the picture on which it will decide next.
-    pub(crate) fn look_ahead(&mut self, picture: &Picture) {
-        self.situation.look_ahead(picture);
+    pub(crate) fn preview(&mut self, picture: &Picture) {
+        self.situation.preview(picture);
     }
 
     /// What it knows.
@@ -94,9 +94,9 @@ impl HelmMind {
     }
 
     /// Behaviours look at the situation, and policies choose among options, to which the rules of this decision answer.
-    fn look(&mut self) {
+    fn observe_situation(&mut self) {
         for instance in &mut self.instances {
-            instance.logic.look(&self.situation);
+            instance.logic.observe(&self.situation);
             if let Some((variable, option)) = instance.logic.option() {
                 self.situation.variables[usize::from(variable)] = option as f64;
             }
@@ -224,14 +224,14 @@ impl HelmMind {
 
 impl Mind for HelmMind {
     fn decide(&mut self, picture: &Picture) -> Order {
-        if !self.situation.take(picture) {
+        if !self.situation.update(picture) {
             self.decided = Decided::Hold("the picture does not show the own boat");
             self.situation.motion.hold();
             self.functions.clear();
             self.instances.iter_mut().for_each(|instance| instance.weight = 0.0);
             return Order::Hold;
         }
-        self.look();
+        self.observe_situation();
         self.apply_rules(picture);
         self.choose_mode();
         let stop = self.mode.is_none_or(|mode| self.run_behaviours(mode));

@@ -173,13 +173,13 @@ impl Search<'_> {
         // Most tiles end here, by one comparison; only equal or better ones are looked at point
         // by point.
         if value >= best.value {
-            self.take(&sums, value, (SIDE * course_tile, SIDE * speed_tile), best);
+            self.keep_best(&sums, value, (SIDE * course_tile, SIDE * speed_tile), best);
         }
     }
 
     /// Takes the best of points that are as good as what was found or better.
     #[inline(never)]
-    fn take(&self, sums: &Lanes<i32>, value: i32, (course, speed): (usize, usize), best: &mut Best) {
+    fn keep_best(&self, sums: &Lanes<i32>, value: i32, (course, speed): (usize, usize), best: &mut Best) {
         for (lane, &sum) in sums.0.iter().enumerate() {
             let point = Best { value, course: course + lane / SIDE, speed: speed + lane % SIDE };
             if sum == value && (value > best.value || self.is_nearer(&point, best)) {

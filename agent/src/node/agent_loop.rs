@@ -1,9 +1,9 @@
 //! The loop of an agent process: pictures come in, its minds decide, messages to mates and orders go out.
 
-use super::Settings;
 use super::error::NodeError;
 use super::helm_queries::HelmQueries;
 use super::policy_inbox::PolicyInbox;
+use super::settings::Settings;
 use super::talk::Talk;
 use crate::{MindRunner, mind_by, mind_of};
 use bus::game_search::Joined;
@@ -165,7 +165,7 @@ impl AgentLoop {
             self.policies.give(&mut self.runner, stamp);
             let pictures = &self.pictures;
             self.runner.decide(stamp, |vehicle| pictures.iter().flatten().find(|p| p.own(vehicle).is_some()));
-            self.talk.take(self.runner.sent(), stamp);
+            self.talk.publish_words(self.runner.sent(), stamp);
         }
         // Messages to mates before orders: the sim goes on when it has the orders, and then the messages are under way.
         self.talk.send()?;

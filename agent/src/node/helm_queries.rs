@@ -67,7 +67,7 @@ impl HelmQueries {
         }
         for _ in 0..ANSWERS {
             let Some((vehicle, query)) = self.inbox.take_now() else { break };
-            self.take(runner, vehicle, query);
+            self.answer_query(runner, vehicle, query);
         }
         self.looked.retain(|(vehicle, at)| {
             let is_looked_at = clock::since(*at) <= LOOKED_AT;
@@ -76,7 +76,7 @@ impl HelmQueries {
         });
     }
 
-    fn take(&mut self, runner: &mut MindRunner, vehicle: VehicleId, query: Query) {
+    fn answer_query(&mut self, runner: &mut MindRunner, vehicle: VehicleId, query: Query) {
         // A query without a payload wants the short answer.
         let wants: HelmQuestion = serde_json::from_slice(query.payload()).unwrap_or_default();
         let asked = Asked { vehicle, wants, query, at: clock::now() };

@@ -53,7 +53,7 @@ impl PolicyInbox {
         let mut declarations = Vec::new();
         for (i, boat) in boats.iter().enumerate() {
             let inbox = Arc::clone(&proposals);
-            let take = move |bytes: &[u8]| inbox.visit(|proposals| proposals.take(i, bytes));
+            let take = move |bytes: &[u8]| inbox.visit(|proposals| proposals.receive(i, bytes));
             declarations.push(bus.subscribe_remote(topic::policy(game, scenario, boat.vehicle), take)?);
         }
         Ok(PolicyInbox { proposals, patience, is_wanted: !boats.is_empty(), _declarations: declarations })
@@ -81,7 +81,7 @@ impl PolicyInbox {
 }
 
 impl Proposals {
-    fn take(&mut self, i: usize, bytes: &[u8]) {
+    fn receive(&mut self, i: usize, bytes: &[u8]) {
         let Some(proposal) = self.refusals.decode::<PolicyProposal>(bytes) else { return };
         // Access control goes by the key, so the key counts, and a message that says otherwise
         // is refused.
@@ -121,19 +121,19 @@ mod tests {
     fn the_newest_good_proposal_stands_and_others_are_counted() {
         let boat = |v: u16| Boat { vehicle: VehicleId(v), is_awaited: v < 2, newest: None };
         let mut proposals = Proposals { boats: vec![boat(0), boat(1), boat(2)], refusals: Refusals::default() };
-        proposals.take(0, &codec::encode(&proposal(0, 4, 1.0)));
+        proposals.receive(0, &codec::encode(&proposal(0, 4, 1.0)));
         assert!(!proposals.is_for(4), "the other is missing");
-        proposals.take(1, &codec::encode(&proposal(1, 4, 1.0)));
+        proposals.receive(1, &codec::encode(&proposal(1, 4, 1.0)));
         assert!(proposals.is_for(4) && !proposals.is_for(5));
-        proposals.take(1, &codec::encode(&proposal(1, 5, 2.0)));
-        proposals.take(1, &codec::encode(&proposal(0, 6, 9.0)));
-        proposals.take(1, &codec::encode(&proposal(1, 6, f64::NAN)));
+        proposals.receive(1, &codec::encode(&proposal(1, 5, 2.0)));
+        proposals.receive(1, &codec::encode(&proposal(0, 6, 9.0)));
+        proposals.receive(1, &codec::encode(&proposal(1, 6, f64::NAN)));
         let early = Stamp { valid_ns: SimTime(i64::MIN), ..proposal(1, 6, 9.0).stamp };
-        proposals.take(1, &codec::encode(&PolicyProposal { stamp: early, ..proposal(1, 6, 9.0) }));
-        proposals.take(1, b"ahoy");
+        proposals.receive(1, &codec::encode(&PolicyProposal { stamp: early, ..proposal(1, 6, 9.0) }));
+        proposals.receive(1, b"ahoy");
         let mut other = proposal(1, 6, 9.0);
         other.stamp.version += 1;
-        proposals.take(1, &codec::encode(&other));
+        proposals.receive(1, &codec::encode(&other));
         assert_eq!(proposals.boats[1].newest, Some(proposal(1, 5, 2.0)));
         let want = [(Refusal::NotYours, 1), (Refusal::BadNumber, 2), (Refusal::Garbage, 1), (Refusal::Version, 1)];
         assert_eq!(proposals.refusals, Refusals::from(want));

@@ -55,7 +55,7 @@ impl Talk {
         let (mut outgoing, mut declarations) = (Vec::new(), Vec::new());
         for team in talking {
             let inbox = Arc::clone(&team_inbox);
-            let take = move |bytes: &[u8]| inbox.visit(|team_inbox| team_inbox.take(team, bytes));
+            let take = move |bytes: &[u8]| inbox.visit(|team_inbox| team_inbox.receive(team, bytes));
             // From agent to agent, past the sim's loop: it neither needs nor checks them, as
             // part of orders they would make lockstep slower for everybody, and on the water
             // there is no sim to pass them on.
@@ -85,7 +85,7 @@ impl Talk {
     }
 
     /// Takes what the minds here tell their teams after deciding, to be sent to mates elsewhere.
-    pub(super) fn take(&mut self, said: &[Word], stamp: Stamp) {
+    pub(super) fn publish_words(&mut self, said: &[Word], stamp: Stamp) {
         for to in &mut self.outgoing {
             let ours = |word: &&Word| self.teams.get(word.vehicle.index()) == Some(&to.team);
             let words: Vec<Word> = said.iter().filter(ours).copied().collect();

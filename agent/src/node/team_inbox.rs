@@ -52,7 +52,7 @@ impl TeamInbox {
     }
 
     /// Takes in what came on a team's topic.
-    pub fn take(&mut self, team: TeamId, bytes: &[u8]) {
+    pub fn receive(&mut self, team: TeamId, bytes: &[u8]) {
         let Some(say) = self.refusals.decode::<Say>(bytes) else { return };
         for word in say.words {
             // Messages are about boats, not from processes: a boat that another process takes
@@ -151,8 +151,8 @@ mod tests {
         Say { stamp: Stamp { seq, version: Say::VERSION, ..Stamp::default() }, words: words.collect() }
     }
 
-    fn take(inbox: &mut TeamInbox, say: &Say) {
-        inbox.take(BLUE, &codec::encode(say));
+    fn receive(inbox: &mut TeamInbox, say: &Say) {
+        inbox.receive(BLUE, &codec::encode(say));
     }
 
     fn delivered(inbox: &mut TeamInbox, seq: u64) -> Vec<f64> {
@@ -164,9 +164,9 @@ mod tests {
     #[test]
     fn messages_are_delivered_one_decision_later_and_not_before_even_of_a_faster_mate() {
         let mut inbox = team_inbox();
-        take(&mut inbox, &say(0, &[(1, 10.0)]));
+        receive(&mut inbox, &say(0, &[(1, 10.0)]));
         assert_eq!(delivered(&mut inbox, 0), [0.0; 0]);
-        take(&mut inbox, &say(1, &[(1, 11.0)]));
+        receive(&mut inbox, &say(1, &[(1, 11.0)]));
         assert_eq!(delivered(&mut inbox, 1), [10.0]);
         assert_eq!(delivered(&mut inbox, 2), [11.0]);
         let mut words = Vec::new();
@@ -182,15 +182,15 @@ mod tests {
     fn a_mate_that_sent_is_waited_for_and_a_silent_one_is_not() {
         let mut inbox = team_inbox();
         assert!(inbox.is_complete(0) && inbox.is_complete(1) && inbox.is_complete(9));
-        take(&mut inbox, &say(3, &[(1, 1.0)]));
+        receive(&mut inbox, &say(3, &[(1, 1.0)]));
         assert!(inbox.is_complete(4));
         delivered(&mut inbox, 4);
         assert!(!inbox.is_complete(5));
-        take(&mut inbox, &say(4, &[(1, 1.0)]));
+        receive(&mut inbox, &say(4, &[(1, 1.0)]));
         assert!(inbox.is_complete(5));
         delivered(&mut inbox, 5);
         // What comes after it shows that it can no longer come itself.
-        take(&mut inbox, &say(6, &[(1, 1.0)]));
+        receive(&mut inbox, &say(6, &[(1, 1.0)]));
         assert!(inbox.is_complete(6));
     }
 
@@ -205,7 +205,7 @@ mod tests {
             let mut lost = inbox.clone();
             assert_eq!(lost.deliver(first + 1, &mut words), 1, "it was lost");
             assert!(lost.is_complete(first + 2), "it may be silent");
-            take(&mut inbox, &say(first, &[(1, 10.0)]));
+            receive(&mut inbox, &say(first, &[(1, 10.0)]));
             assert!(inbox.is_complete(first + 1));
             assert_eq!(delivered(&mut inbox, first + 1), [10.0]);
         }
@@ -214,7 +214,7 @@ mod tests {
     #[test]
     fn a_slow_receiver_gets_the_newest_that_is_due() {
         let mut inbox = team_inbox();
-        (0..5).for_each(|seq| take(&mut inbox, &say(seq, &[(1, seq as f64)])));
+        (0..5).for_each(|seq| receive(&mut inbox, &say(seq, &[(1, seq as f64)])));
         assert_eq!(delivered(&mut inbox, 9), [4.0]);
         assert_eq!(delivered(&mut inbox, 10), [0.0; 0], "and once only");
     }
@@ -222,8 +222,8 @@ mod tests {
     #[test]
     fn messages_sent_twice_count_once() {
         let mut inbox = team_inbox();
-        take(&mut inbox, &say(0, &[(1, 5.0)]));
-        take(&mut inbox, &say(0, &[(1, 5.0)]));
+        receive(&mut inbox, &say(0, &[(1, 5.0)]));
+        receive(&mut inbox, &say(0, &[(1, 5.0)]));
         assert_eq!(delivered(&mut inbox, 1), [5.0]);
         assert_eq!(inbox.refusals.total(), 0);
     }
@@ -231,23 +231,26 @@ mod tests {
     #[test]
     fn strangers_enemies_and_nonsense_are_counted_and_ignored() {
         let mut inbox = team_inbox();
-        take(&mut inbox, &say(0, &[(9, 1.0), (u16::MAX, 1.0), (2, 1.0), (0, 1.0), (1, f64::NAN), (1, f64::INFINITY)]));
-        inbox.take(TeamId(1), &codec::encode(&say(0, &[(1, 1.0)])));
+        receive(
+            &mut inbox,
+            &say(0, &[(9, 1.0), (u16::MAX, 1.0), (2, 1.0), (0, 1.0), (1, f64::NAN), (1, f64::INFINITY)]),
+        );
+        inbox.receive(TeamId(1), &codec::encode(&say(0, &[(1, 1.0)])));
         assert_eq!(inbox.refusals, Refusals::from([(Refusal::NotYours, 5), (Refusal::BadNumber, 2)]));
         let mut other = say(0, &[(1, 1.0)]);
         other.stamp.version += 1;
-        take(&mut inbox, &other);
-        inbox.take(BLUE, b"ahoy");
+        receive(&mut inbox, &other);
+        inbox.receive(BLUE, b"ahoy");
         assert_eq!([Refusal::Version, Refusal::Garbage].map(|refusal| inbox.refusals.of(refusal)), [1, 1]);
         let key = |key| Word { vehicle: VehicleId(1), key, value: 1.0 };
-        take(&mut inbox, &Say { words: (0..300).map(key).collect(), ..say(0, &[]) });
+        receive(&mut inbox, &Say { words: (0..300).map(key).collect(), ..say(0, &[]) });
         assert_eq!(inbox.refusals.of(Refusal::Surplus), 300 - SHARED_MAX as u64);
         assert_eq!(delivered(&mut inbox, 1).len(), SHARED_MAX);
         // A number of a decision that never comes hides what was said once, and not for long.
-        take(&mut inbox, &say(u64::MAX, &[(1, 1.0)]));
+        receive(&mut inbox, &say(u64::MAX, &[(1, 1.0)]));
         assert!(inbox.is_complete(u64::MAX));
         assert!(inbox.is_complete(3), "it is past what is waited for");
-        take(&mut inbox, &say(1, &[(1, 6.0)]));
+        receive(&mut inbox, &say(1, &[(1, 6.0)]));
         assert_eq!(delivered(&mut inbox, 2), [6.0]);
     }
 }

@@ -13,15 +13,16 @@ use super::numbers::Numbers;
 use crate::situation::{OtherBoat, Situation};
 use primitives::angle::wrap_pi;
 use primitives::{Ned, SimTime};
+use rules::tag_wait_s;
 use scenario::observation::pyquaticus::OTHER;
-use scenario::strategy::{Fact, Values};
+use scenario::strategy::{Fact, Mark, Place, Values};
 use std::f64::consts::PI;
 
 /// Writes all numbers.
 pub(super) fn write(situation: &Situation, out: &mut Numbers<'_>) {
     let model = &situation.model;
-    let enemy_flag = model.targets.first().map_or(situation.at, |(_, home)| *home);
-    for place in [enemy_flag, model.own_flag()] {
+    for mark in [Mark::EnemyFlag, Mark::OwnFlag] {
+        let place = situation.locate(&Place::Mark(mark)).map_or(situation.at, |point| point.at);
         toward(situation, place, out);
     }
     // Corner 0 is to starboard of the first team's end, and corners go on clockwise: the walls from 3 to 0, 0 to 1, 1 to 2, 2 to 3.
@@ -69,7 +70,8 @@ fn toward(situation: &Situation, place: Ned, out: &mut Numbers<'_>) {
     out.push(unit(situation.at.distance(place), diagonal_m));
 }
 
-/// Whether a place is on a team's side of the scrimmage line, on the field or not.
+/// Whether a place is on a team's side of the scrimmage line, on the field or not: unlike `Field::is_own_side`, and as Pyquaticus
+/// judges it.
 fn is_own_side(situation: &Situation, at: Ned, team: usize) -> bool {
     let field = &situation.model.field;
     let beyond_m = (at - field.middle()).dot(field.along);
@@ -85,8 +87,8 @@ fn nearest_of((a, b): (Ned, Ned), at: Ned) -> Ned {
 
 /// The time since the last tag, no more than the cooldown.
 fn since_tag(situation: &Situation, ready: SimTime) -> f64 {
-    let cooldown_s = situation.model.tag_cooldown.as_s();
-    let wait_s = (ready - situation.now).as_s().clamp(0.0, cooldown_s);
+    let cooldown_s = situation.model.rules.tag_cooldown.as_s();
+    let wait_s = tag_wait_s(ready, situation.now).min(cooldown_s);
     unit(cooldown_s - wait_s, cooldown_s)
 }
 

@@ -90,7 +90,8 @@ fn edges(situation: &Situation, out: &mut Numbers<'_>) {
 /// 16 numbers: where the enemies' flag is, the own one, the place to bring a flag or to be untagged, and which of them to go to now.
 fn goals(situation: &Situation, out: &mut Numbers<'_>) {
     let at = |mark| situation.locate(&Place::Mark(mark)).map_or(situation.at, |point| point.at);
-    let (enemy_flag, capture, untag) = (at(Mark::EnemyFlag), at(Mark::CapturePlace), at(Mark::UntagPlace));
+    let (enemy_flag, own_flag) = (at(Mark::EnemyFlag), at(Mark::OwnFlag));
+    let (capture, untag) = (at(Mark::CapturePlace), at(Mark::UntagPlace));
     let own = &situation.own;
     let goal = if own.tagged {
         untag
@@ -99,7 +100,7 @@ fn goals(situation: &Situation, out: &mut Numbers<'_>) {
     } else {
         enemy_flag
     };
-    for place in [enemy_flag, situation.model.own_flag(), untag, goal] {
+    for place in [enemy_flag, own_flag, untag, goal] {
         toward(situation, place, out);
     }
 }
@@ -111,7 +112,7 @@ fn game(situation: &Situation, out: &mut Numbers<'_>) {
     }
     let ahead = situation.fact(Fact::Score) - situation.fact(Fact::EnemyScore);
     out.push((ahead / POINTS).clamp(-1.0, 1.0));
-    let limit_s = situation.model.time_limit.as_s().max(1.0);
+    let limit_s = situation.model.rules.time_limit.as_s().max(1.0);
     out.push((situation.fact(Fact::TimeLeftS) / limit_s).clamp(0.0, 1.0));
     out.push(situation.model.rank as f64 / (situation.model.mates.len() + 1) as f64);
 }
@@ -137,10 +138,9 @@ fn other_boat(situation: &Situation, other: &OtherBoat, out: &mut Numbers<'_>) {
     out.flag(other.carrying.is_some());
     out.flag(other.intrudes);
     out.flag(situation.model.is_own_side(other.at));
-    let wait_s = (other.tag_ready - situation.now).as_s().max(0.0);
-    out.push((wait_s / situation.model.tag_cooldown.as_s().max(1.0)).min(1.0));
+    out.push(situation.model.rules.tag_wait_share(other.tag_ready, situation.now));
     out.push((other.age_s / AGE_S).min(1.0));
-    let home = situation.model.own_flag();
+    let home = situation.model.own_flag_near(other.at);
     out.push(NEAR_M / (NEAR_M + other.at.distance(home)));
 }
 

@@ -1,12 +1,13 @@
 //! The game as one boat sees it: everything that does not change while it is played.
 
-use primitives::{FlagId, Ned, SimTime, TeamId, VehicleId};
-use rules::{CaptureAt, Field, TaggedBoat, UntagAt, corner_inset_m};
+use primitives::{FlagId, Ned, TeamId, VehicleId};
+use rules::{Field, Rules};
 use scenario::Scenario;
 use scenario::strategy::Program;
 
 /// The score at which Pyquaticus ends a game by default.
 const PYQUATICUS_SCORE_MAX: f64 = 20.0;
+const HAS_ALL: &str = "a checked field has flags and corners for every team";
 
 /// What a helm knows before the game begins.
 #[derive(Clone, Debug)]
@@ -14,6 +15,7 @@ pub(crate) struct GameModel {
     pub(crate) me: VehicleId,
     pub(crate) team: TeamId,
     pub(crate) field: Field,
+    pub(crate) rules: Rules,
     /// The own boat's place in its team.
     pub(crate) rank: usize,
     /// The enemies, in the scenario's order.
@@ -24,21 +26,12 @@ pub(crate) struct GameModel {
     pub(crate) targets: Vec<(FlagId, Ned)>,
     /// The flags to defend.
     pub(crate) own_flags: Vec<(FlagId, Ned)>,
-    pub(crate) untag_radius_m: f64,
-    /// Whether the rules drive a tagged boat home, whatever it is ordered.
-    pub(crate) tagged_is_driven: bool,
-    capture_radius_m: f64,
-    pub(crate) time_limit: SimTime,
     /// The score that ends the game, or that of Pyquaticus' own games.
     pub(crate) score_max: f64,
-    /// After a tag nobody tags again for so long.
-    pub(crate) tag_cooldown: SimTime,
     /// The top speed of every boat of the game, m/s, by vehicle.
     pub(crate) boat_speeds_m_s: Vec<f64>,
     /// The highest speed of the helm's decisions, m/s.
     pub(crate) speed_max_m_s: f64,
-    capture_at: CaptureAt,
-    untag_at: UntagAt,
     /// The team's named points, by name.
     points: Vec<(String, Ned)>,
 }
@@ -71,24 +64,18 @@ impl GameModel {
             mates: of(true).filter(|vehicle| *vehicle != me).collect(),
             targets: flags(false),
             own_flags: flags(true),
-            untag_radius_m: scenario.rules.untag_radius_m,
-            tagged_is_driven: scenario.rules.tagged_boat == TaggedBoat::IsDriven,
-            capture_radius_m: scenario.rules.capture_radius_m,
-            time_limit: scenario.rules.time_limit,
             score_max: scenario.rules.win_score.map_or(PYQUATICUS_SCORE_MAX, f64::from),
-            tag_cooldown: scenario.rules.tag_cooldown,
             boat_speeds_m_s,
             speed_max_m_s: program.helm.speed_max_m_s.map_or(own_m_s, |most_m_s| most_m_s.min(own_m_s)),
-            capture_at: scenario.rules.capture_at,
-            untag_at: scenario.rules.untag_at,
             points,
             field: field.clone(),
+            rules: scenario.rules.clone(),
         }
     }
 
-    /// The home of the own flag.
-    pub(crate) fn own_flag(&self) -> Ned {
-        self.own_flags.first().expect("a checked field has a flag for every team").1
+    /// The home of the own flag that is nearest to a place.
+    pub(crate) fn own_flag_near(&self, at: Ned) -> Ned {
+        self.field.nearest_own_flag(self.team, at).expect(HAS_ALL)
     }
 
     /// A named point of the own team.
@@ -99,37 +86,22 @@ impl GameModel {
 
     /// Where a flag must be brought, from here.
     pub(crate) fn capture_place(&self, at: Ned) -> Ned {
-        match self.capture_at {
-            CaptureAt::OwnFlag | CaptureAt::OwnSide => self.own_flag(),
-            CaptureAt::OwnCorners => self.inside_own_corner(at, self.capture_radius_m),
-        }
+        self.rules.capture_place(&self.field, self.team, at).expect(HAS_ALL)
     }
 
     /// Where a tagged boat steers to be freed, from here.
     pub(crate) fn untag_place(&self, at: Ned) -> Ned {
-        match self.untag_at {
-            UntagAt::OwnFlag => self.own_flag(),
-            UntagAt::OwnCorners => self.inside_own_corner(at, self.untag_radius_m),
-        }
+        self.rules.untag_place(&self.field, self.team, at).expect(HAS_ALL)
     }
 
     /// The middle of the circle in which a tagged boat is freed, from here.
     pub(crate) fn untag_centre(&self, at: Ned) -> Ned {
-        let nearer = |[a, b]: [Ned; 2]| if at.distance_squared(a) <= at.distance_squared(b) { a } else { b };
-        match self.untag_at {
-            UntagAt::OwnFlag => self.own_flag(),
-            UntagAt::OwnCorners => nearer(self.field.own_corners[self.team.index()]),
-        }
+        self.rules.untag_centre(&self.field, self.team, at).expect(HAS_ALL)
     }
 
     /// Whether `at` is on the own team's side.
     pub(crate) fn is_own_side(&self, at: Ned) -> bool {
-        self.field.zones[self.team.index()].contains(at)
-    }
-
-    fn inside_own_corner(&self, at: Ned, radius_m: f64) -> Ned {
         // A point inside of both edges, not the corner itself, which lies on the boundary.
-        let inside = self.field.inside_own_corner(self.team, at, corner_inset_m(radius_m));
-        inside.expect("a checked field has corners for every team")
+        self.field.is_own_side(self.team, at)
     }
 }

@@ -2,11 +2,13 @@
 
 mod game_model;
 mod interception;
+mod moving_point;
 mod team_messages;
 mod turn_estimate;
 
 pub(crate) use game_model::GameModel;
 pub(crate) use interception::meeting_time_s;
+pub(crate) use moving_point::MovingPoint;
 pub(crate) use team_messages::TeamMessages;
 
 use crate::mind::Proposal;
@@ -17,7 +19,7 @@ use messages::picture::{Contact, OwnBoat};
 use primitives::frame::{Body, Rotation, ned_from_body};
 use primitives::{FlagId, Ned, SimTime, VehicleId};
 use rules::event::{EventRecord, TagCause};
-use rules::{Ability, Event};
+use rules::{Ability, Event, TaggedBoat, tag_wait_s};
 use scenario::strategy::{Boat, Expression, Fact, Mark, Measure, Place, Program, Values};
 use std::cell::OnceCell;
 use turn_estimate::{TurnEstimate, turning_on};
@@ -74,14 +76,6 @@ impl OtherBoat {
     pub(crate) fn turning_on(&self) -> MovingPoint {
         turning_on(MovingPoint { at: self.at, velocity: self.velocity() }, self.yaw_rate_rad_s)
     }
-}
-
-/// A place, and how it moves.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct MovingPoint {
-    pub(crate) at: Ned,
-    /// Velocity over the ground, m/s.
-    pub(crate) velocity: Ned,
 }
 
 /// What the helm knows now.
@@ -160,16 +154,16 @@ impl Situation {
     }
 
     /// Takes in the picture that is decided on next, before it is.
-    pub(crate) fn look_ahead(&mut self, picture: &Picture) {
-        self.is_seen = Some(self.take_now(picture));
+    pub(crate) fn preview(&mut self, picture: &Picture) {
+        self.is_seen = Some(self.apply_picture(picture));
     }
 
     /// Takes the newest picture in, if that was not done before; `false` if the own boat is not in it.
-    pub(crate) fn take(&mut self, picture: &Picture) -> bool {
-        self.is_seen.take().unwrap_or_else(|| self.take_now(picture))
+    pub(crate) fn update(&mut self, picture: &Picture) -> bool {
+        self.is_seen.take().unwrap_or_else(|| self.apply_picture(picture))
     }
 
-    fn take_now(&mut self, picture: &Picture) -> bool {
+    fn apply_picture(&mut self, picture: &Picture) -> bool {
         let Some(own) = picture.own(self.model.me) else { return false };
         let now = picture.stamp.valid_ns;
         // By the pictures' own time, so that a lost one is a longer step and a repeated one
@@ -180,7 +174,11 @@ impl Situation {
         self.at = own.nav.at();
         self.ahead = own.nav.pose().rotation().ahead();
         self.velocity = own.nav.velocity_m_s();
-        self.motion.observe(own, self.step_s, !(own.disabled || own.tagged && self.model.tagged_is_driven));
+        self.motion.observe(
+            own,
+            self.step_s,
+            !(own.disabled || own.tagged && self.model.rules.tagged_boat == TaggedBoat::IsDriven),
+        );
         self.note_tags(picture);
         self.others.clear();
         for mate in picture.own.iter().filter(|boat| boat.vehicle != self.model.me) {
@@ -231,7 +229,7 @@ impl Situation {
         self.score = f64::from(ours.unwrap_or(0));
         self.enemy_score = picture.score.iter().copied().map(f64::from).sum::<f64>() - self.score;
         // With two limits: at one alone noise of the position would turn the boat to and fro.
-        let from_home = self.at.distance(self.model.untag_centre(self.at)) / self.model.untag_radius_m;
+        let from_home = self.at.distance(self.model.untag_centre(self.at)) / self.model.rules.untag_radius_m;
         self.leaving = own.tagged && (from_home < WELL_INSIDE || self.leaving && from_home <= WELL_OUTSIDE);
         true
     }
@@ -242,7 +240,7 @@ impl Situation {
             if let Event::Tagged { cause: TagCause::Opponent(by), .. } = logged.event {
                 let i = by.index();
                 self.tag_ready.resize(self.tag_ready.len().max(i + 1), SimTime::ZERO);
-                self.tag_ready[i] = logged.at + self.model.tag_cooldown;
+                self.tag_ready[i] = self.model.rules.tag_ready_after(logged.at);
             }
         }
     }
@@ -275,11 +273,13 @@ impl Situation {
     /// The boat that `boat` is just now.
     pub(crate) fn boat(&self, boat: Boat) -> Option<&OtherBoat> {
         let of_ours = |other: &&OtherBoat| other.carrying.is_some_and(|flag| self.is_own_flag(flag));
-        let home = self.model.own_flag();
         match boat {
             Boat::NearestEnemy => nearest(self.at, self.enemies().filter(|enemy| !enemy.tagged)),
             Boat::NearestIntruder => nearest(self.at, self.intruders()),
-            Boat::NearestAttacker => nearest(home, self.enemies().filter(|enemy| !enemy.tagged)),
+            Boat::NearestAttacker => {
+                let attackers = self.enemies().filter(|enemy| !enemy.tagged);
+                attackers.min_by(|a, b| self.flag_distance_squared(a.at).total_cmp(&self.flag_distance_squared(b.at)))
+            }
             Boat::NearestDefender => nearest(self.enemy_flag(), self.enemies()),
             Boat::AssignedIntruder => {
                 let pairs = self.interception.get_or_init(|| self.intercepted());
@@ -297,18 +297,23 @@ impl Situation {
         }
     }
 
+    /// The squared distance of a place from the nearest own flag, m².
+    fn flag_distance_squared(&self, at: Ned) -> f64 {
+        self.model.own_flag_near(at).distance_squared(at)
+    }
+
     /// Who meets which intruder.
     fn intercepted(&self) -> Vec<Pair> {
-        let home = self.model.own_flag();
         let mut intruders: Vec<Intruder> = self.intruders().map(Intruder::from).collect();
+        // By the flag that each is nearest to, and not the one nearest to this boat: all boats of the team find the same order.
         // By how near they are to the flag, from what the whole team sees: so that every mate
         // comes to the same pairs.
-        intruders.sort_by(|a, b| home.distance_squared(a.at).total_cmp(&home.distance_squared(b.at)));
+        intruders.sort_by(|a, b| self.flag_distance_squared(a.at).total_cmp(&self.flag_distance_squared(b.at)));
         let boat = |vehicle: VehicleId, at: Ned, tag_ready: SimTime| Interceptor {
             vehicle,
             at,
             speed_m_s: self.model.boat_speeds_m_s[vehicle.index()],
-            unready_s: (tag_ready - self.now).as_s().max(0.0),
+            unready_s: tag_wait_s(tag_ready, self.now),
         };
         let is_free = !self.own.tagged && self.own.carried_flag().is_none();
         let own = is_free.then(|| boat(self.model.me, self.at, self.own.tag_ready_ns));
@@ -336,7 +341,7 @@ impl Situation {
 
     fn mark(&self, mark: Mark) -> Ned {
         match mark {
-            Mark::OwnFlag => self.model.own_flag(),
+            Mark::OwnFlag => self.model.own_flag_near(self.at),
             Mark::EnemyFlag => self.enemy_flag(),
             Mark::CapturePlace => self.model.capture_place(self.at),
             Mark::UntagPlace if self.leaving => self.enemy_flag(),
@@ -396,7 +401,7 @@ impl Values for Situation {
             Fact::Score => self.score,
             Fact::EnemyScore => self.enemy_score,
             Fact::TimeS => self.now.as_s(),
-            Fact::TimeLeftS => (self.model.time_limit - self.now).as_s().max(0.0),
+            Fact::TimeLeftS => (self.model.rules.time_limit - self.now).as_s().max(0.0),
             Fact::ModeS => (self.now - self.mode_since).as_s(),
             Fact::StepS => self.step_s,
             Fact::SpeedMS => self.velocity.length(),

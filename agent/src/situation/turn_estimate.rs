@@ -1,6 +1,6 @@
 //! How boats turn, and where that takes them.
 
-use super::MovingPoint;
+use super::moving_point::MovingPoint;
 use messages::picture::Contact;
 use primitives::SimTime;
 use primitives::angle::wrap_pi;

@@ -3,5 +3,6 @@
 mod behaviour;
 mod knowledge;
 mod mode;
+mod place;
 mod scene;
 mod symmetry;

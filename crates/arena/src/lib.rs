@@ -2,10 +2,6 @@
 //!
 //! The same world and the same minds as across processes, and the same bytes.
 
-pub mod identify;
-pub mod tournament;
-pub mod trial;
-
 use agent::{Mind, MindRunner};
 use primitives::VehicleId;
 use scenario::{Outcome, Scenario};
@@ -68,12 +64,12 @@ pub fn play_observed(
 
 /// What runs these minds, one for each vehicle in the scenario's order.
 #[must_use]
-pub fn runner_of(minds: Vec<Box<dyn Mind>>) -> MindRunner {
+pub fn runner_of<M: Mind + ?Sized>(minds: Vec<Box<M>>) -> MindRunner<M> {
     MindRunner::new(minds.into_iter().enumerate().map(|(i, mind)| (VehicleId::at(i), mind)))
 }
 
 /// Shows every mind its team's picture and gives the contest its order.
-pub fn decide(contest: &mut Contest, runner: &mut MindRunner) {
+pub fn decide<M: Mind + ?Sized>(contest: &mut Contest, runner: &mut MindRunner<M>) {
     let stamp = contest.pictures()[0].stamp;
     runner.decide(stamp, |vehicle| Some(contest.picture_of(vehicle)));
     for (vehicle, order) in runner.orders() {

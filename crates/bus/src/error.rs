@@ -82,3 +82,9 @@ pub enum BusError {
         reason: String,
     },
 }
+
+/// What zenoh says, without the place in its source that it adds.
+pub(crate) fn reason(error: &zenoh::Error) -> String {
+    let text = error.to_string();
+    text.split(" at /").next().unwrap_or(&text).trim_end_matches(['!', ' ']).to_owned()
+}

@@ -1,9 +1,9 @@
 //! Where a node listens, whom it connects to, and whether it scouts.
 
+use crate::error::reason;
 use crate::keys::{Bundle, Identity};
 use crate::open_files::OpenFiles;
-use crate::runtime::check_threads_for_keys;
-use crate::session::reason;
+use crate::runtime_check::check_threads_for_keys;
 use crate::{BusError, Token, access, random_bytes};
 use messages::topic::{self, GameName};
 use scenario::Scenario;

@@ -1,7 +1,7 @@
 //! Where a game is, and what its token is: asked anew before each attempt to reach it, since the sim may begin later than the node
 //! that looks for it, and the next sim may be elsewhere and has another token.
 
-use crate::game_search::{Missing, Refusal};
+use crate::missing::{Missing, Refusal};
 use crate::token::CurrentToken;
 use crate::{Bus, Net};
 use messages::topic::GameName;

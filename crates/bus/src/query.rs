@@ -1,7 +1,7 @@
 //! Questions and answers over a session.
 
 use crate::keys::Bundle;
-use crate::seal::Parcel;
+use crate::parcel::Parcel;
 use crate::session::{Network, failed};
 use crate::simulated::SimulatedQuery;
 use crate::{Bus, BusError, Declaration, Token, access, token};

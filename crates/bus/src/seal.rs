@@ -4,32 +4,13 @@
 //! carries a nonce as its attachment; the attachment of an answer is the HMAC-SHA256, under the game's token, of nonce, key,
 //! question and answer. An answer that was made for another question, or by a node without the token, does not count.
 
+use crate::parcel::Parcel;
 use crate::{Token, random_bytes};
-use zenoh::bytes::ZBytes;
 
 /// The first part of what is sealed: no proof of a request begins like this.
 const TAG: &[u8] = b"answer";
 
-/// The bytes of a question or an answer, with its nonce or seal; that is empty where there is none.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Parcel {
-    pub(crate) bytes: Vec<u8>,
-    pub(crate) attachment: Vec<u8>,
-}
-
 impl Parcel {
-    /// Bytes with neither.
-    pub(crate) fn new(bytes: Vec<u8>) -> Parcel {
-        Parcel { bytes, attachment: Vec::new() }
-    }
-
-    /// What zenoh has received.
-    pub(crate) fn of(bytes: Option<&ZBytes>, attachment: Option<&ZBytes>) -> Parcel {
-        let [bytes, attachment] =
-            [bytes, attachment].map(|part| part.map(|part| part.to_bytes().into_owned()).unwrap_or_default());
-        Parcel { bytes, attachment }
-    }
-
     /// A question whose answers are to be sealed.
     pub(crate) fn question(bytes: Vec<u8>) -> Parcel {
         // 128 bits: no two questions ever share one, so an answer that was recorded fits no

@@ -1,5 +1,6 @@
 //! A node's session on the network: publish, subscribe, queries, liveliness tokens.
 
+use crate::error::reason;
 use crate::keys::{self, Bundle};
 use crate::net::{FILES_MAX, is_loopback, nodes_max};
 use crate::open_files::OpenFiles;
@@ -57,12 +58,6 @@ enum Sender {
 
 pub(crate) fn failed(doing: &'static str, key: &str) -> impl FnOnce(zenoh::Error) -> BusError {
     move |e| BusError::Use { doing, key: key.to_owned(), reason: reason(&e) }
-}
-
-/// What zenoh says, without the place in its source that it adds.
-pub(crate) fn reason(error: &zenoh::Error) -> String {
-    let text = error.to_string();
-    text.split(" at /").next().unwrap_or(&text).trim_end_matches(['!', ' ']).to_owned()
 }
 
 impl Bus {

@@ -114,6 +114,12 @@ impl Ned {
         self.distance_squared(other).sqrt()
     }
 
+    /// The one of `places` that is nearest to here; the first of equals.
+    #[must_use]
+    pub fn nearest_of(self, places: impl Iterator<Item = Ned>) -> Option<Ned> {
+        places.min_by(|x, y| self.distance_squared(*x).total_cmp(&self.distance_squared(*y)))
+    }
+
     /// The bearing of `other` from here, radians clockwise from north.
     #[inline]
     #[must_use]

@@ -1,6 +1,6 @@
 //! Who may do things to others, and who may tag: the same for the referee and for whoever reckons with it.
 
-use super::VehicleStanding;
+use super::{Rules, VehicleStanding};
 use primitives::time::SimTime;
 
 /// What decides whether a boat may act.
@@ -30,6 +30,27 @@ impl Ability {
     pub fn may_tag(self, now: SimTime) -> bool {
         self.acts() && now >= self.tag_ready
     }
+}
+
+impl Rules {
+    /// From when on a boat may tag again that tagged at `tagged_at`.
+    #[must_use]
+    pub fn tag_ready_after(&self, tagged_at: SimTime) -> SimTime {
+        tagged_at + self.tag_cooldown
+    }
+
+    /// The share of the time between two tags for which a boat that may tag from `tag_ready` on must still wait, 0 to 1. Below a
+    /// cooldown of 1 s it is a share of 1 s.
+    #[must_use]
+    pub fn tag_wait_share(&self, tag_ready: SimTime, now: SimTime) -> f64 {
+        (tag_wait_s(tag_ready, now) / self.tag_cooldown.as_s().max(1.0)).min(1.0)
+    }
+}
+
+/// How long a boat that may tag from `tag_ready` on must still wait, s; never below 0.
+#[must_use]
+pub fn tag_wait_s(tag_ready: SimTime, now: SimTime) -> f64 {
+    (tag_ready - now).as_s().max(0.0)
 }
 
 impl From<&VehicleStanding> for Ability {

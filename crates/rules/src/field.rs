@@ -9,6 +9,8 @@
 //!              along ▶
 //! ```
 
+mod own;
+
 use primitives::frame::{LatLon, Ned};
 use primitives::id::TeamId;
 use primitives::omitted::number_or_nan;

@@ -1,10 +1,9 @@
 //! Flags: grabbed by coming near, captured by bringing them in, home again when lost.
 
 use super::claim::{Claim, settle};
-use super::{Acting, CaptureAt, Look, Notes, Referee, Resolution, Standing, TagChoice};
+use super::{Acting, Look, Notes, Referee, Resolution, Standing, TagChoice};
 use crate::event::Event;
-use primitives::frame::{Leg, Ned};
-use primitives::id::{FlagId, TeamId, VehicleId};
+use primitives::id::{FlagId, VehicleId};
 
 impl Referee {
     /// Gives flags to the opponents that are near enough, and ask where they have to; nobody has two.
@@ -54,9 +53,10 @@ impl Referee {
         for (on, state) in standing.flags.iter().enumerate() {
             let Some(carrier) = state.carrier.filter(|_| state.moved_at != standing.now) else { continue };
             let (team, here) = (self.team_of[carrier.index()], look.legs[carrier.index()]);
-            let own_flags_home = || self.own_flags(team).all(|(own, _)| standing.flags[own.index()].carrier.is_none());
+            let own_flags_home =
+                || self.field.own_flags(team).all(|(own, _)| standing.flags[own.index()].carrier.is_none());
             if standing.vehicles[carrier.index()].acts()
-                && self.is_capture_place(team, here)
+                && self.rules.is_capture_place(&self.field, team, here)
                 && (!self.rules.capture_needs_own_flag || own_flags_home())
             {
                 notes.claims.push(Claim { by: carrier.0, on: on as u16, distance_squared: 0.0 });
@@ -68,16 +68,6 @@ impl Referee {
             standing.vehicles[vehicle.index()].carrying = None;
             standing.award(self.team_of[vehicle.index()], self.rules.points.capture);
             events.push(Event::Captured { vehicle, flag });
-        }
-    }
-
-    fn is_capture_place(&self, team: TeamId, leg: Leg) -> bool {
-        let reach_squared = self.rules.capture_radius_m * self.rules.capture_radius_m;
-        let near = |place: Ned| leg.to.distance_squared(place) < reach_squared;
-        match self.rules.capture_at {
-            CaptureAt::OwnSide => self.is_own_side(team, self.side_place(leg)),
-            CaptureAt::OwnFlag => self.own_flags(team).any(|(_, home)| near(home)),
-            CaptureAt::OwnCorners => self.own_corners(team).iter().any(|corner| near(*corner)),
         }
     }
 }

@@ -1,6 +1,5 @@
 //! Keep-out circles: a flag that is home keeps its own defenders at a distance.
 
-use super::home::nearest;
 use super::{Referee, Standing};
 use crate::event::Event;
 use primitives::frame::Ned;
@@ -15,7 +14,7 @@ impl Referee {
         if radius_m <= 0.0 || !standing.vehicles[vehicle.index()].in_play {
             return None;
         }
-        nearest(at, self.own_flags_home(standing, self.team_of[vehicle.index()])).map(|centre| (centre, radius_m))
+        at.nearest_of(self.own_flags_home(standing, self.team_of[vehicle.index()])).map(|centre| (centre, radius_m))
     }
 
     /// Notes who has come into a keep-out circle, or was caught in one when the flag came home.
@@ -39,6 +38,9 @@ impl Referee {
     /// The homes of those of `team`'s flags that are home.
     #[inline]
     fn own_flags_home(&self, standing: &Standing, team: TeamId) -> impl Iterator<Item = Ned> {
-        self.own_flags(team).filter(|(flag, _)| standing.flags[flag.index()].carrier.is_none()).map(|(_, home)| home)
+        self.field
+            .own_flags(team)
+            .filter(|(flag, _)| standing.flags[flag.index()].carrier.is_none())
+            .map(|(_, home)| home)
     }
 }

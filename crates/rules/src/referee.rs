@@ -1,11 +1,11 @@
 //! The referee: looks at all boats once a tick and says what happened.
 
 use super::claim::Claim;
-use super::{Asks, Resolution, Rules, SideJudged, Standing};
+use super::{Asks, Resolution, Rules, Standing};
 use crate::event::Event;
 use crate::field::Field;
-use primitives::frame::{Leg, Ned};
-use primitives::id::{FlagId, TeamId, VehicleId};
+use primitives::frame::Leg;
+use primitives::id::{TeamId, VehicleId};
 use primitives::near::Pair;
 use primitives::stream::Stream;
 use primitives::time::SimTime;
@@ -129,34 +129,6 @@ impl Referee {
     pub(super) fn teams(&self) -> usize {
         let playing = self.team_of.iter().map(|team| team.index() + 1).max();
         self.field.zones.len().max(playing.unwrap_or(0))
-    }
-
-    /// Where a boat is judged to be when its side counts.
-    #[inline]
-    pub(super) fn side_place(&self, leg: Leg) -> Ned {
-        match self.rules.side_judged {
-            SideJudged::AfterMove => leg.to,
-            SideJudged::BeforeMove => leg.from,
-        }
-    }
-
-    /// Whether `at` is on `team`'s own side; the scrimmage line is on both.
-    #[inline]
-    pub(super) fn is_own_side(&self, team: TeamId, at: Ned) -> bool {
-        self.field.zones.get(team.index()).is_some_and(|zone| zone.contains(at))
-    }
-
-    /// The homes of `team`'s own flags.
-    #[inline]
-    pub(super) fn own_flags(&self, team: TeamId) -> impl Iterator<Item = (FlagId, Ned)> {
-        let flags = self.field.flags.iter().enumerate();
-        flags.filter(move |(_, flag)| flag.team == team).map(|(i, flag)| (FlagId(i as u8), flag.home))
-    }
-
-    /// The corners of `team`'s own end.
-    #[inline]
-    pub(super) fn own_corners(&self, team: TeamId) -> &[Ned] {
-        self.field.own_corners.get(team.index()).map_or(&[], |corners| corners)
     }
 }
 

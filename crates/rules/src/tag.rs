@@ -32,7 +32,7 @@ impl Referee {
             let (tagger, target) = (VehicleId(claim.by), VehicleId(claim.on));
             standing.put_tag(target, TagCause::Opponent(tagger), events);
             standing.drop_flag(target, events);
-            standing.vehicles[tagger.index()].tag_ready = standing.now + self.rules.tag_cooldown;
+            standing.vehicles[tagger.index()].tag_ready = self.rules.tag_ready_after(standing.now);
             standing.award(self.team_of[tagger.index()], self.rules.points.tag);
         }
     }
@@ -45,16 +45,16 @@ impl Referee {
     fn may_tag(&self, standing: &Standing, tagger: usize, target: usize, look: &Look<'_>) -> bool {
         let (by, on) = (&standing.vehicles[tagger], &standing.vehicles[target]);
         let (own, other) = (self.team_of[tagger], self.team_of[target]);
-        let at = |i: usize| self.side_place(look.legs[i]);
+        let at = |i: usize| self.rules.side_place(look.legs[i]);
         let able = own != other && by.in_play && Ability::from(by).may_tag(standing.now);
         let asks = self.rules.tags_and_grabs == Acting::Automatic || look.asks[tagger].tag;
         able && asks
             && on.in_play
             && !on.tagged
             && !on.outside
-            && self.is_own_side(own, at(tagger))
-            && self.is_own_side(own, at(target))
-            && !self.is_own_side(other, at(target))
+            && self.field.is_own_side(own, at(tagger))
+            && self.field.is_own_side(own, at(target))
+            && !self.field.is_own_side(other, at(target))
     }
 }
 

@@ -29,7 +29,7 @@ impl BatteryLog {
         *self = BatteryLog::new(self.watch, now);
     }
 
-    pub(super) fn take(&mut self, now: SimTime, volts: Option<f64>) {
+    pub(super) fn observe(&mut self, now: SimTime, volts: Option<f64>) {
         // Any battery sentence ends the silence, even one without a voltage: the boat reports,
         // and that is what the warning is about.
         self.silence = (now, false);

@@ -12,7 +12,7 @@ pub(super) struct ClockWatch(Option<(SimTime, TimeOfDay)>);
 
 impl ClockWatch {
     /// Takes a time of day; returns by how much it stepped, s, if that is worth a warning.
-    pub(super) fn take(&mut self, now: SimTime, time: TimeOfDay) -> Option<f64> {
+    pub(super) fn step_s(&mut self, now: SimTime, time: TimeOfDay) -> Option<f64> {
         let (at, before) = self.0.replace((now, time))?;
         // A warning and no failsafe: ages go by the gateway's monotonic clock, so a receiver
         // that steps its time (a leap second, a week rollover, a new fix) changes nothing that

@@ -98,7 +98,7 @@ impl CommandEcho {
     }
 
     /// The boat's report, while we command it.
-    pub(super) fn take(&mut self, now: SimTime, mut shown: Shown) {
+    pub(super) fn observe(&mut self, now: SimTime, mut shown: Shown) {
         // A boat that has never shown another heading of ours may show 0 for all of them.
         shown.heading_deg = shown.heading_deg.filter(|deg| *deg != 0.0 || self.has_shown_set_point);
         let is_new = self.last.replace(shown).is_none_or(|last| !last.agrees(&shown, self.watch.echo_thrust_pct));

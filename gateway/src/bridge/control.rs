@@ -37,11 +37,11 @@ impl ControlLog {
         *self = ControlLog::new(self.watch);
     }
 
-    pub(super) fn take(&mut self, now: SimTime, report: &ControlReport) {
+    pub(super) fn observe(&mut self, now: SimTime, report: &ControlReport) {
         let ControlReport { shown, operator } = *report;
         self.reported = Some(Report { at: now, mode: shown.mode, operator });
         if operator.is_none_or(|operator| operator == Operator::Secondary) {
-            self.echo.take(now, shown);
+            self.echo.observe(now, shown);
         } else {
             // Under another operator the boat shows that one's commands, rightly; what was
             // learned about ours ends.

@@ -1,6 +1,6 @@
 //! The gateway's core: bytes, orders and operator commands in; bytes, navigation and events out.
 //!
-//! No socket and no clock in here: [`Bridge::take`] gets an [`Input`] with its time, and fills an [`Output`].
+//! No socket and no clock in here: [`Bridge::process`] gets an [`Input`] with its time, and fills an [`Output`].
 //! The same inputs at the same times give the same outputs, byte for byte: that is how a recording is replayed.
 
 mod alarms;
@@ -137,7 +137,7 @@ impl Bridge {
     }
 
     /// Takes an input, and does what is due.
-    pub fn take(&mut self, now: SimTime, input: &Input, out: &mut Output) {
+    pub fn process(&mut self, now: SimTime, input: &Input, out: &mut Output) {
         let mut request = None;
         self.hung_s = None;
         match input {
@@ -226,23 +226,23 @@ impl Bridge {
     }
 
     fn apply(&mut self, now: SimTime, report: Report, out: &mut Output) {
-        self.nav_is_new |= self.on_site.as_mut().is_some_and(|site| site.estimator.take(now, &report));
+        self.nav_is_new |= self.on_site.as_mut().is_some_and(|site| site.estimator.update(now, &report));
         match report {
             Report::Control(control) => {
-                self.control.take(now, &control);
-                self.recovery_point.take(&control, self.protocol.is_uploading());
+                self.control.observe(now, &control);
+                self.recovery_point.observe(&control, self.protocol.is_uploading());
             }
             Report::Station(text) => out.events.push(Event::Warning(text)),
             Report::ForeignOrder => self.control.note_foreign(now),
             Report::Power(power) => {
-                self.battery.take(now, power.volts);
+                self.battery.observe(now, power.volts);
                 let command = self.last_sent.map(|(_, command)| command);
                 self.alarms.take_power(now, &power, command, &mut out.events);
             }
             Report::Error(error) => self.alarms.take_error(error, &mut out.events),
             Report::Notice(text) => self.alarms.take_notice(text, &mut out.events),
             Report::Clock(time) => {
-                let step_s = self.clock.take(now, time).into_iter();
+                let step_s = self.clock.step_s(now, time).into_iter();
                 let text = |step_s| format!("the receiver's clock stepped by {step_s:.1} s");
                 out.events.extend(step_s.map(text).map(Event::Warning));
             }

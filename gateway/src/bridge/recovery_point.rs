@@ -26,7 +26,7 @@ impl RecoveryPoint {
     }
 
     /// The boat's report: taken is what it sails after it has shown that it took lines.
-    pub(super) fn take(&mut self, report: &ControlReport, is_uploading: bool) {
+    pub(super) fn observe(&mut self, report: &ControlReport, is_uploading: bool) {
         let RecoveryPoint::Uploading(erp, shown) = *self else { return };
         let is_ours = report.operator.is_none_or(|operator| operator == Operator::Secondary);
         *self = match report.shown.mode {

@@ -24,10 +24,10 @@ impl FrontSeat {
     }
 
     /// Takes bytes from a port. What it answers goes with the next telemetry.
-    pub fn take(&mut self, now: SimTime, port: Port, bytes: &[u8]) {
+    pub fn receive(&mut self, now: SimTime, port: Port, bytes: &[u8]) {
         match self {
-            FrontSeat::Surveyor(boat) => boat.take(now, port, bytes),
-            FrontSeat::ArduPilot(boat) => boat.take(now, bytes),
+            FrontSeat::Surveyor(boat) => boat.receive(now, port, bytes),
+            FrontSeat::ArduPilot(boat) => boat.receive(now, bytes),
         }
     }
 

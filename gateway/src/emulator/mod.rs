@@ -108,7 +108,7 @@ impl Emulator {
     }
 
     /// Takes bytes from a port.
-    pub fn take(&mut self, now: SimTime, port: Port, bytes: &[u8]) {
+    pub fn receive(&mut self, now: SimTime, port: Port, bytes: &[u8]) {
         // Taken out while it is used: sentences change the rest of the emulator.
         let mut framer = std::mem::take(self.framer(port));
         framer.push(bytes, &mut |body| {

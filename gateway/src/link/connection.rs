@@ -121,7 +121,7 @@ fn write_on(peer: &Peer, threads: &Threads) {
             Ok(Wrote::All) => {
                 let at = clock::now();
                 // Reported after the last byte is with the system, for the latency of orders.
-                if let Some(tag) = request.take() {
+                if let Some(tag) = request.settle() {
                     threads.emit(LinkEvent::Written { tag, at });
                 }
             }

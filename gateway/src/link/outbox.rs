@@ -80,7 +80,7 @@ impl WriteRequest {
     }
 
     /// Notes that the peer took it; returns the tag once all did.
-    pub(super) fn take(mut self) -> Option<u64> {
+    pub(super) fn settle(mut self) -> Option<u64> {
         self.taken = true;
         if self.completion.settle(false) { self.completion.tag } else { None }
     }
@@ -100,7 +100,7 @@ impl Outbox {
     }
 
     /// Queues a request; whether one was displaced (the queued one, or this one by a shutdown message).
-    pub(super) fn put(&self, request: WriteRequest) -> bool {
+    pub(super) fn push(&self, request: WriteRequest) -> bool {
         let mut state = self.state.lock();
         if state.shut {
             return false;

@@ -124,7 +124,7 @@ impl Threads {
         // waits for it.
         let completion = Completion::new(tag, peers.len());
         let displaced =
-            peers.iter().filter(|peer| peer.outbox.put(WriteRequest::new(&bytes, &completion, priority))).count();
+            peers.iter().filter(|peer| peer.outbox.push(WriteRequest::new(&bytes, &completion, priority))).count();
         self.note_displaced(displaced as u64);
         completion
     }

@@ -4,7 +4,7 @@
 //! the boat; for the rest the game's token is proven. A stop waits for nothing; nobody's silence, garbage or number of
 //! connections keeps it out.
 
-use super::NodeError;
+use super::error::NodeError;
 use super::loop_input::{LoopInput, Stop};
 use super::tcp_port::TcpPort;
 use crate::supervisor::Scope;

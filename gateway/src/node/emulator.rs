@@ -1,6 +1,8 @@
 //! The emulator's node: joins a game as the agent of a simulated boat, which a back seat drives by the boat's own protocol.
 
-use super::{NodeError, NodeEvent, declination_rad, pace_factor};
+use super::error::NodeError;
+use super::game_terms::{declination_rad, pace_factor};
+use super::node_event::NodeEvent;
 use crate::bridge::Event;
 use crate::config::BoatProtocol;
 use crate::emulator::{ArduPilot, Emulator, Extra, FrontSeat, Plan, Port};
@@ -133,11 +135,11 @@ fn open(address: &LinkAddress, port: Port, incoming: &Arc<Watched<Incoming>>) ->
     let shared = Arc::clone(incoming);
     // A back seat may listen for hours without a word.
     let settings = LinkSettings { silence: None, ..LinkSettings::default() };
-    Ok(Link::open(address, settings, move |event| shared.visit(|incoming| incoming.take(port, event)))?)
+    Ok(Link::open(address, settings, move |event| shared.visit(|incoming| incoming.handle_event(port, event)))?)
 }
 
 impl Incoming {
-    fn take(&mut self, port: Port, event: LinkEvent) {
+    fn handle_event(&mut self, port: Port, event: LinkEvent) {
         match event {
             LinkEvent::Bytes { bytes, .. } if self.unread + bytes.len() <= UNREAD_MAX => {
                 self.unread += bytes.len();
@@ -197,7 +199,7 @@ impl EmulatorNode {
             remarks.into_iter().for_each(|text| self.remark(text, notify));
             for (port, bytes) in &bytes {
                 let now = self.now;
-                self.front_seat().take(now, *port, bytes);
+                self.front_seat().receive(now, *port, bytes);
             }
             self.report_operator(notify);
             if let Some(text) = self.front_seat().take_remark() {

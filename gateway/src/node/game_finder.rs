@@ -1,29 +1,20 @@
 //! Finds the game of a boat and joins it, in a thread of its own: the boat's link and its operators do not wait for that.
 
+use super::error::NodeError;
+use super::found_game::FoundGame;
+use super::game_terms::{declination_rad, external_vehicle, pace_factor};
 use super::loop_input::{Call, LoopInput};
-use super::{NodeError, Settings, declination_rad, external_vehicle, pace_factor};
+use super::settings::Settings;
 use crate::bridge::Site;
 use crate::config::Gateway;
 use crate::geofence::GeofenceArea;
 use bus::game_search::{self, GameSearch};
-use bus::{Bus, NodeThread, Place};
+use bus::{NodeThread, Place};
+use messages::Role;
 use messages::topic::GameName;
-use messages::{GameInfo, Role};
-use primitives::VehicleId;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
-
-/// A game that has let the boat join.
-pub(super) struct FoundGame {
-    pub(super) bus: Bus,
-    pub(super) game: GameName,
-    pub(super) info: GameInfo,
-    pub(super) vehicle: VehicleId,
-    /// How many seconds of the game pass in a second of real time.
-    pub(super) factor: f64,
-    pub(super) site: Site,
-}
 
 /// What is looked for.
 struct Wanted {

@@ -1,12 +1,15 @@
 //! The gateway loop: inputs from the boat, the sim and operators go to the core, its outputs go out.
 
 use super::clock::{Clock, LastRun};
-use super::game_finder::FoundGame;
+use super::error::NodeError;
+use super::found_game::FoundGame;
 use super::guard::{Guarded, HEARTBEAT, HUNG};
 use super::join::Join;
 use super::latency::Latency;
 use super::loop_input::{Call, LoopInput, LoopOutput, Stop};
-use super::{NodeError, NodeEvent, Settings, subscribe};
+use super::node_event::NodeEvent;
+use super::settings::Settings;
+use super::subscriptions::subscribe;
 use crate::bridge::{Bridge, Event, Input, Output};
 use crate::game_clock::{GameClock, OrderTime};
 use crate::link::{BoatLink, LinkEvent};
@@ -135,7 +138,7 @@ impl GatewayLoop<'_> {
             // That it was suspended comes before what came meanwhile.
             beat_at = self.beat(beat_at)?;
             match call {
-                Some(call) => self.take(call)?,
+                Some(call) => self.handle_call(call)?,
                 None => self.step(Input::Tick, None)?,
             }
             if clock::now() >= self.counters.status_at {
@@ -262,7 +265,7 @@ impl GatewayLoop<'_> {
         self.in_game.as_ref().map(|in_game| in_game.vehicle)
     }
 
-    fn take(&mut self, call: Call) -> Result<(), NodeError> {
+    fn handle_call(&mut self, call: Call) -> Result<(), NodeError> {
         match call {
             Call::Link(event) => self.take_link(event),
             Call::Order => self.take_order(),
@@ -414,7 +417,7 @@ impl GatewayLoop<'_> {
     fn step_core(&mut self, input: Input, read: Option<Instant>) -> Result<Option<String>, NodeError> {
         let now = self.clock.now();
         let mut out = Output::default();
-        self.bridge.take(now, &input, &mut out);
+        self.bridge.process(now, &input, &mut out);
         // The boat first.
         if !out.bytes.is_empty() {
             self.counters.tag += 1;

@@ -70,29 +70,29 @@ impl Guarded {
 
     /// The loop runs. Whether the guard does, the first time that it does not.
     pub(super) fn beat(&self) -> bool {
-        self.tell(&[ALIVE], None) || self.0.is_gone.swap(true, Ordering::Relaxed)
+        self.send(&[ALIVE], None) || self.0.is_gone.swap(true, Ordering::Relaxed)
     }
 
     /// This stops the boat from now on.
     pub(super) fn stop_with(&self, message: &[u8]) {
         let mut stop = self.0.stop.lock();
-        if *stop != message && self.tell(&[&[STOP], message].concat(), None) {
+        if *stop != message && self.send(&[&[STOP], message].concat(), None) {
             message.clone_into(&mut stop);
         }
     }
 
     /// There is a new link, or none.
     pub(super) fn link(&self, descriptor: Option<BorrowedFd<'_>>) {
-        self.tell(&[if descriptor.is_some() { LINK } else { NO_LINK }], descriptor);
+        self.send(&[if descriptor.is_some() { LINK } else { NO_LINK }], descriptor);
     }
 
     /// The gateway has stopped the boat itself, and ends.
     pub(super) fn end(&self) {
-        self.tell(&[ENDS], None);
+        self.send(&[ENDS], None);
     }
 
     /// Whether the guard could be told; one that is suspended takes nothing more some time, and is there.
-    fn tell(&self, what: &[u8], descriptor: Option<BorrowedFd<'_>>) -> bool {
+    fn send(&self, what: &[u8], descriptor: Option<BorrowedFd<'_>>) -> bool {
         let descriptors: Vec<BorrowedFd<'_>> = descriptor.into_iter().collect();
         let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(1))];
         let mut control = SendAncillaryBuffer::new(&mut space);

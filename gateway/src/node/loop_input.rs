@@ -1,7 +1,7 @@
 //! What comes to the gateway loop from its other threads, and wakes it.
 
-use super::NodeError;
-use super::game_finder::FoundGame;
+use super::error::NodeError;
+use super::found_game::FoundGame;
 use crate::link::LinkEvent;
 use crate::supervisor::Scope;
 use bus::game_search::Joined;

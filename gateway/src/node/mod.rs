@@ -1,91 +1,61 @@
 //! The network shell: connects a real boat with a game, and emulates a boat for real back seats.
 //!
-//! [`serve`] is for a real boat, [`emulate`] for a simulated one. All decisions are made in [`crate::bridge`] and
-//! [`crate::emulator`]; here are the sockets, the clocks and the threads.
+//! [`serve`] is for a real boat, `emulate` for a simulated one. All decisions are made in [`crate::bridge`] and
+//! `crate::emulator`; here are the sockets, the clocks and the threads.
 
 mod clock;
 mod control_port;
+#[cfg(feature = "emulator")]
 mod emulator;
+mod error;
+mod found_game;
 mod game_finder;
+mod game_terms;
 mod gateway_loop;
 mod guard;
 mod join;
 mod latency;
 mod loop_input;
 mod machine_check;
+mod node_event;
 mod payload;
 mod report;
+mod settings;
+mod subscriptions;
 mod tcp_port;
 mod terminal_key;
 
+#[cfg(feature = "emulator")]
 pub use emulator::{EmulatorSettings, emulate};
+pub use error::NodeError;
 pub use guard::guard;
 pub use machine_check::machine_checks;
+pub use node_event::NodeEvent;
+pub use settings::Settings;
 pub use terminal_key::on_enter;
 
-use crate::bridge::{Bridge, Event, Plan, Preflight};
-use crate::config::Gateway;
-use crate::declination::{DeclinationError, declination_deg};
+use crate::bridge::{Bridge, Event, Plan};
 use crate::game_clock::GameClock;
-use crate::geofence::GeofenceError;
 use crate::link::{BoatLink, Link, LinkAddress, LinkError, LinkEvent, LinkSettings, OnPort};
-use crate::nmea::date_and_time;
 use crate::payload::PayloadPort;
 use crate::protocol::Protocol;
 use crate::record::{self, StepEncoder};
-use crate::supervisor::Scope;
-use bus::game_search::NotFound;
-use bus::token::{Checked, Guard};
-use bus::{Bus, BusError, Declaration, LinkLock, LinkLockError, Place, Token};
+use bus::token::Guard;
+use bus::{LinkLock, LinkLockError, Token};
 use clock::Clock;
 use control_port::ControlPort;
 use gateway_loop::{Counters, GatewayLoop, InGame};
 use guard::Guarded;
-use loop_input::{Call, LoopInput, LoopOutput, Stop, loop_input};
+use loop_input::{Call, LoopInput, LoopOutput, loop_input};
 use machine_check::SPACE_MIN_MIB;
-use messages::external::{FleetCommand, GatewayCommand, GatewayStatus, OperatorCommand};
-use messages::topic::{self, GameName};
-use messages::{Control, GameInfo};
 use payload::Payloads;
-use primitives::frame::LatLon;
-use primitives::{SimTime, VehicleId, codec};
-use recording::{NewFile, RecordError, Recorder, utc};
-use scenario::{Source, UnknownVehicle};
+use primitives::SimTime;
+use recording::{NewFile, Recorder, utc};
 use std::net::SocketAddr;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::Command;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use std::time::Duration;
-use thiserror::Error;
-
-/// The settings of a gateway to a real boat.
-pub struct Settings {
-    /// The game; without a name, the only one there is.
-    pub game: Option<GameName>,
-    /// Where the sim is.
-    pub place: Place,
-    /// The boat's name in the game.
-    pub vehicle: String,
-    /// How it is driven and stopped.
-    pub gateway: Gateway,
-    /// Whether it arms by itself, once.
-    pub arms_itself: bool,
-    /// Whether the boat is sent nothing but standby.
-    pub dry_run: bool,
-    /// Whether its pre-flight check lets it be armed.
-    pub preflight: Preflight,
-    /// Whether its clock runs as fast as the game's: for emulated boats.
-    pub at_game_pace: bool,
-    /// The file of the recording, if any.
-    pub record: Option<PathBuf>,
-    /// The commit that the program was built from.
-    pub commit: &'static str,
-    /// How long to look for the game.
-    pub wait: Duration,
-    /// Set from outside to end.
-    pub stop: Arc<AtomicBool>,
-}
 
 /// What a gateway has beside the network of the game: the way to its boat, a port for operators, and the boat's payloads.
 pub struct Outside {
@@ -95,106 +65,22 @@ pub struct Outside {
     pub silence: Duration,
     /// Where the control port listens; port 0 is any that is free.
     pub control: SocketAddr,
-    /// The program whose `gateway guard` stops the boat when this process cannot; `None` is without.
-    pub guard: Option<PathBuf>,
+    /// Starts the process that calls [`guard()`] and stops the boat when this one cannot; `None` is without.
+    pub guard: Option<GuardCommand>,
     /// The payloads of the boat that are passed through.
     pub payloads: Vec<PayloadPort>,
 }
 
+/// A command whose process calls [`guard()`].
+pub struct GuardCommand {
+    /// The file of the program.
+    pub program: PathBuf,
+    /// Its arguments.
+    pub args: Vec<String>,
+}
+
 /// What a link tells its gateway.
 pub type OnLinkEvent = Box<dyn Fn(LinkEvent) + Send + Sync>;
-
-/// What a node reports to the program that runs it.
-pub enum NodeEvent<'a> {
-    /// It cannot begin yet.
-    Looking {
-        /// Why.
-        reason: &'a str,
-    },
-    /// Something happened.
-    Event {
-        /// Time since it began, s.
-        at_s: f64,
-        /// What.
-        event: &'a Event,
-    },
-    /// The status, twice a second.
-    Status(&'a GatewayStatus),
-    /// It has ended, with this status.
-    Ended(&'a GatewayStatus),
-    /// It records into this file.
-    Recording(&'a Path),
-    /// The control port is open, or asks for another token from now on.
-    ControlPort {
-        /// Where it listens.
-        address: SocketAddr,
-        /// The token that it asks for, if that is known.
-        token: Option<Token>,
-    },
-    /// Others can connect here.
-    Listening {
-        /// Which port this is.
-        what: &'a str,
-        /// Its address.
-        reach: &'a str,
-    },
-}
-
-/// Why a gateway cannot work.
-#[derive(Debug, Error)]
-pub enum NodeError {
-    /// The network failed.
-    #[error(transparent)]
-    Bus(#[from] BusError),
-    /// There is no game, or it refuses.
-    #[error(transparent)]
-    NotFound(#[from] NotFound),
-    /// The link cannot be opened.
-    #[error(transparent)]
-    Link(#[from] LinkError),
-    /// The control port cannot be opened.
-    #[error("the control port {listen}: {source}")]
-    ControlPort {
-        /// Where it was to listen.
-        listen: SocketAddr,
-        /// Why.
-        source: std::io::Error,
-    },
-    /// Another gateway has the link.
-    #[error(transparent)]
-    Locked(#[from] LinkLockError),
-    /// The recording cannot be written.
-    #[error("cannot record into {path}")]
-    Record {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: RecordError,
-    },
-    /// The declination is not known.
-    #[error("{0}; set declination_deg in the gateway's file")]
-    Declination(#[from] DeclinationError),
-    /// The game has no such boat.
-    #[error(transparent)]
-    UnknownVehicle(#[from] UnknownVehicle),
-    /// The geofence does not go with the game.
-    #[error("the gateway file {file}: geofence: {source}")]
-    Geofence {
-        /// The file's stem.
-        file: String,
-        /// Why.
-        source: GeofenceError,
-    },
-    /// The game and the gateway do not go together.
-    #[error("{0}")]
-    Refused(String),
-    /// The sim has died or fallen silent, and with it the emulated boat.
-    #[error("the sim is gone: no picture for {0:.1?}")]
-    SimGone(Duration),
-    /// Another sim serves a game of the same name, and knows nothing of us.
-    #[error("the sim is gone, and another one serves the game: join again")]
-    SimReplaced,
-}
 
 /// Connects a real boat with a game until it is told to stop. The link comes first, and standby is the first thing that the boat
 /// is sent; the game is looked for while operators are served. However it ends, the boat is sent standby.
@@ -235,9 +121,10 @@ pub fn serve(settings: &Settings, outside: &Outside, notify: &mut dyn FnMut(Node
 
 /// The guard, where there is to be one. A boat is not left alone since it cannot be started.
 fn start_guard(settings: &Settings, outside: &Outside, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Option<Guarded> {
-    let mut command = Command::new(outside.guard.as_ref()?);
+    let GuardCommand { program, args } = outside.guard.as_ref()?;
+    let mut command = Command::new(program);
     // Without the environment it has no token and no address, and needs none.
-    command.args(["gateway", "guard"]).env_clear();
+    command.args(args).env_clear();
     let started = Guarded::start(command, &Protocol::new(&settings.gateway).guard_message());
     if let Err(e) = &started {
         let text = format!("there is no guard, so if the gateway is killed, nobody stops the boat: {e}");
@@ -349,99 +236,4 @@ fn recorder(
         notify(NodeEvent::Event { at_s: 0.0, event: &Event::Warning(format!("nothing is recorded: {e}")) });
     }
     begun.ok()
-}
-
-/// Subscribes to what comes from the sim and from operators.
-fn subscribe(
-    bus: &Bus,
-    game: &GameName,
-    info: &GameInfo,
-    vehicle: VehicleId,
-    input: &LoopInput,
-) -> Result<Vec<Declaration>, BusError> {
-    let scenario = &info.scenario;
-    let [orders, queries, stops, controls, releases, frames] = std::array::from_fn(|_| input.clone());
-    let take_order = move |bytes: &[u8]| {
-        let Ok(order) = codec::decode(bytes) else { return };
-        let mut latest_order = orders.latest_order.lock();
-        // A call that still waits will find the newest.
-        if latest_order.replace((order, bus::clock::now())).is_none() {
-            orders.calls.put(Call::Order);
-        }
-    };
-    let name = &scenario.vehicles[vehicle.index()].name;
-    let mut subscriptions = vec![
-        // From the sim, not from agents: whose order counts (tickets), what the referee lets a
-        // boat do, and when an agent is lost are known there alone. A second implementation of
-        // that on the way to the boat would be wrong one day.
-        bus.subscribe(topic::external_order(game, scenario, vehicle), take_order)?,
-        bus.answer(topic::operate(game, name), move |query| {
-            // It is read again, to be answered, behind others.
-            let command = Guard::default().check(query.key(), query.payload(), OperatorCommand::needs_token);
-            if let Checked::Granted(command) = command
-                && let Some(stop) = Stop::of(&command)
-            {
-                queries.stop(stop);
-            }
-            queries.query(query);
-        })?,
-        bus.subscribe(topic::stop(game, name), move |bytes| {
-            if let Some(stop) = stop_in(bytes) {
-                stops.stop(stop);
-            }
-        })?,
-        bus.subscribe(topic::control(game), move |bytes| {
-            // Everything else reaches the boat as an order, if at all.
-            // The sim's own path to everybody: it is heard here directly, and does not depend
-            // on the sim's loop.
-            if let Ok(Control::EStop) = serde_json::from_slice(bytes) {
-                controls.stop(Stop::EStop(Scope::Fleet));
-            }
-        })?,
-        bus.subscribe(topic::released(game), move |_| releases.calls.put(Call::Release))?,
-    ];
-    // Frames are published only where somebody subscribes.
-    // Where there are two real boats or more: they keep out of each other's way by the frames,
-    // which a single one does not need.
-    if scenario.externals().nth(1).is_some() {
-        let take_frame = move |bytes: &[u8]| frames.calls.put(Call::Frame(bytes.to_vec()));
-        subscriptions.push(bus.subscribe(topic::frame(game), take_frame)?);
-    }
-    Ok(subscriptions)
-}
-
-/// What is published to stop the boat: an operator's command, or one for all boats.
-fn stop_in(bytes: &[u8]) -> Option<Stop> {
-    match serde_json::from_slice(bytes) {
-        Ok(GatewayCommand::Fleet(FleetCommand::EStop)) => Some(Stop::EStop(Scope::Fleet)),
-        _ => Stop::of(&serde_json::from_slice(bytes).ok()?),
-    }
-}
-
-fn external_vehicle(info: &GameInfo, name: &str) -> Result<VehicleId, NodeError> {
-    let vehicle = info.scenario.vehicle_named(name)?;
-    if info.scenario.vehicles[vehicle.index()].source == Source::External {
-        return Ok(vehicle);
-    }
-    Err(NodeError::Refused(format!("{name} is simulated in this game: a real boat needs source = \"external\"")))
-}
-
-/// How many seconds of the game pass in a second of real time.
-fn pace_factor(pace: &str, at_game_pace: bool) -> Result<f64, NodeError> {
-    match (pace, at_game_pace) {
-        ("realtime", _) => Ok(1.0),
-        (pace, true) => pace
-            .strip_suffix('x')
-            .and_then(|factor| factor.parse().ok())
-            .ok_or_else(|| NodeError::Refused(format!("the game's pace is {pace}, expected realtime or a factor"))),
-        (pace, false) => Err(NodeError::Refused(format!(
-            "the game's pace is {pace}, expected realtime: a real boat sails in real time (--at-game-pace is for emulated ones)"
-        ))),
-    }
-}
-
-/// The declination as it is set, or else that of here and today; east positive, rad.
-fn declination_rad(set_rad: Option<f64>, at: LatLon) -> Result<f64, NodeError> {
-    let today_rad = || Ok(declination_deg(at, date_and_time(utc::now_ns()).0)?.to_radians());
-    set_rad.map_or_else(today_rad, Ok)
 }

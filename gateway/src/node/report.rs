@@ -1,6 +1,6 @@
 //! What a running gateway says of its boat: the status, navigation and link bytes to the sim, and all of it to the recording.
 
-use super::NodeError;
+use super::error::NodeError;
 use super::gateway_loop::GatewayLoop;
 use crate::bridge::{Input, NavOut, Output};
 use bus::Publisher;

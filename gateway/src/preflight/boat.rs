@@ -195,7 +195,7 @@ mod tests {
             );
             for body in [gga.as_str()].iter().chain(more) {
                 let sentence = format!("${body}*{:02X}\r\n", checksum(body.as_bytes()));
-                check.take(SimTime::from_s(0.5 * f64::from(i)), sentence.as_bytes());
+                check.receive(SimTime::from_s(0.5 * f64::from(i)), sentence.as_bytes());
             }
         }
         check
@@ -265,7 +265,7 @@ mod tests {
     #[test]
     fn what_a_short_look_cannot_tell_is_not_checked() {
         let mut check = SensorCheck::new(&crate::config::default_gateway());
-        check.take(SimTime::ZERO, b"$GPGGA,150502.00,4221.50616,N,07105.24688,W,2,11,0.98,5.5,M,-33.2,M,,*62\r\n");
+        check.receive(SimTime::ZERO, b"$GPGGA,150502.00,4221.50616,N,07105.24688,W,2,11,0.98,5.5,M,-33.2,M,,*62\r\n");
         let now = (SimTime::ZERO, TimeOfDay(54_302_400));
         let checks = boat_checks(&check, now, &crate::config::default_gateway(), None);
         let not_checked = checks.iter().filter(|check| check.verdict == Verdict::NotChecked);

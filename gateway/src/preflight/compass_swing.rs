@@ -3,7 +3,6 @@
 //! The deviation is A + B sin h + C cos h + D sin 2h + E cos 2h at the heading h (Bowditch, *American Practical Navigator*,
 //! ch. 6), east positive: what has to be added to the compass to have the heading.
 
-use nalgebra::{Matrix5, Vector5};
 use primitives::angle::wrap_pi;
 use primitives::math;
 use std::f64::consts::TAU;
@@ -33,7 +32,7 @@ pub struct Deviation {
 
 impl CompassSwing {
     /// Takes the heading by the compass, with the declination, and a true one of the same moment, rad.
-    pub fn take(&mut self, compass_rad: f64, true_rad: f64) {
+    pub fn add_reading(&mut self, compass_rad: f64, true_rad: f64) {
         if self.pairs.len() < PAIRS_MAX && compass_rad.is_finite() && true_rad.is_finite() {
             self.pairs.push((true_rad.rem_euclid(TAU), wrap_pi(true_rad - compass_rad)));
         }
@@ -64,16 +63,16 @@ impl CompassSwing {
             [s + sin, c + cos]
         });
         let mean_rad = math::atan2(sin, cos);
-        let (mut normal, mut right) = (Matrix5::zeros(), Vector5::zeros());
+        let (mut normal, mut right) = ([[0.0; 5]; 5], [0.0; 5]);
         for (psi_rad, off_rad) in &self.pairs {
-            let row = Vector5::from(basis(*psi_rad));
-            right += row * wrap_pi(off_rad - mean_rad);
-            normal += row * row.transpose();
+            let (row, off_rad) = (basis(*psi_rad), wrap_pi(off_rad - mean_rad));
+            for i in 0..5 {
+                right[i] += row[i] * off_rad;
+                (0..5).for_each(|j| normal[i][j] += row[i] * row[j]);
+            }
         }
-        // Five unknowns and thousands of pairs: the normal equations are good enough, and a
-        // solver of five by five is all that is needed.
-        let solved = normal.cholesky().map(|normal| normal.solve(&right));
-        let mut found: [f64; 5] = solved.ok_or_else(|| "the headings do not tell a curve".to_owned())?.into();
+        let solved = solve_positive_definite(normal, right);
+        let mut found = solved.ok_or_else(|| "the headings do not tell a curve".to_owned())?;
         found[0] = wrap_pi(found[0] + mean_rad);
         let value = |psi_rad: f64| basis(psi_rad).iter().zip(found).map(|(base, factor)| base * factor).sum::<f64>();
         let squares = self.pairs.iter().map(|(psi_rad, off)| wrap_pi(off - value(*psi_rad))).map(|rest| rest * rest);
@@ -103,6 +102,32 @@ fn basis(psi_rad: f64) -> [f64; 5] {
     [1.0, sin, cos, sin_2, cos_2]
 }
 
+/// Solves a symmetric system by Cholesky's factors (Golub and Van Loan, *Matrix Computations*, 4.2.3 and 3.1); nothing if it
+/// is not positive definite. Five lines and columns are no reason to have a library of matrices on the boat.
+fn solve_positive_definite(matrix: [[f64; 5]; 5], right: [f64; 5]) -> Option<[f64; 5]> {
+    let (mut lower, mut x) = (matrix, right);
+    for j in 0..5 {
+        for k in 0..j {
+            (j..5).for_each(|i| lower[i][j] -= lower[j][k] * lower[i][k]);
+        }
+        if lower[j][j].is_nan() || lower[j][j] <= 0.0 {
+            return None;
+        }
+        let pivot = lower[j][j].sqrt();
+        lower[j][j] = pivot;
+        (j + 1..5).for_each(|i| lower[i][j] /= pivot);
+    }
+    for i in 0..5 {
+        x[i] /= lower[i][i];
+        (i + 1..5).for_each(|k| x[k] -= x[i] * lower[k][i]);
+    }
+    for i in (0..5).rev() {
+        let known: f64 = (i + 1..5).map(|k| lower[k][i] * x[k]).sum();
+        x[i] = (x[i] - known) / lower[i][i];
+    }
+    Some(x)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -114,7 +139,7 @@ mod tests {
             let psi_rad = (f64::from(i) * 0.97).to_radians();
             let deviation_deg: f64 = basis(psi_rad).iter().zip(a_to_e_deg).map(|(base, factor)| base * factor).sum();
             let noise_deg = if i % 2 == 0 { noise_deg } else { -noise_deg };
-            swing.take(psi_rad - (deviation_deg + noise_deg).to_radians(), psi_rad);
+            swing.add_reading(psi_rad - (deviation_deg + noise_deg).to_radians(), psi_rad);
         }
         swing
     }
@@ -134,9 +159,18 @@ mod tests {
     }
 
     #[test]
+    fn a_system_that_is_not_positive_definite_has_no_solution() {
+        let scaled = |factor: f64| std::array::from_fn(|i| std::array::from_fn(|j| if i == j { factor } else { 0.0 }));
+        assert_eq!(solve_positive_definite(scaled(4.0), [4.0; 5]), Some([1.0; 5]));
+        for factor in [0.0, -1.0, f64::NAN] {
+            assert_eq!(solve_positive_definite(scaled(factor), [4.0; 5]), None, "{factor}");
+        }
+    }
+
+    #[test]
     fn half_a_circle_is_no_swing() {
         let mut swing = CompassSwing::default();
-        (0..180).for_each(|deg| swing.take(f64::from(deg).to_radians(), f64::from(deg).to_radians()));
+        (0..180).for_each(|deg| swing.add_reading(f64::from(deg).to_radians(), f64::from(deg).to_radians()));
         assert_eq!(swing.fit(), Err("6 of 12 sectors of 30 degrees were swept, expected all of them".to_owned()));
     }
 

@@ -114,11 +114,11 @@ impl Mavlink {
 
     pub(super) fn read(&mut self, now: SimTime, bytes: &[u8], take: &mut dyn FnMut(Report)) {
         let mut framer = std::mem::take(&mut self.framer);
-        framer.push(bytes, &mut |received| self.take(now, &received, take));
+        framer.push(bytes, &mut |received| self.read_message(now, &received, take));
         self.framer = framer;
     }
 
-    fn take(&mut self, now: SimTime, received: &Received, take: &mut dyn FnMut(Report)) {
+    fn read_message(&mut self, now: SimTime, received: &Received, take: &mut dyn FnMut(Report)) {
         let ours = (self.settings.system, self.settings.component);
         if !self.boat.is_its(received) {
             if (received.system, received.component) != ours {

@@ -16,7 +16,7 @@ fn boat(change: impl FnOnce(&mut emulator::Plan)) -> Emulator {
 }
 
 fn send(boat: &mut Emulator, body: &str) {
-    boat.take(SimTime::ZERO, Port::Secondary, with_checksum(body).as_bytes());
+    boat.receive(SimTime::ZERO, Port::Secondary, with_checksum(body).as_bytes());
     // It has to know where it is to do anything.
     let own = messages::picture::OwnBoat::new(primitives::VehicleId(0), messages::picture::Nav::default());
     boat.observe(SimTime::ZERO, &own);
@@ -36,7 +36,7 @@ fn invalid_commands_change_nothing() {
         b"$PGRMCE*0E\r\n$PSRF100,1*0E\r\n\x8e\xff\x00",
         b"PSEAC,T,0,90,0,\r\n",
     ] {
-        boat.take(SimTime::ZERO, Port::Secondary, bytes);
+        boat.receive(SimTime::ZERO, Port::Secondary, bytes);
         assert_eq!(boat.order(SimTime::ZERO), thrust(0.2, 0.2), "{bytes:?}");
     }
 }

@@ -18,7 +18,7 @@ fn ten_thousand_orders_a_second_come_out_as_twenty_sentences() {
         for k in 0..100 {
             last_deg = f64::from((i * 100 + k) % 360);
             let given = start + SimTime(i64::from(i) * 10_000_000 + i64::from(k) * 1000 + 1);
-            rig.put(&Input::Order(steer(last_deg, 1.0), given));
+            rig.give(&Input::Order(steer(last_deg, 1.0), given));
         }
         rig.run(0.01);
     }
@@ -35,7 +35,7 @@ fn a_new_order_does_not_wait_for_the_period_of_repetitions() {
         rig.run(0.1 + 0.01 * f64::from(i % 3));
         let (order, given) = (steer(f64::from(90 + i), 1.5), rig.now + SimTime(1));
         let before = rig.sent.len();
-        rig.put(&Input::Order(order, given));
+        rig.give(&Input::Order(order, given));
         assert_eq!(rig.sent.len(), before + 1, "{i}: sent in the very same step");
     }
 }

@@ -102,7 +102,7 @@ impl Rig {
         rig
     }
 
-    pub(crate) fn put(&mut self, input: &Input) {
+    pub(crate) fn give(&mut self, input: &Input) {
         let mut out = Output::default();
         match input {
             Input::Order(order, given) if order.check().is_ok() && *given > self.given => {
@@ -117,7 +117,7 @@ impl Rig {
         if matches!(input, Input::Operator(_) | Input::Fleet(_)) {
             self.refused = None;
         }
-        self.bridge.take(self.now, input, &mut out);
+        self.bridge.process(self.now, input, &mut out);
         self.turns.push((self.now, input.clone(), out.clone()));
         self.take_out(out);
     }
@@ -136,7 +136,7 @@ impl Rig {
             self.oracle.judge(self.now, &out.bytes);
             self.sent.push((self.now, out.bytes.clone()));
             if self.open.0 {
-                self.emulator.take(self.now, Port::Secondary, &out.bytes);
+                self.emulator.receive(self.now, Port::Secondary, &out.bytes);
             }
         }
     }
@@ -149,7 +149,7 @@ impl Rig {
         if up {
             self.oracle.forget();
         }
-        self.put(if up { &Input::LinkUp } else { &Input::LinkDown });
+        self.give(if up { &Input::LinkUp } else { &Input::LinkDown });
     }
 
     pub(crate) fn run(&mut self, seconds: f64) {
@@ -184,13 +184,13 @@ impl Rig {
             self.send_telemetry();
             if let Some(order) = self.order {
                 let given = if self.hangs { self.given } else { self.now };
-                self.put(&Input::Order(order, given));
+                self.give(&Input::Order(order, given));
             }
             if let Some(others) = self.others.clone() {
-                self.put(&Input::Others(others));
+                self.give(&Input::Others(others));
             }
         }
-        self.put(&Input::Tick);
+        self.give(&Input::Tick);
         self.remark = self.emulator.take_remark().unwrap_or_else(|| std::mem::take(&mut self.remark));
     }
 
@@ -210,7 +210,7 @@ impl Rig {
         if self.open.1 && self.oracle.link_up {
             for piece in pieces {
                 self.oracle.note(self.now, &piece);
-                self.put(&Input::Bytes(piece));
+                self.give(&Input::Bytes(piece));
             }
         }
     }
@@ -221,12 +221,12 @@ impl Rig {
         while late.len() < bytes {
             self.emulator.telemetry(self.now, &mut late);
         }
-        self.put(&Input::Bytes(late));
+        self.give(&Input::Bytes(late));
     }
 
     /// A back seat or an operator sends this body.
     pub(crate) fn send(&mut self, port: Port, body: &str) {
-        self.emulator.take(self.now, port, with_checksum(body).as_bytes());
+        self.emulator.receive(self.now, port, with_checksum(body).as_bytes());
         self.boat_order = self.emulator.order(self.now);
     }
 

@@ -106,14 +106,14 @@ pub(crate) fn play(rig: &mut Rig, line: &str) {
         ["order", order @ ..] => (rig.order, rig.hangs) = (order_of(order), false),
         ["agent-hangs"] => rig.hangs = true,
         ["operator", "mission", mission @ ..] => {
-            rig.put(&Input::Operator(OperatorCommand::Mission(mission_of(mission))))
+            rig.give(&Input::Operator(OperatorCommand::Mission(mission_of(mission))))
         }
         ["operator", "mode", mode] => {
             let mode = serde_json::from_str(mode).unwrap_or_else(|e| panic!("{mode}: {e}"));
-            rig.put(&Input::Operator(OperatorCommand::Mode(mode)));
+            rig.give(&Input::Operator(OperatorCommand::Mode(mode)));
         }
-        ["operator", command] => rig.put(&Input::Operator(named(command))),
-        ["fleet", command] => rig.put(&Input::Fleet(named(command))),
+        ["operator", command] => rig.give(&Input::Operator(named(command))),
+        ["fleet", command] => rig.give(&Input::Fleet(named(command))),
         ["link", state] => rig.link(*state == "up"),
         ["open", ways] => rig.open = (matches!(*ways, "both" | "to-boat"), matches!(*ways, "both" | "from-boat")),
         ["tamper", how @ ..] => rig.tamper = tamper(how),

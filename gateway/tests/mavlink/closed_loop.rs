@@ -154,7 +154,7 @@ fn an_emulated_boat_takes_the_sign_of_its_speed_from_the_north_as_rover_does() {
         let message = MavMessage::SET_POSITION_TARGET_LOCAL_NED(target);
         gateway::mavlink::Writer::new(250, 190).write(&message, &mut bytes);
         for _ in 0..10 {
-            rig.ardupilot.take(rig.now, &bytes);
+            rig.ardupilot.receive(rig.now, &bytes);
             rig.run(1.0);
         }
         assert_eq!(rig.boat.speed_m_s > 0.8, is_ahead, "{frame:?} {type_mask:?} {vx}: {:?}", rig.boat);
@@ -169,7 +169,7 @@ fn what_fails_stops_the_boat_in_its_time() {
         ("no orders", |rig| rig.order = None, 1.2, "no fresh order"),
         ("an E-stop", |rig| rig.operator(OperatorCommand::EStop), 0.1, "e-stopped"),
         ("a deaf boat", |rig| rig.open.1 = false, 1.7, "is 1.5 s old"),
-        ("a lost link", |rig| rig.put(&Input::LinkDown), 0.1, "the link is lost"),
+        ("a lost link", |rig| rig.give(&Input::LinkDown), 0.1, "the link is lost"),
         ("a low battery", |rig| rig.ardupilot.set_volts(12.0), 6.5, "the battery is low"),
     ];
     for (what, fail, limit_s, words) in cases {
@@ -237,9 +237,9 @@ fn a_boat_that_leaves_guided_for_hold_is_not_taken_back() {
 fn the_first_word_takes_nothing_from_a_pilot_and_stops_a_boat_in_guided() {
     for (mode, want) in [(RoverMode::Manual, (RoverMode::Manual, true)), (RoverMode::Guided, HOLD)] {
         let mut rig = Rig::under_way();
-        rig.put(&Input::LinkDown);
+        rig.give(&Input::LinkDown);
         rig.ardupilot.set_mode(mode);
-        rig.put(&Input::LinkUp);
+        rig.give(&Input::LinkUp);
         rig.run(2.0);
         assert_eq!(rig.mode(), want);
         assert!(matches!(rig.bridge.state().to_string().as_str(), "safed" | "failsafe: the link is lost"));
@@ -249,7 +249,7 @@ fn the_first_word_takes_nothing_from_a_pilot_and_stops_a_boat_in_guided() {
 /// What the guard of a gateway says to this boat.
 fn guarded(rig: &mut Rig) {
     let message = rig.bridge.guard_message();
-    rig.ardupilot.take(rig.now, &message);
+    rig.ardupilot.receive(rig.now, &message);
 }
 
 #[test]
@@ -324,7 +324,7 @@ fn messages_of_other_systems_are_counted_and_ignored() {
     another.telemetry(rig.now, &mut telemetry);
     framer.push(&telemetry, &mut |received| writer.write(&received.message, &mut other));
     for _ in 0..100 {
-        rig.put(&Input::Bytes(other.clone()));
+        rig.give(&Input::Bytes(other.clone()));
         rig.run(0.1);
     }
     assert_eq!(rig.state(), "armed");

@@ -71,7 +71,7 @@ fn steered_by_another(mut rig: Rig, message: &MavMessage, rate_hz: f64) -> (f64,
     let start = rig.now;
     while rig.state() == "armed" {
         assert!((rig.now - start).as_s() < LIMIT_S, "{message:?}: {:?} {:?}", rig.boat, rig.events);
-        rig.ardupilot.take(rig.now, &bytes);
+        rig.ardupilot.receive(rig.now, &bytes);
         rig.run(1.0 / rate_hz);
     }
     ((rig.now - start).as_s(), rig.state())
@@ -134,7 +134,7 @@ fn set_points_and_heartbeats_of_others_on_the_link_are_told() {
         let mut rig = Rig::under_way();
         let mut bytes = vec![];
         Writer::new(250, 190).write(message, &mut bytes);
-        (0..3).for_each(|_| rig.put(&Input::Bytes(bytes.clone())));
+        (0..3).for_each(|_| rig.give(&Input::Bytes(bytes.clone())));
         rig
     };
     assert!(on_the_link(&velocity(90.0, 1.5)).state().contains("orders that are not ours"));

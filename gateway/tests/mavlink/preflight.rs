@@ -25,12 +25,12 @@ fn checked(place: Ned, change: impl Fn(&mut ArduPilot)) -> (SensorCheck, Vec<Che
     for tenth in 0..300_u64 {
         now = SimTime::from_s(0.1 * tenth as f64);
         let (mut to_boat, mut from_boat) = (vec![], vec![]);
-        seen.ask(now, &mut to_boat);
-        ardupilot.take(now, &to_boat);
+        seen.write_questions(now, &mut to_boat);
+        ardupilot.receive(now, &to_boat);
         let boat = Boat { at: place, psi_rad: 1.0, ..Boat::default() };
         ardupilot.observe(now, &boat.measured(now, boat.at));
         ardupilot.telemetry(now, &mut from_boat);
-        seen.take(now, &from_boat);
+        seen.receive(now, &from_boat);
     }
     let (_, host) = date_and_time(BEGAN_UTC_NS + 29_900_000_000);
     let area = GeofenceArea::new(&site.field, &plan.gateway.geofence);
@@ -81,8 +81,8 @@ fn it_asks_for_what_it_needs_and_says_what_does_not_come() {
     writer.write(&MavMessage::HEARTBEAT(heartbeat), &mut heartbeats);
     for s in 0..30 {
         let (now, mut to_boat) = (SimTime::from_s(f64::from(s)), vec![]);
-        seen.take(now, &heartbeats);
-        seen.ask(now, &mut to_boat);
+        seen.receive(now, &heartbeats);
+        seen.write_questions(now, &mut to_boat);
         asked.push(&to_boat, &mut |received| wanted.push(received.message));
     }
     let is_request = |message: &MavMessage| match message {

@@ -70,7 +70,7 @@ impl Rig {
             remarks: vec![],
         };
         rig.ardupilot.set_clock(SimTime::ZERO, 1_795_000_000_000_000_000);
-        rig.put(&Input::LinkUp);
+        rig.give(&Input::LinkUp);
         rig
     }
 
@@ -102,22 +102,22 @@ impl Rig {
     }
 
     pub(crate) fn operator(&mut self, command: OperatorCommand) {
-        self.put(&Input::Operator(command));
+        self.give(&Input::Operator(command));
     }
 
-    pub(crate) fn put(&mut self, input: &Input) {
+    pub(crate) fn give(&mut self, input: &Input) {
         let mut out = Output::default();
-        self.bridge.take(self.now, input, &mut out);
+        self.bridge.process(self.now, input, &mut out);
         self.events.extend(out.events);
         self.refused = out.refused.or(self.refused.take());
         let (now, sent) = (self.now, &mut self.sent);
         self.sent_framer.push(&out.bytes, &mut |received| sent.push((now, received.message)));
         if self.open.0 && !out.bytes.is_empty() {
-            self.ardupilot.take(self.now, &self.altered(&out.bytes));
+            self.ardupilot.receive(self.now, &self.altered(&out.bytes));
             let mut answers = Vec::new();
             self.ardupilot.answers(&mut answers);
             if self.open.1 && !answers.is_empty() {
-                self.put(&Input::Bytes(self.altered(&answers)));
+                self.give(&Input::Bytes(self.altered(&answers)));
             }
         }
     }
@@ -126,9 +126,9 @@ impl Rig {
     pub(crate) fn put_second(&mut self, input: &Input) {
         let Some(second) = &mut self.second else { return };
         let mut out = Output::default();
-        second.take(self.now, input, &mut out);
+        second.process(self.now, input, &mut out);
         assert_eq!(out.refused, None);
-        self.ardupilot.take(self.now, &out.bytes);
+        self.ardupilot.receive(self.now, &out.bytes);
     }
 
     fn altered(&self, bytes: &[u8]) -> Vec<u8> {
@@ -167,13 +167,13 @@ impl Rig {
             if self.open.1 && !bytes.is_empty() {
                 let bytes = self.altered(&bytes);
                 self.put_second(&Input::Bytes(bytes.clone()));
-                self.put(&Input::Bytes(bytes));
+                self.give(&Input::Bytes(bytes));
             }
             if let Some(order) = self.order {
-                self.put(&Input::Order(order, self.now));
+                self.give(&Input::Order(order, self.now));
             }
         }
-        self.put(&Input::Tick);
+        self.give(&Input::Tick);
         self.put_second(&Input::Tick);
         self.remarks.extend(self.ardupilot.take_remark());
     }

@@ -6,10 +6,12 @@
 
 mod ask;
 mod faults;
+mod hold_cause;
 mod order;
 mod snapshot;
 mod state;
 
+pub use hold_cause::HoldCause;
 pub use snapshot::RestoreError;
 
 use crate::external::{self, BadReport, Track};
@@ -279,7 +281,7 @@ impl Contest {
         let scene = Scene { scenario, world, standing, decision };
         if let Some(sightings) = sightings {
             let oldest = radio.as_ref().map_or(decision, Radio::oldest_report);
-            sightings.look(decision, oldest, (0..tracks.len()).map(|i| scene.contact(i)));
+            sightings.record_truth(decision, oldest, (0..tracks.len()).map(|i| scene.contact(i)));
         }
         for (i, (known, track)) in known.iter_mut().zip(tracks).enumerate() {
             // What a boat does not report, nobody knows.
@@ -289,7 +291,7 @@ impl Contest {
             let mut report = scene.own_boat(i);
             let mut take = |sent: u64| {
                 if let Some(sightings) = sightings {
-                    sightings.take(i, sent);
+                    sightings.show_sightings(i, sent);
                 }
             };
             match (radio.as_mut(), track) {

@@ -64,7 +64,7 @@ impl Contest {
     #[must_use]
     pub fn effective_command(&self, vehicle: VehicleId) -> Order {
         let i = vehicle.index();
-        if self.state.e_stopped || self.state.halted || self.real_boat_holds(i) {
+        if self.stop_cause(i).is_some() {
             return Order::Hold;
         }
         let at = self.world.state().boats[i].pose.at;
@@ -113,11 +113,6 @@ impl Contest {
         }
     }
 
-    fn real_boat_holds(&self, i: usize) -> bool {
-        let Some(track) = &self.state.tracks[i] else { return false };
-        track.is_lost(self.now()) || self.state.agent_lost[i] || self.is_over() || self.is_expired(i)
-    }
-
     /// Makes a vehicle hold at once, whatever it was ordered: nothing of it goes over the air, and orders under way do not
     /// arrive any more.
     pub fn hold(&mut self, vehicle: VehicleId) {
@@ -146,7 +141,7 @@ impl Contest {
         }
     }
 
-    fn is_expired(&self, i: usize) -> bool {
+    pub(super) fn is_expired(&self, i: usize) -> bool {
         (self.now() - self.state.orders[i].given_at).as_s() > self.scenario.order_ttl_s
     }
 

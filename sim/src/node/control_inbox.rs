@@ -68,7 +68,7 @@ impl<Q> ControlInbox<Q> {
     }
 
     /// The command that came first.
-    pub(super) fn take(&self) -> Option<Command<Q>> {
+    pub(super) fn pop_command(&self) -> Option<Command<Q>> {
         self.0.visit(|waiting| waiting.commands.pop_front())
     }
 
@@ -104,20 +104,20 @@ impl<Q> Waiting<Q> {
 mod tests {
     use super::*;
 
-    fn put(inbox: &ControlInbox<u32>, control: Control) -> bool {
+    fn send(inbox: &ControlInbox<u32>, control: Control) -> bool {
         inbox.put_stop(&serde_json::to_vec(&control).expect("JSON"))
     }
 
     fn all(inbox: &ControlInbox<u32>) -> Vec<Command<u32>> {
-        std::iter::from_fn(|| inbox.take()).collect()
+        std::iter::from_fn(|| inbox.pop_command()).collect()
     }
 
     #[test]
     fn commands_are_taken_in_their_order_and_only_stops_are_taken_from_anybody() {
         let inbox = ControlInbox::default();
-        assert!(put(&inbox, Control::EStop) && put(&inbox, Control::EStop) && inbox.put_query(1));
-        assert!(put(&inbox, Control::EStop) && put(&inbox, Control::Halt) && inbox.put_query(1));
-        assert!(!put(&inbox, Control::Release) && !put(&inbox, Control::Stop), "those are asked for");
+        assert!(send(&inbox, Control::EStop) && send(&inbox, Control::EStop) && inbox.put_query(1));
+        assert!(send(&inbox, Control::EStop) && send(&inbox, Control::Halt) && inbox.put_query(1));
+        assert!(!send(&inbox, Control::Release) && !send(&inbox, Control::Stop), "those are asked for");
         assert!(!inbox.put_stop(b"ahoy") && !inbox.put_stop(b"\"e_stop"));
         let [e_stop, halt] = [Control::EStop, Control::Halt].map(Command::Stop);
         assert_eq!(all(&inbox), [Command::Stop(Control::EStop), Command::Ask(1), e_stop, halt, Command::Ask(1)]);
@@ -127,14 +127,14 @@ mod tests {
     #[test]
     fn no_flood_keeps_a_stop_out() {
         let inbox = ControlInbox::default();
-        assert!(put(&inbox, Control::Halt));
+        assert!(send(&inbox, Control::Halt));
         (1..1000).for_each(|i| assert_eq!(inbox.put_query(i), (i as usize) < WAITING_MAX));
-        assert!(put(&inbox, Control::EStop));
+        assert!(send(&inbox, Control::EStop));
         assert_eq!(all(&inbox), [Command::Stop(Control::Halt), Command::Stop(Control::EStop)]);
         assert_eq!(inbox.refusals(), Refusals::from([(Refusal::Flood, 999)]));
         // Not even one of stops, whatever is asked between them: what ends a stop is not left behind it.
         for i in 0..1000 {
-            put(&inbox, if i % 2 == 0 { Control::EStop } else { Control::Halt });
+            send(&inbox, if i % 2 == 0 { Control::EStop } else { Control::Halt });
             inbox.put_query(i);
         }
         let left = all(&inbox);

@@ -67,7 +67,7 @@ struct Gate {
 
 impl MessageInbox {
     /// From now on these tickets are good.
-    pub(super) fn let_in(&self, tickets: BTreeSet<u64>) {
+    pub(super) fn accept_tickets(&self, tickets: BTreeSet<u64>) {
         self.gate.visit(|gate| gate.tickets = tickets);
     }
 
@@ -77,7 +77,7 @@ impl MessageInbox {
     }
 
     /// Takes in a message, if its sender has joined where it must, and has room left.
-    pub(super) fn put(&self, message: Incoming) {
+    pub(super) fn push(&self, message: Incoming) {
         let sender = message.sender();
         if let Sender::Member(ticket) | Sender::Reporting(ticket) = sender
             && !self.gate.visit(|gate| gate.tickets.contains(&ticket))
@@ -105,7 +105,7 @@ impl MessageInbox {
     }
 
     /// The next message, if one comes within `limit`.
-    pub(super) fn take(&self, limit: Duration) -> Option<Incoming> {
+    pub(super) fn next_within(&self, limit: Duration) -> Option<Incoming> {
         self.waiting.wait(limit, |waiting| !waiting.messages.is_empty());
         self.take_now()
     }
@@ -137,7 +137,7 @@ mod tests {
 
     fn inbox(tickets: &[u64]) -> MessageInbox {
         let inbox = MessageInbox::default();
-        inbox.let_in(tickets.iter().copied().collect());
+        inbox.accept_tickets(tickets.iter().copied().collect());
         inbox
     }
 
@@ -154,13 +154,13 @@ mod tests {
     fn a_flood_of_one_sender_takes_the_room_of_no_other() {
         let inbox = inbox(&[7, 8]);
         for _ in 0..100_000 {
-            inbox.put(orders(7));
-            inbox.put(Incoming::Look);
-            inbox.put(Incoming::RecordedMessage(0, vec![]));
+            inbox.push(orders(7));
+            inbox.push(Incoming::Look);
+            inbox.push(Incoming::RecordedMessage(0, vec![]));
         }
-        inbox.put(orders(8));
-        inbox.put(Incoming::RecordedMessage(1, vec![]));
-        inbox.put(Incoming::Gone("a".to_owned()));
+        inbox.push(orders(8));
+        inbox.push(Incoming::RecordedMessage(1, vec![]));
+        inbox.push(Incoming::Gone("a".to_owned()));
         let share = Sender::Member(7).share();
         let flood = 200_000 - share - Sender::Recorded(0).share();
         assert_eq!(inbox.refusals(), Refusals::from([(Refusal::Flood, flood as u64)]));
@@ -169,20 +169,20 @@ mod tests {
         assert_eq!(got.iter().filter(|sender| **sender == Sender::Inboxes).count(), 1);
         assert!(got.ends_with(&[Sender::Member(8), Sender::Recorded(1), Sender::Network]), "{got:?}");
         // What was read makes room.
-        inbox.put(orders(7));
+        inbox.push(orders(7));
         assert_eq!(senders(&inbox), [Sender::Member(7)]);
     }
 
     #[test]
     fn a_ticket_that_nobody_holds_takes_no_room_and_neither_does_garbage() {
         let inbox = inbox(&[7]);
-        (0..100_000).for_each(|ticket| inbox.put(orders(ticket)));
+        (0..100_000).for_each(|ticket| inbox.push(orders(ticket)));
         assert!(inbox.decode::<Orders>(b"ahoy").is_none());
         assert_eq!(senders(&inbox), [Sender::Member(7)]);
         assert_eq!(inbox.refusals(), Refusals::from([(Refusal::Ticket, 99_999), (Refusal::Garbage, 1)]));
         // Whoever joins anew has another ticket, and the old one is good no more.
-        inbox.let_in([9].into());
-        [orders(7), orders(9)].into_iter().for_each(|message| inbox.put(message));
+        inbox.accept_tickets([9].into());
+        [orders(7), orders(9)].into_iter().for_each(|message| inbox.push(message));
         assert_eq!(senders(&inbox), [Sender::Member(9)]);
     }
 }

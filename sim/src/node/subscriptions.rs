@@ -66,7 +66,7 @@ pub(super) struct Inboxes {
 
 impl Inboxes {
     /// A callback for messages of one kind.
-    fn take<M: Message + DeserializeOwned + 'static>(
+    fn message_callback<M: Message + DeserializeOwned + 'static>(
         &self,
         incoming: fn(M, &[u8]) -> Incoming,
     ) -> impl Fn(&[u8]) + Send + Sync + use<M> {
@@ -74,17 +74,17 @@ impl Inboxes {
         move |bytes: &[u8]| {
             // Decoded in zenoh's thread, so that what is garbage never wakes the loop.
             if let Some(message) = others.decode::<M>(bytes) {
-                others.put(incoming(message, bytes));
+                others.push(incoming(message, bytes));
             }
         }
     }
 
     /// A callback for questions of one kind.
-    fn ask(&self, question: fn() -> Question) -> impl Fn(Query) + Send + Sync + use<> {
+    fn question_callback(&self, question: fn() -> Question) -> impl Fn(Query) + Send + Sync + use<> {
         let (questions, others) = (self.questions.clone(), Arc::clone(&self.others));
         move |query| {
             questions.put((question(), query));
-            others.put(Incoming::Look);
+            others.push(Incoming::Look);
         }
     }
 
@@ -93,7 +93,7 @@ impl Inboxes {
         let others = Arc::clone(&self.others);
         move |bytes: &[u8]| match Reported::split_ticket(bytes) {
             Some((ticket, message)) => {
-                others.put(Incoming::Report { ticket, vehicle, what, message: message.to_vec() });
+                others.push(Incoming::Report { ticket, vehicle, what, message: message.to_vec() });
             }
             // Counted with everything that is refused, which the result and the page show.
             None => others.refuse(Refusal::Garbage),
@@ -131,27 +131,30 @@ pub(super) fn open(
     let (stops, look) = (Arc::clone(&inboxes.controls), others());
     let stop = move |bytes: &[u8]| {
         if stops.put_stop(bytes) {
-            look.put(Incoming::Look);
+            look.push(Incoming::Look);
         }
     };
     let (controls, look) = (Arc::clone(&inboxes.controls), others());
     let control = move |query| {
         if controls.put_query(query) {
-            look.put(Incoming::Look);
+            look.push(Incoming::Look);
         }
     };
     let mut declarations = vec![
         // One subscription for all agents: their names are in the key for access control, and
         // the ticket says who it is.
-        bus.subscribe(topic::all_orders(game), inboxes.take(|orders, _| Incoming::Orders(orders)))?,
+        bus.subscribe(topic::all_orders(game), inboxes.message_callback(|orders, _| Incoming::Orders(orders)))?,
         bus.subscribe(topic::control(game), stop)?,
         bus.answer(topic::control(game), control)?,
-        bus.subscribe(topic::all_nav(game), inboxes.take(|report, bytes| Incoming::Nav(report, bytes.to_vec())))?,
-        bus.watch_links(move |node| gone.put(Incoming::Gone(node)))?,
-        bus.answer(topic::scenario(game), inboxes.ask(|| Question::Scenario))?,
-        bus.answer(topic::events(game), inboxes.ask(|| Question::Events))?,
-        bus.answer(topic::water(game), inboxes.ask(|| Question::Water))?,
-        bus.answer(topic::all_join(game), move |query| joins.put(Incoming::Join(query)))?,
+        bus.subscribe(
+            topic::all_nav(game),
+            inboxes.message_callback(|report, bytes| Incoming::Nav(report, bytes.to_vec())),
+        )?,
+        bus.watch_links(move |node| gone.push(Incoming::Gone(node)))?,
+        bus.answer(topic::scenario(game), inboxes.question_callback(|| Question::Scenario))?,
+        bus.answer(topic::events(game), inboxes.question_callback(|| Question::Events))?,
+        bus.answer(topic::water(game), inboxes.question_callback(|| Question::Water))?,
+        bus.answer(topic::all_join(game), move |query| joins.push(Incoming::Join(query)))?,
         bus.show_alive(topic::alive(game, &bus.id()))?,
     ];
     for vehicle in scenario.externals() {
@@ -162,7 +165,7 @@ pub(super) fn open(
     }
     for (i, RecordedTopic { topic, .. }) in recorded.iter().enumerate() {
         let others = others();
-        let take = move |bytes: &[u8]| others.put(Incoming::RecordedMessage(i, bytes.to_vec()));
+        let take = move |bytes: &[u8]| others.push(Incoming::RecordedMessage(i, bytes.to_vec()));
         declarations.push(bus.subscribe(topic::matching(game, topic), take)?);
     }
     Ok(declarations)

@@ -123,7 +123,7 @@ impl GpsModel {
         }
         if now.0 % self.period.0 == 0 {
             let number = (now.0 / self.period.0) as u64;
-            let fix = self.take(state, truth, now, number);
+            let fix = self.measure_fix(state, truth, now, number);
             let dropped = state.dropped || self.fault(FaultKind::GpsLost, now).is_some();
             // Every boat begins with a fix: nobody launches without one.
             if number == 0 || (self.latency == SimTime::ZERO && !dropped) {
@@ -136,7 +136,7 @@ impl GpsModel {
         state.latest
     }
 
-    fn take(&self, state: &mut GpsState, truth: &Truth, now: SimTime, number: u64) -> Fix {
+    fn measure_fix(&self, state: &mut GpsState, truth: &Truth, now: SimTime, number: u64) -> Fix {
         let (normals, uniforms) = (self.normals.at(now), self.uniforms.at(now));
         let normal = |which: u64, sigma: f64| {
             let (north, east) = normals.normal_pair(PAIRS * number + which);

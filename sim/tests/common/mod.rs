@@ -47,10 +47,10 @@ pub(crate) fn among(boat: &str, obstacles: Vec<Obstacle>) -> Scenario {
     scenario
 }
 
-/// The world of a game, with its first boat put somewhere as [`put`] does.
+/// The world of a game, with its first boat put somewhere as [`place_boat`] does.
 pub(crate) fn afloat(scenario: &Scenario, seed: u64, start: (f64, f64, f64), nu: (f64, f64, f64)) -> World {
     let mut world = World::of_game(scenario, seed).expect("an empty sea has room");
-    put(&mut world, 0, start, nu);
+    place_boat(&mut world, 0, start, nu);
     world
 }
 
@@ -117,7 +117,7 @@ pub(crate) fn order(contest: &mut Contest, vehicle: VehicleId, order: Order) {
 }
 
 /// Puts a boat somewhere (x east, y north), pointing somewhere, with a velocity.
-pub(crate) fn put(world: &mut World, boat: usize, (x, y, heading_deg): (f64, f64, f64), nu: (f64, f64, f64)) {
+pub(crate) fn place_boat(world: &mut World, boat: usize, (x, y, heading_deg): (f64, f64, f64), nu: (f64, f64, f64)) {
     set(world, |state| {
         let boat = &mut state.boats[boat];
         boat.pose = Pose { at: Ned::from_xy(x, y), psi_rad: primitives::angle::rad_from_compass_deg(heading_deg) };

@@ -3,7 +3,7 @@
 use super::games::{Game, Games, Source};
 use super::training::TrainingReport;
 use anyhow::{Context, Result, anyhow, bail};
-use arena::tournament;
+use experiment::{sweep, tournament};
 use primitives::input_file;
 use scenario::Packed;
 use serde_json::{Value, json};
@@ -179,7 +179,7 @@ impl SweepReport {
                 "team": plan.teams()[job.side],
                 // Numbers of JavaScript have too few digits for all seeds.
                 "seed": job.seed.to_string(),
-                "score": result.and_then(|result| result.as_ref().ok()).map(|numbers| sweep::score(numbers)),
+                "score": result.and_then(|result| result.as_ref().ok()).map(sweep::Metrics::score),
                 "why": result.and_then(|result| result.as_ref().err()),
             })
         };

@@ -1,9 +1,11 @@
 //! One boat's helm, live.
 
-use super::super::observer::{Observer, SILENCE};
-use crate::{helm_text, screen};
+use super::super::helm_page;
+use super::super::helm_query::{self, SILENCE};
+use crate::screen;
 use anyhow::{Result, bail};
 use bus::clock;
+use command_line::observer::Observer;
 use messages::helm::HelmQuestion;
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -17,14 +19,14 @@ pub(super) fn watch(observer: &Observer, name: &str, pause: Duration, stop: &Ato
     let mut last = None;
     let mut heard = clock::now();
     while !stop.load(Ordering::Relaxed) {
-        match observer.helm(vehicle, HelmQuestion { functions: false })? {
+        match helm_query::report(observer, vehicle, HelmQuestion { functions: false })? {
             Some(report) => {
                 heard = clock::now();
                 // Where nothing can be written over, a decision is printed once.
                 let is_read = match live {
-                    true => screen::is_seen(&helm_text::page(scenario, &report)),
+                    true => screen::is_seen(&helm_page::page(scenario, &report)),
                     false if last.replace(report.at) == Some(report.at) => true,
-                    false => screen::is_read(&helm_text::line(scenario, &report)),
+                    false => screen::is_read(&helm_page::line(scenario, &report)),
                 };
                 if !is_read {
                     return Ok(());

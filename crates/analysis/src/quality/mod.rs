@@ -279,7 +279,7 @@ fn strategies_of(scenario: &Scenario, team: TeamId) -> Vec<&str> {
 
 /// Whether a boat attacks: it brings a flag home, or it is beyond its own side and free to act.
 fn attacks(scenario: &Scenario, team: TeamId, sample: &Sample) -> bool {
-    sample.carrying || (sample.is_free && !scenario.field.zones[team.index()].contains(sample.truth.at()))
+    sample.carrying || (sample.is_free && !scenario.field.is_own_side(team, sample.truth.at()))
 }
 
 /// How far inside of the field a place is, m; negative outside.

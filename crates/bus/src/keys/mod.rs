@@ -1,16 +1,18 @@
 //! Keys of a game: certificates that say who a node is, for TLS on both sides of every link.
 //!
-//! [`make`] makes an authority of its own for each set of keys, and forgets the authority's key: nobody can add to a set, and
+//! `make` makes an authority of its own for each set of keys, and forgets the authority's key: nobody can add to a set, and
 //! a set is revoked by making another one. A node has a [`Bundle`]: its certificate, its key, and the authority's certificate.
 
 mod bundle;
 mod handshake;
 mod identity;
+#[cfg(feature = "make_keys")]
 mod make;
 
 pub use bundle::{Bundle, BundleError};
 pub(crate) use handshake::{is_tls, refusal};
 pub use identity::Identity;
+#[cfg(feature = "make_keys")]
 pub use make::{MakeError, make};
 
 /// The certificate of the authority, in a bundle's folder.

@@ -1,11 +1,12 @@
 //! The link of a leaf to its hub: it takes time, keeps the order, and is closed when either side is silent for the lease.
 
+use super::call::Call;
+use super::conditions::{Conditions, Damage};
 use super::event::{Event, nanos};
-use super::routing::{Kind, Packet};
-use super::scheduler::Call;
+use super::link_state::{Direction, Link};
+use super::packet::Packet;
 use super::state::{SessionState, State};
-use super::{Conditions, Damage};
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -13,37 +14,6 @@ use std::time::Duration;
 const SENT_AGAIN: Duration = Duration::from_millis(200);
 /// The shortest time between two attempts to connect.
 const RETRY_LEAST: Duration = Duration::from_millis(100);
-
-/// A link, open until both of its ends are closed.
-pub(super) struct Link {
-    /// The sessions at its ends.
-    pub(super) leaf: usize,
-    pub(super) hub: usize,
-    pub(super) leaf_open: bool,
-    pub(super) hub_open: bool,
-    /// What the leaf has declared, as far as the hub knows.
-    pub(super) known: BTreeMap<u64, (Kind, String)>,
-    down: Direction,
-    up: Direction,
-    /// Since when nothing comes to its ends, the leaf and the hub.
-    silent_since_ns: [Option<u64>; 2],
-}
-
-/// What is on its way in one direction, oldest first, each with the time of its arrival.
-#[derive(Default)]
-struct Direction {
-    queue: VecDeque<(u64, Packet)>,
-    /// Whether an arrival is due, and its number: an older one does not count any more.
-    is_due: bool,
-    arrival: u64,
-    last_ns: u64,
-}
-
-impl Link {
-    fn direction(&mut self, up: bool) -> &mut Direction {
-        if up { &mut self.up } else { &mut self.down }
-    }
-}
 
 impl State {
     /// Opens a link, and tells the hub what the leaf has declared.

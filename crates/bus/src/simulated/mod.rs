@@ -5,15 +5,29 @@
 //! one seed: the same seed and the same nodes give the same trace. [`SimulatedNetwork`] is where a test begins; inside of a
 //! node [`crate::Bus`], [`crate::clock`] and everything that waits use it without being told.
 
+mod call;
+mod conditions;
+mod declared;
 mod event;
+mod fault;
 mod link;
+mod link_state;
+mod packet;
+mod published;
+mod query;
 mod routing;
 mod run;
 mod scheduler;
 mod session;
 mod state;
+mod step;
+mod verdict;
 
-pub use run::{Conditions, Damage, Fault, NodeEnd, Published, Run, SimulatedNetwork, Verdict};
+pub use conditions::{Conditions, Damage};
+pub use fault::Fault;
+pub use published::Published;
+pub use run::{Run, SimulatedNetwork};
+pub use verdict::{NodeEnd, Verdict};
 
 pub(crate) use scheduler::{is_inside, now, random_number, spawn, wait_until, wake};
 pub(crate) use session::{SimulatedPublisher, SimulatedQuery, SimulatedSession};

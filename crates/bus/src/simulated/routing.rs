@@ -1,137 +1,17 @@
-//! What travels over links, and where the hub sends it.
+//! Routing: where the hub sends what travels over links.
 
-use super::Published;
+use super::call::Call;
+use super::declared::{Declared, TakeQuery, What};
 use super::event::Event;
-use super::scheduler::{Call, current};
-use super::session::SimulatedQuery;
+use super::packet::{Kind, Local, Packet};
+use super::published::Published;
+use super::query::{Asked, RoutedQuery};
 use super::state::State;
-use crate::Watched;
-use crate::seal::Parcel;
-use std::collections::{BTreeSet, VecDeque};
-use std::fmt;
+use crate::parcel::Parcel;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::Duration;
 use zenoh::key_expr::keyexpr;
-
-/// What a session can declare, as the hub knows it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
-    Subscriber,
-    Queryable,
-    Token,
-    Watch,
-}
-
-/// What is called with the bytes of a message, with a query, and with a token that has come or gone.
-pub(super) type TakeBytes = Arc<dyn Fn(&[u8]) + Send + Sync>;
-pub(super) type TakeQuery = Arc<dyn Fn(SimulatedQuery) + Send + Sync>;
-pub(super) type TakeToken = Arc<dyn Fn(&str, bool) + Send + Sync>;
-
-/// Something that a session has declared, with what to call.
-pub(super) struct Declared {
-    pub(super) key: String,
-    pub(super) what: What,
-}
-
-pub(super) enum What {
-    Subscriber {
-        take: TakeBytes,
-        hears_own: bool,
-    },
-    Queryable(TakeQuery),
-    Token,
-    /// With the tokens that are known to be there.
-    Watch(TakeToken, BTreeSet<String>),
-}
-
-impl Declared {
-    pub(super) fn packet(&self, id: u64) -> Packet {
-        let kind = match self.what {
-            What::Subscriber { .. } => Kind::Subscriber,
-            What::Queryable(_) => Kind::Queryable,
-            What::Token => Kind::Token,
-            What::Watch(..) => Kind::Watch,
-        };
-        Packet::Declare { id, kind, key: self.key.clone() }
-    }
-}
-
-/// What travels over a link.
-#[derive(Clone, Debug)]
-pub(super) enum Packet {
-    Publish {
-        key: Arc<str>,
-        bytes: Arc<[u8]>,
-    },
-    Declare {
-        id: u64,
-        kind: Kind,
-        key: String,
-    },
-    Undeclare {
-        id: u64,
-    },
-    /// To the hub.
-    Ask {
-        query: u64,
-        key: String,
-        asked: Asked,
-    },
-    /// To the leaf that has declared the queryable.
-    Query {
-        query: u64,
-        id: u64,
-        key: String,
-        payload: Parcel,
-    },
-    /// An answer, or that no more will come.
-    Answer {
-        query: u64,
-        answer: Option<Parcel>,
-    },
-    Token {
-        key: String,
-        is_there: bool,
-    },
-    Close,
-}
-
-/// What is asked for.
-#[derive(Clone, Debug)]
-pub(super) enum Asked {
-    Payload(Parcel),
-    /// Which tokens are there, as a list in JSON.
-    Tokens,
-}
-
-/// Something that a session takes from itself.
-#[derive(Clone, Debug)]
-pub(super) enum Local {
-    Publish { key: Arc<str>, bytes: Arc<[u8]> },
-    Token { watch: u64, key: String },
-}
-
-/// A query that has not been answered to the end.
-pub(super) struct PendingQuery {
-    pub(super) asker: usize,
-    /// How many may still answer.
-    pub(super) open: usize,
-    pub(super) answers: Arc<Watched<Answers>>,
-}
-
-/// What has come of a query.
-#[derive(Default)]
-pub(crate) struct Answers {
-    /// In the order in which they came; the asker takes them out.
-    pub(crate) waiting: VecDeque<Parcel>,
-    pub(crate) is_complete: bool,
-}
-
-impl fmt::Debug for Declared {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.key)
-    }
-}
 
 /// Whether two key expressions have a key in common.
 fn meets(one: &str, other: &str) -> bool {
@@ -415,21 +295,13 @@ impl State {
     /// Whoever asked is answered.
     fn answered(&mut self, query: u64, answer: Option<Parcel>) -> Vec<Call> {
         let Some(pending) = self.queries.get(&query) else { return vec![] };
-        let answers = Arc::clone(&pending.answers);
-        vec![Box::new(move || {
-            answers.visit(|answers| match answer {
-                Some(answer) => answers.waiting.push_back(answer),
-                None => answers.is_complete = true,
-            });
-        })]
+        let take = Arc::clone(&pending.take);
+        vec![Box::new(move || take(answer))]
     }
 }
 
 /// Calls a queryable.
 fn asking(take: &TakeQuery, session: usize, query: u64, key: String, payload: Parcel) -> Call {
     let take = Arc::clone(take);
-    Box::new(move || {
-        let current = current().expect("events happen in threads of the simulation");
-        take(SimulatedQuery::new(current.world, session, query, (key, payload)));
-    })
+    Box::new(move || take(RoutedQuery { session, query, key, payload }))
 }

@@ -1,109 +1,18 @@
-//! A simulation from outside: its nodes, its conditions, its faults, and how it ended.
+//! A simulation from outside.
 
+use super::conditions::Conditions;
 use super::event::{Event, nanos};
+use super::fault::Fault;
+use super::published::Published;
 use super::scheduler::World;
 use super::state::{Node, State};
+use super::verdict::{NodeEnd, Verdict};
 use crate::clock;
 use primitives::stream::Stream;
 use std::collections::{BTreeMap, BinaryHeap};
 use std::hash::{DefaultHasher, Hasher};
 use std::sync::Arc;
 use std::time::Duration;
-
-/// How the network is while it works.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Conditions {
-    /// Every message takes at least this long over a link.
-    pub delay: Duration,
-    /// And up to this much longer. Over one link messages keep their order.
-    pub jitter: Duration,
-    /// The share of published messages that a congested link drops.
-    pub loss: f64,
-    /// The share of published messages that arrive damaged, and how.
-    pub damaged: (f64, Damage),
-    /// After this long without a sign of the other side a link is closed.
-    pub lease: Duration,
-    /// How long a leaf without a link waits between two attempts to connect, at most.
-    pub retry: Duration,
-    /// Messages that a link keeps while it is cut; more are dropped.
-    pub queue: usize,
-    /// A node that publishes is held up for at most this long, now and then: it computes, or others do.
-    pub pause: Duration,
-}
-
-/// How messages are damaged.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Damage {
-    /// Cut short: whoever checks lengths notices.
-    Truncated,
-    /// One bit is another.
-    BitFlip,
-    /// Random bytes.
-    Noise,
-}
-
-/// What goes wrong. Nodes are numbered in the order in which they were added.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fault {
-    /// Nothing goes between this node and the others for this long.
-    Cut {
-        /// Which.
-        node: usize,
-        /// How long.
-        time: Duration,
-    },
-    /// The process is stopped (`SIGSTOP`) and goes on after this time.
-    Suspend {
-        /// Which.
-        node: usize,
-        /// How long.
-        time: Duration,
-    },
-    /// The process dies.
-    Kill {
-        /// Which.
-        node: usize,
-        /// How long after its end it is started again, if at all.
-        restart: Option<Duration>,
-    },
-}
-
-/// A message as the hub sees it: what it publishes, and what reaches it.
-#[derive(Clone, Copy, Debug)]
-pub struct Published<'a> {
-    /// When.
-    pub at: Duration,
-    /// Who published it, or takes it.
-    pub node: &'a str,
-    /// On which key.
-    pub key: &'a str,
-    /// What.
-    pub bytes: &'a [u8],
-}
-
-/// How a simulation ended.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Verdict {
-    /// All nodes came to their end.
-    Ended,
-    /// These nodes waited for something that could not come.
-    Deadlock(Vec<String>),
-    /// These nodes were still there at the limit.
-    OutOfTime(Vec<String>),
-    /// A node panicked.
-    Panic(String),
-}
-
-/// The end of a node.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct NodeEnd {
-    /// Which.
-    pub node: String,
-    /// When.
-    pub at: Duration,
-    /// Whether a fault was the reason.
-    pub was_killed: bool,
-}
 
 /// What came of a simulation.
 #[derive(Clone, Debug, PartialEq, Eq)]

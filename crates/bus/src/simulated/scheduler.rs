@@ -1,5 +1,6 @@
 //! Which thread runs: exactly one at a time. It hands over where it waits; when all wait, the next event happens.
 
+use super::event::Event;
 use super::state::{Node, State, Status, Thread};
 use parking_lot::Mutex;
 use std::any::Any;
@@ -41,9 +42,6 @@ pub(super) struct World {
     pub(super) state: Mutex<State>,
     main: thread::Thread,
 }
-
-/// What is called when an event happens, with no lock held.
-pub(super) type Call = Box<dyn FnOnce() + Send>;
 
 /// The simulation that this thread is in.
 pub(super) fn current() -> Option<Current> {
@@ -259,7 +257,7 @@ impl State {
         let wait = *waits;
         self.threads[thread].status = Status::Waits { address, wait };
         if let Some(at_ns) = deadline_ns {
-            self.at(at_ns, super::event::Event::Wake { thread, wait });
+            self.at(at_ns, Event::Wake { thread, wait });
         }
     }
 }

@@ -1,11 +1,14 @@
 //! A session on the simulated network: what [`crate::Bus`] does there.
 
-use super::routing::{Answers, Asked, Declared, Packet, PendingQuery, What};
-use super::scheduler::{Call, World, current, is_in_callback, wait_until};
+use super::call::Call;
+use super::declared::{Declared, What};
+use super::packet::{Kind, Packet};
+use super::query::{Asked, PendingQuery, RoutedQuery};
+use super::scheduler::{World, current, is_in_callback, wait_until};
 use super::state::{SessionState, State};
-use crate::seal::Parcel;
+use crate::parcel::Parcel;
 use crate::{Net, Watched, clock};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -28,6 +31,14 @@ pub(crate) struct SimulatedSession {
 pub(crate) struct SimulatedPublisher {
     session: SimulatedSession,
     key: Arc<str>,
+}
+
+/// What has come of a query.
+#[derive(Default)]
+struct Answers {
+    /// In the order in which they came; the asker takes them out.
+    waiting: VecDeque<Parcel>,
+    is_complete: bool,
 }
 
 /// Takes a declaration back when it is dropped.
@@ -124,7 +135,7 @@ impl SimulatedSession {
     }
 
     pub(crate) fn answer(&self, key: String, take: impl Fn(SimulatedQuery) + Send + Sync + 'static) -> Undeclare {
-        self.declare(key, What::Queryable(Arc::new(take)))
+        self.declare(key, What::Queryable(Arc::new(move |routed| take(SimulatedQuery::new(routed)))))
     }
 
     pub(crate) fn show_alive(&self, key: String) -> Undeclare {
@@ -161,10 +172,8 @@ impl SimulatedSession {
             own.declared.insert(id, declared);
         }
         match packet {
-            Packet::Declare { kind: super::routing::Kind::Watch, .. } if is_hub => {
-                state.begin_watch(self.session, id, &key)
-            }
-            Packet::Declare { kind: super::routing::Kind::Token, .. } if is_hub => {
+            Packet::Declare { kind: Kind::Watch, .. } if is_hub => state.begin_watch(self.session, id, &key),
+            Packet::Declare { kind: Kind::Token, .. } if is_hub => {
                 calls = state.announce(self.session, &key, true, None);
             }
             packet => link.into_iter().for_each(|link| state.send(link, true, packet.clone())),
@@ -202,7 +211,14 @@ impl SimulatedSession {
         state.number += 1;
         let query = state.number;
         let SessionState { is_hub, link, .. } = state.sessions[self.session];
-        let pending = PendingQuery { asker: self.session, open: 0, answers: Arc::clone(&answers) };
+        let taken = Arc::clone(&answers);
+        let take = Arc::new(move |answer| {
+            taken.visit(|answers| match answer {
+                Some(answer) => answers.waiting.push_back(answer),
+                None => answers.is_complete = true,
+            });
+        });
+        let pending = PendingQuery { asker: self.session, open: 0, take };
         state.queries.insert(query, pending);
         let mut calls: Vec<Call> = vec![];
         match (is_hub, link) {
@@ -281,12 +297,9 @@ impl Drop for Undeclare {
 }
 
 impl SimulatedQuery {
-    pub(super) fn new(
-        world: Arc<World>,
-        session: usize,
-        query: u64,
-        (key, payload): (String, Parcel),
-    ) -> SimulatedQuery {
+    fn new(routed: RoutedQuery) -> SimulatedQuery {
+        let world = current().expect("events happen in threads of the simulation").world;
+        let RoutedQuery { session, query, key, payload } = routed;
         SimulatedQuery { world, session, query, key, payload }
     }
 

@@ -1,10 +1,14 @@
 //! Everything that changes in a simulation.
 
-use super::event::{Event, FaultEnd, Queued};
-use super::link::Link;
-use super::routing::{Declared, PendingQuery};
-use super::scheduler::Call;
-use super::{Conditions, Fault, NodeEnd, Published, Verdict};
+use super::call::Call;
+use super::conditions::Conditions;
+use super::declared::Declared;
+use super::event::{Event, Queued, nanos};
+use super::fault::{Fault, FaultEnd};
+use super::link_state::Link;
+use super::published::Published;
+use super::query::PendingQuery;
+use super::verdict::{NodeEnd, Verdict};
 use primitives::stream::Stream;
 use std::collections::{BTreeMap, BinaryHeap};
 use std::hash::{DefaultHasher, Hash};
@@ -108,6 +112,16 @@ impl State {
             let at_s = self.now_ns as f64 * 1e-9;
             lines.push(format!("{at_s:12.6} {:8} {what} {key} {}", self.nodes[node].name, bytes.len()));
         }
+    }
+
+    /// Puts an event into the queue.
+    pub(super) fn at(&mut self, at_ns: u64, event: Event) {
+        self.order += 1;
+        self.events.push(Queued { at_ns: at_ns.max(self.now_ns), order: self.order, event });
+    }
+
+    pub(super) fn after(&mut self, wait: Duration, event: Event) {
+        self.at(self.now_ns.saturating_add(nanos(wait)), event);
     }
 
     /// A time between nothing and `most`.

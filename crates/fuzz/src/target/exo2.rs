@@ -39,7 +39,7 @@ fn measured(bytes: &[u8], size: usize) -> (Vec<Measurement>, Sonde) {
     let (mut sonde, mut conversation, mut all) = (Sonde::default(), Conversation::default(), vec![]);
     for (i, turn) in bytes.split(|byte| *byte == TURN).enumerate() {
         for piece in turn.chunks(size) {
-            all.extend(conversation.take(i % 2 == 0, piece, &mut sonde));
+            all.extend(conversation.read_bytes(i % 2 == 0, piece, &mut sonde));
         }
     }
     all.extend(conversation.end(false, &mut sonde));

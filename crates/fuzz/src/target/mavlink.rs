@@ -52,7 +52,7 @@ fn repaired(bytes: &[u8]) {
         out.clear();
         to_boat.write(message, &mut out);
         assert!(out.len() <= FRAME_MAX);
-        boat.take(now, &out);
+        boat.receive(now, &out);
         out.clear();
         to_us.write(message, &mut out);
         protocol.read(now, &out, &mut |_| {});

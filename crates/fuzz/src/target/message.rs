@@ -189,7 +189,7 @@ impl Readers {
     fn hear(&self, bytes: &[u8], seq: u64) {
         for team in 0..self.scenario.teams.len() {
             let mut inbox = self.team_inbox.clone();
-            inbox.take(primitives::TeamId(team as u8), bytes);
+            inbox.receive(primitives::TeamId(team as u8), bytes);
             let mut words = Vec::new();
             inbox.is_complete(seq.saturating_add(1));
             inbox.deliver(seq.saturating_add(1), &mut words);

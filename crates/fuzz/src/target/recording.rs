@@ -69,7 +69,7 @@ fn gateway_recording() -> Vec<u8> {
     let inputs = [Input::LinkUp, Input::Bytes(rmc), Input::Joined, Input::Tick, Input::LinkDown];
     for (i, input) in inputs.iter().enumerate() {
         let (at, mut out) = (SimTime::from_s(i as f64), Output::default());
-        bridge.take(at, input, &mut out);
+        bridge.process(at, input, &mut out);
         for entry in encoder.step(at, SimTime::ZERO, input, &out) {
             writer.write(&entry, began_utc_ns).expect("memory");
         }

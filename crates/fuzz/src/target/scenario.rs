@@ -116,7 +116,7 @@ fn accepted(kind: Kind, path: &Path) {
         }
         kind if kind == Kind::TOURNAMENT => {
             let tournament = scenario::load_tournament(path).expect("it was accepted");
-            if let Err(problems) = arena::tournament::Plan::new(&tournament) {
+            if let Err(problems) = experiment::tournament::Plan::new(&tournament) {
                 check_shown(&problems);
             }
         }

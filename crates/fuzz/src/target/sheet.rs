@@ -2,12 +2,12 @@
 
 use super::{Target, check_shown, texts};
 use crate::played::scenarios;
-use arena::identify::Log;
-use arena::trial::{Engine, LONGEST_S, Mistake, Orders, Sheet};
 use primitives::SimTime;
 use scenario::boat::Boat;
 use std::fmt::Write;
 use std::sync::LazyLock;
+use trial::identify::Log;
+use trial::{Engine, LONGEST_S, Mistake, Orders, Sheet};
 
 pub(super) const TARGET: Target = Target { name: "sheet", seeds, change: texts, check, allocated_max: (1 << 20, 1000) };
 

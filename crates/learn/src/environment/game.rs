@@ -1,10 +1,11 @@
 //! One game of an environment: steps of the policy, rewards, a new game when one is over.
 
+use super::game_mind::GameMind;
 use super::games::Standing;
 use super::setup::{Control, Player, Setup};
 use super::watch::{Moment, Watch};
 use crate::rewards::{BoatProgress, Placed, progress};
-use agent::{Action, Mind, MindRunner, Pilot};
+use agent::{Action, MindRunner, Pilot};
 use messages::Picture;
 use primitives::stream::Stream;
 use primitives::{Ned, TeamId, VehicleId};
@@ -28,7 +29,7 @@ pub(super) struct Game {
     side: Side,
     steps: u32,
     contest: Contest,
-    runner: MindRunner,
+    runner: MindRunner<GameMind>,
     /// The boats that are given actions, those of the policy that learns first.
     pilots: Vec<VehicleId>,
     read: EventCursor,
@@ -59,21 +60,22 @@ impl Game {
         let is_self_play = matches!(setup.opponents[side.opponent].1, Player::Policy);
         let enemies = setup.pilots_of(enemy, seed).filter(|_| is_self_play);
         let pilots: Vec<VehicleId> = setup.pilots_of(side.learner, seed).chain(enemies).collect();
-        let mind = |vehicle: VehicleId| -> Box<dyn Mind> {
+        let by_strategy = |vehicle, strategy| GameMind::Strategy(agent::mind_by(scenario, vehicle, strategy));
+        let mind = |vehicle: VehicleId| -> GameMind {
             let is_learner = scenario.team_of(vehicle) == side.learner;
             match (is_learner, &setup.opponents[side.opponent].1, &setup.mates) {
-                (false, Player::Strategy(strategy), _) => agent::mind_by(scenario, vehicle, strategy),
-                (_, _, Some(strategy)) if !pilots.contains(&vehicle) => agent::mind_by(scenario, vehicle, strategy),
+                (false, Player::Strategy(strategy), _) => by_strategy(vehicle, strategy),
+                (_, _, Some(strategy)) if !pilots.contains(&vehicle) => by_strategy(vehicle, strategy),
                 (false, Player::Model(model), _) => {
-                    Box::new(policy_pilot(setup, scenario, vehicle).by_model(model.clone()))
+                    GameMind::Pilot(Box::new(policy_pilot(setup, scenario, vehicle).by_model(model.clone())))
                 }
                 // The arena's own game, with a pilot in the place of a mind: a test plays the
                 // same one in the arena and compares digests.
-                _ => Box::new(pilot(setup, scenario, vehicle)),
+                _ => GameMind::Pilot(Box::new(pilot(setup, scenario, vehicle))),
             }
         };
         let count = scenario.vehicles.len();
-        let runner = arena::runner_of((0..count).map(|i| mind(VehicleId::at(i))).collect());
+        let runner = arena::runner_of((0..count).map(|i| Box::new(mind(VehicleId::at(i)))).collect());
         let mut game = Game {
             seed,
             side,
@@ -107,7 +109,7 @@ impl Game {
     /// The pilot in this place, those of the policy that learns first, and the picture of its team.
     fn pilot(&mut self, place: usize) -> Option<(&mut Pilot, &Picture)> {
         let vehicle = self.pilots[place];
-        let pilot = self.runner.mind_mut(vehicle).and_then(Mind::pilot)?;
+        let pilot = self.runner.mind_mut(vehicle).and_then(GameMind::pilot_mut)?;
         Some((pilot, self.contest.picture_of(vehicle)))
     }
 

@@ -2,6 +2,7 @@
 //! outside.
 
 mod game;
+mod game_mind;
 mod games;
 mod raw;
 #[cfg(feature = "record")]

@@ -118,8 +118,7 @@ fn waits(contest: &Contest) -> Vec<f64> {
     let (scenario, now) = (contest.scenario(), contest.now());
     let mut waits = vec![0.0; scenario.vehicles.len()];
     for boat in contest.last_pictures().iter().flat_map(|picture: &Picture| &picture.own) {
-        let wait_s = (boat.tag_ready_ns - now).as_s().max(0.0);
-        waits[boat.vehicle.index()] = (wait_s / scenario.rules.tag_cooldown.as_s().max(1.0)).min(1.0);
+        waits[boat.vehicle.index()] = scenario.rules.tag_wait_share(boat.tag_ready_ns, now);
     }
     waits
 }

@@ -29,9 +29,10 @@ pub struct BoatProgress {
     pub tagged: bool,
     /// Whether it carries a flag.
     pub carrying: bool,
-    /// Its distance from the enemies' flag, in widths of the field.
+    /// Its distance from the enemies' flag, of several the nearest, in widths of the field.
     pub from_flag: f64,
-    /// Its distance from where a flag is brought and a tagged boat is untagged, in widths of the field.
+    /// Its distance from its own flag, of several the nearest, where by most rules a flag is brought and a tagged boat is untagged,
+    /// in widths of the field.
     pub from_home: f64,
     /// Where it is among the others, as far as that is asked for.
     pub among: Among,
@@ -57,9 +58,9 @@ pub struct Among {
 pub fn progress(field: &Field, boats: &[Placed], among_others: bool, out: &mut [BoatProgress]) {
     let width_m = field.plan.width_m;
     for (boat, out) in boats.iter().zip(out.iter_mut()) {
-        let away = |team: usize| boat.at.distance(field.flags[team].home) / width_m;
+        let away = |team: TeamId| boat.at.distance(flag_near(field, team, boat.at)) / width_m;
         let Placed { tagged, carrying, team, .. } = *boat;
-        let (from_flag, from_home) = (away(1 - team.index()), away(team.index()));
+        let (from_flag, from_home) = (away(TeamId(1 - team.0)), away(team));
         *out = BoatProgress { tagged, carrying, from_flag, from_home, among: Among::default() };
     }
     if !among_others {
@@ -71,7 +72,8 @@ pub fn progress(field: &Field, boats: &[Placed], among_others: bool, out: &mut [
 
 /// What whoever protects something has to know.
 struct Posts {
-    /// By team, from where its flag is guarded; none where no enemy is untagged.
+    /// By team, from where its flag is guarded, of several the one that an untagged enemy is nearest to; none where no enemy is
+    /// untagged.
     flag: [Option<Ned>; 2],
     /// Untagged boats on the enemies' side: which, how far its nearest untagged enemy is, m, and from where it is shielded from that.
     mates: Vec<(usize, f64, Ned)>,
@@ -80,11 +82,13 @@ struct Posts {
 impl Posts {
     fn of(field: &Field, boats: &[Placed]) -> Posts {
         let stand_off_m = STAND_OFF * field.plan.width_m;
-        let flag = [0, 1].map(|team| {
-            let home = field.flags[team].home;
-            nearest_enemy(boats, TeamId(team as u8), home).map(|enemy| between(home, enemy, stand_off_m))
+        let flag = [0, 1].map(|team: u8| {
+            let team = TeamId(team);
+            let threats = field.own_flags(team).filter_map(|(_, home)| Some((home, nearest_enemy(boats, team, home)?)));
+            let worst = threats.min_by(|a, b| a.0.distance(a.1).total_cmp(&b.0.distance(b.1)));
+            worst.map(|(home, enemy)| between(home, enemy, stand_off_m))
         });
-        let abroad = |boat: &Placed| !boat.tagged && field.zones[1 - boat.team.index()].contains(boat.at);
+        let abroad = |boat: &Placed| !boat.tagged && field.is_own_side(TeamId(1 - boat.team.0), boat.at);
         let post = |(i, boat): (usize, &Placed)| {
             let enemy = nearest_enemy(boats, boat.team, boat.at)?;
             Some((i, boat.at.distance(enemy), between(boat.at, enemy, stand_off_m)))
@@ -96,9 +100,8 @@ impl Posts {
     fn among(&self, field: &Field, boats: &[Placed], i: usize) -> Among {
         let (width_m, me) = (field.plan.width_m, &boats[i]);
         let near = |place: Ned, reach: f64| (1.0 - me.at.distance(place) / (reach * width_m)).max(0.0);
-        let intruders = boats
-            .iter()
-            .filter(|boat| boat.team != me.team && !boat.tagged && field.zones[me.team.index()].contains(boat.at));
+        let intruders =
+            boats.iter().filter(|boat| boat.team != me.team && !boat.tagged && field.is_own_side(me.team, boat.at));
         let of_team = self.mates.iter().filter(|(mate, ..)| *mate != i && boats[*mate].team == me.team);
         Among {
             at_intruder: intruders.map(|boat| near(boat.at, 1.0)).fold(0.0, f64::max),
@@ -107,6 +110,11 @@ impl Posts {
             clear: nearest_enemy(boats, me.team, me.at).map_or(1.0, |enemy| 1.0 - near(enemy, REACH)),
         }
     }
+}
+
+/// The home of a team's flag that is nearest to a place.
+fn flag_near(field: &Field, team: TeamId, at: Ned) -> Ned {
+    field.nearest_own_flag(team, at).expect("each of the two teams has a flag")
 }
 
 /// Where the untagged enemy of a team is who is nearest to a place.
@@ -126,7 +134,7 @@ mod tests {
     use super::{Among, BoatProgress, Placed, progress};
     use primitives::frame::LatLon;
     use primitives::id::TeamId;
-    use rules::field::{Field, Plan, Walls};
+    use rules::field::{Field, Flag, Plan, Walls};
 
     /// 160 m by 80 m: flags at (20, 40) and (140, 40), the first team's side up to 80 m.
     fn field() -> Field {
@@ -224,6 +232,28 @@ mod tests {
                 seen([(60.0, 40.0, false), (20.0, 70.0, false), (enemy_along_m, 40.0, tagged), (159.0, 1.0, false)]);
             close(boats[0].among.clear, want);
         }
+    }
+
+    #[test]
+    fn of_several_flags_the_nearest_counts_and_the_one_in_most_danger_is_guarded() {
+        let mut plan = field().plan;
+        for (team, along_m) in [(0, 20.0), (1, 140.0)] {
+            plan.extra_flags.push(Flag { team: TeamId(team), home: field().at(along_m, 10.0) });
+        }
+        let field = Field::new(plan);
+        let boat = |along_m, across_m, team| Placed {
+            at: field.at(along_m, across_m),
+            team: TeamId(team),
+            tagged: false,
+            carrying: false,
+        };
+        // The enemy at (70, 10) is 50 m from the flag at (20, 10), which is guarded from (40, 10), and 58 m from that at (20, 40).
+        let boats = [boat(60.0, 10.0, 0), boat(40.0, 10.0, 0), boat(70.0, 10.0, 1)];
+        let mut out = [BoatProgress::default(); 3];
+        progress(&field, &boats, true, &mut out);
+        close(out[0].from_home, 0.25);
+        close(out[0].from_flag, 0.5);
+        close(out[1].among.on_guard, 1.0);
     }
 
     #[test]

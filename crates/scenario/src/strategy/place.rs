@@ -26,13 +26,13 @@ pub enum Place {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, VariantArray, IntoStaticStr, EnumMessage)]
 #[strum(serialize_all = "snake_case")]
 pub enum Mark {
-    /// The home of the own team's flag.
+    /// The home of the own team's flag; of several the nearest.
     OwnFlag,
     /// The home of the enemy's flag; of several the nearest that is there.
     EnemyFlag,
     /// Where the rules want a flag brought; of several the nearest.
     CapturePlace,
-    /// Where a tagged boat must come to play again; while it must leave that place first, the enemy's flag.
+    /// Where a tagged boat must come to play again, of several the nearest; while it must leave that place first, the enemy's flag.
     UntagPlace,
 }
 
@@ -44,12 +44,12 @@ pub enum Boat {
     NearestEnemy,
     /// Of the enemies on the own side that are not tagged, the nearest to the own boat.
     NearestIntruder,
-    /// Of the enemies that are not tagged, wherever they are, the nearest to the own flag.
+    /// Of the enemies that are not tagged, wherever they are, the nearest to an own flag.
     NearestAttacker,
     /// Of the enemies, tagged ones too, the nearest to the enemy's flag.
     NearestDefender,
     /// Of the enemies on the own side that are not tagged, the one that this boat is to meet: each is assigned to the boat of the
-    /// own team that meets it soonest, one boat to one enemy, those nearest to the own flag first.
+    /// own team that meets it soonest, one boat to one enemy, those nearest to an own flag first.
     AssignedIntruder,
     /// The enemy that carries a flag of the own team; of several the nearest.
     FlagCarrier,

@@ -51,7 +51,7 @@ impl MissionStore {
         deprecated,
         reason = "a ground station may ask by MISSION_REQUEST, and is answered as the specification says"
     )]
-    pub(super) fn take(&mut self, from: (u8, u8), message: &MavMessage) -> Option<MavMessage> {
+    pub(super) fn answer(&mut self, from: (u8, u8), message: &MavMessage) -> Option<MavMessage> {
         match message {
             // About what a board that runs ArduPilot has room for.
             MavMessage::MISSION_COUNT(count) if count.count > ITEMS_MAX => {

@@ -90,7 +90,7 @@ impl ArduPilot {
     }
 
     /// Takes bytes from a link.
-    pub fn take(&mut self, now: SimTime, bytes: &[u8]) {
+    pub fn receive(&mut self, now: SimTime, bytes: &[u8]) {
         // Taken out while it runs, since the callback needs the whole boat.
         let mut framer = std::mem::take(&mut self.framer);
         framer.push(bytes, &mut |received| self.apply(now, &received));
@@ -211,14 +211,14 @@ impl ArduPilot {
             MavMessage::RC_CHANNELS_OVERRIDE(channels) if is_station => self.set_points.take_channels(now, channels),
             MavMessage::REQUEST_DATA_STREAM(request) => self.streams.take_request(request),
             other => {
-                self.outbox.extend(self.parameters.take(other));
+                self.outbox.extend(self.parameters.answer(other));
                 self.take_mission((*system, *component), other);
             }
         }
     }
 
     fn take_mission(&mut self, from: (u8, u8), message: &MavMessage) {
-        let answer = self.mission.take(from, message);
+        let answer = self.mission.answer(from, message);
         self.outbox.extend(answer);
         if let Some((waypoints, speed_m_s)) = self.mission.take_new() {
             let places: Vec<_> = waypoints.iter().map(|at| self.frame.ned(*at)).collect();

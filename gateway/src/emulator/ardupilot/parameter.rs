@@ -33,7 +33,7 @@ impl Parameters {
     }
 
     /// Takes a message of the parameter protocol; the answers to it.
-    pub(super) fn take(&mut self, message: &MavMessage) -> Vec<MavMessage> {
+    pub(super) fn answer(&mut self, message: &MavMessage) -> Vec<MavMessage> {
         let indices: Vec<usize> = match message {
             MavMessage::PARAM_REQUEST_LIST(_) => (0..BEGINNING.len()).collect(),
             MavMessage::PARAM_REQUEST_READ(read) => {

@@ -1,7 +1,8 @@
 //! A client of a payload behind a TCP port: it has a connection of its own to the payload, over which its bytes and those for it pass.
 
+use super::limit::{ANSWER_PAUSE, CONNECT_MAX, LOOK, WRITE_MAX};
+use super::passed_payload::Payload;
 use super::tap::Tap;
-use super::{ANSWER_PAUSE, CONNECT_MAX, LOOK, Payload, WRITE_MAX};
 use crate::link::HostPort;
 use bus::{Slot, clock};
 use socket2::{SockRef, TcpKeepalive};
@@ -98,7 +99,7 @@ impl Forward<'_> {
                 Ok(count) => {
                     received = clock::now();
                     self.slot.touch();
-                    self.tap.take(self.number, outward, &piece[..count]);
+                    self.tap.record_bytes(self.number, outward, &piece[..count]);
                     // What one side does not take is not read from the other: TCP's own back
                     // pressure holds a fast camera back.
                     if let Err(e) = (&mut &*to).write_all(&piece[..count]) {

@@ -4,75 +4,39 @@
 //! and then. Whoever is slow or stopped, a client or a payload, holds up its own connection alone.
 
 mod forward;
+mod limit;
+mod passed_payload;
 mod poll;
 mod remarks;
 mod shared_line;
+mod shell;
 mod tap;
 mod turn;
+mod way;
 
-use super::NodeEvent;
-use super::clock::Clock;
-use super::loop_input::Call;
+pub(super) use shell::Shell;
+
+use super::node_event::NodeEvent;
 use super::tcp_port::TcpPort;
 use crate::bridge::Event;
-use crate::link::{HostPort, LinkAddress, LinkError};
 use crate::payload::PayloadPort;
-use bus::{InboxSender, Slot};
-use recording::BulkRecorder;
+use bus::Slot;
+use limit::CLIENTS_MAX;
+use passed_payload::Payload;
 use remarks::Remarks;
-use shared_line::SharedLine;
 use std::net::TcpStream;
-use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::Duration;
 use tap::Taps;
 use turn::Turn;
-
-/// The most clients of a payload at once.
-const CLIENTS_MAX: usize = 16;
-
-/// The longest attempt to reach a payload.
-const CONNECT_MAX: Duration = Duration::from_secs(2);
-/// Whoever takes nothing for this long is given up.
-const WRITE_MAX: Duration = Duration::from_secs(10);
-/// How often a thread that waits for bytes looks whether it is to end.
-const LOOK: Duration = Duration::from_millis(100);
-/// How long the answer to a client that sends nothing more may pause.
-const ANSWER_PAUSE: Duration = Duration::from_secs(5);
+use way::Way;
 
 /// The payloads of a boat, as long as this is kept.
 pub(super) struct Payloads(Vec<Passage>);
-
-/// What payloads need of the gateway.
-pub(super) struct Shell {
-    /// The recorder, and its file.
-    pub(super) record: Option<(BulkRecorder, PathBuf)>,
-    /// What the disk must have free for bytes of payloads to be recorded, MiB.
-    pub(super) space_min_mib: u64,
-    pub(super) clock: Clock,
-    pub(super) calls: InboxSender<Call>,
-}
 
 /// The way to a payload that is open to clients.
 struct Passage {
     payload: Arc<Payload>,
     port: TcpPort,
-}
-
-/// How a payload is reached.
-enum Way {
-    /// By a connection for each client.
-    Tcp(HostPort),
-    /// By one that they share.
-    Shared(SharedLine),
-}
-
-/// What the threads of a payload share.
-struct Payload {
-    port: PayloadPort,
-    taps: Taps,
-    turn: Turn,
-    remarks: Arc<Remarks>,
 }
 
 impl Payloads {
@@ -121,29 +85,5 @@ impl Passage {
             drop(thread.spawn(move || poll::run(&payload, &way, exo2))?);
         }
         Ok(passage)
-    }
-}
-
-impl Way {
-    fn open(payload: &Arc<Payload>) -> Result<Way, LinkError> {
-        Ok(match &payload.port.address {
-            LinkAddress::Tcp(_, at) => Way::Tcp(at.clone()),
-            address => Way::Shared(SharedLine::open(payload, address)?),
-        })
-    }
-
-    /// Serves a client, until it or the payload is gone.
-    fn serve(&self, payload: &Payload, slot: &Slot, client: &TcpStream) {
-        match self {
-            Way::Tcp(at) => forward::serve(payload, at, slot, client),
-            Way::Shared(line) => line.serve(slot, client),
-        }
-    }
-}
-
-impl Payload {
-    /// Has something logged, unless something was just now.
-    fn remark(&self, text: &str) {
-        self.remarks.make(text);
     }
 }

@@ -1,10 +1,11 @@
 //! A sonde that is asked by the gateway itself, as long as no client is connected, so that its values are recorded all the same.
 
 use super::forward::{connect, is_pause};
+use super::passed_payload::Payload;
 use super::shared_line::SharedLine;
 use super::tap::Tap;
 use super::turn::PollTurn;
-use super::{Payload, Way};
+use super::way::Way;
 use crate::link::HostPort;
 use crate::payload::Exo2Port;
 use crate::payload::exo2::{Command, Sonde};
@@ -78,7 +79,7 @@ fn by_lines(payload: &Payload, at: &HostPort, questions: &mut Questions<'_>, tur
     let stream = connect(at)?;
     let connection = payload.taps.open();
     while !turn.is_wanted_within(Duration::ZERO) {
-        match ask(&stream, &connection, &line(questions.next()), turn, EVERY)? {
+        match send_question(&stream, &connection, &line(questions.next()), turn, EVERY)? {
             Answer::Ended => return Err(ErrorKind::ConnectionAborted.into()),
             // What goes on and on is read no faster than this.
             Answer::TooLong => drop(turn.is_wanted_within(EVERY)),
@@ -111,7 +112,7 @@ fn by_http(payload: &Payload, at: &HostPort, questions: &mut Questions<'_>, turn
                 format!("{head}\r\nContent-Length: {}\r\n\r\n{word}", word.len())
             }
         };
-        match ask(&connect(at)?, &payload.taps.open(), &request, turn, ANSWER_MAX)? {
+        match send_question(&connect(at)?, &payload.taps.open(), &request, turn, ANSWER_MAX)? {
             Answer::Ended => {}
             _ if turn.is_wanted_within(EVERY) => return Ok(()),
             _ => return Err(io::Error::new(ErrorKind::TimedOut, format!("no complete answer for {ANSWER_MAX:?}"))),
@@ -132,14 +133,14 @@ enum Answer {
 }
 
 /// Sends a question, and reads what comes for so long, unless somebody else wants the turn.
-fn ask(
+fn send_question(
     mut stream: &TcpStream,
     (number, tap): &(u32, Tap),
     question: &str,
     turn: &PollTurn<'_>,
     limit: Duration,
 ) -> io::Result<Answer> {
-    tap.take(*number, true, question.as_bytes());
+    tap.record_bytes(*number, true, question.as_bytes());
     stream.write_all(question.as_bytes())?;
     let (asked, mut length, mut piece) = (clock::now(), 0, [0; 4096]);
     while clock::since(asked) < limit && !turn.is_wanted_within(Duration::ZERO) {
@@ -149,7 +150,7 @@ fn ask(
                 return Ok(Answer::Ended);
             }
             Ok(count) => {
-                tap.take(*number, false, &piece[..count]);
+                tap.record_bytes(*number, false, &piece[..count]);
                 length += count;
             }
             Err(e) if is_pause(&e) => {}

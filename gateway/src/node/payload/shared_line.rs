@@ -1,8 +1,9 @@
 //! A payload on a serial line or UDP port, which its clients share: all are sent what it says, and it is sent what each of them says.
 
 use super::forward::{is_pause, prepare};
+use super::limit::{ANSWER_PAUSE, CONNECT_MAX};
+use super::passed_payload::Payload;
 use super::tap::Tap;
-use super::{ANSWER_PAUSE, CONNECT_MAX, Payload};
 use crate::link::{Link, LinkAddress, LinkError, LinkEvent, LinkSettings};
 use bus::{Slot, Watched, clock};
 use parking_lot::Mutex;
@@ -51,7 +52,7 @@ impl SharedLine {
         let ends = Arc::new(ends);
         let settings = LinkSettings { silence: None, ..LinkSettings::default() };
         let theirs = Arc::clone(&ends);
-        let link = Link::open(address, settings, move |event| theirs.take(event))?;
+        let link = Link::open(address, settings, move |event| theirs.handle_event(event))?;
         Ok(SharedLine { link, writing: Mutex::new(()), ends })
     }
 
@@ -64,7 +65,7 @@ impl SharedLine {
     pub(super) fn send(&self, connection: u32, bytes: &[u8]) -> bool {
         // A command of one client is written whole before the next one's begins.
         let _writing = self.writing.lock();
-        self.ends.tap.take(connection, true, bytes);
+        self.ends.tap.record_bytes(connection, true, bytes);
         self.link.send_and_wait(bytes, WRITE_LIMIT)
     }
 
@@ -117,11 +118,11 @@ impl SharedLine {
 }
 
 impl Ends {
-    fn take(&self, event: LinkEvent) {
+    fn handle_event(&self, event: LinkEvent) {
         match event {
             LinkEvent::Up { .. } => self.is_up.visit(|is_up| *is_up = true),
             LinkEvent::Bytes { bytes, .. } => {
-                self.tap.take(TO_ALL, false, &bytes);
+                self.tap.record_bytes(TO_ALL, false, &bytes);
                 self.give(&bytes.into());
             }
             LinkEvent::Down { reason, .. } | LinkEvent::Failed { reason, .. } => {

@@ -2,8 +2,8 @@
 
 use super::super::clock::Clock;
 use super::super::machine_check::free_mib;
-use super::Shell;
 use super::remarks::Remarks;
+use super::shell::Shell;
 use crate::payload::exo2::{Conversation, Measurement, Sonde};
 use crate::payload::{PayloadEncoder, PayloadPort};
 use bus::clock;
@@ -69,8 +69,8 @@ impl Taps {
 
 impl Tap {
     /// Bytes of the connection of this number, to the payload if `outward`.
-    pub(super) fn take(&self, connection: u32, outward: bool, bytes: &[u8]) {
-        self.record(connection, outward, bytes, |conversation, sonde| conversation.take(outward, bytes, sonde));
+    pub(super) fn record_bytes(&self, connection: u32, outward: bool, bytes: &[u8]) {
+        self.record(connection, outward, bytes, |conversation, sonde| conversation.read_bytes(outward, bytes, sonde));
     }
 
     /// The side that bytes come from has closed the connection.
@@ -142,7 +142,7 @@ mod tests {
             let remarks = Arc::new(Remarks::new("sonde", shell.calls.clone()));
             let (number, tap) = Taps::new(&port, &shell, &remarks).open();
             for (outward, bytes) in [(true, "para\r"), (false, "1\r"), (true, "data\r"), (false, "20.5\r")] {
-                tap.take(number, outward, bytes.as_bytes());
+                tap.record_bytes(number, outward, bytes.as_bytes());
             }
             drop(recorder);
             let bag = Bag::open(&file).expect("a recording");

@@ -7,7 +7,7 @@ use std::time::Duration;
 const LET_GO_MAX: Duration = Duration::from_secs(3);
 
 /// The most clients at once, those among them that are being disconnected.
-const CLIENTS_MAX: usize = 2 * super::CLIENTS_MAX;
+const CLIENTS_MAX: usize = 2 * super::limit::CLIENTS_MAX;
 
 /// Whose turn it is.
 #[derive(Default)]

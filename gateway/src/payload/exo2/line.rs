@@ -29,7 +29,7 @@ enum Part {
 
 impl Lines {
     /// Takes a byte; the line that it ends, unless that is empty, too long or no text.
-    pub(super) fn take(&mut self, byte: u8) -> Option<String> {
+    pub(super) fn push_byte(&mut self, byte: u8) -> Option<String> {
         if std::mem::take(&mut self.after_cr) && byte == b'\n' {
             return None;
         }

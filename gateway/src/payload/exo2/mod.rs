@@ -89,11 +89,11 @@ impl Command {
 
 impl Conversation {
     /// Takes bytes, those to the sonde being `outward`; what was measured, where they complete an answer.
-    pub fn take(&mut self, outward: bool, bytes: &[u8], sonde: &mut Sonde) -> Vec<Measurement> {
+    pub fn read_bytes(&mut self, outward: bool, bytes: &[u8], sonde: &mut Sonde) -> Vec<Measurement> {
         let mut measurements = vec![];
         for byte in bytes {
             let lines = if outward { &mut self.to_sonde } else { &mut self.from_sonde };
-            if let Some(line) = lines.take(*byte) {
+            if let Some(line) = lines.push_byte(*byte) {
                 measurements.extend(self.read(outward, &line, sonde));
             }
         }

@@ -11,7 +11,7 @@ fn measured(sonde: &mut Sonde, talk: Talk<'_>, part: usize) -> Vec<Vec<(u16, f64
     let mut all = vec![];
     for (way, text) in talk {
         for bytes in text.as_bytes().chunks(part) {
-            all.extend(conversation.take(*way == '>', bytes, sonde));
+            all.extend(conversation.read_bytes(*way == '>', bytes, sonde));
         }
         if *way == '.' {
             all.extend(conversation.end(false, sonde));
@@ -55,7 +55,7 @@ fn a_sonde_that_echoes_and_prompts_is_read_whatever_ends_its_lines() {
 #[test]
 fn numbers_are_named_and_unknown_codes_keep_theirs() {
     let (mut sonde, mut conversation) = (Sonde::default(), Conversation::default());
-    let mut say = |outward, text: &str| conversation.take(outward, text.as_bytes(), &mut sonde);
+    let mut say = |outward, text: &str| conversation.read_bytes(outward, text.as_bytes(), &mut sonde);
     say(true, "para\r");
     say(false, "1 999\r\n");
     say(true, "data\r");
@@ -124,7 +124,7 @@ fn a_line_without_end_takes_no_memory() {
     let (mut sonde, mut conversation) = (Sonde::default(), Conversation::default());
     for outward in [false, true] {
         for _ in 0..100 {
-            conversation.take(outward, &[b'1'; 10_000], &mut sonde);
+            conversation.read_bytes(outward, &[b'1'; 10_000], &mut sonde);
         }
     }
     let held = [&conversation.from_sonde, &conversation.to_sonde].map(|lines| format!("{lines:?}").len());

@@ -26,7 +26,7 @@ impl GameServer<'_> {
         // Before and after waiting: what passes outside of a wait is the sim's own, and if it
         // is more than a second the sim was suspended.
         self.time.pass(clock::now(), Duration::ZERO);
-        let mut next = self.inbox.take(limit);
+        let mut next = self.inbox.next_within(limit);
         self.time.pass(clock::now(), limit);
         self.obey();
         self.answer();
@@ -56,7 +56,7 @@ impl GameServer<'_> {
 
     /// Follows the commands that wait.
     fn obey(&mut self) {
-        while let Some(command) = self.controls.take() {
+        while let Some(command) = self.controls.pop_command() {
             match command {
                 Command::Stop(control) => self.control(control).unwrap_or_default(),
                 Command::Ask(query) => self.asked_to_control(query),
@@ -153,7 +153,7 @@ impl GameServer<'_> {
             Checked::Garbage(e) => JoinReply::Refused { reason: format!("the request is not understood: {e}") },
         };
         // Before the node can show its ticket.
-        self.inbox.let_in(self.agents.tickets().chain(self.gateways.tickets()).collect());
+        self.inbox.accept_tickets(self.agents.tickets().chain(self.gateways.tickets()).collect());
         query.answer(token::answer(&reply));
     }
 

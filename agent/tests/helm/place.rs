@@ -1,0 +1,63 @@
+//! Where boats steer to capture a flag and to be freed: places that the referee takes for valid, and the nearest of them.
+
+use crate::scene::helm;
+use agent::Mind;
+use messages::picture::{FlagView, Nav, OwnBoat, Picture};
+use primitives::frame::Leg;
+use primitives::{Ned, TeamId, VehicleId};
+use scenario::Scenario;
+use std::path::Path;
+
+const BLUE: TeamId = TeamId(0);
+/// Rounding in the text of a variable, m.
+const ROUNDING_M: f64 = 1e-3;
+
+/// A shipped game in which all boats work out how far these places are.
+fn scenario(game: &str) -> Scenario {
+    let folder = tempfile::tempdir().expect("a folder for files");
+    let games = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games");
+    let teams = ["blue", "red"].map(|team| format!("[[team]]\nname = \"{team}\"\nstrategy = \"strategy.toml\"\n"));
+    let game = format!("base = '{}'\n{}", games.join(format!("{game}.toml")).display(), teams.concat());
+    let strategy = "unsafe_i_know = true\nunsafe_because = \"what is tested is alone\"\n\
+                    [variables]\ncapture_m = 0\nown_flag_m = 0\nuntag_m = 0\n[[rule]]\nwhen = \"true\"\n\
+                    set = { capture_m = \"distance(capture_place)\", own_flag_m = \"distance(own_flag)\", \
+                    untag_m = \"distance(untag_place)\" }\n[behaviour.stop]\nkind = \"full_stop\"\n";
+    for (name, content) in [("game.toml", game.as_str()), ("strategy.toml", strategy)] {
+        std::fs::write(folder.path().join(name), content).expect("a file in it");
+    }
+    scenario::load(&folder.path().join("game.toml")).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// The picture of a boat that is alone there.
+fn alone(scenario: &Scenario, at: Ned) -> Picture {
+    let nav = Nav { north_m: at.north, east_m: at.east, ..Nav::default() };
+    Picture {
+        own: vec![OwnBoat::new(VehicleId(0), nav)],
+        flags: vec![FlagView { carrier: -1 }; scenario.field.flags.len()],
+        score: vec![0, 0],
+        ..Picture::default()
+    }
+}
+
+#[test]
+fn a_boat_makes_for_the_nearest_place_that_the_referee_takes() {
+    for (game, flags) in [("surveyor_2v2", 1), ("fleet_20v20", 3), ("fleet_100v100", 5)] {
+        let scenario = scenario(game);
+        let (field, rules) = (&scenario.field, &scenario.rules);
+        assert_eq!(field.own_flags(BLUE).count(), flags, "{game}");
+        for (along, across) in [(0.1, 0.05), (0.3, 0.2), (0.4, 0.5), (0.6, 0.8), (0.9, 0.95)] {
+            let at = field.at(along * field.plan.width_m, across * field.plan.depth_m);
+            let homes = field.own_flags(BLUE).map(|(_, home)| home);
+            let home = homes.min_by(|a, b| at.distance(*a).total_cmp(&at.distance(*b))).expect("blue has a flag");
+            assert!(rules.is_capture_place(field, BLUE, Leg { from: home, to: home }), "{game}");
+            assert!(rules.is_untag_place(field, BLUE, home), "{game}");
+            let mut helm = helm(&scenario);
+            helm.decide(&alone(&scenario, at));
+            for variable in helm.report().expect("a helm reports").variables {
+                let got_m: f64 = variable.value.parse().expect("a number");
+                let off_m = got_m - at.distance(home);
+                assert!(off_m.abs() < ROUNDING_M, "{game}, {} from {at:?}: {off_m} m too far", variable.name);
+            }
+        }
+    }
+}

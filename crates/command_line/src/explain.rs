@@ -1,0 +1,48 @@
+//! What is wrong with scenario files, each with the line that it is about.
+
+use crate::style;
+use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+use anyhow::Error;
+use primitives::printable;
+use scenario::{Problem, Problems};
+
+/// Columns of a line that is shown.
+const COLUMNS: usize = 100;
+
+/// An error with all its causes; of files in full.
+pub fn error(error: &Error) -> String {
+    let Some(problems) = error.chain().find_map(|cause| cause.downcast_ref()) else {
+        return printable::message(&format!("{error:#}"));
+    };
+    let before = error
+        .chain()
+        .take_while(|cause| !cause.is::<Problems>())
+        .map(|cause| printable::message(&format!("{cause}:\n")));
+    before.collect::<String>() + &self::problems(problems)
+}
+
+/// All that is wrong, with the lines.
+pub fn problems(Problems(problems): &Problems) -> String {
+    problems.iter().map(problem).collect::<Vec<_>>().join("\n")
+}
+
+fn problem(problem: &Problem) -> String {
+    let Problem { line, column, source, message, .. } = problem;
+    let told = format!("{} {}", style::bad(&format!("{}:", problem.place())), printable::line(message));
+    let Some(span) = span(source, *column) else { return told };
+    let shown = Snippet::source(source.as_str()).line_start(*line).annotation(AnnotationKind::Primary.span(span));
+    let shown = Renderer::styled().term_width(COLUMNS).render(&[Group::with_level(Level::ERROR).element(shown)]);
+    format!("{told}\n{shown}")
+}
+
+/// What is underlined of a line, in bytes: a word, or a text with its quotes.
+fn span(source: &str, column: usize) -> Option<std::ops::Range<usize>> {
+    let start = source.char_indices().nth(column.saturating_sub(1)).map(|(at, _)| at)?;
+    let rest = &source[start..];
+    let quote = rest.chars().next().filter(|first| "\"'".contains(*first));
+    let length = match quote {
+        Some(quote) => rest[1..].find(quote).map(|end| end + 2),
+        None => rest.find([' ', '=', ',', ']', '}', '#', '\t']).filter(|end| *end > 0),
+    };
+    Some(start..start + length.unwrap_or(if quote.is_some() { rest.len() } else { rest.trim_end().len() }))
+}

@@ -1,0 +1,147 @@
+//! Command line arguments for how a process reaches a game: where it is, its name, keys and token.
+
+use anyhow::{Context, Result, bail};
+use bus::keys::Bundle;
+use bus::token::TOKEN_VARIABLE;
+use bus::{Net, Place, Token};
+use messages::topic::GameName;
+use primitives::input_file;
+use std::ffi::OsString;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// The keys of a game.
+#[derive(clap::Args, Clone, Debug)]
+pub struct KeysArgs {
+    /// The keys of this node, of a game with keys: a folder that `squall keys new` has made
+    #[arg(long, value_name = "FOLDER")]
+    keys: Option<PathBuf>,
+}
+
+impl KeysArgs {
+    /// The keys that are given.
+    ///
+    /// # Errors
+    /// If they cannot be read.
+    pub fn load(&self) -> Result<Option<Arc<Bundle>>> {
+        Ok(self.keys.as_deref().map(Bundle::load).transpose()?.map(Arc::new))
+    }
+}
+
+/// Begins this program again with the threads that a process with keys must have, if it is given keys and has others.
+pub fn restart_with_threads_for_keys() -> Result<()> {
+    let is_keys = |word: OsString| word.to_str().is_some_and(|word| word == "--keys" || word.starts_with("--keys="));
+    if std::env::args_os().skip(1).any(is_keys) {
+        bus::restart_for_keys()?;
+    }
+    Ok(())
+}
+
+/// The token of a game.
+#[derive(clap::Args, Clone, Debug)]
+pub struct TokenArgs {
+    /// A file with the game's token, as `squall sim` shows it [default: from SQUALL_TOKEN, or of the game on this machine]
+    #[arg(long, value_name = "FILE")]
+    token_file: Option<PathBuf>,
+}
+
+/// A token file is a line of text; what is longer is another file, bytes.
+const TOKEN_FILE_MAX: u64 = 4096;
+
+impl TokenArgs {
+    /// The token that is given.
+    pub fn token(&self) -> Result<Option<Token>> {
+        let (text, place) = match (&self.token_file, std::env::var(TOKEN_VARIABLE)) {
+            (Some(file), _) => {
+                let text = input_file::read_text(file, TOKEN_FILE_MAX)
+                    .with_context(|| format!("cannot read {}", file.display()))?;
+                (text, file.display().to_string())
+            }
+            (None, Ok(text)) => (text, TOKEN_VARIABLE.to_owned()),
+            (None, Err(_)) => return Ok(None),
+        };
+        text.parse().map(Some).with_context(|| place)
+    }
+}
+
+/// How to reach a hub.
+#[derive(clap::Args, Clone, Debug)]
+pub struct LeafArgs {
+    /// Where the sim is, for example tcp/192.168.1.5:7447 [default: the game on this machine]
+    #[arg(long, value_name = "ENDPOINT")]
+    connect: Vec<String>,
+    /// Find the sim by multicast on the local network
+    #[arg(long, conflicts_with = "connect")]
+    lan: bool,
+    /// A zenoh configuration (JSON5) to begin with: access control, interfaces, buffers
+    #[arg(long, value_name = "FILE")]
+    zenoh_config: Option<PathBuf>,
+    /// The game's name [default: the only one there]
+    #[arg(long, value_name = "NAME", value_parser = GameName::new)]
+    pub game: Option<GameName>,
+    #[command(flatten)]
+    keys: KeysArgs,
+    #[command(flatten)]
+    token: TokenArgs,
+}
+
+impl LeafArgs {
+    /// The token that is given.
+    pub fn token(&self) -> Result<Option<Token>> {
+        self.token.token()
+    }
+
+    /// The keys that are given.
+    pub fn keys(&self) -> Result<Option<Arc<Bundle>>> {
+        self.keys.load()
+    }
+
+    /// The gateways of this machine that may be meant. Where a game elsewhere is asked for, those that were told its name;
+    /// but a command that stops boats is meant for one gateway too many rather than for one too few.
+    pub fn local_gateways(&self, stops: bool) -> Vec<bus::GatewayEntry> {
+        let is_elsewhere = !stops && (self.lan || !self.connect.is_empty());
+        let is_meant = |entry: &bus::GatewayEntry| match (&self.game, &entry.game) {
+            (Some(wanted), Some(game)) => wanted.as_str() == game,
+            _ => !is_elsewhere,
+        };
+        bus::local_gateways().into_iter().filter(is_meant).collect()
+    }
+
+    /// Where to connect: as asked for, or where this machine's local registry says.
+    pub fn net(&self) -> Result<Net> {
+        self.net_of(None, self.keys()?)
+    }
+
+    /// The same, for nodes that outlive a game, or come before it.
+    pub fn place(&self) -> Result<Place> {
+        let (leaf, keys) = (self.clone(), self.keys()?);
+        Ok(Place::new(move |game| leaf.net_of(game, keys.clone()).map_err(|e| format!("{e:#}"))))
+    }
+
+    /// Where this game is, or else that which is asked for.
+    fn net_of(&self, game: Option<&GameName>, keys: Option<Arc<Bundle>>) -> Result<Net> {
+        let game = game.or(self.game.as_ref());
+        let mut connect = self.connect.clone();
+        let is_named = |entry: &bus::Entry| game.is_none_or(|game| game.as_str() == entry.game);
+        let mut known: Vec<bus::Entry> = bus::local_registry().into_iter().filter(is_named).collect();
+        if connect.is_empty() && !self.lan {
+            connect.push(local_endpoint(&known)?);
+        }
+        known.retain(|entry| connect.contains(&entry.endpoint));
+        let shown = || known.first().and_then(|entry| entry.token.as_ref()?.parse().ok());
+        let token = self.token.token()?.or_else(shown);
+        Ok(Net { listen: vec![], connect, lan: self.lan, config_file: self.zenoh_config.clone(), token, keys })
+    }
+}
+
+/// Where the game of this machine listens.
+fn local_endpoint(games: &[bus::Entry]) -> Result<String> {
+    match games {
+        [] => Ok(format!("tcp/127.0.0.1:{}", bus::DEFAULT_PORT)),
+        [entry] => Ok(entry.endpoint.clone()),
+        several => {
+            let names: Vec<&str> = several.iter().map(|entry| entry.game.as_str()).collect();
+            bail!("several games run on this machine: choose with --game among {}", names.join(", "))
+        }
+    }
+}

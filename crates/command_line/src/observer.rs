@@ -1,0 +1,38 @@
+//! An observer: a session that watches a game and asks about it.
+
+use crate::leaf_args::LeafArgs;
+use anyhow::{Context, Result};
+use bus::Bus;
+use bus::game_search;
+use messages::GameInfo;
+use messages::topic::{self, GameName};
+use primitives::VehicleId;
+
+/// A session in a game that runs.
+pub struct Observer {
+    /// The session.
+    pub bus: Bus,
+    /// The game.
+    pub game: GameName,
+    /// What the sim says of it.
+    pub info: GameInfo,
+}
+
+impl Observer {
+    /// Connects to a game that runs.
+    pub fn connect(leaf: &LeafArgs) -> Result<Observer> {
+        let bus = Bus::leaf(&leaf.net()?).context("no game to watch")?;
+        let (game, info) = game_search::choose_game(&bus, leaf.game.as_ref())?;
+        Ok(Observer { bus, game, info })
+    }
+
+    /// The vehicle of this name.
+    pub fn vehicle(&self, name: &str) -> Result<VehicleId> {
+        Ok(self.info.scenario.vehicle_named(name)?)
+    }
+
+    /// Whether the game's sim is still there.
+    pub fn is_on(&self) -> Result<bool> {
+        Ok(!self.bus.who_is_alive(&topic::all_alive(&self.game), bus::ANSWER)?.is_empty())
+    }
+}

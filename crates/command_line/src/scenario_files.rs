@@ -1,0 +1,134 @@
+//! The scenario files that the program has inside of itself, and what a word of the command line names: a path, or the name of one.
+
+use crate::program;
+use anyhow::{Result, anyhow, bail};
+use include_dir::{Dir, include_dir};
+use scenario::{Kind, ScenarioFile, built_in, did_you_mean, other_kind, set_built_in};
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+static FILES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../scenarios");
+/// The folder in which files are looked for by name, here and in folders above.
+const FOLDER: &str = "scenarios";
+
+/// The kinds of files that the program knows.
+static KINDS: OnceLock<&[Kind]> = OnceLock::new();
+
+/// What is inside of the program stands in for what is not on the disk. The program knows these kinds of files: a file of another
+/// kind than is asked for is recognised by them.
+pub fn install(kinds: &'static [Kind]) {
+    // Who came first has the same ones: there is one program in a process.
+    let _ = KINDS.set(kinds);
+    set_built_in(|name| FILES.get_file(name).map(include_dir::File::contents));
+}
+
+fn kinds() -> &'static [Kind] {
+    KINDS.get().copied().unwrap_or_default()
+}
+
+/// What a file inside of the program says, if there is one of this name.
+pub fn contents(kind: Kind, name: &str) -> Option<&'static [u8]> {
+    FILES.get_file(format!("{}/{name}.toml", kind.folder())).map(include_dir::File::contents)
+}
+
+/// The file of a kind that a word names: a path, or a name in the folder `scenarios` here, in one above, or inside of the program.
+pub fn find(word: &str, kind: Kind) -> Result<PathBuf> {
+    find_beside(word, kind, None)
+}
+
+/// The same, where a name is first looked for in a folder.
+pub fn find_beside(word: &str, kind: Kind, beside: Option<&Path>) -> Result<PathBuf> {
+    let given = PathBuf::from(word);
+    if word.contains(['/', '\\']) || given.extension().is_some_and(|end| end == "toml") || given.is_file() {
+        return match other_kind(kinds(), &given, kind) {
+            Some(other) => bail!("{word} is a {other}, expected a {kind}{}", where_it_goes(other)),
+            None if given.exists() || built_in(&given).is_some() => Ok(given),
+            None => {
+                let name = name_of(&given).unwrap_or_default();
+                let there =
+                    names_in(given.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new(".")));
+                let there: Vec<&str> = there.iter().map(String::as_str).collect();
+                bail!("there is no file {word}{}", did_you_mean(&name, &there))
+            }
+        };
+    }
+    let here = std::env::current_dir().unwrap_or_default();
+    let above = here.ancestors().map(|folder| folder.join(FOLDER).join(kind.folder()));
+    let folders: Vec<PathBuf> = beside.map(Path::to_owned).into_iter().chain(above).collect();
+    let file = format!("{word}.toml");
+    if let Some(path) = folders.iter().map(|folder| folder.join(&file)).find(|path| path.is_file()) {
+        // As people would write it, so that it is read again as it was printed.
+        return Ok(path.strip_prefix(&here).map(Path::to_owned).unwrap_or(path));
+    }
+    let inside = Path::new(FOLDER).join(kind.folder()).join(file);
+    if built_in(&inside).is_some() { Ok(inside) } else { Err(unknown(word, kind, &folders)) }
+}
+
+fn unknown(word: &str, kind: Kind, folders: &[PathBuf]) -> anyhow::Error {
+    let mut others = kinds().iter().copied().filter(|other| *other != kind);
+    if let Some(other) = others.find(|other| names(*other).contains(word)) {
+        return anyhow!("there is no {kind} {word}, but a {other} of that name{}", where_it_goes(other));
+    }
+    let mut known = names(kind);
+    known.extend(folders.iter().flat_map(|folder| names_in(folder)));
+    let known: Vec<&str> = known.iter().map(String::as_str).collect();
+    let guess = did_you_mean(word, &known);
+    let list =
+        if guess.is_empty() { format!(", expected the path of a file or one of {}", known.join(", ")) } else { guess };
+    anyhow!("there is no {kind} {word}{list}")
+}
+
+/// Where a file of a kind is asked for.
+fn where_it_goes(kind: Kind) -> String {
+    let place = match kind.name() {
+        "game" => "squall run plays it",
+        "strategy" => "--blue and --red take it",
+        "sea" => "--sea takes it",
+        "field" => "--field takes it",
+        "tournament" => "squall tournament plays it",
+        "sweep" => "squall sweep plays it",
+        "training" => "squall train takes it",
+        "gateway" => "{gateway} surveyor --config takes it",
+        _ => return String::new(),
+    };
+    format!(": {}", program::text(place))
+}
+
+/// The names of the files of a kind inside of the program.
+pub fn names(kind: Kind) -> BTreeSet<String> {
+    let files = FILES.get_dir(kind.folder()).into_iter().flat_map(Dir::files);
+    files.filter_map(|file| name_of(file.path())).collect()
+}
+
+/// The names of the files in a folder.
+fn names_in(folder: &Path) -> BTreeSet<String> {
+    let files = std::fs::read_dir(folder).into_iter().flatten().filter_map(std::result::Result::ok);
+    files.filter_map(|file| name_of(&file.path())).collect()
+}
+
+fn name_of(path: &Path) -> Option<String> {
+    let is_toml = path.extension().is_some_and(|end| end == "toml");
+    is_toml.then(|| path.file_stem()?.to_str().map(str::to_owned))?
+}
+
+macro_rules! finders {
+    ($($name:ident $kind:expr,)*) => {
+        $(
+            /// What an argument for a file of this kind names.
+            pub fn $name(word: &str) -> Result<PathBuf> {
+                find(word, $kind)
+            }
+        )*
+    };
+}
+
+finders! { field Kind::FIELD, game Kind::GAME, sea Kind::SEA, strategy Kind::STRATEGY, tournament Kind::TOURNAMENT, sweep Kind::SWEEP, }
+
+/// What an argument for a file that is read as `F` names.
+///
+/// # Errors
+/// There is no such file.
+pub fn file_of<F: ScenarioFile>(word: &str) -> Result<PathBuf> {
+    find(word, Kind::of::<F>())
+}

@@ -1,0 +1,104 @@
+//! A mean, and how well it is known.
+
+use serde::{Deserialize, Serialize};
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+/// The mean of independent observations with its 95 % confidence interval, by Student's t.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Estimate {
+    /// The mean.
+    pub mean: f64,
+    /// The lower end of the interval; none with a single observation.
+    pub low: Option<f64>,
+    /// The upper end.
+    pub high: Option<f64>,
+}
+
+impl Estimate {
+    /// The estimate from `observations`, at least one.
+    ///
+    /// # Panics
+    /// If there are none.
+    #[must_use]
+    pub fn of(observations: &[f64]) -> Estimate {
+        let count = observations.len();
+        assert!(count > 0, "a mean of nothing");
+        let mean = observations.iter().sum::<f64>() / count as f64;
+        let squares: f64 = observations.iter().map(|observation| (observation - mean) * (observation - mean)).sum();
+        let degrees = count as f64 - 1.0;
+        // Over seeds: all games of a seed have the same sea, and an entry that is lucky with it
+        // is so from both sides and against all. It says what other seeds would have given, not
+        // other opponents, which are chosen and not drawn.
+        let half = quantile(degrees).map(|quantile| quantile * (squares / degrees / count as f64).sqrt());
+        Estimate { mean, low: half.map(|half| mean - half), high: half.map(|half| mean + half) }
+    }
+
+    /// The ratio of two sums over independent observations, each of a part and its whole, with its interval by linearisation (Cochran,
+    /// Sampling Techniques, 1977, section 2.11); none if the wholes are nothing.
+    #[must_use]
+    pub fn of_ratio(observations: &[(f64, f64)]) -> Option<Estimate> {
+        let whole: f64 = observations.iter().map(|(_, whole)| whole).sum();
+        if whole <= 0.0 {
+            return None;
+        }
+        let ratio = observations.iter().map(|(part, _)| part).sum::<f64>() / whole;
+        let mean_whole = whole / observations.len() as f64;
+        let offs: Vec<f64> = observations.iter().map(|(part, whole)| (part - ratio * whole) / mean_whole).collect();
+        let Estimate { low, high, .. } = Estimate::of(&offs);
+        Some(Estimate { mean: ratio, low: low.map(|low| ratio + low), high: high.map(|high| ratio + high) })
+    }
+
+    /// Half the width of the interval.
+    #[must_use]
+    pub fn half_width(&self) -> Option<f64> {
+        self.high.map(|high| high - self.mean)
+    }
+}
+
+/// How many standard errors reach to the end of a 95 % interval, by Student's t; none without a degree of freedom.
+pub(crate) fn quantile(degrees: f64) -> Option<f64> {
+    StudentsT::new(0.0, 1.0, degrees).ok().map(|student| student.inverse_cdf(0.975))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Tables give four digits after the point.
+    const TABLE: f64 = 0.00005;
+
+    #[test]
+    fn the_interval_is_that_of_the_tables_of_student() {
+        // Observations 0 and 1 in equal numbers: the deviation is known, the quantile follows.
+        for (count, quantile) in [(2, 12.7062), (4, 3.1824), (10, 2.2622), (30, 2.0452), (100, 1.9842), (1000, 1.9623)]
+        {
+            let observations: Vec<f64> = (0..count).map(|i| f64::from(i % 2)).collect();
+            let estimate = Estimate::of(&observations);
+            let error = (0.25 / f64::from(count - 1)).sqrt();
+            let got = estimate.half_width().unwrap_or(f64::NAN) / error;
+            assert!(estimate.mean == 0.5 && (got - quantile).abs() < TABLE, "{count}: {got}, tables say {quantile}");
+        }
+    }
+
+    #[test]
+    fn a_ratio_is_the_share_of_successes_with_the_interval_of_a_proportion() {
+        // 700 of 1000 trials that do not depend on each other, and 1000 that do not count.
+        let trials: Vec<(f64, f64)> =
+            (0..2000).map(|i| if i < 1000 { (f64::from(u8::from(i < 700)), 1.0) } else { (0.0, 0.0) }).collect();
+        let estimate = Estimate::of_ratio(&trials).expect("trials");
+        let want = 1.9612 * (0.7_f64 * 0.3 / 1000.0).sqrt();
+        let half = estimate.half_width().unwrap_or(f64::NAN);
+        assert!((estimate.mean - 0.7).abs() < 1e-12 && (half - want).abs() < 0.0001, "{estimate:?}, not {want}");
+        // The same share in every observation is known exactly, however large each is.
+        let equal = Estimate::of_ratio(&[(1.0, 2.0), (4.0, 8.0), (2.0, 4.0)]).expect("wholes");
+        assert!(equal.mean == 0.5 && equal.half_width().is_some_and(|half| half.abs() < 1e-12), "{equal:?}");
+        assert_eq!(Estimate::of_ratio(&[(0.0, 0.0); 3]), None);
+    }
+
+    #[test]
+    fn equal_observations_are_known_exactly_and_one_says_nothing_about_the_width() {
+        let equal = Estimate::of(&[3.0; 5]);
+        assert_eq!((equal.mean, equal.low, equal.high), (3.0, Some(3.0), Some(3.0)));
+        assert_eq!(Estimate::of(&[4.0]), Estimate { mean: 4.0, low: None, high: None });
+    }
+}

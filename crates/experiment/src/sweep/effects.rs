@@ -1,0 +1,322 @@
+//! What each axis does, and which two of them do together: contrasts of means, seed by seed.
+//!
+//! All points play the same seeds, so that a difference is taken within each seed and its interval is over seeds alone: it says how
+//! surely the difference is there at these points, and not how other points of a sampled design would come out.
+
+use super::metric::{HEADLINES, METRICS, Metric, Metrics};
+use super::plan::{Plan, Point};
+use crate::estimate::Estimate;
+use scenario::{Axis, AxisValue, Design};
+use serde::Serialize;
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+/// The observation of a seed: the mean of both sides; none unless all its games were played.
+pub(crate) type Observation = Option<Metrics>;
+
+/// What was observed, by point, entry and seed.
+pub(crate) struct Observations {
+    pub(crate) by_point: Vec<Vec<Vec<Observation>>>,
+}
+
+/// What an axis does to an entry.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Effect {
+    /// The axis' key.
+    pub axis: String,
+    /// The entry.
+    pub entry: String,
+    /// From the first level to the last; of a sampled design as many groups of points, by rising values.
+    pub levels: Vec<Level>,
+    /// By metric: the last level less the first.
+    pub contrasts: Vec<Option<Estimate>>,
+}
+
+/// The points at which an axis has one value, or values near to each other.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Level {
+    /// As people read it.
+    pub label: String,
+    /// The number, where values are numbers: the mean of the points'.
+    pub value: Option<f64>,
+    /// How many points.
+    pub points: usize,
+    /// By metric.
+    pub metrics: Vec<Option<Estimate>>,
+}
+
+/// What two axes do together beyond what each does alone.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Interaction {
+    /// The keys of the axes.
+    pub axes: [String; 2],
+    /// The entry.
+    pub entry: String,
+    /// The metric.
+    pub metric: &'static str,
+    /// The means where both are low, the second alone is high, the first alone is high, and both are high.
+    pub cells: [f64; 4],
+    /// What the second axis does where the first is high, less what it does where the first is low.
+    pub contrast: Estimate,
+    /// How probable so large a contrast would be without interaction, as if this were the only one looked at.
+    pub p: f64,
+    /// Whether it stands among all that were looked at (Holm 1979, 5 %).
+    pub matters: bool,
+}
+
+/// Points of one level, and what stands for them.
+struct Group {
+    label: String,
+    value: Option<f64>,
+    points: Vec<usize>,
+}
+
+/// The groups of pieces that a sampled axis is cut into have at least so many points.
+const GROUP_POINTS_MIN: usize = 4;
+/// And there are at most so many.
+const GROUPS_MAX: usize = 8;
+/// From so many seeds on there are intervals: fewer are often all the same, and would seem to be sure.
+const SEEDS_MIN: usize = 5;
+
+impl Observations {
+    /// By seed, what is observed of an entry in the mean over points: none for seeds that are not whole at all of them.
+    fn mean(&self, points: &[usize], entry: usize, metric: &Metric) -> Vec<Option<f64>> {
+        let seeds = self.by_point.first().and_then(|entries| entries.first()).map_or(0, Vec::len);
+        let of_seed = |seed: usize| {
+            let of_point = |point: &usize| Some(metric.of(self.by_point[*point][entry][seed].as_ref()?));
+            let all = points.iter().map(of_point).collect::<Option<Vec<f64>>>()?;
+            let mean = all.iter().sum::<f64>() / all.len() as f64;
+            mean.is_finite().then_some(mean)
+        };
+        (0..seeds).map(of_seed).collect()
+    }
+
+    /// The estimate of an entry's metric over points.
+    pub(crate) fn estimate(&self, points: &[usize], entry: usize, metric: &Metric) -> Option<Estimate> {
+        estimate(self.mean(points, entry, metric).into_iter().flatten().collect())
+    }
+
+    /// The estimate of how much more of a metric one entry has than another at a point.
+    pub(crate) fn difference(&self, point: usize, [one, other]: [usize; 2], metric: &Metric) -> Option<Estimate> {
+        difference(&self.mean(&[point], one, metric), &self.mean(&[point], other, metric))
+    }
+}
+
+fn estimate(numbers: Vec<f64>) -> Option<Estimate> {
+    (!numbers.is_empty()).then(|| match Estimate::of(&numbers) {
+        Estimate { mean, .. } if numbers.len() < SEEDS_MIN => Estimate { mean, low: None, high: None },
+        estimate => estimate,
+    })
+}
+
+fn difference(one: &[Option<f64>], other: &[Option<f64>]) -> Option<Estimate> {
+    estimate(one.iter().zip(other).filter_map(|(one, other)| Some((*one)? - (*other)?)).collect())
+}
+
+/// What every axis does to every entry.
+pub(crate) fn effects(plan: &Plan, observed: &Observations) -> Vec<Effect> {
+    let sweep = plan.sweep();
+    let mut effects = vec![];
+    for (k, axis) in sweep.axes.iter().enumerate() {
+        let groups = groups(plan, k);
+        for (entry, entrant) in sweep.entries.iter().enumerate() {
+            let level = |group: &Group| Level {
+                label: group.label.clone(),
+                value: group.value,
+                points: group.points.len(),
+                metrics: METRICS.iter().map(|metric| observed.estimate(&group.points, entry, metric)).collect(),
+            };
+            let contrast = |metric: &Metric| {
+                let [first, last] = [groups.first()?, groups.last()?];
+                let of = |group: &Group| observed.mean(&group.points, entry, metric);
+                (groups.len() > 1).then(|| difference(&of(last), &of(first)))?
+            };
+            effects.push(Effect {
+                axis: axis.key.clone(),
+                entry: entrant.name.clone(),
+                levels: groups.iter().map(level).collect(),
+                contrasts: METRICS.iter().map(contrast).collect(),
+            });
+        }
+    }
+    effects
+}
+
+/// The points by the value that an axis has at them, the others as they are; one at a time, those where all others are nominal.
+fn groups(plan: &Plan, axis: usize) -> Vec<Group> {
+    let (sweep, points) = (plan.sweep(), plan.points());
+    let about = &sweep.axes[axis];
+    let others_are_nominal = |point: &Point| {
+        let mut others = sweep.axes.iter().zip(&point.values).enumerate().filter(|(k, _)| *k != axis);
+        others.all(|(_, (other, value))| *value == other.nominal())
+    };
+    let is_looked_at = |point: &Point| sweep.design != Design::OneAtATime || others_are_nominal(point);
+    let is_sampled = matches!(sweep.design, Design::LatinHypercube | Design::Sobol);
+    if is_sampled && about.values.is_empty() {
+        return pieces(about, axis, points);
+    }
+    let group = |level: AxisValue| Group {
+        label: level.to_string(),
+        value: level.number(),
+        points: (0..points.len()).filter(|i| is_looked_at(&points[*i]) && points[*i].values[axis] == level).collect(),
+    };
+    let mut levels = about.levels();
+    // One at a time the nominal value may be none of the levels.
+    let nominal = about.nominal();
+    if sweep.design == Design::OneAtATime && !levels.contains(&nominal) {
+        levels.push(nominal);
+        levels.sort_by(|a, b| a.number().unwrap_or(0.0).total_cmp(&b.number().unwrap_or(0.0)));
+    }
+    levels.into_iter().map(group).filter(|group| !group.points.is_empty()).collect()
+}
+
+/// Pieces of an axis with as many points each.
+fn pieces(about: &Axis, axis: usize, points: &[Point]) -> Vec<Group> {
+    let number = |i: &usize| points[*i].values[axis].number().unwrap_or(f64::NAN);
+    let mut order: Vec<usize> = (0..points.len()).collect();
+    order.sort_by(|a, b| number(a).total_cmp(&number(b)));
+    let count = (points.len() / GROUP_POINTS_MIN).clamp(1, GROUPS_MAX);
+    let piece = |i: usize| {
+        let points = order[i * order.len() / count..(i + 1) * order.len() / count].to_vec();
+        let mean = points.iter().map(number).sum::<f64>() / points.len() as f64;
+        let digits = if mean.abs() < 1.0 { 3 } else { 2 };
+        let _ = about;
+        Group { label: format!("{mean:.digits$}"), value: Some(mean), points }
+    };
+    (0..count).map(piece).collect()
+}
+
+/// Whatever two axes do together, for the metrics of the summary: those that matter first.
+pub(crate) fn interactions(plan: &Plan, observed: &Observations) -> Vec<Interaction> {
+    let sweep = plan.sweep();
+    if sweep.design == Design::OneAtATime {
+        return vec![];
+    }
+    let halves: Vec<[Vec<usize>; 2]> = (0..sweep.axes.len()).map(|axis| halves(&groups(plan, axis))).collect();
+    let mut found = vec![];
+    for a in 0..sweep.axes.len() {
+        for b in a + 1..sweep.axes.len() {
+            let cell = |i: usize| -> Vec<usize> {
+                let (one, other) = (&halves[a][i / 2], &halves[b][i % 2]);
+                one.iter().filter(|point| other.contains(point)).copied().collect()
+            };
+            let cells = [0, 1, 2, 3].map(cell);
+            if cells.iter().any(Vec::is_empty) {
+                continue;
+            }
+            let axes = [a, b].map(|axis| sweep.axes[axis].key.clone());
+            for (entry, entrant) in sweep.entries.iter().enumerate() {
+                let of = |metric: &&'static str| interaction(observed, &cells, entry, metric);
+                let of_metrics = HEADLINES.iter().filter_map(of);
+                found.extend(of_metrics.map(|(metric, cells, contrast, p)| Interaction {
+                    axes: axes.clone(),
+                    entry: entrant.name.clone(),
+                    metric,
+                    cells,
+                    contrast,
+                    p,
+                    matters: false,
+                }));
+            }
+        }
+    }
+    mark_those_that_matter(&mut found);
+    found
+}
+
+/// The points at the low end of an axis and at the high end: the first level and the last, or the halves of many.
+fn halves(groups: &[Group]) -> [Vec<usize>; 2] {
+    let middle = groups.len() / 2;
+    let of = |groups: &[Group]| groups.iter().flat_map(|group| group.points.clone()).collect::<Vec<usize>>();
+    [of(&groups[..middle]), of(&groups[groups.len() - middle..])]
+}
+
+fn interaction(
+    observed: &Observations,
+    cells: &[Vec<usize>; 4],
+    entry: usize,
+    metric: &'static str,
+) -> Option<(&'static str, [f64; 4], Estimate, f64)> {
+    let about = Metric::named(metric)?;
+    let means = [0, 1, 2, 3].map(|cell| observed.mean(&cells[cell], entry, about));
+    let contrast = |seed: usize| {
+        let [low, second, first, both] = [0, 1, 2, 3].map(|cell| means[cell][seed]);
+        Some(both? - first? - second? + low?)
+    };
+    let contrasts: Vec<f64> = (0..means[0].len()).filter_map(contrast).collect();
+    let p = probability(&contrasts)?;
+    let mean = |cell: usize| {
+        let known: Vec<f64> = means[cell].iter().copied().flatten().collect();
+        known.iter().sum::<f64>() / known.len() as f64
+    };
+    Some((metric, [0, 1, 2, 3].map(mean), Estimate::of(&contrasts), p))
+}
+
+/// How probable a mean so far from 0 is if the true one is 0, by Student's t; none of fewer than [`SEEDS_MIN`] numbers.
+fn probability(numbers: &[f64]) -> Option<f64> {
+    let count = numbers.len() as f64;
+    if numbers.len() < SEEDS_MIN {
+        return None;
+    }
+    let mean = numbers.iter().sum::<f64>() / count;
+    let error =
+        (numbers.iter().map(|number| (number - mean) * (number - mean)).sum::<f64>() / (count - 1.0) / count).sqrt();
+    if error == 0.0 {
+        return Some(if mean == 0.0 { 1.0 } else { 0.0 });
+    }
+    let student = StudentsT::new(0.0, 1.0, count - 1.0).ok()?;
+    Some(2.0 * (1.0 - student.cdf((mean / error).abs())))
+}
+
+/// Holm's procedure at 5 %, for each metric over all pairs and entries; then those that matter come first, by rising probability.
+fn mark_those_that_matter(found: &mut [Interaction]) {
+    found.sort_by(|a, b| a.p.total_cmp(&b.p));
+    for metric in HEADLINES {
+        let mut of_metric: Vec<&mut Interaction> = found.iter_mut().filter(|one| one.metric == metric).collect();
+        let count = of_metric.len();
+        for (i, one) in of_metric.iter_mut().enumerate() {
+            if one.p > 0.05 / (count - i) as f64 {
+                break;
+            }
+            one.matters = true;
+        }
+    }
+    found.sort_by_key(|one| !one.matters);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_probability_is_that_of_the_tables_of_student() {
+        // A mean of 1 with a standard error of 1 / 2.2622 over 10 numbers: the quantile of 97.5 % with 9 degrees of freedom.
+        let spread = 1.0 / 2.2622 * 3.0;
+        let numbers: Vec<f64> = (0..10).map(|i| 1.0 + if i % 2 == 0 { spread } else { -spread }).collect();
+        let p = probability(&numbers).expect("ten numbers");
+        assert!((p - 0.05).abs() < 1e-4, "{p}");
+        assert_eq!(
+            (probability(&[2.0; 4]), probability(&[2.0; 5]), probability(&[0.0; 5])),
+            (None, Some(0.0), Some(1.0))
+        );
+        // Four seeds that are all the same are not sure.
+        assert_eq!(estimate(vec![2.0; 4]), Some(Estimate { mean: 2.0, low: None, high: None }));
+        assert!(estimate(vec![2.0; 5]).is_some_and(|five| five.low == Some(2.0)));
+    }
+
+    #[test]
+    fn holm_stops_at_the_first_that_does_not_stand() {
+        let of = |p: f64| Interaction {
+            axes: ["a".to_owned(), "b".to_owned()],
+            entry: "one".to_owned(),
+            metric: "score",
+            cells: [0.0; 4],
+            contrast: Estimate { mean: 1.0, low: None, high: None },
+            p,
+            matters: false,
+        };
+        // 0.01 < 0.05 / 4, 0.02 > 0.05 / 3, and 0.024, though below 0.05 / 2, comes after that.
+        let mut found = [0.024, 0.9, 0.01, 0.02].map(of);
+        mark_those_that_matter(&mut found);
+        assert_eq!(found.map(|one| (one.p, one.matters)), [(0.01, true), (0.02, false), (0.024, false), (0.9, false)]);
+    }
+}

@@ -1,0 +1,162 @@
+//! Rare failures: how often they happen in the space of the axes, and the games in which they do.
+//!
+//! Games are drawn evenly: over the range of an axis, over the quantiles of its distribution, or over its values, each with a seed of
+//! its own. Sampling that learns where failures are (cross-entropy) and populations that split at near failures were tried: with the same
+//! number of games their intervals were no narrower.
+
+use super::condition::Condition;
+use super::journal::Journal;
+use super::plan::{Job, Plan, Point};
+use super::study::StudyError;
+use crate::estimate::Estimate;
+use primitives::stream::Stream;
+use scenario::{Axis, AxisValue};
+use serde::Serialize;
+use statrs::distribution::{Beta, ContinuousCDF};
+use std::num::NonZeroUsize;
+use std::sync::atomic::AtomicBool;
+
+/// After so many games it is told how many failed.
+const ROUND: usize = 100;
+/// Failures that are named.
+const NAMED: usize = 10;
+
+/// What was found.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Found {
+    /// The entry.
+    pub entry: String,
+    /// What is a failure.
+    pub condition: String,
+    /// Games that were played.
+    pub games: usize,
+    /// Failures among them.
+    pub failures: usize,
+    /// The share of failures among all games, with its exact interval.
+    pub rate: Estimate,
+    /// Failures, the worst ones first.
+    pub named: Vec<Named>,
+}
+
+/// A game with a failure.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Named {
+    /// The metric.
+    pub value: f64,
+    /// By axis, as people read it.
+    pub values: Vec<String>,
+    /// The command that plays it again.
+    pub command: String,
+}
+
+/// Why nothing was found.
+#[derive(Debug, thiserror::Error)]
+pub enum FindError {
+    /// A game cannot start.
+    #[error("{0}")]
+    Game(String),
+    /// What was played cannot be written down.
+    #[error(transparent)]
+    Journal(#[from] StudyError),
+    /// It was stopped.
+    #[error("stopped before enough games were played")]
+    Stopped,
+}
+
+/// A game in which the condition holds.
+struct Failed {
+    value: f64,
+    margin: f64,
+    point: Point,
+    job: Job,
+}
+
+/// Plays so many games, at least one, and finds those in which a condition holds; games that the journal has are not played again.
+/// `tell` is told of each round: its games, its failures.
+///
+/// # Errors
+/// [`FindError`]: a game cannot start, or `stop` was set.
+pub fn find(
+    plan: &Plan,
+    condition: &Condition,
+    games: usize,
+    journal: &mut Journal,
+    (jobs, stop): (NonZeroUsize, &AtomicBool),
+    mut tell: impl FnMut(usize, usize),
+) -> Result<Found, FindError> {
+    let plan = &plan.of_entry(condition.entry);
+    let mut stream = Stream::new(plan.sweep().seed, "sweep/find");
+    let mut failed: Vec<Failed> = vec![];
+    for first in (0..games).step_by(ROUND) {
+        let count = ROUND.min(games - first);
+        let mut value = |axis: &Axis| axis.at(stream.unit());
+        let mut point = |_| Point::from(plan.sweep().axes.iter().map(&mut value).collect::<Vec<AxisValue>>());
+        let points: Vec<Point> = (0..count).map(&mut point).collect();
+        // Two games a point: one from each side, with the seed of the point's place.
+        let round = plan.at(points, (plan.sweep().seed, 1));
+        let job = |i: usize| Job {
+            index: 2 * i + i % 2,
+            point: i,
+            entry: 0,
+            seed: plan.sweep().seed.wrapping_add((first + i) as u64),
+            side: i % 2,
+        };
+        let order: Vec<Job> = (0..count).map(job).collect();
+        let played = journal.play(&round, &order, jobs, stop)?;
+        if played.len() < count {
+            return Err(FindError::Stopped);
+        }
+        let before = failed.len();
+        for (job, result) in order.into_iter().zip(played) {
+            let value = condition.metric.of(&result.map_err(FindError::Game)?);
+            let margin = condition.margin(value);
+            if margin < 0.0 {
+                failed.push(Failed { value, margin, point: round.points()[job.point].clone(), job });
+            }
+        }
+        tell(count, failed.len() - before);
+    }
+    let failures = failed.len();
+    failed.sort_by(|a, b| a.margin.total_cmp(&b.margin).then(a.job.seed.cmp(&b.job.seed)));
+    let named = failed.iter().take(NAMED).map(|one| Named {
+        value: one.value,
+        values: one.point.values.iter().map(ToString::to_string).collect(),
+        command: plan.at(vec![one.point.clone()], (one.job.seed, 1)).command(&Job { point: 0, ..one.job }),
+    });
+    Ok(Found {
+        entry: plan.sweep().entries[0].name.clone(),
+        condition: condition.to_string(),
+        games,
+        failures,
+        rate: rate_of(failures, games),
+        named: named.collect(),
+    })
+}
+
+/// A share with its exact 95 % interval (Clopper and Pearson, Biometrika 1934), which says something without a failure, too.
+fn rate_of(failures: usize, games: usize) -> Estimate {
+    let (k, n) = (failures as f64, games as f64);
+    let quantile = |a: f64, b: f64, p: f64| Beta::new(a, b).ok().map(|beta| beta.inverse_cdf(p));
+    Estimate {
+        mean: k / n,
+        low: if failures == 0 { Some(0.0) } else { quantile(k, n - k + 1.0, 0.025) },
+        high: if failures == games { Some(1.0) } else { quantile(k + 1.0, n - k, 0.975) },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_interval_of_a_rate_is_that_of_the_tables_of_clopper_and_pearson() {
+        // By bisection of the sums of binomial probabilities.
+        for (failures, games, low, high) in
+            [(0, 100, 0.0, 0.036_217), (7, 600, 0.004_703, 0.023_889), (10, 10, 0.691_503, 1.0)]
+        {
+            let rate = rate_of(failures, games);
+            let got = rate.low.zip(rate.high).expect("an interval");
+            assert!((got.0 - low).abs() < 1e-5 && (got.1 - high).abs() < 1e-5, "{failures} of {games}: {rate:?}");
+        }
+    }
+}

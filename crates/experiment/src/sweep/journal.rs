@@ -1,0 +1,125 @@
+//! The games of a search, written down as they are played: a search that was stopped, or another one over the same sweep, does not play them
+//! again.
+
+use super::metric::{METRICS, Metric, Metrics};
+use super::plan::{Job, Plan};
+use super::play::play_jobs;
+use super::study::{StudyError, io};
+use super::table::{cell_of, number_of, record};
+use std::collections::BTreeMap;
+use std::fs::{File, OpenOptions};
+use std::io::Write;
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+
+/// The file.
+const NAME: &str = "search.csv";
+
+/// What was measured of a game, or why it could not start.
+pub(crate) type Outcome = Result<Metrics, String>;
+
+/// The games of searches over one sweep, in a folder.
+pub struct Journal {
+    path: PathBuf,
+    file: File,
+    /// By what they are: see [`key`].
+    known: BTreeMap<Vec<String>, Outcome>,
+}
+
+impl Journal {
+    /// A new journal in a folder, which is made.
+    ///
+    /// # Errors
+    /// [`StudyError`]: the file cannot be written, or there are games in it already.
+    pub fn begin(folder: &Path, plan: &Plan) -> Result<Journal, StudyError> {
+        let path = folder.join(NAME);
+        std::fs::create_dir_all(folder).map_err(io("make the folder", folder))?;
+        let games = std::fs::read_to_string(&path).unwrap_or_default().lines().count().saturating_sub(1);
+        if games > 0 {
+            return Err(StudyError::Exists { folder: folder.to_owned(), games });
+        }
+        std::fs::write(&path, plan.digest() + "\n").map_err(io("write", &path))?;
+        Journal::open(path, BTreeMap::new())
+    }
+
+    /// The journal of a folder with all its whole lines: one that was torn off when the machine stopped is dropped.
+    ///
+    /// # Errors
+    /// [`StudyError`]: the file cannot be read or written, there is none, or it is of another sweep.
+    pub fn resume(folder: &Path, plan: &Plan) -> Result<Journal, StudyError> {
+        let path = folder.join(NAME);
+        let Ok(bytes) = std::fs::read(&path) else {
+            return Err(StudyError::Missing { folder: folder.to_owned() });
+        };
+        let text = String::from_utf8_lossy(&bytes);
+        let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
+        let (found, lines) = whole.split_once('\n').unwrap_or_default();
+        if found != plan.digest() {
+            let (expected, found) = (plan.digest(), found.to_owned());
+            return Err(StudyError::Other { folder: folder.to_owned(), expected, found });
+        }
+        let file = OpenOptions::new().write(true).open(&path).map_err(io("open", &path))?;
+        file.set_len(whole.len() as u64).map_err(io("cut", &path))?;
+        let mut reader = csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(lines.as_bytes());
+        Journal::open(path, reader.records().filter_map(|line| game_of(&line.ok()?)).collect())
+    }
+
+    fn open(path: PathBuf, known: BTreeMap<Vec<String>, Outcome>) -> Result<Journal, StudyError> {
+        let file = OpenOptions::new().append(true).open(&path).map_err(io("open", &path))?;
+        Ok(Journal { path, file, known })
+    }
+
+    /// How many games it has.
+    #[must_use]
+    pub fn games(&self) -> usize {
+        self.known.len()
+    }
+
+    /// What came of these games of a plan, in their order, as far as `stop` lets them be played.
+    ///
+    /// # Errors
+    /// [`StudyError`]: the file cannot be written.
+    pub(crate) fn play(
+        &mut self,
+        plan: &Plan,
+        order: &[Job],
+        jobs: NonZeroUsize,
+        stop: &AtomicBool,
+    ) -> Result<Vec<Outcome>, StudyError> {
+        let keys: Vec<Vec<String>> = order.iter().map(|job| key(plan, job)).collect();
+        let is_new = |(_, key): &(&Job, &Vec<String>)| !self.known.contains_key(*key);
+        let new: Vec<Job> = order.iter().zip(&keys).filter(is_new).map(|(job, _)| *job).collect();
+        play_jobs(plan, &new, jobs, stop, |played| {
+            let key = key(plan, &played.row.job);
+            self.file.write_all(line_of(&key, &played.row.result).as_bytes()).map_err(io("write", &self.path))?;
+            self.known.insert(key, played.row.result);
+            Ok::<(), StudyError>(())
+        })?;
+        Ok(keys.iter().map_while(|key| self.known.get(key).cloned()).collect())
+    }
+}
+
+/// What a game is: its entry, its seed, the entry's side and the values of the axes.
+fn key(plan: &Plan, job: &Job) -> Vec<String> {
+    let point = &plan.points()[job.point];
+    let values = point.values.iter().map(scenario::AxisValue::toml);
+    let first = [plan.sweep().entries[job.entry].name.clone(), job.seed.to_string(), job.side.to_string()];
+    first.into_iter().chain(values).collect()
+}
+
+/// A line: the numbers, why there are none, and what the game is.
+fn line_of(key: &[String], result: &Outcome) -> String {
+    let number = |metric: &Metric| cell_of(result.as_ref().map_or(f64::NAN, |all| metric.of(all)));
+    let why = result.as_ref().err().cloned().unwrap_or_default();
+    record(METRICS.iter().map(number).chain([why]).chain(key.iter().cloned()))
+}
+
+/// What a line says.
+fn game_of(line: &csv::StringRecord) -> Option<(Vec<String>, Outcome)> {
+    let mut numbers = line.iter();
+    let metrics = Metrics::from_each(|_| numbers.next().and_then(number_of).ok_or(()));
+    let why = line.get(METRICS.len())?;
+    let result = if why.is_empty() { Ok(metrics.ok()?) } else { Err(why.to_owned()) };
+    Some((line.iter().skip(METRICS.len() + 1).map(str::to_owned).collect(), result))
+}

@@ -1,0 +1,302 @@
+//! Which games a sweep consists of.
+
+use primitives::stream::Stream;
+use scenario::{
+    Axis, AxisValue, Design, Entrant, Files, Overrides, Packed, Problem, Problems, Scenario, Setting, Sweep,
+    UnpackError, digest_of, load_with_files,
+};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// The most points of a grid.
+const POINTS_MAX: usize = 100_000;
+/// Dimensions of a Sobol sequence that are used: more than a file may have axes.
+const SOBOL_DIMENSIONS: u32 = 50;
+
+/// A sweep with everything that its games need.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    sweep: Sweep,
+    teams: Vec<String>,
+    seeds: u64,
+    points: Vec<Point>,
+    files: Arc<Files>,
+    /// How many of these files its own points need.
+    files_needed: usize,
+}
+
+/// A point of the space: a value for each axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
+    /// By axis.
+    pub values: Vec<AxisValue>,
+}
+
+impl From<Vec<AxisValue>> for Point {
+    fn from(values: Vec<AxisValue>) -> Point {
+        Point { values }
+    }
+}
+
+/// One game of a sweep.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Job {
+    /// Its place in the order of the sweep.
+    pub index: usize,
+    /// At which point.
+    pub point: usize,
+    /// Which entry plays.
+    pub entry: usize,
+    /// The seed.
+    pub seed: u64,
+    /// Whether the entry is the first team (0) or the second (1).
+    pub side: usize,
+}
+
+impl Plan {
+    /// The games of a sweep, after the game was read at every point.
+    ///
+    /// # Errors
+    /// Everything that is wrong at any point, and a grid of more than 100,000 points.
+    pub fn new(sweep: &Sweep) -> Result<Plan, Problems> {
+        let mut plan = Plan::unchecked(sweep, Arc::default())?;
+        let mut problems = vec![];
+        // Other entries and sides have the same scenario at other points but for strategies.
+        let of_points = (0..plan.points.len()).map(|point| (point, 0));
+        for (point, entry) in of_points.chain((1..sweep.entries.len()).map(|entry| (0, entry))) {
+            if let Err(Problems(found)) = plan.scenario(point, entry, 0) {
+                problems.extend(found);
+            }
+        }
+        problems.sort();
+        problems.dedup();
+        plan.files_needed = plan.files.list().len();
+        if problems.is_empty() { Ok(plan) } else { Err(Problems(problems)) }
+    }
+
+    /// A plan whose points nobody has looked at, which is read from these files.
+    fn unchecked(sweep: &Sweep, files: Arc<Files>) -> Result<Plan, Problems> {
+        let game = load_with_files(&sweep.game, &Overrides::default(), &files)?;
+        let teams = game.teams.into_iter().map(|team| team.name).collect();
+        let (points, files_needed) = (points(sweep)?, files.list().len());
+        Ok(Plan { sweep: sweep.clone(), teams, seeds: u64::from(sweep.games).div_ceil(2), points, files, files_needed })
+    }
+
+    /// The same sweep at other points, with so many seeds at each from `first_seed` on.
+    pub(crate) fn at(&self, points: Vec<Point>, (first_seed, seeds): (u64, u64)) -> Plan {
+        Plan { sweep: Sweep { seed: first_seed, ..self.sweep.clone() }, points, seeds, ..self.clone() }
+    }
+
+    /// The same sweep of one entry alone.
+    pub(crate) fn of_entry(&self, entry: usize) -> Plan {
+        let entries = vec![self.sweep.entries[entry].clone()];
+        Plan { sweep: Sweep { entries, ..self.sweep.clone() }, ..self.clone() }
+    }
+
+    /// The sweep.
+    #[must_use]
+    pub fn sweep(&self) -> &Sweep {
+        &self.sweep
+    }
+
+    /// The names of the game's teams.
+    #[must_use]
+    pub fn teams(&self) -> &[String] {
+        &self.teams
+    }
+
+    /// The points.
+    #[must_use]
+    pub fn points(&self) -> &[Point] {
+        &self.points
+    }
+
+    /// How many seeds each point plays.
+    #[must_use]
+    pub fn seeds(&self) -> u64 {
+        self.seeds
+    }
+
+    /// How many games a point has.
+    #[must_use]
+    pub fn games_per_point(&self) -> usize {
+        usize::try_from(self.seeds).map_or(usize::MAX, |seeds| seeds.saturating_mul(2 * self.sweep.entries.len()))
+    }
+
+    /// How many games there are.
+    #[must_use]
+    pub fn games(&self) -> usize {
+        self.games_per_point().saturating_mul(self.points.len())
+    }
+
+    /// The game at `index`: point by point, there seed by seed, of each the entries in turn, each from both sides.
+    ///
+    /// # Panics
+    /// If there are not as many.
+    #[must_use]
+    pub fn job(&self, index: usize) -> Job {
+        assert!(index < self.games(), "game {index} of {}", self.games());
+        let (point, within) = (index / self.games_per_point(), index % self.games_per_point());
+        let entries = self.sweep.entries.len();
+        let seed = self.sweep.seed.wrapping_add((within / (2 * entries)) as u64);
+        Job { index, point, entry: within / 2 % entries, seed, side: within % 2 }
+    }
+
+    /// The scenario of an entry on a side at a point.
+    ///
+    /// # Errors
+    /// Everything that is wrong in any file.
+    pub fn scenario(&self, point: usize, entry: usize, side: usize) -> Result<Scenario, Problems> {
+        let overrides = self.overrides(point, entry, side);
+        let scenario = load_with_files(&self.sweep.game, &overrides, &self.files)?;
+        scenario.has_no_real_boats().map_err(|real_boats| self.problem(real_boats.to_string()))?;
+        Ok(scenario)
+    }
+
+    fn overrides(&self, point: usize, entry: usize, side: usize) -> Overrides {
+        self.sweep.overrides(&self.teams, entry, side, &self.points[point].values)
+    }
+
+    fn problem(&self, message: String) -> Problems {
+        Problems(vec![Problem::of_file(self.sweep.path.clone(), message)])
+    }
+
+    /// The command that plays a game of it again.
+    #[must_use]
+    pub fn command(&self, job: &Job) -> String {
+        let Overrides { strategies, settings, .. } = self.overrides(job.point, job.entry, job.side);
+        let mut words = vec![format!("squall run {}", shell(&self.sweep.game))];
+        for (team, file) in &strategies {
+            words.push(format!("--strategy {team}={}", shell(file)));
+        }
+        for setting in settings {
+            words.push(beside_here(&setting).argument());
+        }
+        words.push(format!("--seed {}", job.seed));
+        words.join(" ")
+    }
+
+    /// The files that its games need, in the order in which it asks for them.
+    fn files(&self) -> Vec<(PathBuf, Arc<[u8]>)> {
+        let mut files = self.files.list();
+        files.truncate(self.files_needed);
+        files
+    }
+
+    /// What identifies it: a study of another one is not gone on with. It depends on what files say and not on where they lie: of two
+    /// that lie elsewhere but name each other in the same way it is the same.
+    #[must_use]
+    pub fn digest(&self) -> String {
+        let nowhere = PathBuf::new;
+        let entry = |entry: &Entrant| Entrant { strategy: nowhere(), ..entry.clone() };
+        let axis = |axis: &Axis| Axis { place: (1, 1), ..axis.clone() };
+        let Sweep { entries, axes, .. } = &self.sweep;
+        let sweep = Sweep {
+            path: nowhere(),
+            game: nowhere(),
+            opponent: nowhere(),
+            entries: entries.iter().map(entry).collect(),
+            axes: axes.iter().map(axis).collect(),
+            ..self.sweep.clone()
+        };
+        digest_of(&format!("{sweep:?}"), &self.files())
+    }
+
+    /// It with all that its games need, for a process on another machine.
+    #[must_use]
+    pub fn pack(&self) -> Packed {
+        Packed::new(&self.sweep, self.files(), self.digest())
+    }
+
+    /// The plan that was packed elsewhere. Its points are not looked at again.
+    ///
+    /// # Errors
+    /// [`UnpackError`]: it is damaged, or another version of Squall packed it.
+    pub fn unpack(packed: Packed) -> Result<Plan, UnpackError> {
+        packed.unpack(Plan::unchecked, Plan::digest)
+    }
+}
+
+/// A setting whose file is named from the working folder.
+fn beside_here(setting: &Setting) -> Setting {
+    let mut setting = setting.clone();
+    let named: Option<String> = serde_json::from_str(&setting.value).ok();
+    if let Some(named) = named.filter(|named| named.ends_with(".toml")) {
+        let path = setting.path.parent().unwrap_or(Path::new("")).join(named);
+        let path = std::path::absolute(&path).unwrap_or(path);
+        setting.value = serde_json::Value::from(path.display().to_string()).to_string();
+    }
+    setting
+}
+
+/// A path as a word of a shell.
+fn shell(path: &Path) -> String {
+    let text = path.display().to_string();
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "/._-".contains(c);
+    if text.chars().all(is_plain) { text } else { format!("'{}'", text.replace('\'', "'\\''")) }
+}
+
+fn points(sweep: &Sweep) -> Result<Vec<Point>, Problems> {
+    let axes = &sweep.axes;
+    let count = sweep.points as usize;
+    let sampled = |share: &dyn Fn(usize, usize) -> f64| {
+        let point =
+            |i: usize| axes.iter().enumerate().map(|(k, axis)| axis.at(share(i, k))).collect::<Vec<AxisValue>>();
+        (0..count).map(|i| Point::from(point(i))).collect()
+    };
+    Ok(match sweep.design {
+        Design::Grid => grid(sweep)?,
+        Design::OneAtATime => one_at_a_time(axes),
+        Design::LatinHypercube => {
+            let columns: Vec<Vec<f64>> = axes.iter().map(|axis| latin_column(sweep.seed, &axis.key, count)).collect();
+            sampled(&|i, k| columns[k][i])
+        }
+        Design::Sobol => {
+            // The generator takes 32 bits, and 65536 points at most are of one sequence.
+            let seed = (sweep.seed ^ (sweep.seed >> 32)) as u32;
+            sampled(&|i, k| f64::from(sobol_burley::sample(i as u32, k as u32 % SOBOL_DIMENSIONS, seed)))
+        }
+    })
+}
+
+/// A column of a Latin hypercube: one number in each of `count` pieces from 0 to 1, in any order.
+fn latin_column(seed: u64, key: &str, count: usize) -> Vec<f64> {
+    let mut stream = Stream::new(seed, &format!("sweep/{key}"));
+    let mut pieces: Vec<usize> = (0..count).collect();
+    stream.shuffle(&mut pieces);
+    pieces.into_iter().map(|piece| (piece as f64 + stream.unit()) / count as f64).collect()
+}
+
+fn grid(sweep: &Sweep) -> Result<Vec<Point>, Problems> {
+    let levels: Vec<Vec<AxisValue>> = sweep.axes.iter().map(Axis::levels).collect();
+    let count = levels.iter().try_fold(1_usize, |count, levels| count.checked_mul(levels.len()));
+    if count.is_none_or(|count| count > POINTS_MAX) {
+        let message = format!("the grid has more than {POINTS_MAX} points, expected fewer levels, or another design");
+        return Err(Problems(vec![Problem::of_file(sweep.path.clone(), message)]));
+    }
+    let mut points = vec![Point::from(vec![])];
+    for levels in &levels {
+        let with = |point: &Point, level: &AxisValue| {
+            Point::from(point.values.iter().chain(std::iter::once(level)).cloned().collect::<Vec<AxisValue>>())
+        };
+        points = points.iter().flat_map(|point| levels.iter().map(move |level| with(point, level))).collect();
+    }
+    Ok(points)
+}
+
+fn one_at_a_time(axes: &[Axis]) -> Vec<Point> {
+    let nominal: Vec<AxisValue> = axes.iter().map(Axis::nominal).collect();
+    let mut points = vec![Point::from(nominal.clone())];
+    let mut known = BTreeMap::from([(format!("{nominal:?}"), ())]);
+    for (i, axis) in axes.iter().enumerate() {
+        for level in axis.levels() {
+            let mut values = nominal.clone();
+            values[i] = level;
+            if known.insert(format!("{values:?}"), ()).is_none() {
+                points.push(Point::from(values));
+            }
+        }
+    }
+    points
+}

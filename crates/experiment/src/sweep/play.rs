@@ -1,0 +1,198 @@
+//! The games of a sweep, and what is measured of each.
+
+use super::metric::{Metrics, TeamMetrics};
+use super::plan::{Job, Plan};
+use super::table::Row;
+use crate::pipeline::{Game, Stop, play_game, play_in_order};
+use agent::MindRunner;
+use analysis::quality::GameQuality;
+use analysis::{BoatStatistics, StatisticsBuilder, Step};
+use primitives::VehicleId;
+use rules::event::EventCursor;
+use scenario::Scenario;
+use scenario::boat::Drive;
+use sim::Contest;
+use std::collections::BTreeMap;
+use std::num::NonZeroUsize;
+use std::sync::atomic::AtomicBool;
+
+/// A game that was played, or could not be.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Played {
+    /// Its row in the table of games.
+    pub row: Row,
+    /// By vehicle.
+    pub boats: Vec<BoatRow>,
+}
+
+/// What a boat did in a game.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BoatRow {
+    /// What is measured of any game.
+    pub statistics: BoatStatistics,
+    /// Energy taken from its battery, kJ; NaN without one.
+    pub energy_kj: f64,
+    /// Whether it is one of the entry's.
+    pub is_own: bool,
+}
+
+/// Scenarios of the point that is played, by entry and side.
+#[derive(Default)]
+struct Loaded {
+    point: Option<usize>,
+    scenarios: BTreeMap<(usize, usize), Result<Scenario, String>>,
+}
+
+impl Loaded {
+    fn scenario(&mut self, plan: &Plan, job: &Job) -> &Result<Scenario, String> {
+        if self.point.replace(job.point) != Some(job.point) {
+            self.scenarios.clear();
+        }
+        let load = || plan.scenario(job.point, job.entry, job.side).map_err(|problems| problems.to_string());
+        self.scenarios.entry((job.entry, job.side)).or_insert_with(load)
+    }
+}
+
+/// Plays the games from `from` to before `to` on so many threads until all are played or `stop` is set, and gives each to `take`, in
+/// order. Games that `stop` cut short are not among them, nor any after those.
+///
+/// # Errors
+/// What `take` says: then no more are played.
+pub fn play<E>(
+    plan: &Plan,
+    (from, to): (usize, usize),
+    threads: NonZeroUsize,
+    stop: &AtomicBool,
+    take: impl FnMut(Played) -> Result<(), E>,
+) -> Result<(), E> {
+    let one = |loaded: &mut Loaded, i: usize, stop: Stop<'_>| one(plan, plan.job(from + i), loaded, stop);
+    play_in_order(to.saturating_sub(from), (threads, stop), one, take)
+}
+
+/// The same for any games of a plan, in their order.
+pub(crate) fn play_jobs<E>(
+    plan: &Plan,
+    order: &[Job],
+    threads: NonZeroUsize,
+    stop: &AtomicBool,
+    take: impl FnMut(Played) -> Result<(), E>,
+) -> Result<(), E> {
+    let one = |loaded: &mut Loaded, i: usize, stop: Stop<'_>| one(plan, order[i], loaded, stop);
+    play_in_order(order.len(), (threads, stop), one, take)
+}
+
+fn one(plan: &Plan, job: Job, loaded: &mut Loaded, stop: Stop<'_>) -> Played {
+    let scenario = match loaded.scenario(plan, &job) {
+        Ok(scenario) => scenario.of_seed(job.seed).map_err(|problems| problems.to_string()),
+        Err(why) => Err(why.clone()),
+    };
+    let played = scenario.and_then(|scenario| {
+        let mut watch = Watch::new(&scenario, job.side);
+        let game = play_game(&scenario, job.seed, stop, |contest, runner| watch.see(contest, runner))?;
+        let (metrics, boats) = watch.end(&game);
+        Ok((metrics, game.digest, boats))
+    });
+    let (result, digest, boats) = match played {
+        Ok((metrics, digest, boats)) => (Ok(metrics), digest, boats),
+        Err(why) => (Err(why), String::new(), vec![]),
+    };
+    Played { row: Row { job, boats: boats.len(), digest, result }, boats }
+}
+
+/// Looks on at a game.
+struct Watch<'a> {
+    scenario: &'a Scenario,
+    cursor: EventCursor,
+    quality: GameQuality,
+    statistics: StatisticsBuilder<'a>,
+    /// The least distance of any two boats' centres, m.
+    closest_m: f64,
+    /// By team: the least distance of its boats to the edge of the field, m.
+    edges_m: [f64; 2],
+    /// The entry's team.
+    side: usize,
+    /// By vehicle: energy taken from its battery, kJ.
+    energies_kj: Vec<f64>,
+}
+
+impl<'a> Watch<'a> {
+    fn new(scenario: &'a Scenario, side: usize) -> Watch<'a> {
+        Watch {
+            scenario,
+            cursor: EventCursor::default(),
+            quality: GameQuality::new(scenario),
+            statistics: StatisticsBuilder::new(scenario),
+            closest_m: f64::INFINITY,
+            edges_m: [f64::INFINITY; 2],
+            side,
+            energies_kj: vec![f64::NAN; scenario.vehicles.len()],
+        }
+    }
+
+    fn see(&mut self, contest: &Contest, runner: &MindRunner) {
+        let orders = runner.orders().map(|(_, order)| order);
+        let step = Step::of_frame(self.scenario, &contest.frame(&mut self.cursor), orders);
+        self.quality.add(&step, &[]);
+        self.statistics.add(&step);
+        for (i, one) in step.samples.iter().enumerate() {
+            let at = one.truth.at();
+            for other in &step.samples[..i] {
+                self.closest_m = at.distance(other.truth.at()).min(self.closest_m);
+            }
+            let edge_m = &mut self.edges_m[usize::from(self.scenario.vehicles[i].team.index() != 0)];
+            *edge_m = edge_m.min(self.scenario.field.inside_by_m(at));
+        }
+        for (i, energy_kj) in self.energies_kj.iter_mut().enumerate() {
+            if let Drive::Thrusters { thruster, .. } = &self.scenario.boat_of(VehicleId::at(i)).drive
+                && let Some(battery) = &thruster.flaws.battery
+            {
+                let spent = battery.charge - contest.world().state().flaws[i].charge;
+                *energy_kj = spent * battery.capacity_joule / 1000.0;
+            }
+        }
+    }
+
+    fn end(self, game: &Game) -> (Metrics, Vec<BoatRow>) {
+        let Watch { scenario, quality, statistics, energies_kj, closest_m, edges_m, side, .. } = self;
+        let nearness = quality.end().encounters.all();
+        let own = &scenario.teams[side].name;
+        let boat = |(statistics, energy_kj): (BoatStatistics, f64)| BoatRow {
+            is_own: statistics.team == *own,
+            statistics,
+            energy_kj,
+        };
+        let boats: Vec<BoatRow> = statistics.end().into_iter().zip(energies_kj).map(boat).collect();
+        let team = |team: usize| {
+            let counts = &game.counts[team];
+            let is_own = team == side;
+            let sum =
+                |of: &dyn Fn(&BoatRow) -> f64| boats.iter().filter(|boat| boat.is_own == is_own).map(of).sum::<f64>();
+            TeamMetrics {
+                score: f64::from(game.score[team]),
+                grabs: f64::from(counts.grabs),
+                captures: f64::from(counts.captures),
+                tags: f64::from(counts.tags),
+                tagged: f64::from(counts.tagged),
+                out_of_bounds: f64::from(counts.out_of_bounds),
+                collisions: f64::from(counts.collisions),
+                tagged_s: sum(&|boat| boat.statistics.tagged_s),
+                outside_s: sum(&|boat| boat.statistics.outside_s),
+                distance_m: sum(&|boat| boat.statistics.distance_m),
+                energy_kj: sum(&|boat| boat.energy_kj),
+                edge_m: edges_m[team],
+            }
+        };
+        let (own, opponent) = (team(side), team(1 - side));
+        let metrics = Metrics {
+            win_share: game.winner.map_or(0.5, |winner| f64::from(u8::from(winner == side))),
+            own,
+            opponent,
+            score_difference: own.score - opponent.score,
+            contacts: nearness.contacts as f64,
+            near_misses: nearness.near_misses as f64,
+            closest_m: if closest_m.is_finite() { closest_m } else { f64::NAN },
+            duration_s: game.duration_s,
+        };
+        (metrics, boats)
+    }
+}

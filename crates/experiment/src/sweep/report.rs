@@ -1,0 +1,216 @@
+//! What came of a sweep.
+
+use super::effects::{Effect, Interaction, Observations, effects, interactions};
+use super::metric::{METRICS, Metric, Metrics};
+use super::plan::Plan;
+use super::table::Row;
+use crate::estimate::Estimate;
+use scenario::Design;
+use serde::Serialize;
+
+/// How many of the worst games of an entry are named.
+const WORST: usize = 5;
+
+/// What came of a sweep: `report.json`, and what the page and the terminal show. Only seeds count of which all games of a point were
+/// played.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Report {
+    /// The sweep's name.
+    pub sweep: String,
+    /// What it is meant for.
+    pub about: String,
+    /// The version of Squall that played it.
+    pub version: String,
+    /// The game file.
+    pub game: String,
+    /// The strategy file of the opponents.
+    pub opponent: String,
+    /// Which points were played.
+    pub design: Design,
+    /// The first seed.
+    pub seed: u64,
+    /// Games of each entry at each point.
+    pub games_per_point: u64,
+    /// Games that were to be played.
+    pub games: usize,
+    /// Games that were played or could not start.
+    pub games_done: usize,
+    /// The keys of the axes.
+    pub axes: Vec<String>,
+    /// The names of the entries.
+    pub entries: Vec<String>,
+    /// What is measured; lists by metric are in this order.
+    pub metrics: Vec<Metric>,
+    /// By point.
+    pub points: Vec<PointReport>,
+    /// What each axis does to each entry.
+    pub effects: Vec<Effect>,
+    /// What two axes do together, those that matter first.
+    pub interactions: Vec<Interaction>,
+    /// The games that each entry lost by most points.
+    pub worst: Vec<Worst>,
+    /// Games that could not start.
+    pub failures: Vec<Failure>,
+}
+
+/// How the entries did at a point.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PointReport {
+    /// By axis, as people read it.
+    pub values: Vec<String>,
+    /// Seeds of which all games were played.
+    pub seeds: usize,
+    /// By entry.
+    pub entries: Vec<EntryAtPoint>,
+    /// Each other entry against the first, on the same seeds.
+    pub differences: Vec<Difference>,
+    /// A command that plays one of its games.
+    pub command: String,
+}
+
+/// How an entry did at a point: means a game, with their intervals over seeds.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct EntryAtPoint {
+    /// Its name.
+    pub entry: String,
+    /// By metric; none where no game has it.
+    pub metrics: Vec<Option<Estimate>>,
+}
+
+/// How much more of a metric one entry has than another.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Difference {
+    /// Whose metric it is.
+    pub entry: String,
+    /// From which this one's is taken.
+    pub from: String,
+    /// By metric.
+    pub metrics: Vec<Option<Estimate>>,
+}
+
+/// A game that went badly.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Worst {
+    /// The entry.
+    pub entry: String,
+    /// The game's place in the tables.
+    pub game: usize,
+    /// By axis, as people read it.
+    pub values: Vec<String>,
+    /// Points, and the opponent's.
+    pub score: [f64; 2],
+    /// How often two hulls touched.
+    pub contacts: f64,
+    /// How often one of its boats left the field.
+    pub out_of_bounds: f64,
+    /// Digest of its final state and of all events.
+    pub digest: String,
+    /// The command that plays it again.
+    pub command: String,
+}
+
+/// A game that could not start.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Failure {
+    /// The game's place in the tables.
+    pub game: usize,
+    /// Why.
+    pub why: String,
+    /// The command that tries it again.
+    pub command: String,
+}
+
+impl Report {
+    /// What the rows of a plan's first games, in order, come to.
+    #[must_use]
+    pub fn new(plan: &Plan, rows: &[Row]) -> Report {
+        let sweep = plan.sweep();
+        let observed = observations(plan, rows);
+        let names: Vec<String> = sweep.entries.iter().map(|entry| entry.name.clone()).collect();
+        let failures = rows.iter().filter_map(|row| {
+            let why = row.result.as_ref().err()?.clone();
+            Some(Failure { game: row.job.index, why, command: plan.command(&row.job) })
+        });
+        Report {
+            sweep: sweep.name.clone(),
+            about: sweep.about.clone(),
+            version: primitives::VERSION.to_owned(),
+            game: sweep.game.display().to_string(),
+            opponent: sweep.opponent.display().to_string(),
+            design: sweep.design,
+            seed: sweep.seed,
+            games_per_point: 2 * plan.seeds(),
+            games: plan.games(),
+            games_done: rows.len(),
+            axes: sweep.axes.iter().map(|axis| axis.key.clone()).collect(),
+            metrics: METRICS.to_vec(),
+            points: (0..plan.points().len()).map(|point| point_report(plan, &observed, &names, point)).collect(),
+            effects: effects(plan, &observed),
+            interactions: interactions(plan, &observed),
+            worst: worst(plan, rows),
+            failures: failures.collect(),
+            entries: names,
+        }
+    }
+}
+
+/// By point, entry and seed: the mean of both sides.
+fn observations(plan: &Plan, rows: &[Row]) -> Observations {
+    let (entries, seeds) = (plan.sweep().entries.len(), plan.seeds() as usize);
+    let of_seed = |point: usize, seed: usize| -> Option<Vec<Metrics>> {
+        let first = point * plan.games_per_point() + seed * 2 * entries;
+        let games = rows.get(first..first + 2 * entries)?;
+        let games = games.iter().map(|row| row.result.as_ref().ok().copied()).collect::<Option<Vec<Metrics>>>()?;
+        Some(games.chunks(2).map(Metrics::mean).collect())
+    };
+    let of_point = |point: usize| {
+        let seeds: Vec<Option<Vec<Metrics>>> = (0..seeds).map(|seed| of_seed(point, seed)).collect();
+        let of_entry = |entry: usize| seeds.iter().map(|seed| Some(seed.as_ref()?[entry])).collect();
+        (0..entries).map(of_entry).collect()
+    };
+    Observations { by_point: (0..plan.points().len()).map(of_point).collect() }
+}
+
+fn point_report(plan: &Plan, observed: &Observations, names: &[String], point: usize) -> PointReport {
+    let all = |of: &dyn Fn(&Metric) -> Option<Estimate>| METRICS.iter().map(of).collect();
+    let entries = names.iter().enumerate().map(|(entry, name)| EntryAtPoint {
+        entry: name.clone(),
+        metrics: all(&|metric| observed.estimate(&[point], entry, metric)),
+    });
+    let differences = names.iter().enumerate().skip(1).map(|(entry, name)| Difference {
+        entry: name.clone(),
+        from: names[0].clone(),
+        metrics: all(&|metric| observed.difference(point, [entry, 0], metric)),
+    });
+    PointReport {
+        values: plan.points()[point].values.iter().map(ToString::to_string).collect(),
+        seeds: observed.by_point[point][0].iter().flatten().count(),
+        entries: entries.collect(),
+        differences: differences.collect(),
+        command: plan.command(&plan.job(point * plan.games_per_point())),
+    }
+}
+
+/// The games that each entry lost by most, or won by least.
+fn worst(plan: &Plan, rows: &[Row]) -> Vec<Worst> {
+    let mut worst = vec![];
+    for (entry, entrant) in plan.sweep().entries.iter().enumerate() {
+        let of_entry = rows.iter().filter(|row| row.job.entry == entry);
+        let mut games: Vec<(&Row, &Metrics)> =
+            of_entry.filter_map(|row| Some((row, row.result.as_ref().ok()?))).collect();
+        games.sort_by(|(a, one), (b, other)| {
+            one.score_difference.total_cmp(&other.score_difference).then(a.job.index.cmp(&b.job.index))
+        });
+        worst.extend(games.into_iter().take(WORST).map(|(Row { job, digest, .. }, metrics)| Worst {
+            entry: entrant.name.clone(),
+            game: job.index,
+            values: plan.points()[job.point].values.iter().map(ToString::to_string).collect(),
+            score: metrics.score(),
+            contacts: metrics.contacts,
+            out_of_bounds: metrics.own.out_of_bounds,
+            digest: digest.clone(),
+            command: plan.command(job),
+        }));
+    }
+    worst
+}

@@ -1,0 +1,270 @@
+//! A sweep in a folder: the tables of its games as they are played, and the report.
+//!
+//! `games.csv` is written a line a game, in order, and is all that a study is taken up again from; `boats.csv` has a line for each boat
+//! of each game. What was torn off when the machine stopped is dropped.
+
+use super::html;
+use super::plan::Plan;
+use super::play::{BoatRow, Played};
+use super::report::Report;
+use super::table::{self, Row};
+use std::fs::{File, OpenOptions};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// The table of games.
+pub const GAMES: &str = "games.csv";
+/// The table of boats.
+const BOATS: &str = "boats.csv";
+/// What identifies the plan.
+const PLAN: &str = "plan.txt";
+/// The plan with all that its games need, so that any of them can be played again.
+pub const PACKED_PLAN: &str = "plan.json";
+/// The columns of the table of boats.
+const BOAT_COLUMNS: [&str; 17] = [
+    "game",
+    "boat",
+    "team",
+    "is_entrys",
+    "grabs",
+    "captures",
+    "tags",
+    "tagged",
+    "out_of_bounds",
+    "collisions",
+    "tagged_s",
+    "outside_s",
+    "carrying_s",
+    "distance_m",
+    "speed_mean_m_s",
+    "speed_max_m_s",
+    "energy_kj",
+];
+
+/// A sweep that is kept in a folder.
+pub struct Study {
+    folder: PathBuf,
+    games: File,
+    boats: File,
+    done: usize,
+}
+
+/// Why a study cannot be kept.
+#[derive(Debug, Error)]
+pub enum StudyError {
+    /// A file cannot be read or written.
+    #[error("cannot {doing} {}: {error}", path.display())]
+    Io {
+        /// What was tried.
+        doing: &'static str,
+        /// With which file.
+        path: PathBuf,
+        /// Why not.
+        error: std::io::Error,
+    },
+    /// There is one already.
+    #[error("{} holds a sweep of {games} games already; --resume goes on with it, or --out names another folder", folder.display())]
+    Exists {
+        /// The folder.
+        folder: PathBuf,
+        /// How many games were played.
+        games: usize,
+    },
+    /// There is none.
+    #[error("{} holds no sweep to go on with", folder.display())]
+    Missing {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// It is of another sweep.
+    #[error(
+        "{} holds another sweep than this: its files, its seed, its games or Squall's version have changed; \
+         expected {expected}, found {found}",
+        folder.display()
+    )]
+    Other {
+        /// The folder.
+        folder: PathBuf,
+        /// The digest of this plan.
+        expected: String,
+        /// That of the one in the folder.
+        found: String,
+    },
+    /// A table cannot be made.
+    #[error("cannot make {what}: {why}")]
+    Table {
+        /// Which.
+        what: &'static str,
+        /// Why not.
+        why: String,
+    },
+}
+
+impl Study {
+    /// A new study in a folder, which is made.
+    ///
+    /// # Errors
+    /// [`StudyError`]: a file cannot be written, or there is a study already.
+    pub fn begin(folder: &Path, plan: &Plan) -> Result<Study, StudyError> {
+        std::fs::create_dir_all(folder).map_err(io("make the folder", folder))?;
+        let games = rows_in(plan, &text(&folder.join(GAMES)).unwrap_or_default()).len();
+        if games > 0 {
+            return Err(StudyError::Exists { folder: folder.to_owned(), games });
+        }
+        write(&folder.join(PLAN), &(plan.digest() + "\n"))?;
+        let packed = serde_json::to_string(&plan.pack());
+        let packed = packed.map_err(|error| StudyError::Table { what: PACKED_PLAN, why: error.to_string() })?;
+        write(&folder.join(PACKED_PLAN), &(packed + "\n"))?;
+        write(&folder.join(GAMES), &table::csv_head(plan))?;
+        write(&folder.join(BOATS), &table::record(BOAT_COLUMNS.map(str::to_owned)))?;
+        Study::open(folder, 0)
+    }
+
+    /// A study that is taken up again: its last line is dropped if it was cut off.
+    ///
+    /// # Errors
+    /// [`StudyError`]: a file cannot be read or written, or the folder holds none, or one of another plan.
+    pub fn resume(folder: &Path, plan: &Plan) -> Result<Study, StudyError> {
+        let Ok(found) = text(&folder.join(PLAN)) else {
+            return Err(StudyError::Missing { folder: folder.to_owned() });
+        };
+        let (found, expected) = (found.trim().to_owned(), plan.digest());
+        if found != expected {
+            return Err(StudyError::Other { folder: folder.to_owned(), expected, found });
+        }
+        let [games, boats] = [GAMES, BOATS].map(|name| folder.join(name));
+        let (games_text, boats_text) = (text(&games)?, text(&boats)?);
+        let (done, lengths) = whole(plan, &games_text, &boats_text);
+        for (path, text, length) in [(&games, &games_text, lengths[0]), (&boats, &boats_text, lengths[1])] {
+            if length < text.len() {
+                let file = OpenOptions::new().write(true).open(path).map_err(io("open", path))?;
+                file.set_len(length as u64).map_err(io("cut", path))?;
+            }
+        }
+        Study::open(folder, done)
+    }
+
+    fn open(folder: &Path, done: usize) -> Result<Study, StudyError> {
+        let open = |name: &str| {
+            let path = folder.join(name);
+            OpenOptions::new().append(true).open(&path).map_err(io("open", &path))
+        };
+        Ok(Study { folder: folder.to_owned(), games: open(GAMES)?, boats: open(BOATS)?, done })
+    }
+
+    /// How many games it has: the next one's place.
+    #[must_use]
+    pub fn done(&self) -> usize {
+        self.done
+    }
+
+    /// The folder.
+    #[must_use]
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// Adds the next game.
+    ///
+    /// # Errors
+    /// [`StudyError`]: a file cannot be written; what is in it so far is whole.
+    ///
+    /// # Panics
+    /// If it is not the next one.
+    pub fn add(&mut self, plan: &Plan, played: &Played) -> Result<(), StudyError> {
+        let (games, boats) = lines(plan, played);
+        self.add_lines(played.row.job.index, &games, &boats)
+    }
+
+    /// Adds the lines of the next game, as [`lines`] makes them.
+    ///
+    /// # Errors
+    /// [`StudyError`]: a file cannot be written; what is in it so far is whole.
+    ///
+    /// # Panics
+    /// If it is not the next one.
+    pub fn add_lines(&mut self, index: usize, game: &str, boats: &str) -> Result<(), StudyError> {
+        assert_eq!(index, self.done, "games come in order");
+        // The game's line says that its boats' are there.
+        let folder = &self.folder;
+        self.boats.write_all(boats.as_bytes()).map_err(io("write", &folder.join(BOATS)))?;
+        self.games.write_all(game.as_bytes()).map_err(io("write", &folder.join(GAMES)))?;
+        self.done += 1;
+        Ok(())
+    }
+
+    /// Writes the report of all games so far: `report.json`, `report.html` and `games.parquet`.
+    ///
+    /// # Errors
+    /// [`StudyError`]: a file cannot be read or written.
+    pub fn report(&self, plan: &Plan) -> Result<Report, StudyError> {
+        let rows = rows_in(plan, &text(&self.folder.join(GAMES))?);
+        let report = Report::new(plan, &rows);
+        let json = serde_json::to_string_pretty(&report);
+        let json = json.map_err(|error| StudyError::Table { what: "report.json", why: error.to_string() })? + "\n";
+        write(&self.folder.join("report.html"), &html::page(&report.sweep, &json))?;
+        write(&self.folder.join("report.json"), &json)?;
+        let path = self.folder.join("games.parquet");
+        let table = table::parquet(plan, &rows);
+        let table = table.map_err(|error| StudyError::Table { what: "games.parquet", why: error.to_string() })?;
+        std::fs::write(&path, table).map_err(io("write", &path))?;
+        Ok(report)
+    }
+}
+
+/// The line of a game in the table of games, and those of its boats.
+#[must_use]
+pub fn lines(plan: &Plan, played: &Played) -> (String, String) {
+    let index = played.row.job.index;
+    let boat = |boat: &BoatRow| {
+        let (of, counts) = (&boat.statistics, &boat.statistics.counts);
+        let counts =
+            [counts.grabs, counts.captures, counts.tags, counts.tagged, counts.out_of_bounds, counts.collisions];
+        let mut cells = vec![index.to_string(), of.boat.clone(), of.team.clone(), u8::from(boat.is_own).to_string()];
+        cells.extend(counts.map(|count| count.to_string()));
+        let numbers = [of.tagged_s, of.outside_s, of.carrying_s, of.distance_m, of.speed_mean_m_s, of.speed_max_m_s];
+        cells.extend(numbers.into_iter().chain([boat.energy_kj]).map(table::cell_of));
+        table::record(cells)
+    };
+    (table::csv_line(plan, &played.row), played.boats.iter().map(boat).collect())
+}
+
+/// The games of a table, whose text is that of `games.csv`, from the first on as far as its lines are whole and of this plan.
+#[must_use]
+pub fn rows_in(plan: &Plan, text: &str) -> Vec<Row> {
+    table::csv_rows(plan, text).map(|(row, _)| row).collect()
+}
+
+/// How many games are whole in both tables, and how long these are then.
+fn whole(plan: &Plan, games: &str, boats: &str) -> (usize, [usize; 2]) {
+    let head = |text: &str| text.find('\n').map_or(text.len(), |at| at + 1);
+    let (mut done, mut lengths) = (0, [head(games), head(boats)]);
+    for (row, end) in table::csv_rows(plan, games) {
+        let mut boats_end = lengths[1];
+        for _ in 0..row.boats {
+            let rest = &boats[boats_end..];
+            let Some(length) = rest.find('\n') else { return (done, lengths) };
+            if rest.split(',').next().and_then(|game| game.parse().ok()) != Some(row.job.index) {
+                return (done, lengths);
+            }
+            boats_end += length + 1;
+        }
+        (done, lengths) = (row.job.index + 1, [end, boats_end]);
+    }
+    (done, lengths)
+}
+
+fn text(path: &Path) -> Result<String, StudyError> {
+    let bytes = std::fs::read(path).map_err(io("read", path))?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+fn write(path: &Path, text: &str) -> Result<(), StudyError> {
+    std::fs::write(path, text).map_err(io("write", path))
+}
+
+pub(crate) fn io(doing: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> StudyError {
+    let path = path.to_owned();
+    move |error| StudyError::Io { doing, path, error }
+}

@@ -1,0 +1,122 @@
+//! The report for the terminal.
+
+use super::effects::{Effect, Interaction};
+use super::find::Found;
+use super::metric::Metric;
+use super::report::{PointReport, Report};
+use crate::estimate::Estimate;
+use std::fmt::Write;
+
+/// What is shown of each level: the metric, its heading, and by what it is multiplied.
+const COLUMNS: [(&str, &str, f64); 5] = [
+    ("win_share", "won %", 100.0),
+    ("score", "points", 1.0),
+    ("opponent_score", "against", 1.0),
+    ("out_of_bounds", "leaves field", 1.0),
+    ("contacts", "contacts", 1.0),
+];
+/// How many interactions and worst games are shown.
+const SHOWN: usize = 6;
+
+/// The report for people: at most 80 columns but for commands.
+#[must_use]
+pub fn text(report: &Report) -> String {
+    let mut text = String::new();
+    let mut line = |line: String| {
+        text.push_str(line.trim_end());
+        text.push('\n');
+    };
+    line(format!("{}: {}", report.sweep, report.about));
+    line(format!("{} against {}", report.game, report.opponent));
+    let (done, points) = (report.games_done, report.points.len());
+    line(format!("{done} of {} games at {points} points; means a game ± 95 % over seeds", report.games));
+    for effect in &report.effects {
+        line(String::new());
+        table(effect, &mut line);
+    }
+    differences(report, &mut line);
+    interactions(&report.interactions, &mut line);
+    if !report.worst.is_empty() {
+        line("\nworst games".to_owned());
+        for worst in report.worst.iter().take(SHOWN) {
+            let [own, theirs] = worst.score;
+            line(format!("  {} {own} : {theirs}  at {}", worst.entry, worst.values.join(", ")));
+            line(format!("    {}", worst.command));
+        }
+    }
+    for failure in report.failures.iter().take(SHOWN) {
+        line(format!("\ngame {} could not start: {}\n    {}", failure.game, failure.why, failure.command));
+    }
+    if report.failures.len() > SHOWN {
+        line(format!("\nand {} more could not start", report.failures.len() - SHOWN));
+    }
+    text
+}
+
+fn table(effect: &Effect, line: &mut impl FnMut(String)) {
+    line(format!("{} with {}", effect.entry, effect.axis));
+    let heads: String = COLUMNS.iter().map(|(_, head, _)| format!("{head:>13}")).collect();
+    line(format!("{:<14}{heads}", ""));
+    for level in &effect.levels {
+        let cell = |(metric, _, times): &(&str, &str, f64)| {
+            let estimate = Metric::place(metric).and_then(|i| level.metrics[i]);
+            format!("{:>13}", estimate.map_or("-".to_owned(), |estimate| shown(&estimate, *times)))
+        };
+        let label: String = level.label.chars().take(13).collect();
+        line(format!("{label:<14}{}", COLUMNS.iter().map(cell).collect::<String>()));
+    }
+}
+
+fn shown(estimate: &Estimate, times: f64) -> String {
+    let digits = usize::from(times == 1.0);
+    let half = estimate.half_width().map_or("?".to_owned(), |half| format!("{:.digits$}", half * times));
+    format!("{:.digits$} ± {half}", estimate.mean * times)
+}
+
+/// What an entry wins more often than the first, at the points where it is sure.
+fn differences(report: &Report, line: &mut impl FnMut(String)) {
+    let Some(index) = Metric::place("win_share") else { return };
+    for (k, entry) in report.entries.iter().enumerate().skip(1) {
+        let of_point = |point: &PointReport| point.differences[k - 1].metrics[index];
+        let all: Vec<Estimate> = report.points.iter().filter_map(of_point).collect();
+        let sure = |is: fn(&Estimate) -> bool| all.iter().filter(|one| is(one)).count();
+        let better = sure(|one| one.low.is_some_and(|low| low > 0.0));
+        let worse = sure(|one| one.high.is_some_and(|high| high < 0.0));
+        let mean = all.iter().map(|one| one.mean).sum::<f64>() / all.len().max(1) as f64;
+        let mut about = String::new();
+        let _ = write!(
+            about,
+            "\n{entry} less {}, on the same seeds: {:+.0} % of games won in the mean",
+            report.entries[0],
+            100.0 * mean
+        );
+        let _ = write!(about, ";\nsurely more at {better} and surely less at {worse} of {} points", all.len());
+        line(about);
+    }
+}
+
+fn interactions(all: &[Interaction], line: &mut impl FnMut(String)) {
+    if all.is_empty() {
+        return;
+    }
+    let matter = all.iter().filter(|one| one.matters);
+    line(format!("\ninteractions that matter: {} of {}", matter.clone().count(), all.len()));
+    for one in matter.take(SHOWN) {
+        let [low, second, first, both] = one.cells;
+        line(format!("  {} of {}: {} with {}", one.metric, one.entry, one.axes[0], one.axes[1]));
+        line(format!("    both low {low:.2}, second high {second:.2}, first high {first:.2}, both high {both:.2}"));
+    }
+}
+
+/// What a search for rare failures found, for people.
+#[must_use]
+pub fn found_text(found: &Found) -> String {
+    let Found { entry, condition, games, failures, rate, .. } = found;
+    let interval = rate.low.zip(rate.high).map(|(low, high)| format!(" ({low:.4} to {high:.4})"));
+    let interval = interval.unwrap_or_default();
+    let mut text = format!("{entry}: {condition} in {failures} of {games} games, {:.4}{interval} of all\n", rate.mean);
+    for named in found.named.iter().take(SHOWN) {
+        let _ = writeln!(text, "  {:.3} at {}\n    {}", named.value, named.values.join(", "), named.command);
+    }
+    text
+}

@@ -1,0 +1,239 @@
+//! The breaking point: the value of an axis at which a condition on an entry begins to hold, by sequential search.
+//!
+//! The condition is taken not to hold at one end, to hold at the other, and to change once between. At each value that is tried, seeds
+//! are played in batches, until the interval of the metric's mean leaves the threshold, or the games of a point are spent. The
+//! chance of any wrong verdict is shared among all looks (Bonferroni), so that the interval that comes of it is one of 95 % at least.
+
+use super::condition::Condition;
+use super::journal::Journal;
+use super::plan::{Job, Plan, Point};
+use super::study::StudyError;
+use crate::estimate::Estimate;
+use scenario::AxisValue;
+use serde::Serialize;
+use statrs::distribution::{ContinuousCDF, StudentsT};
+use std::num::NonZeroUsize;
+use std::sync::atomic::AtomicBool;
+
+/// Seeds of the first batch at a value; each later one doubles what was played.
+const FIRST_SEEDS: u64 = 8;
+/// Values that are tried between the ends.
+const STEPS: u32 = 9;
+/// The chance of a wrong verdict.
+const ALPHA: f64 = 0.05;
+
+/// What was found.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BreakingPoint {
+    /// The axis' key.
+    pub axis: String,
+    /// The entry.
+    pub entry: String,
+    /// The condition.
+    pub condition: String,
+    /// The last value, seen from where it does not hold, at which it surely does not; none if there is none.
+    pub low: Option<f64>,
+    /// The first value at which it surely does; none if there is none.
+    pub high: Option<f64>,
+    /// Where the metric crosses the threshold, between the means of the values that were tried; none if it does not.
+    pub at: Option<f64>,
+    /// Every value that was tried, in order of its value.
+    pub tried: Vec<Tried>,
+}
+
+/// A value that was tried.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Tried {
+    /// The value.
+    pub value: f64,
+    /// Games that were played there.
+    pub games: u64,
+    /// The metric's mean, with its usual interval.
+    pub mean: Estimate,
+    /// Whether the condition holds there; none where all games did not tell.
+    pub holds: Option<bool>,
+    /// A command that plays the first of its games.
+    pub command: String,
+    #[serde(skip)]
+    share: f64,
+}
+
+/// Why there is no search.
+#[derive(Debug, thiserror::Error)]
+pub enum UntilError {
+    /// It is not clear along which axis.
+    #[error("there are {0} axes with numbers, expected --along with the key of one of them: {1}")]
+    Axes(usize, String),
+    /// A game cannot start.
+    #[error("{0}")]
+    Game(String),
+    /// What was played cannot be written down.
+    #[error(transparent)]
+    Journal(#[from] StudyError),
+    /// It was stopped.
+    #[error("stopped before the breaking point was found")]
+    Stopped,
+}
+
+/// Searches along the axis of this key, or the only one with numbers, all others at their nominal values. Games that the journal has are
+/// not played again. `tell` is told of each value that was tried.
+///
+/// # Errors
+/// [`UntilError`]: no axis, or several; a game that cannot start; `stop` was set.
+pub fn breaking_point(
+    plan: &Plan,
+    condition: &Condition,
+    along: Option<&str>,
+    journal: &mut Journal,
+    (jobs, stop): (NonZeroUsize, &AtomicBool),
+    mut tell: impl FnMut(&Tried),
+) -> Result<BreakingPoint, UntilError> {
+    let axes = &plan.sweep().axes;
+    let numeric: Vec<usize> = (0..axes.len()).filter(|k| axes[*k].at(0.0).number().is_some()).collect();
+    let axis = match along {
+        Some(key) => numeric.iter().copied().find(|k| axes[*k].key == key),
+        None => (numeric.len() == 1).then(|| numeric[0]),
+    };
+    let keys = || numeric.iter().map(|k| axes[*k].key.as_str()).collect::<Vec<_>>().join(", ");
+    let axis = axis.ok_or_else(|| UntilError::Axes(numeric.len(), keys()))?;
+    let plan = plan.of_entry(condition.entry);
+    let mut tried: Vec<Tried> = vec![];
+    let mut test = |share: f64, tried: &mut Vec<Tried>| {
+        let one = try_value(&plan, condition, (axis, share), journal, (jobs, stop))?;
+        tell(&one);
+        let holds = one.holds;
+        tried.push(one);
+        Ok::<Option<bool>, UntilError>(holds)
+    };
+    // The ends first: between two of one kind there is nothing to find.
+    let ends = [test(0.0, &mut tried)?, test(1.0, &mut tried)?];
+    let (mut ok, mut broken) = match ends {
+        [Some(false), Some(true)] => (0.0, 1.0),
+        [Some(true), Some(false)] => (1.0, 0.0),
+        _ => return Ok(found(&plan, condition, axis, tried)),
+    };
+    // Where it cannot be told, both sides of that are looked at in turn.
+    let mut untold: Option<[f64; 2]> = None;
+    for step in 0..STEPS {
+        let share = match untold {
+            None => 0.5 * (ok + broken),
+            Some([near_ok, _]) if step % 2 == 0 => 0.5 * (ok + near_ok),
+            Some([_, near_broken]) => 0.5 * (near_broken + broken),
+        };
+        match test(share, &mut tried)? {
+            Some(false) => ok = share,
+            Some(true) => broken = share,
+            None => {
+                let [near_ok, near_broken] = untold.unwrap_or([share; 2]);
+                let is_nearer_ok = (share - ok).abs() < (near_ok - ok).abs();
+                let is_nearer_broken = (share - broken).abs() < (near_broken - broken).abs();
+                untold = Some([
+                    if is_nearer_ok { share } else { near_ok },
+                    if is_nearer_broken { share } else { near_broken },
+                ]);
+            }
+        }
+    }
+    Ok(found(&plan, condition, axis, tried))
+}
+
+/// Plays at one value until it is clear, or all games are spent.
+fn try_value(
+    plan: &Plan,
+    condition: &Condition,
+    (axis, share): (usize, f64),
+    journal: &mut Journal,
+    (jobs, stop): (NonZeroUsize, &AtomicBool),
+) -> Result<Tried, UntilError> {
+    let mut values: Vec<AxisValue> = plan.sweep().axes.iter().map(scenario::Axis::nominal).collect();
+    values[axis] = plan.sweep().axes[axis].at(share);
+    let value = values[axis].number().unwrap_or(f64::NAN);
+    let most = plan.seeds();
+    let plan = plan.at(vec![Point::from(values)], (plan.sweep().seed, most));
+    let looks = (most as f64 / FIRST_SEEDS as f64).log2().ceil().max(0.0) + 1.0;
+    let alpha = ALPHA / looks / f64::from(STEPS + 2);
+    let mut observations: Vec<f64> = vec![];
+    let mut until = FIRST_SEEDS.min(most);
+    loop {
+        let order: Vec<Job> = (2 * observations.len()..2 * until as usize).map(|index| plan.job(index)).collect();
+        let played = journal.play(&plan, &order, jobs, stop)?;
+        if played.len() < order.len() {
+            return Err(UntilError::Stopped);
+        }
+        let numbers: Result<Vec<f64>, String> =
+            played.into_iter().map(|result| result.map(|metrics| condition.metric.of(&metrics))).collect();
+        observations.extend(numbers.map_err(UntilError::Game)?.chunks(2).map(|sides| 0.5 * (sides[0] + sides[1])));
+        let holds = verdict(condition, &observations, alpha);
+        if holds.is_some() || until >= most {
+            return Ok(Tried {
+                value,
+                games: 2 * observations.len() as u64,
+                mean: Estimate::of(&observations),
+                holds,
+                command: plan.command(&plan.job(0)),
+                share,
+            });
+        }
+        until = (2 * until).min(most);
+    }
+}
+
+/// Whether a condition holds for the mean of which these are observations, if that is sure but for a chance of `alpha`.
+fn verdict(condition: &Condition, observations: &[f64], alpha: f64) -> Option<bool> {
+    let count = observations.len() as f64;
+    let mean = observations.iter().sum::<f64>() / count;
+    let squares: f64 = observations.iter().map(|one| (one - mean) * (one - mean)).sum();
+    // Equal observations tell less than their spread says: as if one more had been half a unit off.
+    let error = ((squares + 0.25) / (count - 1.0).max(1.0) / count).sqrt();
+    let quantile = StudentsT::new(0.0, 1.0, (count - 1.0).max(1.0)).ok()?.inverse_cdf(1.0 - alpha / 2.0);
+    let margin = condition.margin(mean);
+    (margin.abs() > quantile * error).then_some(margin < 0.0)
+}
+
+fn found(plan: &Plan, condition: &Condition, axis: usize, mut tried: Vec<Tried>) -> BreakingPoint {
+    tried.sort_by(|a, b| a.share.total_cmp(&b.share));
+    let rises = tried.first().is_none_or(|first| first.holds != Some(true));
+    let sure = |holds: bool| tried.iter().filter(move |one| one.holds == Some(holds)).map(|one| one.value);
+    // Seen from the end where it does not hold: the last value there before it ever holds.
+    let pick = |holds: bool, greatest: bool| {
+        let values = sure(holds);
+        if greatest { values.reduce(f64::max) } else { values.reduce(f64::min) }
+    };
+    let crossing = tried.windows(2).find_map(|pair| {
+        let margins = [0, 1].map(|i| condition.margin(pair[i].mean.mean));
+        let is_crossed = (margins[0] < 0.0) != (margins[1] < 0.0);
+        let share = pair[0].share + (pair[1].share - pair[0].share) * margins[0] / (margins[0] - margins[1]);
+        is_crossed.then(|| plan.sweep().axes[axis].at(share).number())?
+    });
+    BreakingPoint {
+        axis: plan.sweep().axes[axis].key.clone(),
+        entry: plan.sweep().entries[0].name.clone(),
+        condition: condition.to_string(),
+        low: pick(false, rises),
+        high: pick(true, !rises),
+        at: crossing,
+        tried,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::metric::METRICS;
+    use super::*;
+
+    #[test]
+    fn a_verdict_is_as_seldom_wrong_as_it_says() {
+        // Coins of which 50 % fall right: whether they do so less than half the time cannot be told, and is told in error seldom.
+        let condition = Condition { entry: 0, metric: &METRICS[0], is_below: true, threshold: 0.5 };
+        let mut wrong = 0;
+        for trial in 0..2000 {
+            let mut stream = primitives::stream::Stream::new(trial, "coins");
+            let coins: Vec<f64> = (0..64).map(|_| f64::from(u8::from(stream.unit() < 0.5))).collect();
+            wrong += i32::from(verdict(&condition, &coins, 0.05).is_some());
+        }
+        assert!((40..140).contains(&wrong), "{wrong} of 2000, expected about 100");
+        let sure: Vec<f64> = vec![1.0; 20];
+        assert_eq!(verdict(&condition, &sure, 0.001), Some(false));
+        assert_eq!(verdict(&Condition { is_below: false, ..condition }, &sure, 0.001), Some(true));
+    }
+}

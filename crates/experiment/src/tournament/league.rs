@@ -1,0 +1,101 @@
+//! The results of a league: games that were played before are not played again when others join.
+//!
+//! They are a text of one line a game, JSON, that is only ever appended to. A game is known by what the program makes of its files and by
+//! its seed: whoever changes a strategy gets new games, and whoever gives it another name does not.
+
+use super::plan::Plan;
+use super::play::Record;
+use crate::pipeline::Game;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use thiserror::Error;
+
+/// What is known of a league's games.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct League {
+    /// By pairing, as [`Plan::pairings`] says, and by seed.
+    known: BTreeMap<(String, u64), Result<Game, String>>,
+}
+
+/// A game as it stands in the text.
+#[derive(Serialize, Deserialize)]
+struct Line {
+    pairing: String,
+    /// Who they were, for people.
+    blue: String,
+    red: String,
+    seed: u64,
+    #[serde(flatten)]
+    outcome: Outcome,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Outcome {
+    Game(Game),
+    Failed(String),
+}
+
+/// A line that is none.
+#[derive(Debug, Error)]
+#[error("line {line} is no game of a league: {why}")]
+pub struct LeagueError {
+    line: usize,
+    why: serde_json::Error,
+}
+
+impl League {
+    /// The games of a text. A last line without its end was torn off as it was written: it is left out.
+    ///
+    /// # Errors
+    /// [`LeagueError`]: another line is no game.
+    pub fn parse(text: &str) -> Result<League, LeagueError> {
+        let whole = text.rsplit_once('\n').map_or("", |(whole, _)| whole);
+        let game = |(line, text): (usize, &str)| {
+            let Line { pairing, seed, outcome, .. } =
+                serde_json::from_str(text).map_err(|why| LeagueError { line: line + 1, why })?;
+            let result = match outcome {
+                Outcome::Game(game) => Ok(game),
+                Outcome::Failed(why) => Err(why),
+            };
+            Ok(((pairing, seed), result))
+        };
+        Ok(League { known: whole.lines().enumerate().map(game).collect::<Result<_, _>>()? })
+    }
+
+    /// The line of a game.
+    ///
+    /// # Panics
+    /// If the game is none of the plan's, whose pairings these are.
+    #[must_use]
+    pub fn line(plan: &Plan, pairings: &[String], record: &Record) -> String {
+        let [blue, red] = record.of.sides.map(|entry| plan.tournament().entries[entry].name.clone());
+        let outcome = match record.result.clone() {
+            Ok(game) => Outcome::Game(game),
+            Err(why) => Outcome::Failed(why),
+        };
+        let pairing = pairings[plan.place_of(record.of) % pairings.len()].clone();
+        let line = Line { pairing, blue, red, seed: record.of.seed, outcome };
+        serde_json::to_string(&line).expect("it has names for keys") + "\n"
+    }
+
+    /// The games of a plan that are known, and the places of the others.
+    #[must_use]
+    pub fn split(&self, plan: &Plan, pairings: &[String]) -> (Vec<Record>, Vec<usize>) {
+        let (mut known, mut new) = (vec![], vec![]);
+        for place in 0..plan.games() {
+            let of = plan.match_at(place).0;
+            match self.known.get(&(pairings[place % pairings.len()].clone(), of.seed)) {
+                Some(result) => known.push(Record { of, result: result.clone() }),
+                None => new.push(place),
+            }
+        }
+        (known, new)
+    }
+
+    /// How many games it has.
+    #[must_use]
+    pub fn games(&self) -> usize {
+        self.known.len()
+    }
+}

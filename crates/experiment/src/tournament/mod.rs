@@ -1,0 +1,18 @@
+//! Tournaments: every strategy against every other, over many seeds and from both sides.
+//!
+//! A [`Plan`] says which games are played, [`play()`] plays them on several threads, and a [`Report`] says what came of
+//! it. The report depends on the plan alone, not on the number of threads.
+
+mod league;
+mod plan;
+mod play;
+mod rating;
+mod report;
+mod table;
+
+pub use league::{League, LeagueError};
+pub use plan::{Match, Plan};
+pub use play::{Observer, Record, play, play_observed};
+pub use rating::{Meeting, Rating, ratings};
+pub use report::{Cell, Failure, MatchRow, Report, Row, Seeds};
+pub use table::{WIDTH, csv, text};

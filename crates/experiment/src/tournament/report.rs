@@ -1,0 +1,311 @@
+//! What came of a tournament: entries, who beats whom, and every game.
+
+use super::plan::Plan;
+use super::play::Record;
+use super::rating::{Meeting, Rating, ratings};
+use crate::estimate::Estimate;
+use crate::pipeline::Game;
+use rules::count::Counts;
+use scenario::Packed;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
+
+/// What came of a tournament: what `--json` writes.
+///
+/// Only seeds of which all games were played count in [`Report::entries`] and [`Report::matrix`]: with some of the
+/// games of a seed an entry would be measured against some of its opponents.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Report {
+    /// The tournament's name.
+    pub tournament: String,
+    /// The version of Squall that played it.
+    pub version: String,
+    /// The commit that it was built from; the shell knows.
+    pub commit: String,
+    /// The game file.
+    pub game: String,
+    /// The sea file in place of the game's own.
+    pub sea: Option<String>,
+    /// The game's teams.
+    pub teams: Vec<String>,
+    /// The entry whose pairings alone were played.
+    pub challenger: Option<String>,
+    /// The first seed.
+    pub seed: u64,
+    /// How many games each pairing was to play.
+    pub games_per_pairing: u64,
+    /// Seeds of which all games were played.
+    pub seeds_counted: u64,
+    /// Games that were not played, because somebody stopped the tournament.
+    pub games_unplayed: u64,
+    /// Games that were played and do not count, because others of their seed are missing.
+    pub games_left_out: u64,
+    /// Games a second, by the clock; the shell knows.
+    pub rate: Option<f64>,
+    /// Entries, the highest mean score first.
+    pub entries: Vec<Row>,
+    /// Each entry against each, rows and columns in the same order.
+    pub matrix: Vec<Cell>,
+    /// Games that could not start.
+    pub failures: Vec<Failure>,
+    /// Every game that was played.
+    pub matches: Vec<MatchRow>,
+    /// The games themselves, so that any of them can be played again wherever the report is.
+    #[serde(default)]
+    pub plan: Option<Packed>,
+}
+
+/// How an entry did, a game.
+///
+/// All games of a seed are on the same sea, so they are one observation: the entry's mean over its opponents and both
+/// sides. The intervals are over seeds.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// The entry's name.
+    pub name: String,
+    /// Its strategy file.
+    pub strategy: String,
+    /// Games it played; one against itself counts from both sides.
+    pub games: u64,
+    /// How strong it is, by whom it beat.
+    pub rating: Rating,
+    /// Points.
+    pub score: Estimate,
+    /// Flags taken.
+    pub grabs: Estimate,
+    /// Flags brought in.
+    pub captures: Estimate,
+    /// Opponents tagged.
+    pub tags: Estimate,
+    /// Times tagged, by an opponent or the boundary.
+    pub tagged: Estimate,
+    /// Times a boat left the field.
+    pub out_of_bounds: Estimate,
+    /// Collisions of its boats; one between team-mates is two.
+    pub collisions: Estimate,
+    /// Games won.
+    pub wins: u64,
+    /// Games drawn.
+    pub draws: u64,
+    /// Games lost.
+    pub losses: u64,
+}
+
+/// How one entry did against another.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Cell {
+    /// Whose wins are counted.
+    pub row: String,
+    /// Against whom.
+    pub column: String,
+    /// Games; one against itself counts from both sides.
+    pub games: u64,
+    /// Games that the row won.
+    pub wins: u64,
+    /// Games that nobody won.
+    pub draws: u64,
+    /// Games that the column won.
+    pub losses: u64,
+    /// The share of the decided games that the row won; none if none was decided. The interval is over seeds.
+    pub won_of_decided: Option<Estimate>,
+    /// The mean points of the row and of the column.
+    pub score: [f64; 2],
+    /// The row's points less the column's, mean over games.
+    pub score_difference: f64,
+    /// Which seeds were played.
+    pub seeds: Seeds,
+}
+
+/// The first and last of some seeds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Seeds {
+    /// The first.
+    pub first: u64,
+    /// The last.
+    pub last: u64,
+}
+
+/// A game that was played.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MatchRow {
+    /// Its place in the order of the tournament.
+    pub game: usize,
+    /// The first team's entry.
+    pub blue: String,
+    /// The second team's.
+    pub red: String,
+    /// The seed.
+    pub seed: u64,
+    /// Points of both.
+    pub score: [u32; 2],
+    /// Which of them won, 0 or 1; none is a draw.
+    pub winner: Option<usize>,
+    /// How long it was, simulated s.
+    pub duration_s: f64,
+    /// Digest of the final state and of all events.
+    pub digest: String,
+}
+
+/// A game that could not start.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Failure {
+    /// The first team's entry.
+    pub blue: String,
+    /// The second team's.
+    pub red: String,
+    /// The seed.
+    pub seed: u64,
+    /// Why it could not start.
+    pub why: String,
+}
+
+/// A game from the side of one entry.
+struct Appearance<'a> {
+    game: &'a Game,
+    side: usize,
+    opponent: usize,
+}
+
+impl Report {
+    /// What the records of a plan's games, in its order, come to.
+    #[must_use]
+    pub fn new(plan: &Plan, records: &[Record]) -> Report {
+        let tournament = plan.tournament();
+        let name = |entry: usize| tournament.entries[entry].name.clone();
+        let rounds: Vec<&[Record]> = records.chunk_by(|a, b| a.of.seed == b.of.seed).collect();
+        let is_whole = |round: &&[Record]| {
+            round.len() == plan.games_per_seed() && round.iter().all(|record| record.result.is_ok())
+        };
+        let whole: Vec<&[Record]> = rounds.into_iter().filter(is_whole).collect();
+        let seeds = whole.iter().map(|round| round[0].of.seed);
+        let counted: BTreeSet<u64> = seeds.collect();
+        let is_left_out = |record: &&Record| record.result.is_ok() && !counted.contains(&record.of.seed);
+        let mut order: Vec<(usize, Row)> = match whole.is_empty() {
+            true => vec![],
+            false => {
+                let rated = ratings(tournament.entries.len(), &meetings(&whole));
+                rated.into_iter().enumerate().map(|(entry, rating)| (entry, row(plan, &whole, entry, rating))).collect()
+            }
+        };
+        order.sort_by(|(_, a), (_, b)| b.score.mean.total_cmp(&a.score.mean));
+        let ranks: Vec<usize> = order.iter().map(|(entry, _)| *entry).collect();
+        let failures = records.iter().filter_map(|record| {
+            let why = record.result.as_ref().err()?.clone();
+            Some(Failure { blue: name(record.of.sides[0]), red: name(record.of.sides[1]), seed: record.of.seed, why })
+        });
+        let matches = records.iter().filter_map(|record| {
+            let Game { score, winner, duration_s, digest, .. } = record.result.as_ref().ok()?.clone();
+            let ([blue, red], game) = (record.of.sides.map(name), plan.place_of(record.of));
+            Some(MatchRow { game, blue, red, seed: record.of.seed, score, winner, duration_s, digest })
+        });
+        Report {
+            tournament: tournament.name.clone(),
+            version: primitives::VERSION.to_owned(),
+            commit: String::new(),
+            game: tournament.game.display().to_string(),
+            sea: tournament.sea.as_ref().map(|sea| sea.display().to_string()),
+            teams: plan.teams().to_vec(),
+            challenger: tournament.challenger.clone(),
+            seed: tournament.seed,
+            games_per_pairing: 2 * plan.seeds(),
+            seeds_counted: whole.len() as u64,
+            games_unplayed: (plan.games() - records.len()) as u64,
+            games_left_out: records.iter().filter(is_left_out).count() as u64,
+            rate: None,
+            matrix: matrix(plan, &whole, &ranks),
+            entries: order.into_iter().map(|(_, row)| row).collect(),
+            failures: failures.collect(),
+            matches: matches.collect(),
+            plan: Some(plan.pack()),
+        }
+    }
+}
+
+/// Who met whom, seed by seed, and what came of it.
+fn meetings(rounds: &[&[Record]]) -> Vec<Vec<Meeting>> {
+    let of_record = |record: &Record| {
+        let winner = record.result.as_ref().ok()?.winner;
+        Some(Meeting { sides: record.of.sides, share: winner.map_or(0.5, |side| if side == 0 { 1.0 } else { 0.0 }) })
+    };
+    rounds.iter().map(|round| round.iter().filter_map(of_record).collect()).collect()
+}
+
+/// The games of a seed that an entry played in; both sides of one against itself.
+fn appearances(round: &[Record], entry: usize) -> impl Iterator<Item = Appearance<'_>> {
+    round.iter().flat_map(move |record| {
+        let sides = (0..2).filter(move |side| record.of.sides[*side] == entry);
+        sides.filter_map(move |side| {
+            let game = record.result.as_ref().ok()?;
+            Some(Appearance { game, side, opponent: record.of.sides[1 - side] })
+        })
+    })
+}
+
+/// How an entry did. Each of the rounds is one observation.
+fn row(plan: &Plan, rounds: &[&[Record]], entry: usize, rating: Rating) -> Row {
+    let entrant = &plan.tournament().entries[entry];
+    let estimate = |value: &dyn Fn(&Appearance<'_>) -> u32| {
+        let observation = |round: &&[Record]| {
+            let values: Vec<f64> = appearances(round, entry).map(|appearance| f64::from(value(&appearance))).collect();
+            values.iter().sum::<f64>() / values.len() as f64
+        };
+        Estimate::of(&rounds.iter().map(observation).collect::<Vec<f64>>())
+    };
+    let count = |of: fn(&Counts) -> u32| estimate(&|a: &Appearance<'_>| of(&a.game.counts[a.side]));
+    let all = || rounds.iter().flat_map(|round| appearances(round, entry));
+    let [wins, draws, losses] = standing(all());
+    Row {
+        name: entrant.name.clone(),
+        strategy: entrant.strategy.display().to_string(),
+        games: all().count() as u64,
+        rating,
+        score: estimate(&|a: &Appearance<'_>| a.game.score[a.side]),
+        grabs: count(|counts| counts.grabs),
+        captures: count(|counts| counts.captures),
+        tags: count(|counts| counts.tags),
+        tagged: count(|counts| counts.tagged),
+        out_of_bounds: count(|counts| counts.out_of_bounds),
+        collisions: count(|counts| counts.collisions),
+        wins,
+        draws,
+        losses,
+    }
+}
+
+/// Games won, drawn and lost.
+fn standing<'a>(appearances: impl Iterator<Item = Appearance<'a>>) -> [u64; 3] {
+    appearances.fold([0; 3], |[wins, draws, losses], appearance| match appearance.game.winner {
+        None => [wins, draws + 1, losses],
+        Some(winner) if winner == appearance.side => [wins + 1, draws, losses],
+        Some(_) => [wins, draws, losses + 1],
+    })
+}
+
+/// Each of `ranks` against each that it played.
+fn matrix<'a>(plan: &Plan, rounds: &[&'a [Record]], ranks: &[usize]) -> Vec<Cell> {
+    let (Some(first), Some(last)) = (rounds.first(), rounds.last()) else { return vec![] };
+    let seeds = Seeds { first: first[0].of.seed, last: last[0].of.seed };
+    let name = |entry: usize| plan.tournament().entries[entry].name.clone();
+    let pairs = ranks.iter().flat_map(|row| ranks.iter().map(move |column| (*row, *column)));
+    let cell = |(row, column): (usize, usize)| {
+        let of_round = |round: &&'a [Record]| appearances(round, row).filter(move |a| a.opponent == column);
+        let all = || rounds.iter().flat_map(of_round);
+        let games = all().count() as u64;
+        let decided = |round: &&'a [Record]| {
+            let [wins, _, losses] = standing(of_round(round));
+            (wins as f64, (wins + losses) as f64)
+        };
+        let won_of_decided = Estimate::of_ratio(&rounds.iter().map(decided).collect::<Vec<_>>());
+        let points = |side: usize| {
+            let of = |a: Appearance<'_>| f64::from(a.game.score[if side == 0 { a.side } else { 1 - a.side }]);
+            all().map(of).sum::<f64>() / games as f64
+        };
+        let score = [points(0), points(1)];
+        let [wins, draws, losses] = standing(all());
+        let score_difference = score[0] - score[1];
+        let (row, column) = (name(row), name(column));
+        let cell = Cell { row, column, games, wins, draws, losses, won_of_decided, score, score_difference, seeds };
+        (games > 0).then_some(cell)
+    };
+    pairs.filter_map(cell).collect()
+}

@@ -1,0 +1,270 @@
+//! A sweep in a folder: whole, cut off and taken up again, on any number of threads; what is wrong with it is said before a game.
+
+use experiment::sweep::{self, Condition, FindError, Journal, Plan, Study, StudyError, UntilError};
+use scenario::{Overrides, load_sweep, load_with};
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+fn shipped(file: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(file).canonicalize().expect("it can be")
+}
+
+/// A sweep of two entries over two axes with short games, and more lines.
+fn text(more: &str) -> String {
+    let [game, two, easy, pav01] = [
+        "games/surveyor_2v2.toml",
+        "strategies/strategy_2.toml",
+        "strategies/easy_attackers.toml",
+        "strategies/pav01.toml",
+    ]
+    .map(shipped);
+    format!(
+        "game = {game:?}\nopponent = {pav01:?}\ngames = 4\nseed = 5\n[[entry]]\nname = \"two\"\nstrategy = {two:?}\n\
+         [[entry]]\nname = \"easy\"\nstrategy = {easy:?}\n[[axis]]\nkey = \"game.duration_s\"\nvalues = [30]\n{more}"
+    )
+}
+
+const WIND: &str = "[[axis]]\nkey = \"sea.wind.speed_m_s\"\nrange = [1, 9]\ncount = 3\n";
+
+fn plan_of(folder: &Path, more: &str) -> Plan {
+    let path = folder.join("tried.toml");
+    std::fs::write(&path, text(more)).expect("it can be");
+    Plan::new(&load_sweep(&path).unwrap_or_else(|problems| panic!("{problems}"))).expect("it can be")
+}
+
+/// Plays a study from where it is to before the game `to`.
+fn go_on(study: &mut Study, plan: &Plan, to: usize, jobs: usize) {
+    let (from, jobs) = (study.done(), NonZeroUsize::new(jobs).expect("it can be"));
+    sweep::play(plan, (from, to), jobs, &AtomicBool::new(false), |played| study.add(plan, &played)).expect("it can be");
+}
+
+/// Every file of a study.
+fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let mut files: Vec<(String, Vec<u8>)> = std::fs::read_dir(folder)
+        .expect("it can be")
+        .map(|entry| entry.expect("it can be"))
+        .map(|entry| {
+            (entry.file_name().into_string().expect("it can be"), std::fs::read(entry.path()).expect("it can be"))
+        })
+        .collect();
+    files.sort();
+    files
+}
+
+#[test]
+fn a_study_that_was_cut_anywhere_and_taken_up_again_is_the_same_bytes_on_any_number_of_threads() {
+    let dir = tempfile::tempdir().unwrap();
+    let plan = plan_of(dir.path(), WIND);
+    assert_eq!((plan.points().len(), plan.games()), (3, 24));
+    let whole = dir.path().join("whole");
+    let mut study = Study::begin(&whole, &plan).unwrap();
+    go_on(&mut study, &plan, 24, 2);
+    study.report(&plan).unwrap();
+    let want = files(&whole);
+    let names: Vec<&str> = want.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(
+        names,
+        ["boats.csv", "games.csv", "games.parquet", "plan.json", "plan.txt", "report.html", "report.json"]
+    );
+    let packed = serde_json::from_slice(&want[3].1).expect("a packed plan");
+    assert_eq!(Plan::unpack(packed).expect("it is this version's").digest(), plan.digest());
+
+    // Of the last line of either table, and of lines before it, any number of bytes may be missing.
+    let cut = dir.path().join("cut");
+    for (games, boats) in [(0, 0), (1, 0), (40, 0), (0, 1), (0, 700), (900, 100)] {
+        let _ = std::fs::remove_dir_all(&cut);
+        let mut study = Study::begin(&cut, &plan).unwrap();
+        go_on(&mut study, &plan, 11, 1);
+        drop(study);
+        for (name, bytes) in [("games.csv", games), ("boats.csv", boats)] {
+            let path = cut.join(name);
+            let length = std::fs::metadata(&path).unwrap().len();
+            std::fs::OpenOptions::new().write(true).open(&path).unwrap().set_len(length - bytes).unwrap();
+        }
+        let mut study = Study::resume(&cut, &plan).unwrap();
+        assert_eq!(study.done() < 11, games + boats > 0, "{games} {boats}: {}", study.done());
+        go_on(&mut study, &plan, 24, 3);
+        study.report(&plan).unwrap();
+        assert!(files(&cut) == want, "cut by {games} and {boats} bytes");
+    }
+}
+
+#[test]
+fn a_game_of_the_report_is_the_one_that_its_command_plays() {
+    let dir = tempfile::tempdir().unwrap();
+    let plan = plan_of(dir.path(), WIND);
+    let job = plan.job(22);
+    let mut played = None;
+    sweep::play(&plan, (22, 23), NonZeroUsize::MIN, &AtomicBool::new(false), |one| {
+        played = Some(one.row);
+        Ok::<(), StudyError>(())
+    })
+    .unwrap();
+    let played = played.expect("a game");
+    assert_eq!((job.point, job.entry, job.seed, job.side), (2, 1, 6, 0));
+    let command = plan.command(&job);
+    // What the program makes of these words: the same files, values and seed.
+    let setting = |key: &str, value: &str| format!("--set '{key}={value}'");
+    for part in [setting("sea.wind.speed_m_s", "9"), setting("game.duration_s", "30"), "--seed 6".to_owned()] {
+        assert!(command.contains(&part), "{command}");
+    }
+    let settings = ["game.duration_s=30", "sea.wind.speed_m_s=9"];
+    let overrides = Overrides {
+        settings: settings.map(|text| scenario::Setting::parse(text).unwrap()).to_vec(),
+        strategies: [("blue", "strategies/easy_attackers.toml"), ("red", "strategies/pav01.toml")]
+            .map(|(team, file)| (team.to_owned(), shipped(file)))
+            .into(),
+        ..Overrides::default()
+    };
+    let scenario = load_with(&shipped("games/surveyor_2v2.toml"), &overrides).unwrap().of_seed(6).unwrap();
+    let outcome = arena::play(&scenario, agent::minds_of(&scenario), 6).unwrap();
+    assert_eq!(outcome.digest, played.digest);
+    let score = played.result.unwrap().own.score;
+    assert_eq!(score, f64::from(outcome.score.teams["blue"]));
+}
+
+#[test]
+fn all_points_play_the_same_seeds_and_designs_cover_the_space() {
+    let dir = tempfile::tempdir().unwrap();
+    let two = format!("{WIND}[[axis]]\nkey = \"boat.gps.noise_m\"\nvalues = [0.1, 1, 4]\n");
+    let grid = plan_of(dir.path(), &two);
+    assert_eq!(grid.points().len(), 9);
+    let seeds = |point: usize| (0..8).map(|i| grid.job(8 * point + i).seed).collect::<Vec<u64>>();
+    assert_eq!(seeds(0), [5, 5, 5, 5, 6, 6, 6, 6]);
+    assert_eq!(seeds(8), seeds(0));
+    let with = |design: &str| {
+        let path = dir.path().join("designed.toml");
+        std::fs::write(&path, format!("design = {design:?}\npoints = 30\n{}", text(&two))).unwrap();
+        Plan::new(&load_sweep(&path).unwrap()).unwrap()
+    };
+    let winds = |plan: &Plan| plan.points().iter().map(|point| point.values[1].number().unwrap()).collect::<Vec<f64>>();
+    let one = with("one_at_a_time");
+    // The nominal point (wind 5, noise 1), two more winds and two more noises.
+    assert_eq!(one.points().len(), 5);
+    assert_eq!(winds(&one), [5.0, 1.0, 9.0, 5.0, 5.0]);
+    for design in ["latin_hypercube", "sobol"] {
+        let mut winds = winds(&with(design));
+        winds.sort_by(f64::total_cmp);
+        // One in each of 30 pieces of a Latin hypercube; a Sobol sequence is about as even.
+        let piece = |wind: &f64| ((wind - 1.0) / 8.0 * 30.0) as usize;
+        let spare = if design == "sobol" { 2 } else { 0 };
+        for (i, wind) in winds.iter().enumerate() {
+            assert!(piece(wind).abs_diff(i) <= spare, "{design}: {winds:?}");
+        }
+    }
+}
+
+#[test]
+fn what_is_wrong_is_said_before_a_game_with_its_place() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("wrong.toml");
+    for (axis, want) in [
+        ("key = \"sea.wind.speed_m_s\"\nrange = [1, 900]", "wrong.toml:15:24: speed_m_s is 900, expected 0 to"),
+        ("key = \"sea.winds.speed_m_s\"\nvalues = [1]", "winds is unknown"),
+        ("key = \"weather.wind\"\nvalues = [1]", "wrong.toml:15:7: key is \"weather.wind\", expected sea, boat"),
+        ("key = \"sea\"\nvalues = [\"nonesuch.toml\"]", "nonesuch.toml"),
+        ("key = \"sea\"\nrange = [0, 1]", "sea has no values, expected files"),
+        ("key = \"boat.gps.noise_m\"\nnormal = [1, 0.5]", "noise_m is -0.5, expected 0 to"),
+        ("key = \"boat.gps.noise_m\"", "has none, expected one of values, range, normal, log_normal"),
+        ("key = \"boat.gps.noise_m\"\nvalues = [1, \"two\"]", "different sorts"),
+        ("key = \"boat.gps.noise_m\"\nrange = [0, 1]\nlog = true", "expected more than 0 with log"),
+        ("key = \"game.duration_s\"\nvalues = [40]", "key is \"game.duration_s\" again"),
+    ] {
+        std::fs::write(&path, text(&format!("[[axis]]\n{axis}\n"))).unwrap();
+        let said = load_sweep(&path).and_then(|sweep| Plan::new(&sweep).map(drop)).expect_err(axis).to_string();
+        assert!(said.contains(want), "{axis}: {said}");
+    }
+}
+
+#[test]
+fn a_folder_keeps_one_sweep_and_says_so() {
+    let dir = tempfile::tempdir().unwrap();
+    let plan = plan_of(dir.path(), WIND);
+    let folder = dir.path().join("out");
+    assert!(matches!(Study::resume(&folder, &plan), Err(StudyError::Missing { .. })));
+    let mut study = Study::begin(&folder, &plan).unwrap();
+    go_on(&mut study, &plan, 2, 1);
+    assert!(matches!(Study::begin(&folder, &plan), Err(StudyError::Exists { games: 2, .. })));
+    let other = plan_of(dir.path(), &WIND.replace("[1, 9]", "[1, 8]"));
+    assert!(matches!(Study::resume(&folder, &other), Err(StudyError::Other { .. })));
+}
+
+#[test]
+fn the_breaking_point_is_found_where_it_is() {
+    // A team whose boats are outside of the field for longer the longer the game: the condition depends on the time alone.
+    let dir = tempfile::tempdir().unwrap();
+    let more = "[[axis]]\nkey = \"sea.wind.speed_m_s\"\nvalues = [3]\n";
+    let path = dir.path().join("until.toml");
+    let ranged = text(more).replace("values = [30]", "range = [10, 90]");
+    std::fs::write(&path, ranged.replace("games = 4", "games = 32")).unwrap();
+    let plan = Plan::new(&load_sweep(&path).unwrap()).unwrap();
+    let condition = Condition::parse("easy.duration_s > 37", plan.sweep()).unwrap();
+    let jobs = (NonZeroUsize::MIN, &AtomicBool::new(false));
+    let mut journal = Journal::begin(dir.path(), &plan).unwrap();
+    let point = sweep::breaking_point(&plan, &condition, Some("game.duration_s"), &mut journal, jobs, |_| {}).unwrap();
+    let (low, high) = (point.low.unwrap(), point.high.unwrap());
+    assert!(low < 37.0 && 37.0 < high && high - low < 1.0, "{low} to {high}");
+    for text in ["easy.duration_s", "nobody.score < 1", "easy.speed < 1", "score < 1"] {
+        assert!(Condition::parse(text, plan.sweep()).is_err(), "{text}");
+    }
+}
+
+#[test]
+fn a_search_that_was_stopped_anywhere_goes_on_without_playing_its_games_again() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("find.toml");
+    std::fs::write(&path, text("[[axis]]\nkey = \"sea.wind.speed_m_s\"\nrange = [1, 12]\n")).unwrap();
+    let plan = Plan::new(&load_sweep(&path).unwrap()).unwrap();
+    let condition = Condition::parse("easy.closest_m < 9", plan.sweep()).unwrap();
+    let find = |journal: &mut Journal, stop: &AtomicBool, after: usize| {
+        let mut rounds = 0;
+        sweep::find(&plan, &condition, 120, journal, (NonZeroUsize::MIN, stop), |_, _| {
+            rounds += 1;
+            stop.store(rounds == after, Ordering::Relaxed);
+        })
+    };
+    let whole = dir.path().join("whole");
+    let mut journal = Journal::begin(&whole, &plan).unwrap();
+    let want = find(&mut journal, &AtomicBool::new(false), 99).unwrap();
+    assert!(want.failures > 0 && want.games == 120 && journal.games() == 120, "{want:?}");
+
+    let cut = dir.path().join("cut");
+    let mut journal = Journal::begin(&cut, &plan).unwrap();
+    assert!(matches!(find(&mut journal, &AtomicBool::new(false), 1), Err(FindError::Stopped)));
+    assert_eq!(journal.games(), 100);
+    drop(journal);
+    assert!(matches!(Journal::begin(&cut, &plan), Err(StudyError::Exists { games: 100, .. })));
+    let file = cut.join("search.csv");
+    let bytes = std::fs::read(&file).unwrap();
+    std::fs::write(&file, &bytes[..bytes.len() - 5]).unwrap();
+    let mut journal = Journal::resume(&cut, &plan).unwrap();
+    assert_eq!(journal.games(), 99, "what was torn off is no game");
+    assert_eq!(find(&mut journal, &AtomicBool::new(false), 99).unwrap(), want);
+    assert_eq!(std::fs::read(&file).unwrap(), std::fs::read(whole.join("search.csv")).unwrap());
+
+    // A breaking point asks for other games: none is lost.
+    let condition = Condition::parse("easy.score < 1", plan.sweep()).unwrap();
+    let stop = AtomicBool::new(false);
+    sweep::breaking_point(
+        &plan,
+        &condition,
+        Some("sea.wind.speed_m_s"),
+        &mut journal,
+        (NonZeroUsize::MIN, &stop),
+        |_| {},
+    )
+    .unwrap();
+    assert!(journal.games() > 120);
+    drop(journal);
+    let mut again = Journal::resume(&cut, &plan).unwrap();
+    // With nobody to play them all games are there.
+    let stopped = (NonZeroUsize::MIN, &AtomicBool::new(true));
+    sweep::breaking_point(&plan, &condition, Some("sea.wind.speed_m_s"), &mut again, stopped, |_| {}).unwrap();
+    let other = plan_of(dir.path(), WIND);
+    assert!(matches!(Journal::resume(&cut, &other), Err(StudyError::Other { .. })));
+    let condition = Condition::parse("easy.score < 2", other.sweep()).unwrap();
+    let mut new = Journal::begin(&dir.path().join("new"), &other).unwrap();
+    let none = sweep::breaking_point(&other, &condition, Some("sea.wind.speed_m_s"), &mut new, stopped, |_| {});
+    assert!(matches!(none, Err(UntilError::Stopped)), "{none:?}");
+}

@@ -1,0 +1,278 @@
+//! Tournaments: the same on any number of threads, fair to both sides, and with honest intervals.
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+use experiment::Game;
+use experiment::tournament::{Match, Plan, Record, Report, play};
+use rules::count::Counts;
+use scenario::{Entrant, Overrides, Tournament, load_tournament, load_with};
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// The quantile of Student's t for three observations, from a table.
+const T_975_OF_2: f64 = 4.302_652_7;
+
+fn shipped(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(path)
+}
+
+fn tournament(game: &str, games: u32, strategies: &[&str]) -> Tournament {
+    let entrant = |(i, strategy): (usize, &&str)| Entrant {
+        name: format!("{strategy}_{i}"),
+        strategy: shipped(&format!("strategies/{strategy}.toml")),
+    };
+    Tournament {
+        name: "small".to_owned(),
+        game: shipped(&format!("games/{game}.toml")),
+        sea: None,
+        entries: strategies.iter().enumerate().map(entrant).collect(),
+        games,
+        seed: 7,
+        self_play: false,
+        challenger: None,
+    }
+}
+
+fn records(plan: &Plan, jobs: usize) -> Vec<Record> {
+    played(plan, jobs, &AtomicBool::new(false), |_| {})
+}
+
+fn played(plan: &Plan, jobs: usize, stop: &AtomicBool, mut watch: impl FnMut(&Record)) -> Vec<Record> {
+    let (games, mut records): (Vec<usize>, _) = ((0..plan.games()).collect(), vec![]);
+    play(plan, &games, NonZeroUsize::new(jobs).unwrap(), stop, |record| {
+        watch(&record);
+        records.push(record);
+    });
+    records
+}
+
+#[test]
+fn the_report_is_the_same_bytes_on_one_thread_and_on_many() {
+    let tournament = Tournament {
+        sea: Some(shipped("seas/moderate_breeze.toml")),
+        self_play: true,
+        ..tournament("pav01_vs_pav01", 6, &["pav01", "easy_attackers", "pav01_seeded"])
+    };
+    let plan = Plan::new(&tournament).unwrap();
+    assert_eq!((plan.seeds(), plan.games_per_seed(), plan.games()), (3, 3 * 2 + 3, 27));
+    let report = |jobs| serde_json::to_string(&Report::new(&plan, &records(&plan, jobs))).unwrap();
+    let (one, four, many) = (report(1), report(4), report(64));
+    assert!(one == four && one == many, "{one}\n{four}\n{many}");
+    assert!(one.contains("\"games_unplayed\":0,\"games_left_out\":0"), "{one}");
+}
+
+#[test]
+fn every_seed_is_played_from_both_sides_and_is_the_game_of_these_strategies() {
+    let tournament = tournament("attack_1v1", 5, &["pav01", "easy_attackers", "idle"]);
+    let plan = Plan::new(&tournament).unwrap();
+    let matches: Vec<Match> = (0..plan.games()).map(|i| plan.match_at(i).0).collect();
+    assert_eq!((plan.seeds(), matches.len()), (3, 18), "an odd number of games is rounded up");
+    for seed in 7..10 {
+        for sides in [[0, 1], [1, 0], [0, 2], [2, 0], [1, 2], [2, 1]] {
+            let count = matches.iter().filter(|game| **game == Match { seed, sides }).count();
+            assert_eq!(count, 1, "seed {seed}, {sides:?}");
+        }
+    }
+    let records = records(&plan, 2);
+    assert_eq!(records.iter().map(|record| record.of).collect::<Vec<_>>(), matches);
+    for Record { of, result } in &records {
+        let strategy = |side: usize| tournament.entries[of.sides[side]].strategy.clone();
+        let strategies = [("blue".to_owned(), strategy(0)), ("red".to_owned(), strategy(1))].into();
+        let scenario = load_with(&tournament.game, &Overrides { strategies, ..Overrides::default() }).unwrap();
+        let scenario = scenario.of_seed(of.seed).unwrap();
+        let outcome = arena::play(&scenario, agent::minds_of(&scenario), of.seed).unwrap();
+        let game = result.as_ref().unwrap();
+        assert_eq!(game.digest, outcome.digest, "{of:?}");
+        assert_eq!(game.score, [outcome.score.teams["blue"], outcome.score.teams["red"]], "{of:?}");
+    }
+    // The one that attacks never loses to the one that lies still, but as the second team it finds it in its way.
+    let report = Report::new(&plan, &records);
+    let names: Vec<&str> = report.entries.iter().map(|row| row.name.as_str()).collect();
+    assert_eq!((names[0], report.entries[0].losses), ("easy_attackers_1", 0), "{names:?}");
+    let cell = |row: &str, column: &str| report.matrix.iter().find(|c| c.row == row && c.column == column).unwrap();
+    let (there, back) = (cell("easy_attackers_1", "idle_2"), cell("idle_2", "easy_attackers_1"));
+    assert_eq!((there.games, there.wins, there.draws, there.losses), (6, 3, 3, 0));
+    assert_eq!((back.wins, back.draws, back.losses), (0, 3, 3));
+    assert_eq!(back.score_difference, -there.score_difference);
+    assert!(there.score_difference > 0.0);
+}
+
+/// A record of a game with these scores; the first team also grabbed once.
+fn record(seed: u64, sides: [usize; 2], score: [u32; 2]) -> Record {
+    let winner = if score[0] == score[1] { None } else { Some(usize::from(score[1] > score[0])) };
+    let counts = [Counts { grabs: 1, ..Counts::default() }, Counts::default()];
+    Record {
+        of: Match { seed, sides },
+        result: Ok(Game { score, counts, winner, duration_s: 60.0, digest: format!("{seed}") }),
+    }
+}
+
+#[test]
+fn the_two_games_of_a_seed_are_one_observation() {
+    const ROUNDING: f64 = 1e-6;
+    let plan = Plan::new(&tournament("attack_1v1", 6, &["pav01", "idle"])).unwrap();
+    // The first entry has 2 and 4, then 5 and 5, then 6 and 8: 3, 5 and 7 a seed. Mean 5, standard deviation 2.
+    let records = [
+        record(7, [0, 1], [2, 3]),
+        record(7, [1, 0], [1, 4]),
+        record(8, [0, 1], [5, 5]),
+        record(8, [1, 0], [1, 5]),
+        record(9, [0, 1], [6, 0]),
+        record(9, [1, 0], [2, 8]),
+    ];
+    let report = Report::new(&plan, &records);
+    let [first, second] = &report.entries[..] else { panic!("{report:?}") };
+    assert_eq!((first.name.as_str(), first.games, first.score.mean), ("pav01_0", 6, 5.0));
+    let half = T_975_OF_2 * 2.0 / 3_f64.sqrt();
+    let (low, high) = (first.score.low.unwrap(), first.score.high.unwrap());
+    assert!((low - (5.0 - half)).abs() < ROUNDING && (high - (5.0 + half)).abs() < ROUNDING, "{low} to {high}");
+    assert_eq!([first.wins, first.draws, first.losses], [4, 1, 1]);
+    assert_eq!([second.wins, second.draws, second.losses], [1, 1, 4]);
+    // Whoever was the first team grabbed once: half a grab a game, and no doubt about it.
+    assert_eq!((first.grabs.mean, first.grabs.low, first.grabs.high), (0.5, Some(0.5), Some(0.5)));
+    let [there, back] = &report.matrix[..] else { panic!("{report:?}") };
+    assert_eq!((there.row.as_str(), there.column.as_str(), there.wins), ("pav01_0", "idle_1", 4));
+    assert!((there.score_difference - 3.0).abs() < ROUNDING && back.score_difference == -there.score_difference);
+    assert_eq!((there.seeds.first, there.seeds.last), (7, 9));
+}
+
+#[test]
+fn all_opponents_of_a_seed_are_one_observation() {
+    const ROUNDING: f64 = 1e-6;
+    let plan = Plan::new(&tournament("attack_1v1", 6, &["pav01", "idle", "easy_attackers"])).unwrap();
+    // Against one opponent the first entry always has 10 points more than against the other: that is no doubt about
+    // its mean, which is 6, 7 and 8 in the three seeds.
+    let seed = |seed: u64, score: u32| {
+        let game = |sides: [usize; 2], score: [u32; 2]| record(seed, sides, score);
+        [
+            game([0, 1], [score, 0]),
+            game([1, 0], [0, score]),
+            game([0, 2], [score + 10, 0]),
+            game([2, 0], [0, score + 10]),
+            game([1, 2], [0, 0]),
+            game([2, 1], [0, 0]),
+        ]
+    };
+    let records = [seed(7, 1), seed(8, 2), seed(9, 3)].concat();
+    let report = Report::new(&plan, &records);
+    let first = &report.entries[0];
+    let half = first.score.half_width().unwrap();
+    assert_eq!((first.name.as_str(), first.games, first.score.mean), ("pav01_0", 12, 7.0));
+    assert!((half - T_975_OF_2 / 3_f64.sqrt()).abs() < ROUNDING, "{half}");
+}
+
+#[test]
+fn a_challenger_plays_everybody_and_nobody_else_plays() {
+    let all = tournament("attack_1v1", 6, &["idle", "easy_attackers", "pav01"]);
+    let plan = Plan::new(&Tournament { challenger: Some("easy_attackers_1".to_owned()), ..all }).unwrap();
+    assert_eq!((plan.games_per_seed(), plan.games()), (4, 12));
+    // Against the idle team two games are won and four drawn; against pav01 two are won and four lost.
+    let score = |seed: u64, sides: [usize; 2]| match (seed, sides) {
+        (7, [1, _]) => [2, 1],
+        (7, [_, 1]) => [0, 3],
+        (_, [2, _]) => [4, 1],
+        (_, [_, 2]) => [1, 4],
+        _ => [1, 1],
+    };
+    let matches = (0..plan.games()).map(|i| plan.match_at(i).0);
+    let records: Vec<Record> = matches.map(|of| record(of.seed, of.sides, score(of.seed, of.sides))).collect();
+    let report = Report::new(&plan, &records);
+    assert_eq!(report.challenger.as_deref(), Some("easy_attackers_1"));
+    let cell = |column: &str| {
+        let cell = report.matrix.iter().find(|cell| cell.row == "easy_attackers_1" && cell.column == column);
+        cell.unwrap_or_else(|| panic!("{report:?}"))
+    };
+    let idle = cell("idle_0");
+    assert_eq!((idle.games, idle.wins, idle.draws, idle.losses), (6, 2, 4, 0));
+    assert_eq!(idle.won_of_decided.map(|share| share.mean), Some(1.0));
+    let pav01 = cell("pav01_2");
+    assert_eq!((pav01.wins, pav01.draws, pav01.losses), (2, 0, 4));
+    let share = pav01.won_of_decided.expect("decided games");
+    assert!((share.mean - 1.0 / 3.0).abs() < 1e-12 && share.low.is_some_and(|low| low < 0.0), "{share:?}");
+    assert!((pav01.score_difference - (pav01.score[0] - pav01.score[1])).abs() < 1e-12);
+    assert!(report.matrix.iter().all(|cell| [&cell.row, &cell.column].contains(&&"easy_attackers_1".to_owned())));
+}
+
+#[test]
+fn equal_entries_are_equal_to_the_last_digit() {
+    let tournament = Tournament {
+        sea: Some(shipped("seas/fresh_breeze.toml")),
+        self_play: true,
+        ..tournament("pav01_vs_pav01", 8, &["pav01", "pav01"])
+    };
+    let plan = Plan::new(&tournament).unwrap();
+    let records = records(&plan, 2);
+    // Wind and waves favour a side: there is something to cancel.
+    let is_drawn = |record: &Record| record.result.as_ref().unwrap().score.windows(2).all(|pair| pair[0] == pair[1]);
+    assert!(!records.iter().all(is_drawn));
+    let report = Report::new(&plan, &records);
+    let [one, other] = &report.entries[..] else { panic!("{report:?}") };
+    assert_eq!((one.score, one.tags, one.wins, one.losses), (other.score, other.tags, other.wins, other.losses));
+    assert_eq!(one.games, 16, "four seeds, twice against the other, and against itself from both sides");
+    assert_eq!(report.matrix.len(), 4);
+    for cell in &report.matrix {
+        assert_eq!((cell.wins, cell.score_difference, cell.games), (cell.losses, 0.0, 8), "{cell:?}");
+    }
+}
+
+#[test]
+fn a_tournament_that_is_stopped_keeps_whole_seeds() {
+    let plan = Plan::new(&tournament("attack_1v1", 40, &["idle", "easy_attackers"])).unwrap();
+    let stop = AtomicBool::new(false);
+    let mut shown = 0;
+    let records = played(&plan, 1, &stop, |_| {
+        shown += 1;
+        stop.store(shown >= 3, Ordering::Relaxed);
+    });
+    assert_eq!(records.len(), shown);
+    assert!((3..40).contains(&shown), "{shown} games");
+    // Whatever was under way, three games are one seed and a half.
+    let report = Report::new(&plan, &records[..3]);
+    assert_eq!((report.seeds_counted, report.games_left_out, report.games_unplayed), (1, 1, 37));
+    assert_eq!((report.entries[0].games, report.entries[0].score.low), (2, None));
+    let nothing = Report::new(&plan, &records[..1]);
+    assert!(nothing.entries.is_empty() && nothing.matrix.is_empty() && nothing.matches.len() == 1);
+}
+
+#[test]
+fn a_game_that_cannot_start_is_reported_and_its_seed_does_not_count() {
+    let plan = Plan::new(&tournament("attack_1v1", 4, &["idle", "easy_attackers"])).unwrap();
+    let mut records = records(&plan, 2);
+    records[2].result = Err("no room".to_owned());
+    let report = Report::new(&plan, &records);
+    let [failure] = &report.failures[..] else { panic!("{:?}", report.failures) };
+    assert_eq!((failure.seed, failure.blue.as_str(), failure.why.as_str()), (8, "idle_0", "no room"));
+    assert_eq!((report.seeds_counted, report.games_left_out, report.games_unplayed), (1, 1, 0));
+    assert_eq!(report.matrix[0].seeds.last, 7);
+}
+
+#[test]
+fn boats_that_do_not_fit_into_their_spawn_area_fail_the_game_and_not_the_tournament() {
+    let dir = tempfile::tempdir().unwrap();
+    let game = dir.path().join("crowd.toml");
+    let base = shipped("games/pav01_vs_pav01.toml").canonicalize().unwrap();
+    // Two boats lie in the rectangle that a third would have to keep clear of them in.
+    let boats = "[[vehicle]]\nname = \"a\"\nteam = \"blue\"\nat = [20.5, 50]\n\
+                 [[vehicle]]\nname = \"b\"\nteam = \"blue\"\nat = [22.4, 50]\n\
+                 [[fleet]]\nteam = \"red\"\ncount = 1\n\
+                 spawn = { along_m = [137.1, 140.0], across_m = [48.5, 51.5], gap_m = 2 }\n";
+    std::fs::write(&game, format!("base = {base:?}\nduration_s = 5\n{boats}")).unwrap();
+    let tournament = Tournament { game, ..tournament("attack_1v1", 4, &["idle", "easy_attackers"]) };
+    let plan = Plan::new(&tournament).unwrap_or_else(|problems| panic!("{problems}"));
+    let report = Report::new(&plan, &records(&plan, 2));
+    assert_eq!((report.failures.len(), report.seeds_counted, report.games_unplayed), (4, 0, 0));
+    assert!(report.failures[0].why.contains("no free start position for red_1"), "{}", report.failures[0].why);
+}
+
+#[test]
+fn the_shipped_tournaments_can_be_played() {
+    let mut files: Vec<PathBuf> =
+        std::fs::read_dir(shipped("tournaments")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    for file in files.into_iter().filter(|file| file.extension().is_some_and(|extension| extension == "toml")) {
+        let tournament = load_tournament(&file).unwrap_or_else(|problems| panic!("{problems}"));
+        let plan = Plan::new(&Tournament { games: 2, ..tournament }).unwrap_or_else(|problems| panic!("{problems}"));
+        let report = Report::new(&plan, &records(&plan, 2));
+        assert_eq!((report.seeds_counted, report.failures.len()), (1, 0), "{}", file.display());
+    }
+}

@@ -1,0 +1,85 @@
+//! Places by the rules: where a flag is captured, and where a tagged boat is freed.
+//!
+//! The referee judges by these functions and agents steer by them. They depend on the field, the rules and a position alone.
+
+use super::{CaptureAt, Rules, SideJudged, UntagAt};
+use crate::field::Field;
+use primitives::frame::{Leg, Ned};
+use primitives::id::TeamId;
+
+impl Rules {
+    /// Where a boat is judged to be when its side counts.
+    #[inline]
+    #[must_use]
+    pub fn side_place(&self, leg: Leg) -> Ned {
+        match self.side_judged {
+            SideJudged::AfterMove => leg.to,
+            SideJudged::BeforeMove => leg.from,
+        }
+    }
+
+    /// Whether a carrier of `team` that has moved along `leg` is where a flag is captured.
+    #[must_use]
+    pub fn is_capture_place(&self, field: &Field, team: TeamId, leg: Leg) -> bool {
+        match self.capture_at {
+            CaptureAt::OwnSide => field.is_own_side(team, self.side_place(leg)),
+            CaptureAt::OwnFlag => is_near_own_flag(field, team, leg.to, self.capture_radius_m),
+            CaptureAt::OwnCorners => is_near_own_corner(field, team, leg.to, self.capture_radius_m),
+        }
+    }
+
+    /// Where a carrier of `team` at `at` steers to capture a flag: the nearest such place, and where any place on the own side
+    /// will do, the nearest own flag. None on a field without flags or corners of that team.
+    #[must_use]
+    pub fn capture_place(&self, field: &Field, team: TeamId, at: Ned) -> Option<Ned> {
+        match self.capture_at {
+            CaptureAt::OwnFlag | CaptureAt::OwnSide => field.nearest_own_flag(team, at),
+            CaptureAt::OwnCorners => field.inside_own_corner(team, at, corner_inset_m(self.capture_radius_m)),
+        }
+    }
+
+    /// Whether a tagged boat of `team` at `at` is where it is freed.
+    #[inline]
+    #[must_use]
+    pub fn is_untag_place(&self, field: &Field, team: TeamId, at: Ned) -> bool {
+        match self.untag_at {
+            UntagAt::OwnFlag => is_near_own_flag(field, team, at, self.untag_radius_m),
+            UntagAt::OwnCorners => is_near_own_corner(field, team, at, self.untag_radius_m),
+        }
+    }
+
+    /// Where a tagged boat of `team` at `at` steers to be freed: the nearest such place. None on a field without flags or
+    /// corners of that team.
+    #[must_use]
+    pub fn untag_place(&self, field: &Field, team: TeamId, at: Ned) -> Option<Ned> {
+        match self.untag_at {
+            UntagAt::OwnFlag => field.nearest_own_flag(team, at),
+            UntagAt::OwnCorners => field.inside_own_corner(team, at, corner_inset_m(self.untag_radius_m)),
+        }
+    }
+
+    /// The centre of the nearest circle in which a tagged boat of `team` is freed; its radius is `untag_radius_m`.
+    #[must_use]
+    pub fn untag_centre(&self, field: &Field, team: TeamId, at: Ned) -> Option<Ned> {
+        match self.untag_at {
+            UntagAt::OwnFlag => field.nearest_own_flag(team, at),
+            UntagAt::OwnCorners => at.nearest_of(field.own_corners(team).iter().copied()),
+        }
+    }
+}
+
+#[inline]
+fn is_near_own_flag(field: &Field, team: TeamId, at: Ned, radius_m: f64) -> bool {
+    field.own_flags(team).any(|(_, home)| at.distance_squared(home) < radius_m * radius_m)
+}
+
+#[inline]
+fn is_near_own_corner(field: &Field, team: TeamId, at: Ned, radius_m: f64) -> bool {
+    field.own_corners(team).iter().any(|corner| at.distance_squared(*corner) < radius_m * radius_m)
+}
+
+/// How far inside of both edges boats steer that must come within `radius_m` of a corner, m. Half of it is 10 m where
+/// the competition of 2026 has 20 m, and leaves 3 tenths of the radius to spare.
+fn corner_inset_m(radius_m: f64) -> f64 {
+    0.5 * radius_m
+}

@@ -1,0 +1,123 @@
+//! A log of a boat: what it was told, and what was measured of it.
+
+use crate::{Engine, LONGEST_S, Mistake, Orders, Sheet};
+use primitives::SimTime;
+use primitives::angle::wrap_pi;
+use scenario::boat::{Boat, Drive};
+
+/// What can be measured: name, column, and from the column's unit to ours.
+pub(super) const CHANNELS: [(&str, &str, Unit); 6] = [
+    ("x", "x_m", Unit::Plain),
+    ("y", "y_m", Unit::Plain),
+    ("heading", "heading_deg", Unit::Degrees),
+    ("surge", "surge_m_s", Unit::Plain),
+    ("sway", "sway_m_s", Unit::Plain),
+    ("yaw rate", "yaw_rate_deg_s", Unit::Degrees),
+];
+/// Their places.
+pub(super) const X: usize = 0;
+pub(super) const HEADING: usize = 2;
+pub(super) const SURGE: usize = 3;
+pub(super) const SWAY: usize = 4;
+pub(super) const YAW_RATE: usize = 5;
+
+/// The unit of a column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Unit {
+    /// As it is.
+    Plain,
+    /// Degrees, or degrees a second.
+    Degrees,
+}
+
+/// A log, ready to be compared with a model.
+#[derive(Clone, Debug)]
+pub struct Log {
+    pub(super) times: Vec<SimTime>,
+    /// x east, y north, heading (turned on, not wrapped), surge, sway, yaw rate; NaN where nothing was measured.
+    pub(super) measured: Vec<[f64; 6]>,
+    pub(super) orders: Orders,
+}
+
+/// Fewest rows that say anything.
+const ROWS_MIN: usize = 20;
+
+impl Log {
+    /// The log in a sheet: `t_s`, commands for the thrusters, and of a trial's columns at least `heading_deg`,
+    /// `surge_m_s` and `yaw_rate_deg_s`. An empty cell or NaN is no measurement.
+    ///
+    /// # Errors
+    /// Where columns are missing or a number is none.
+    pub fn of_sheet(sheet: &Sheet, boat: &Boat) -> Result<Log, Mistake> {
+        if matches!(boat.drive, Drive::Kinematic(_)) {
+            return Err(sheet.mistake(None, format!("{} is kinematic, and has no hull to identify", boat.name)));
+        }
+        let orders = Orders::of_sheet(sheet, &Engine::new(boat))?;
+        let times_s = sheet.times(LONGEST_S)?;
+        let columns = CHANNELS.map(|(_, head, _)| sheet.column(head));
+        for needed in [HEADING, SURGE, YAW_RATE] {
+            if columns[needed].is_none() {
+                let message = format!("no column {} among {}", CHANNELS[needed].1, sheet.heads().join(", "));
+                return Err(sheet.mistake(Some(1), message));
+            }
+        }
+        if columns[0].is_some() != columns[1].is_some() {
+            return Err(sheet.mistake(Some(1), "one of the columns x_m and y_m, expected both or none".to_owned()));
+        }
+        if times_s.len() < ROWS_MIN {
+            return Err(sheet.mistake(None, format!("{} rows, expected {ROWS_MIN} at least", times_s.len())));
+        }
+        let mut measured = Vec::with_capacity(times_s.len());
+        for row in 0..times_s.len() {
+            let mut cells = [f64::NAN; 6];
+            for (channel, column) in columns.iter().enumerate() {
+                cells[channel] = column.map_or(Ok(f64::NAN), |column| cell(sheet, row, column, CHANNELS[channel].2))?;
+            }
+            measured.push(cells);
+        }
+        unwrap_headings(&mut measured);
+        Ok(Log { times: times_s.into_iter().map(SimTime::from_s).collect(), measured, orders })
+    }
+
+    /// Where segments begin: the first row that `segment` has passed since the last, at which all is measured that a boat
+    /// starts from. The end of the last one stands last.
+    pub(super) fn segments(&self, segment: SimTime) -> Vec<usize> {
+        let has_sway = self.measured.iter().any(|cells| cells[SWAY].is_finite());
+        let has_place = self.measured.iter().any(|cells| cells[X].is_finite());
+        let is_start = |cells: &[f64; 6]| {
+            let needed = [(X, has_place), (X + 1, has_place), (SWAY, has_sway)];
+            let always = [HEADING, SURGE, YAW_RATE].iter().all(|channel| cells[*channel].is_finite());
+            always && needed.iter().all(|(channel, needed)| !needed || cells[*channel].is_finite())
+        };
+        let mut starts: Vec<usize> = vec![];
+        for (row, cells) in self.measured.iter().enumerate() {
+            let due = starts.last().is_none_or(|last| self.times[row] - self.times[*last] >= segment);
+            // A rest that is shorter than half a segment belongs to the one before.
+            let left = *self.times.last().unwrap_or(&SimTime::ZERO) - self.times[row];
+            if due && is_start(cells) && (starts.is_empty() || left.0 * 2 >= segment.0) {
+                starts.push(row);
+            }
+        }
+        starts.push(self.measured.len());
+        starts
+    }
+}
+
+/// What was measured, in our unit; NaN where nothing was.
+fn cell(sheet: &Sheet, row: usize, column: usize, unit: Unit) -> Result<f64, Mistake> {
+    let text = sheet.text(row, column);
+    if text.is_empty() || text.eq_ignore_ascii_case("nan") {
+        return Ok(f64::NAN);
+    }
+    let number = sheet.number(row, column, (-1e7, 1e7))?;
+    Ok(if unit == Unit::Degrees { number.to_radians() } else { number })
+}
+
+/// Headings without jumps of a whole turn.
+fn unwrap_headings(measured: &mut [[f64; 6]]) {
+    let mut before: Option<f64> = None;
+    for cells in measured.iter_mut().filter(|cells| cells[HEADING].is_finite()) {
+        cells[HEADING] = before.map_or(cells[HEADING], |before| before + wrap_pi(cells[HEADING] - before));
+        before = Some(cells[HEADING]);
+    }
+}

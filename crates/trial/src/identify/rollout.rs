@@ -1,0 +1,74 @@
+//! The model sailed along a log: what it says at each of the log's rows.
+
+use super::log::{HEADING, Log, SURGE, SWAY, YAW_RATE};
+use crate::{Command, Start, TrialBoat};
+use primitives::angle::wrap_pi;
+use primitives::{Ned, Pose, SimTime};
+use scenario::boat::Boat;
+use scenario::sea::Sea;
+use sim::hull::Planar;
+
+/// A boat's state in the order of the log's channels.
+pub(super) type Point = [f64; 6];
+
+/// On what water, and in what steps.
+#[derive(Clone, Debug)]
+pub struct Setting {
+    /// The water.
+    pub sea: Sea,
+    /// Chooses the sea's randomness.
+    pub seed: u64,
+    /// Physics tick.
+    pub tick: SimTime,
+    /// How long the model sails on from a start before it is set to the next.
+    pub segment: SimTime,
+}
+
+/// What `boat` does from each segment's start, told what the log was told, at the rows from the first start on; none if
+/// its numbers go bad. The thrusters go through all segments in one.
+pub(super) fn rollout(
+    boat: &Boat,
+    setting: &Setting,
+    log: &Log,
+    segments: &[usize],
+    starts: &[Point],
+) -> Option<Vec<Point>> {
+    let mut trial_boat = TrialBoat::new(boat, &setting.sea, setting.tick, setting.seed, &Start::default());
+    let mut points = vec![[f64::NAN; 6]; segments[0]];
+    for (segment, start) in segments.windows(2).zip(starts) {
+        // The thrusters take up what they were told before; where the boat goes meanwhile does not matter.
+        while trial_boat.now() + SimTime(setting.tick.0 / 2) < log.times[segment[0]] {
+            trial_boat.step(log.orders.at(trial_boat.now()));
+        }
+        let pose = Pose { at: Ned::from_xy(start[0], start[1]), psi_rad: wrap_pi(start[HEADING]) };
+        trial_boat.relocate(pose, Planar { surge: start[SURGE], sway: start[SWAY], yaw: start[YAW_RATE] });
+        let mut before = (trial_boat.now(), *start);
+        let mut now = before;
+        for row in segment[0]..segment[1] {
+            while now.0 < log.times[row] {
+                before = now;
+                trial_boat.step(log.orders.at(trial_boat.now()));
+                if !trial_boat.is_sound() {
+                    return None;
+                }
+                now = (trial_boat.now(), point(&trial_boat, before.1[HEADING]));
+            }
+            points.push(between(before, now, log.times[row]));
+        }
+    }
+    Some(points)
+}
+
+/// Where the boat is and how it moves; its heading within half a turn of the one before.
+fn point(trial_boat: &TrialBoat, heading_before: f64) -> Point {
+    let sample = trial_boat.sample(0.0, Command::Hold);
+    let heading = heading_before + wrap_pi(sample.psi_rad - heading_before);
+    [sample.at.east, sample.at.north, heading, sample.nu.surge, sample.nu.sway, sample.nu.yaw]
+}
+
+/// The straight line between two ticks.
+fn between(before: (SimTime, Point), now: (SimTime, Point), at: SimTime) -> Point {
+    let span = (now.0 - before.0).as_s();
+    let share = if span > 0.0 { ((at - before.0).as_s() / span).clamp(0.0, 1.0) } else { 1.0 };
+    std::array::from_fn(|i| before.1[i] + share * (now.1[i] - before.1[i]))
+}

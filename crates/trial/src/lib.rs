@@ -1,0 +1,27 @@
+//! Sea trials: one boat in open water, commanded by a recorded series or put through a standard manoeuvre.
+//!
+//! Open [`replay`] first. Files, units and plots are the shell's; here is what happens to the boat. [`identify`]
+//! fits a boat file to what a recorded boat did.
+
+mod command;
+mod drift;
+pub mod identify;
+mod manoeuvre;
+mod measure;
+mod orders;
+mod replay;
+mod sample;
+mod sheet;
+mod trial_boat;
+mod water;
+
+pub use command::{Command, Engine, Pair};
+pub use drift::Drift;
+pub use manoeuvre::{Manoeuvre, Plan, Sailed, sail, turned_rad};
+pub use measure::{Measure, measures};
+pub use orders::{LONGEST_S, Orders};
+pub use replay::{ROW, Unsound, replay, ticks_per_row};
+pub use sample::{COLUMNS, Sample, write_csv};
+pub use sheet::{Mistake, Sheet};
+pub use trial_boat::{Start, TrialBoat};
+pub use water::{open_field, set_mean_current, still_sea};

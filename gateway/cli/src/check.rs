@@ -1,0 +1,202 @@
+//! `gateway check`: the sensor check of a boat, and with a vehicle the pre-flight check before arming.
+
+use super::preflight_report;
+use super::swing_guide::{Guide, guided_checks};
+use anyhow::{Context, Result, anyhow, bail};
+use bus::game_search::GameSearch;
+use command_line::leaf_args::LeafArgs;
+use command_line::number::seconds;
+use command_line::stop;
+use command_line::terminal;
+use gateway::config::{BoatProtocol, Gateway};
+use gateway::geofence::GeofenceArea;
+use gateway::link::{Link, LinkAddress, LinkEvent, LinkSettings};
+use gateway::nmea::date_and_time;
+use gateway::node::machine_checks;
+use gateway::preflight::{Report, Water, boat_checks};
+use gateway::sensor_check::SensorCheck;
+use primitives::SimTime;
+use recording::utc;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
+use std::time::{Duration, Instant};
+
+/// Without and with a pre-flight check it listens for so long, s.
+const LISTEN_S: [f64; 2] = [10.0, 30.0];
+/// The most letters of a sentence or message that are shown.
+const LAST_MAX: usize = 90;
+/// How long the game is looked for.
+const GAME_WAIT: Duration = Duration::from_secs(5);
+
+/// Which boat.
+#[derive(clap::Args)]
+pub struct Args {
+    /// Where the boat is: tcp://HOST:PORT, udp://HOST:PORT, serial:///dev/ttyUSB0?baud=38400
+    #[arg(long, value_name = "URL")]
+    link: String,
+    /// How long to listen, s [default: 10, and 30 with --vehicle]
+    #[arg(long, value_name = "S", value_parser = seconds)]
+    for_s: Option<f64>,
+    /// Makes the pre-flight check of this vehicle, for the field of its game
+    #[arg(long, value_name = "NAME")]
+    vehicle: Option<String>,
+    /// By which gateway file it will be driven, a file or a name [default: a Surveyor with careful limits]
+    #[arg(long, value_name = "FILE", value_parser = command_line::scenario_files::file_of::<gateway::config::Gateway>)]
+    config: Option<PathBuf>,
+    /// Guides through compass swing and propeller test, under remote control; asks before each
+    #[arg(long, requires = "vehicle")]
+    guided: bool,
+    /// Where the report goes [default: runs/preflight-NAME.json, and the same as .txt]
+    #[arg(long, value_name = "FILE", requires = "vehicle")]
+    report: Option<PathBuf>,
+    #[command(flatten)]
+    leaf: LeafArgs,
+}
+
+pub(crate) fn run(args: &Args) -> Result<ExitCode> {
+    let address = LinkAddress::to_connect(&args.link).map_err(|e| anyhow!("--link: {e}"))?;
+    let gateway = super::gateway_file(args.config.as_deref())?;
+    let stop = stop::on_ctrl_c()?;
+    let (sender, events) = sync_channel(4096);
+    // A full queue drops events: this only listens.
+    let take = move |event| drop(sender.try_send(event));
+    let link = Link::open(&address, LinkSettings { silence: None, ..LinkSettings::default() }, take)?;
+    let for_s = args.for_s.unwrap_or(LISTEN_S[usize::from(args.vehicle.is_some())]);
+    let mut listener = Listener::new((link, events), stop, &gateway);
+    let sends =
+        if gateway.protocol == BoatProtocol::Mavlink { "nothing but requests for telemetry" } else { "nothing" };
+    listener.hello = format!("listening for {for_s} s, sending {sends}");
+    listener.listen(&mut |listener| listener.now().as_s() >= for_s);
+    let check = &listener.check;
+    if check.received().is_empty() {
+        let (reason, counts) = (&listener.reason, counted(check));
+        bail!("nothing to be read from {address} in {for_s} s: {reason} ({counts})");
+    }
+    let host = date_and_time(utc::now_ns()).1;
+    terminal::print(&report(check, listener.now(), host));
+    let Some(vehicle) = &args.vehicle else {
+        return Ok(if check.missing().is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE });
+    };
+    let water = water(args, vehicle, &gateway, &listener.stop)?;
+    let mut checks = boat_checks(check, (listener.now(), host), &gateway, water.as_ref());
+    let path = args.report.clone().unwrap_or_else(|| Path::new("runs").join(format!("preflight-{vehicle}.json")));
+    let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    std::fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
+    checks.extend(machine_checks(folder));
+    checks.extend(guided_checks(&mut Guide::new(args.guided), &mut listener, &gateway));
+    let now_ns = utc::now_ns();
+    let (at_unix_s, at) = (now_ns / 1_000_000_000, utc::text(now_ns));
+    let made = Report { vehicle: vehicle.clone(), link: address.to_string(), at_unix_s, at, checks };
+    terminal::print(&format!("\n{}", made.text()));
+    preflight_report::write(&path, &made)?;
+    terminal::remark(&format!("report in {}", path.display()));
+    Ok(if made.faults().is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// Where the game plays, if there is one now.
+fn water(args: &Args, vehicle: &str, gateway: &Gateway, stop: &AtomicBool) -> Result<Option<Water>> {
+    let mut tell = |reason: &str| terminal::remark(&format!("looking for the game: {reason}"));
+    let place = args.leaf.place()?;
+    let found = GameSearch::new(GAME_WAIT, stop).game(&mut tell, &place, args.leaf.game.as_ref());
+    let (bus, _, info) = match found {
+        Ok(found) => found,
+        Err(e) => {
+            terminal::remark(&format!("without a game: {e}"));
+            return Ok(None);
+        }
+    };
+    bus.close();
+    let number = info.scenario.vehicle_named(vehicle)?;
+    let area = GeofenceArea::new(&info.scenario.field, &gateway.geofence);
+    area.check(&info.scenario, number).with_context(|| format!("the gateway file {}: geofence", gateway.name))?;
+    Ok(Some(Water { field: info.scenario.field, area }))
+}
+
+/// Listens to a boat.
+pub(super) struct Listener {
+    pub(super) check: SensorCheck,
+    link: Link,
+    events: Receiver<LinkEvent>,
+    start: Instant,
+    stop: Arc<AtomicBool>,
+    /// Why nothing comes.
+    reason: String,
+    /// What is said when it connects.
+    hello: String,
+}
+
+impl Listener {
+    fn new((link, events): (Link, Receiver<LinkEvent>), stop: Arc<AtomicBool>, gateway: &Gateway) -> Listener {
+        let (start, reason) = (bus::clock::now(), "nothing came".to_owned());
+        Listener { check: SensorCheck::new(gateway), link, events, start, stop, reason, hello: String::new() }
+    }
+
+    /// Asks the boat for what it has to be asked for.
+    fn ask(&mut self) {
+        let (now, mut bytes) = (self.now(), vec![]);
+        self.check.write_questions(now, &mut bytes);
+        if !bytes.is_empty() {
+            self.link.send(bytes, 0);
+        }
+    }
+
+    fn at(&self, moment: Instant) -> SimTime {
+        SimTime::from_s(moment.saturating_duration_since(self.start).as_secs_f64())
+    }
+
+    /// Time since it began.
+    pub(super) fn now(&self) -> SimTime {
+        self.at(bus::clock::now())
+    }
+
+    /// Listens until `is_enough`, which is asked after everything that comes, and ten times a second.
+    pub(super) fn listen(&mut self, is_enough: &mut dyn FnMut(&Listener) -> bool) {
+        while !self.stop.load(Ordering::Relaxed) {
+            self.ask();
+            match self.events.recv_timeout(Duration::from_millis(100)) {
+                Ok(LinkEvent::Bytes { at, bytes, .. }) => self.check.receive(self.at(at), &bytes),
+                Ok(LinkEvent::Up { name, .. }) => terminal::remark(&format!("connected to {name}; {}", self.hello)),
+                Ok(LinkEvent::Failed { reason: why, .. } | LinkEvent::Down { reason: why, .. }) => {
+                    if why != self.reason {
+                        terminal::remark(&why);
+                    }
+                    self.reason = why;
+                }
+                Ok(LinkEvent::Written { .. }) | Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => break,
+            }
+            if is_enough(self) {
+                break;
+            }
+        }
+    }
+}
+
+/// What was counted on the link.
+fn counted(check: &SensorCheck) -> String {
+    check.counts().iter().map(|(name, count)| format!("{count} {name}")).collect::<Vec<_>>().join(", ")
+}
+
+fn report(check: &SensorCheck, now: SimTime, host: gateway::nmea::TimeOfDay) -> String {
+    let width = check.received().keys().map(String::len).max().unwrap_or(0).max(10);
+    let mut lines = vec![format!("{:<width$} {:>7} {:>8}  last", "name", "count", "1/s")];
+    for (name, received) in check.received() {
+        let rate = received.rate_hz().map_or("-".to_owned(), |rate| format!("{rate:.2}"));
+        let note = if received.unreadable > 0 { "  (not read)" } else { "" };
+        let last: String = received.last.chars().take(LAST_MAX).collect();
+        lines.push(format!("{name:<width$} {:>7} {rate:>8}  {last}{note}", received.count));
+    }
+    lines.push(format!("\n{}", counted(check)));
+    lines.extend(check.findings(now, host));
+    let missing = check.missing();
+    if missing.is_empty() {
+        lines.push("\nnothing is missing".to_owned());
+    } else {
+        lines.push("\nmissing:".to_owned());
+        lines.extend(missing.iter().map(|what| format!("  {what}")));
+    }
+    lines.join("\n") + "\n"
+}

@@ -1,0 +1,315 @@
+//! `gateway console`: operator commands, line by line, over paths that stay open.
+
+use super::log_line::full;
+use super::tell::{ALL, CommandArg, Port, Words, release_all, to_boat};
+use anyhow::{Result, bail};
+use bus::game_search::find_game;
+use bus::stop::{StopClient, StopCommand, StopNews, StopOrders};
+use bus::{Bus, Patience, SimState, SimWatch, Watched, clock};
+use clap::Parser;
+use command_line::leaf_args::LeafArgs;
+use command_line::{program, stop, terminal};
+use messages::external::OperatorReply;
+use messages::topic::GameName;
+use std::io::{BufRead, IsTerminal};
+use std::net::SocketAddr;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// How often the registry of this machine is read, and a game that is not there looked for.
+const LOOK_AGAIN: Duration = Duration::from_millis(250);
+/// After so many attempts the session may be what is wrong.
+const ATTEMPTS: u64 = 20;
+/// As for the page.
+const PATIENCE: Patience =
+    Patience { silence: Duration::from_secs(5), missing: Duration::from_secs(1), unheard: Duration::from_secs(1) };
+/// When input ends, stops that are not done yet are waited for so long.
+const LAST: Duration = Duration::from_secs(5);
+/// How often it is looked at whether it is over.
+const LOOK: Duration = Duration::from_millis(100);
+
+const HELP: &str = "\
+  (empty line), estop     E-stop of all boats
+  all estop               the same; also all disarm, all release, all status
+  NAME estop              E-stop of one boat; NAME disarm puts it into standby
+  NAME arm, NAME release  and every other command of `{gateway} tell`
+  status                  how all boats are, and how long ago they were heard
+  quit                    ends; so does the end of the input
+";
+
+/// Which game, and which gateways.
+#[derive(clap::Args)]
+#[command(after_help = program::text(concat!(
+    "It reads commands from standard input, one a line, and prints what boats\n",
+    "report, with the time since it was asked for:\n",
+    "  blue_one  e-stopped  after 63 ms\n",
+    "Type help for the commands. An empty line is an E-stop of all boats.\n\n",
+    "It ends with 0 if every boat has reported the stops that were asked for.\n\n",
+    "Examples:\n",
+    "  {gateway} console --game day\n",
+    "  {gateway} console --connect tcp/10.0.0.5:7447 --gateway 10.0.0.21:7001\n",
+    "  echo all estop | {gateway} console --game day",
+)))]
+pub struct Args {
+    /// A gateway's control port, as it shows it; of each boat one [default: those of this machine's gateways, and those
+    /// that the game names]
+    #[arg(long, value_name = "HOST:PORT")]
+    gateway: Vec<SocketAddr>,
+    #[command(flatten)]
+    leaf: LeafArgs,
+}
+
+/// A line of input.
+#[derive(Parser)]
+#[command(no_binary_name = true, disable_help_flag = true, override_usage = "NAME COMMAND [ARGS], or help")]
+struct Line {
+    #[command(flatten)]
+    words: Words,
+}
+
+/// The session in a game, if there is one.
+type Session = Arc<Watched<Option<(Bus, GameName)>>>;
+
+/// What all threads share.
+#[derive(Clone)]
+struct Console {
+    client: Arc<StopClient>,
+    session: Session,
+    leaf: LeafArgs,
+    is_over: Arc<AtomicBool>,
+}
+
+pub(crate) fn run(args: &Args) -> Result<ExitCode> {
+    let console = Console {
+        client: Arc::new(StopClient::open(Duration::MAX)?),
+        session: Session::default(),
+        leaf: args.leaf.clone(),
+        is_over: stop::on_ctrl_c()?,
+    };
+    let net = args.leaf.net()?;
+    for at in &args.gateway {
+        console.client.add_gateway(*at, None, net.token.clone())?;
+    }
+    if net.keys.is_none() {
+        console.client.add_hub(&net.connect, args.leaf.game.as_ref(), net.token.as_ref())?;
+    }
+    let (finder, printer) = (console.clone(), console.clone());
+    let place = args.leaf.place()?;
+    std::thread::spawn(move || finder.keep_game(&place));
+    let printing = std::thread::spawn(move || printer.print_news());
+    console.read_lines();
+    let left = console.client.finish(LAST);
+    console.is_over.store(true, Ordering::Relaxed);
+    // A thread that panicked prints no more.
+    drop(printing.join());
+    console.client.visit(StopOrders::take_news).iter().for_each(show);
+    left.iter().for_each(|left| terminal::remark(left));
+    Ok(if left.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+impl Console {
+    /// Obeys until the input ends, somebody wants to quit, or Ctrl-C.
+    fn read_lines(&self) {
+        let is_terminal = std::io::stdin().is_terminal();
+        let (sender, lines) = std::sync::mpsc::channel();
+        // A thread that waits for a key can not be ended; the process is.
+        std::thread::spawn(move || {
+            for line in std::io::stdin().lock().split(b'\n').map_while(Result::ok) {
+                if sender.send(String::from_utf8_lossy(&line).trim().to_owned()).is_err() {
+                    return;
+                }
+            }
+        });
+        if is_terminal {
+            terminal::print("type help for the commands; Enter alone is an E-stop of all boats\n> ");
+        }
+        while !self.is_over.load(Ordering::Relaxed) {
+            match lines.recv_timeout(LOOK) {
+                Ok(line) if line == "quit" => return,
+                Ok(line) => self.obey(&line).unwrap_or_else(|e| terminal::complain(&format!("{e:#}"))),
+                Err(std::sync::mpsc::RecvTimeoutError::Timeout) => continue,
+                Err(std::sync::mpsc::RecvTimeoutError::Disconnected) => return,
+            }
+            if is_terminal {
+                terminal::print("> ");
+            }
+        }
+    }
+
+    fn obey(&self, line: &str) -> Result<()> {
+        match line {
+            "" | "estop" => self.client.stop(None, StopCommand::EStop),
+            "help" => terminal::print(&program::text(HELP)),
+            "status" => terminal::print(&self.client.visit(|orders| boats_text(orders, clock::now()))),
+            line => match Line::try_parse_from(line.split_whitespace()) {
+                Ok(Line { words }) => self.command(words)?,
+                Err(e) => bail!("{}", e.to_string().trim_end().trim_start_matches("error: ")),
+            },
+        }
+        Ok(())
+    }
+
+    fn command(&self, words: Words) -> Result<()> {
+        let command = words.command()?;
+        let target = (words.vehicle != ALL).then_some(words.vehicle.as_str());
+        if let Some(stop) = StopCommand::of(&command) {
+            self.client.stop(target, stop);
+            return Ok(());
+        }
+        // What is asked last counts.
+        if words.command != CommandArg::Status {
+            self.client.cancel(target);
+        }
+        let Some(name) = target.map(str::to_owned) else {
+            return match words.command {
+                CommandArg::Status => self.obey("status"),
+                CommandArg::Release => {
+                    self.release_all();
+                    Ok(())
+                }
+                _ => bail!("only estop, disarm, release and status go to all"),
+            };
+        };
+        let (console, asked) = (self.clone(), clock::now());
+        // An answer that takes its time keeps nothing waiting.
+        std::thread::spawn(move || {
+            let ports = console.ports();
+            let session = console.session.visit(|session| session.clone());
+            let reply = to_boat(&ports, session.as_ref().map(|(bus, game)| (bus, game)), &name, &command);
+            match reply {
+                Ok(OperatorReply { refused: None, status }) if words.command == CommandArg::Status => {
+                    terminal::show(&full(&status));
+                }
+                Ok(OperatorReply { refused: None, status }) => tell(&name, brief(&status.state), asked),
+                Ok(OperatorReply { refused: Some(reason), .. }) => {
+                    terminal::complain(&format!("{name} refuses: {reason}"))
+                }
+                Err(e) => terminal::complain(&format!("{name}: {e:#}")),
+            }
+        });
+        Ok(())
+    }
+
+    fn release_all(&self) {
+        let (console, asked) = (self.clone(), clock::now());
+        std::thread::spawn(move || {
+            let session = console.session.visit(|session| session.clone());
+            let failed = release_all(&console.ports(), session.as_ref().map(|(bus, game)| (bus, game)));
+            failed.iter().for_each(|failed| terminal::complain(failed));
+            if failed.is_empty() {
+                tell(ALL, "released", asked);
+            }
+        });
+    }
+
+    fn ports(&self) -> Vec<Port> {
+        let known = self.client.gateways();
+        known.into_iter().map(|(at, vehicle, token)| Port { vehicle, at, token }).collect()
+    }
+
+    /// Keeps a session in the game, and knows the gateways of this machine.
+    fn keep_game(&self, place: &bus::Place) {
+        let (mut session, mut said, mut attempts) = (None, String::new(), 0_u64);
+        while !self.is_over.load(Ordering::Relaxed) {
+            self.read_registry();
+            match find_game(place, self.leaf.game.as_ref(), &mut session) {
+                Ok((bus, game, info)) => {
+                    let scenario = &info.scenario;
+                    let boats = scenario.externals().map(|boat| scenario.vehicles[boat.index()].name.clone());
+                    let boats: Vec<String> = boats.collect();
+                    said.clear();
+                    match self.stay(&bus, &game, &boats) {
+                        Ok(()) if self.is_over.load(Ordering::Relaxed) => {}
+                        Ok(()) => terminal::remark(&format!("the game {} is gone: looking for it", game.as_str())),
+                        Err(e) => terminal::remark(&e.to_string()),
+                    }
+                    bus.close();
+                    session = None;
+                }
+                Err(missing) => {
+                    // What will never be there may yet be replaced by something else.
+                    let reason = missing.to_string();
+                    if reason != said {
+                        terminal::remark(&format!("no game: {reason}"));
+                        said = reason;
+                    }
+                    attempts += 1;
+                    if attempts.is_multiple_of(ATTEMPTS) {
+                        session = None;
+                    }
+                }
+            }
+            clock::rest(LOOK_AGAIN);
+        }
+    }
+
+    /// Stays in a game until it is gone.
+    fn stay(&self, bus: &Bus, game: &GameName, boats: &[String]) -> Result<(), bus::BusError> {
+        let sim = SimWatch::open(bus, game, PATIENCE)?;
+        self.client.join(bus, game, boats)?;
+        self.session.visit(|session| *session = Some((bus.clone(), game.clone())));
+        let boats = if boats.is_empty() { "no real boats".to_owned() } else { boats.join(", ") };
+        terminal::remark(&format!("in the game {}: {boats}", game.as_str()));
+        while !self.is_over.load(Ordering::Relaxed) && sim.state() == SimState::Alive {
+            self.read_registry();
+            clock::rest(LOOK_AGAIN);
+        }
+        self.session.visit(|session| *session = None);
+        self.client.leave();
+        Ok(())
+    }
+
+    fn read_registry(&self) {
+        let given = self.leaf.token().ok().flatten();
+        for entry in self.leaf.local_gateways(true) {
+            let token = given.clone().or_else(|| entry.token?.parse().ok());
+            // It is tried again.
+            drop(self.client.add_gateway(entry.control, Some(&entry.vehicle), token));
+        }
+    }
+
+    fn print_news(&self) {
+        while !self.is_over.load(Ordering::Relaxed) {
+            self.client.news(LOOK).iter().for_each(show);
+        }
+    }
+}
+
+/// A line with the time since it was asked for.
+fn tell(name: &str, what: &str, asked: Instant) {
+    terminal::print(&format!("{name}  {what}  after {} ms\n", clock::since(asked).as_millis()));
+}
+
+fn show(news: &StopNews) {
+    terminal::print(&match news {
+        StopNews::Done { vehicle, state, after, .. } => {
+            format!("{vehicle}  {}  after {} ms\n", brief(state), after.as_millis())
+        }
+        StopNews::Late { vehicle, command } => {
+            format!("{vehicle}  does not report {}: it is asked again\n", command.operator_command())
+        }
+        StopNews::Sim(Ok(after)) => format!("sim  obeys  after {} ms\n", after.as_millis()),
+        StopNews::Sim(Err(reason)) => format!("sim  {reason}\n"),
+        StopNews::State { vehicle, state } => format!("{vehicle}  {state}\n"),
+        StopNews::Silent { vehicle } => format!("{vehicle}  silent\n"),
+    });
+}
+
+/// A state without what is in brackets.
+fn brief(state: &str) -> &str {
+    state.split(" (").next().unwrap_or(state)
+}
+
+fn boats_text(orders: &StopOrders, now: Instant) -> String {
+    let boats = orders.boats().map(|(name, boat)| match (&boat.state, boat.heard) {
+        (Some(state), Some(heard)) => {
+            let age_s = now.saturating_duration_since(heard).as_secs_f64();
+            format!("{name}  {}, {age_s:.1} s ago\n", if boat.is_silent() { "silent" } else { state })
+        }
+        _ => format!("{name}  not heard yet\n"),
+    });
+    let text: String = boats.collect();
+    if text.is_empty() { "no boat is known yet\n".to_owned() } else { text }
+}

@@ -1,0 +1,21 @@
+//! `gateway guard`: the process that stops the boat when its gateway cannot; the gateway starts it by itself.
+
+use anyhow::{Context, Result};
+use command_line::{program, terminal};
+use gateway::node::GuardCommand;
+use std::process::ExitCode;
+
+pub(crate) fn run() -> Result<ExitCode> {
+    // Whatever ends the gateway must not end this: it ends by itself, soon after.
+    ctrlc::set_handler(|| ()).context("cannot ignore signals")?;
+    gateway::node::guard(std::io::stdin(), &mut terminal::remark).context("the guard of a gateway")?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The command that starts a guard: this program, with its own command for that.
+pub(crate) fn own_command() -> Result<GuardCommand> {
+    let program = std::env::current_exe().context("cannot find this program's own file")?;
+    // The first word is the program itself.
+    let words = program::gateway().split_whitespace().skip(1).chain(["guard"]);
+    Ok(GuardCommand { program, args: words.map(str::to_owned).collect() })
+}

@@ -1,0 +1,86 @@
+//! The commands of the boat's program: a real boat in a game, its checks, and how operators stop and command it.
+//!
+//! `squall gateway` has the same commands. Open [`surveyor`] first: it drives a boat.
+
+mod check;
+mod console;
+mod guard;
+pub mod log_line;
+mod mission_file;
+mod preflight_report;
+pub mod protocol_arg;
+mod replay;
+mod stop_boat;
+mod surveyor;
+mod swing_guide;
+mod tell;
+
+use anyhow::{Context, Result};
+use clap::Subcommand;
+use gateway::config::Gateway;
+use messages::external::Mission;
+use scenario::Kind;
+use std::path::Path;
+use std::process::ExitCode;
+
+/// The kinds of scenario files that the boat's program knows.
+pub const KINDS: &[Kind] = &[
+    Kind::of::<Gateway>(),
+    Kind::GAME,
+    Kind::FIELD,
+    Kind::RULES,
+    Kind::BOAT,
+    Kind::SEA,
+    Kind::STRATEGY,
+    Kind::TOURNAMENT,
+    Kind::SWEEP,
+];
+
+/// What a gateway is to do.
+#[derive(Subcommand)]
+pub enum Command {
+    /// Connects a real boat with a game: agents drive it as any other.
+    Surveyor(surveyor::Args),
+    /// Checks a boat before arming, without sending anything; with --vehicle, the pre-flight check.
+    Check(check::Args),
+    /// Stops a boat with nothing else running: thrust zero and standby, straight over its link.
+    Stop(stop_boat::Args),
+    /// Sends an operator command to a boat's gateway: arm, disarm, estop, release, ...
+    Tell(tell::Args),
+    /// Operates boats line by line over connections that stay open: for quick stops.
+    Console(console::Args),
+    /// What a gateway starts to stop its boat when it is killed or hangs.
+    #[command(hide = true)]
+    Guard,
+    /// Plays a recording of a gateway through its codec and supervisor again.
+    Replay(replay::Args),
+}
+
+/// How a boat is driven and stopped, by this file, or by the defaults.
+fn gateway_file(path: Option<&Path>) -> Result<Gateway> {
+    let load = |path: &Path| {
+        scenario::load_file::<Gateway>(path).with_context(|| format!("cannot drive by {}", path.display()))
+    };
+    path.map_or_else(|| Ok(gateway::config::default_gateway()), load)
+}
+
+/// The mission in the text of a mission file, or what is wrong with it.
+pub fn read_mission(text: &str) -> Result<Mission, String> {
+    mission_file::parse(text)
+}
+
+/// Does it. The recording of a gateway names the commit of the program.
+///
+/// # Errors
+/// What went wrong.
+pub fn run(command: &Command, commit: &'static str) -> Result<ExitCode> {
+    match command {
+        Command::Surveyor(args) => surveyor::run(args, commit),
+        Command::Check(args) => check::run(args),
+        Command::Stop(args) => stop_boat::run(args),
+        Command::Tell(args) => tell::run(args),
+        Command::Console(args) => console::run(args),
+        Command::Guard => guard::run(),
+        Command::Replay(args) => replay::run(args),
+    }
+}

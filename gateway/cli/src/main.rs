@@ -1,0 +1,33 @@
+//! `squall-gateway`: the gateway commands as a program of their own, for the small computer on a boat.
+
+use clap::{ColorChoice, Parser};
+use command_line::program::{self, Program};
+use command_line::{explain, leaf_args, scenario_files, terminal};
+use std::process::ExitCode;
+
+/// The commit it was built from.
+const COMMIT: &str = env!("SQUALL_COMMIT");
+const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (", env!("SQUALL_COMMIT"), ")");
+
+/// Connects a real boat with Squall's games: checks it, drives it, stops it.
+#[derive(Parser)]
+#[command(name = "squall-gateway", version = VERSION, max_term_width = 100)]
+struct Cli {
+    /// Colours: auto, always or never
+    #[arg(long, global = true, value_name = "WHEN", default_value_t = ColorChoice::Auto, hide_possible_values = true, display_order = 1000)]
+    color: ColorChoice,
+    #[command(subcommand)]
+    command: gateway_cli::Command,
+}
+
+fn main() -> ExitCode {
+    program::set(Program { name: "squall-gateway", gateway: "squall-gateway" });
+    scenario_files::install(gateway_cli::KINDS);
+    let Cli { color, command } = Cli::parse();
+    terminal::set_colour(color);
+    let done = leaf_args::restart_with_threads_for_keys().and_then(|()| gateway_cli::run(&command, COMMIT));
+    done.unwrap_or_else(|error| {
+        terminal::complain(&explain::error(&error));
+        ExitCode::FAILURE
+    })
+}

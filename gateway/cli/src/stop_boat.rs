@@ -1,0 +1,120 @@
+//! `gateway stop`: stops a boat with nothing else running, straight over its link.
+
+use crate::protocol_arg::ProtocolArg;
+use anyhow::{Result, anyhow, bail};
+use bus::{LinkLock, ask_gateway, clock};
+use command_line::number::seconds;
+use command_line::terminal;
+use gateway::config::Gateway;
+use gateway::config::default_gateway;
+use gateway::link::{Link, LinkAddress, LinkEvent, LinkSettings};
+use gateway::nmea::{Mode, Operator};
+use gateway::protocol::{ControlReport, Protocol, Report};
+use messages::external::{GatewayCommand, OperatorCommand};
+use primitives::SimTime;
+use std::process::ExitCode;
+use std::sync::mpsc::sync_channel;
+use std::time::Duration;
+
+/// How often it is said.
+const AGAIN: Duration = Duration::from_millis(100);
+/// For how long it is said at least: one sentence may be lost.
+const SAY: Duration = Duration::from_millis(500);
+/// How long a gateway that has the link may take to answer.
+const ANSWER: Duration = Duration::from_secs(1);
+/// The most events that wait to be read.
+const EVENTS_MAX: usize = 4096;
+
+/// Which boat.
+#[derive(clap::Args)]
+pub struct Args {
+    /// Where the boat is: tcp://HOST:PORT, udp://HOST:PORT, serial:///dev/ttyUSB0?baud=38400
+    link: String,
+    /// What the boat speaks
+    #[arg(long, value_name = "PROTOCOL", value_enum, default_value_t = ProtocolArg::Surveyor)]
+    protocol: ProtocolArg,
+    /// How long to try, s
+    #[arg(long, value_name = "S", default_value_t = 10.0, value_parser = seconds)]
+    wait_s: f64,
+}
+
+pub(crate) fn run(args: &Args) -> Result<ExitCode> {
+    let address = LinkAddress::to_connect(&args.link).map_err(|e| anyhow!("LINK: {e}"))?;
+    // A gateway that has the link would send its boat on.
+    if stopped_by_its_gateway(&address) {
+        return Ok(ExitCode::SUCCESS);
+    }
+    let (sender, events) = sync_channel(EVENTS_MAX);
+    // A full queue drops events: the boat reports again.
+    let take = move |event| drop(sender.try_send(event));
+    let settings = LinkSettings { silence: None, retry_max: AGAIN, ..LinkSettings::default() };
+    let link = Link::open(&address, settings, take)?;
+    let gateway = Gateway { protocol: args.protocol.protocol(), ..default_gateway() };
+    let (mut protocol, mut boat) = (Protocol::new(&gateway), None);
+    let (start, limit) = (clock::now(), Duration::from_secs_f64(args.wait_s));
+    let (mut connected, mut due, mut reason) = (None, start, "no answer yet".to_owned());
+    while clock::since(start) < limit {
+        match events.recv_timeout(due.saturating_duration_since(clock::now()).min(AGAIN)) {
+            Ok(LinkEvent::Up { name, .. }) => {
+                terminal::remark(&format!("connected to {name}: thrust zero and standby"));
+                (connected, due) = (Some(clock::now()), clock::now());
+            }
+            Ok(LinkEvent::Bytes { bytes, .. }) => protocol.read(SimTime::ZERO, &bytes, &mut |report| {
+                if let Report::Control(control) = report {
+                    boat = Some(control);
+                }
+            }),
+            Ok(LinkEvent::Failed { reason: why, .. } | LinkEvent::Down { reason: why, .. }) => {
+                (connected, reason) = (None, why);
+            }
+            Ok(LinkEvent::Written { .. }) | Err(_) => {}
+        }
+        let Some(since) = connected else { continue };
+        if clock::now() >= due {
+            due = clock::now() + AGAIN;
+            link.send(protocol.forced_stop_message(), 0);
+        }
+        if clock::since(since) >= SAY && boat.is_some_and(|boat| boat.shown.mode == Mode::Standby) {
+            terminal::print("the boat reports standby\n");
+            return Ok(ExitCode::SUCCESS);
+        }
+    }
+    match (connected, boat) {
+        (None, _) => bail!("the boat at {address} was not reached in {} s: {reason}", args.wait_s),
+        (_, None) => {
+            bail!("{address} was sent thrust zero and standby for {} s, and reports nothing of it", args.wait_s)
+        }
+        (_, Some(ControlReport { shown, operator })) => bail!(
+            "the boat is sent thrust zero and standby and reports mode {}{}",
+            shown.mode.letter(),
+            match operator {
+                Some(Operator::Secondary) | None => String::new(),
+                Some(other) => format!(": operator {} commands it, who must stop it", other.number()),
+            }
+        ),
+    }
+}
+
+/// Whether a gateway on this machine has the link, and has stopped its boat.
+fn stopped_by_its_gateway(address: &LinkAddress) -> bool {
+    let Some(pid) = LinkLock::holder(&address.to_string()) else { return false };
+    let Some(entry) = bus::local_gateways().into_iter().find(|entry| entry.pid == pid) else { return false };
+    let command = GatewayCommand::Boat { name: entry.vehicle.clone(), command: OperatorCommand::EStop };
+    match ask_gateway(entry.control, None, &command, ANSWER) {
+        Ok(reply) if reply.refused.is_none() && reply.status.link == "up" => {
+            terminal::print(&format!("the gateway of {} has the link: {}\n", entry.vehicle, reply.status.state));
+            true
+        }
+        Ok(reply) => {
+            terminal::remark(&format!(
+                "the gateway of {} has the link, and it is {}",
+                entry.vehicle, reply.status.link
+            ));
+            false
+        }
+        Err(e) => {
+            terminal::remark(&format!("the gateway of {} has the link, and does not answer: {e}", entry.vehicle));
+            false
+        }
+    }
+}

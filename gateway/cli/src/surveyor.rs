@@ -1,0 +1,187 @@
+//! `gateway surveyor`: a real boat in a game.
+
+use super::log_line::{Log, full};
+use super::{guard, preflight_report};
+use anyhow::{Context, Result, anyhow};
+use bus::{Registration, Token};
+use command_line::leaf_args::LeafArgs;
+use command_line::number::seconds;
+use command_line::{program, stop};
+use gateway::bridge::Preflight;
+use gateway::config::Gateway;
+use gateway::link::LinkAddress;
+use gateway::node::{NodeEvent, Outside, Settings, on_enter};
+use gateway::payload::PayloadPort;
+use messages::external::{GatewayCommand, OperatorCommand};
+use recording::utc;
+use std::io::IsTerminal;
+use std::net::SocketAddr;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Duration;
+
+/// How long the gateway may take to answer to its own terminal.
+const KEY_ANSWER: Duration = Duration::from_secs(2);
+
+/// Which boat, and where.
+#[derive(clap::Args)]
+pub struct Args {
+    /// The vehicle in the game, by name; there it has source = "external"
+    #[arg(long, value_name = "NAME")]
+    vehicle: String,
+    /// Where the boat is: tcp://HOST:PORT, udp://HOST:PORT, serial:///dev/ttyUSB0?baud=38400
+    #[arg(long, value_name = "URL")]
+    link: String,
+    /// A payload that is passed through and recorded, as camera=tcp://192.168.1.23:5001; ,listen=HOST:PORT says where; ,exo2 or ,exo2=http
+    /// records the values of a sonde; may be repeated
+    #[arg(long, value_name = "NAME=URL", conflicts_with = "at_game_pace")]
+    payload: Vec<PayloadPort>,
+    /// Where it takes operator commands with or without a game: an address of this machine and a port, 0 for any
+    #[arg(long, value_name = "HOST:PORT", default_value = "127.0.0.1:0", value_parser = control_address)]
+    control_listen: SocketAddr,
+    /// How it is driven and stopped: a gateway file or its name [default: a Surveyor with careful limits]
+    #[arg(long, value_name = "FILE", value_parser = command_line::scenario_files::file_of::<gateway::config::Gateway>)]
+    config: Option<PathBuf>,
+    /// Arms by itself, once, as soon as it is ready; after a failsafe it has to be armed by command
+    #[arg(long)]
+    arm: bool,
+    /// Does everything as on the water, and sends the boat nothing but standby
+    #[arg(long)]
+    dry_run: bool,
+    /// The report of a passed `gateway check --vehicle`, where the gateway file requires one
+    #[arg(long, value_name = "FILE")]
+    preflight: Option<PathBuf>,
+    /// Arms without such a report: this person answers for it
+    #[arg(long, value_name = "PERSON", conflicts_with = "preflight")]
+    without_preflight: Option<String>,
+    /// Records to this file [default: runs/gateway-NAME-UTC.mcap]
+    #[arg(long, value_name = "FILE", conflicts_with = "no_record")]
+    record: Option<PathBuf>,
+    /// Records nothing
+    #[arg(long)]
+    no_record: bool,
+    /// The boat is an emulated one, whose time runs as fast as the game's
+    #[arg(long)]
+    at_game_pace: bool,
+    /// After this long without a byte the boat counts as gone, s
+    #[arg(long, value_name = "S", default_value_t = 3.0, value_parser = seconds)]
+    silence_s: f64,
+    /// How long to look for the game, s [default: as long as it runs; operators are served meanwhile]
+    #[arg(long, value_name = "S", value_parser = seconds)]
+    wait_s: Option<f64>,
+    #[command(flatten)]
+    leaf: LeafArgs,
+    /// Prints errors only, and stops when standard input ends
+    #[arg(long, hide = true)]
+    for_parent: bool,
+}
+
+pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
+    let link = LinkAddress::to_connect(&args.link).map_err(|e| anyhow!("--link: {e}"))?;
+    let gateway = super::gateway_file(args.config.as_deref())?;
+    PayloadPort::check(&args.payload).map_err(|e| anyhow!("--payload: {e}"))?;
+    let preflight = preflight(args, &link, &gateway)?;
+    let stop = stop::on_ctrl_c_or_parent(args.for_parent)?;
+    let record = recording(args)?;
+    let log = Log::new(args.for_parent);
+    if args.dry_run {
+        log.remark("a dry run: the boat is sent nothing but standby".to_owned());
+    }
+    if let Some(operator) = &args.without_preflight {
+        log.remark(format!("WARNING: {operator} answers for arming without a pre-flight check"));
+    }
+    let game = args.leaf.game.as_ref().map(|game| game.as_str().to_owned());
+    let settings = Settings {
+        game: args.leaf.game.clone(),
+        place: args.leaf.place()?,
+        vehicle: args.vehicle.clone(),
+        gateway,
+        arms_itself: args.arm,
+        dry_run: args.dry_run,
+        preflight,
+        at_game_pace: args.at_game_pace,
+        record,
+        commit,
+        wait: args.wait_s.map_or(Duration::MAX, Duration::from_secs_f64),
+        stop: stop.clone(),
+    };
+    let silence = Duration::from_secs_f64(args.silence_s);
+    // An emulated boat in a hurry is stopped by nobody: a busy machine would look like a gateway that hangs.
+    let guard = if args.at_game_pace { None } else { Some(guard::own_command()?) };
+    let payloads = args.payload.clone();
+    let outside = Outside { link, silence, control: args.control_listen, guard, payloads };
+    let (mut last, mut registration) = (String::new(), None::<Registration>);
+    let mut notify = |event: NodeEvent<'_>| match event {
+        NodeEvent::Looking { reason } => log.remark(format!("{}: looking for the game: {reason}", args.vehicle)),
+        NodeEvent::Recording(file) => log.remark(format!("recording to {}", file.display())),
+        NodeEvent::Listening { what, reach } => log.remark(format!("{what} at {reach}")),
+        NodeEvent::ControlPort { address: control, token } => {
+            let (vehicle, pid, token) = (args.vehicle.clone(), std::process::id(), token.as_ref().map(Token::hex));
+            let entry = bus::GatewayEntry { vehicle, game: game.clone(), control, pid, token };
+            // Where it cannot be registered, operators must be told where it is; nothing else is lost.
+            if let Some(registration) = &registration {
+                drop(registration.update(&entry));
+                return;
+            }
+            registration = bus::register_gateway(&entry).ok();
+            log.remark(format!("operators reach this gateway at {control}, with or without a game"));
+            if !args.for_parent && std::io::stdin().is_terminal() {
+                log.remark("Enter, in this terminal, is an E-stop of this boat".to_owned());
+                let stop = OperatorCommand::EStop;
+                let stop = GatewayCommand::Boat { name: args.vehicle.clone(), command: stop };
+                // Whether it was carried out shows in the log.
+                on_enter(move || drop(bus::ask_gateway(control, None, &stop, KEY_ANSWER)));
+            }
+        }
+        NodeEvent::Event { at_s, event } => log.event(at_s, event),
+        NodeEvent::Status(status) => log.status(status),
+        NodeEvent::Ended(status) => last = format!("\n{}", full(status)),
+    };
+    let served = gateway::node::serve(&settings, &outside, &mut notify);
+    drop(registration);
+    log.end(last);
+    served.with_context(|| format!("the gateway of {}", args.vehicle))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Where the control port may listen. Others are told this address, so it must be one.
+fn control_address(text: &str) -> Result<SocketAddr, String> {
+    let address: SocketAddr =
+        text.parse().map_err(|_| "expected an address and a port, as 127.0.0.1:8100".to_owned())?;
+    if address.ip().is_unspecified() {
+        return Err(format!("others are told this address, and {} is none: name one of this machine's", address.ip()));
+    }
+    Ok(address)
+}
+
+/// Whether the boat's pre-flight check lets it be armed.
+fn preflight(args: &Args, link: &LinkAddress, gateway: &Gateway) -> Result<Preflight> {
+    if let Some(person) = &args.without_preflight {
+        return Ok(Preflight::WaivedBy(person.clone()));
+    }
+    let how = program::text("{gateway} check --vehicle, then --preflight FILE; or --without-preflight PERSON");
+    Ok(match &args.preflight {
+        Some(path) => {
+            let (report, now_s) = (preflight_report::read(path)?, utc::now_ns() / 1_000_000_000);
+            match report.admits(&args.vehicle, &link.to_string(), now_s, gateway.preflight.age_max_h) {
+                Ok(()) => Preflight::Passed,
+                Err(why) => Preflight::Missing(format!("a passed pre-flight check ({}: {why})", path.display())),
+            }
+        }
+        None if gateway.preflight.required => Preflight::Missing(format!("a passed pre-flight check ({how})")),
+        None => Preflight::NotRequired,
+    })
+}
+
+/// Where to record.
+fn recording(args: &Args) -> Result<Option<PathBuf>> {
+    if args.no_record {
+        return Ok(None);
+    }
+    if let Some(path) = &args.record {
+        return Ok(Some(path.clone()));
+    }
+    let folder = Path::new("runs");
+    std::fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
+    Ok(Some(folder.join(format!("gateway-{}-{}.mcap", args.vehicle, utc::file_stamp(utc::now_ns())))))
+}

@@ -1,0 +1,391 @@
+//! `gateway tell`: an operator command to a boat's gateway.
+//!
+//! What stops boats takes every path at once. The rest goes straight to the gateway's control port where that is known, and over
+//! the network of the game otherwise; to all boats it goes both ways.
+
+use super::log_line::full;
+use super::mission_file;
+use anyhow::{Context, Error, Result, anyhow, bail};
+use bus::stop::{StopClient, StopCommand, StopNews, StopOrders};
+use bus::{Bus, BusError, Token, ask_gateway, clock};
+use clap::ValueEnum;
+use command_line::leaf_args::LeafArgs;
+use command_line::number::within;
+use command_line::observer::Observer;
+use command_line::terminal;
+use messages::Control;
+use messages::external::{BoatMode, FleetCommand, GatewayCommand, OperatorCommand, OperatorReply};
+use messages::topic::{self, GameName};
+use std::net::SocketAddr;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::OnceLock;
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::time::Duration;
+
+/// All boats at once.
+pub(super) const ALL: &str = "all";
+/// How long a gateway's control port may take to answer.
+const PORT_ANSWER: Duration = Duration::from_secs(3);
+/// How long to wait for the next answer of all.
+const NEXT_ANSWER: Duration = Duration::from_secs(10);
+/// How long boats may take to report that they have stopped.
+const STOP_MAX: Duration = Duration::from_secs(10);
+
+/// Whom, and what.
+#[derive(clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    words: Words,
+    /// The gateway's control port, as it shows it [default: those of this machine's gateways, or by way of the game]
+    #[arg(long, value_name = "HOST:PORT")]
+    gateway: Option<SocketAddr>,
+    #[command(flatten)]
+    leaf: LeafArgs,
+}
+
+/// A command in words.
+#[derive(clap::Args)]
+pub(super) struct Words {
+    /// The vehicle, by name; all of them with "all", for estop, disarm, release and status
+    pub(super) vehicle: String,
+    /// The command
+    pub(super) command: CommandArg,
+    /// For mission: a .sea file, its lines as the boat receives them (PSEAR, then OIWPL; index 0 is the recovery point)
+    file: Option<PathBuf>,
+    /// For hold-heading: the true heading, degrees
+    #[arg(long, value_name = "DEG", value_parser = within(0.0, 360.0, "degrees"))]
+    heading_deg: Option<f64>,
+    /// For hold-heading: thrust ahead, % of all
+    #[arg(long, value_name = "PCT", value_parser = within(0.0, 100.0, "per cent"))]
+    thrust_pct: Option<f64>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum CommandArg {
+    /// Print its status
+    Status,
+    /// Follow orders, if everything that this needs is there
+    Arm,
+    /// Do not follow orders any more: standby
+    Disarm,
+    /// Standby, and nothing else until it is released
+    Estop,
+    /// The E-stop is over; the boat stays safed
+    Release,
+    /// Keep the station by the boat's own controller
+    StationKeep,
+    /// Go to the emergency recovery point by the boat's own controller
+    GoToErp,
+    /// Upload a mission and sail it by the boat's own controller
+    Mission,
+    /// Hold a heading at a thrust by the boat's own controller (mode C)
+    HoldHeading,
+    /// The boat's own river navigation (mode N)
+    RiverNav,
+    /// The boat's own autopilot (mode I)
+    Autopilot,
+    /// Calibration of the boat's compass (mode 3)
+    CalibrateCompass,
+    /// The boat's mode for depth (D)
+    Depth,
+    /// The boat's mode for the direction of gravity (S)
+    GravityVector,
+}
+
+pub(crate) fn run(args: &Args) -> Result<ExitCode> {
+    let command = args.words.command()?;
+    if let Some(stop) = StopCommand::of(&command) {
+        return tell_stop(args, stop);
+    }
+    if args.words.vehicle == ALL {
+        return tell_all(args);
+    }
+    let reply = tell(args, &command)?;
+    terminal::show(&full(&reply.status));
+    match reply.refused {
+        None => Ok(ExitCode::SUCCESS),
+        Some(reason) => Err(anyhow!("{} refuses: {reason}", args.words.vehicle)),
+    }
+}
+
+impl Words {
+    /// The command to a boat.
+    pub(super) fn command(&self) -> Result<OperatorCommand> {
+        Ok(match (self.command, &self.file) {
+            (CommandArg::Mission, None) => bail!("mission needs a .sea file"),
+            (CommandArg::Mission, Some(path)) => OperatorCommand::Mission(mission_file::read(path)?),
+            (_, Some(path)) => bail!("{} is given, and only mission takes a file", path.display()),
+            (CommandArg::HoldHeading, None) => match (self.heading_deg, self.thrust_pct) {
+                (Some(heading_deg), Some(thrust_pct)) => {
+                    OperatorCommand::Mode(BoatMode::Heading { heading_deg, thrust_pct })
+                }
+                _ => bail!("hold-heading needs --heading-deg and --thrust-pct"),
+            },
+            _ if self.heading_deg.is_some() || self.thrust_pct.is_some() => {
+                bail!("--heading-deg and --thrust-pct are for hold-heading")
+            }
+            (CommandArg::RiverNav, None) => OperatorCommand::Mode(BoatMode::RiverNav),
+            (CommandArg::Autopilot, None) => OperatorCommand::Mode(BoatMode::Autopilot),
+            (CommandArg::CalibrateCompass, None) => OperatorCommand::Mode(BoatMode::CompassCalibration),
+            (CommandArg::Depth, None) => OperatorCommand::Mode(BoatMode::Depth),
+            (CommandArg::GravityVector, None) => OperatorCommand::Mode(BoatMode::GravityVector),
+            (CommandArg::Status, None) => OperatorCommand::Status,
+            (CommandArg::Arm, None) => OperatorCommand::Arm,
+            (CommandArg::Disarm, None) => OperatorCommand::Disarm,
+            (CommandArg::Estop, None) => OperatorCommand::EStop,
+            (CommandArg::Release, None) => OperatorCommand::Release,
+            (CommandArg::StationKeep, None) => OperatorCommand::StationKeep,
+            (CommandArg::GoToErp, None) => OperatorCommand::GoToErp,
+        })
+    }
+}
+
+/// A control port, and the token of the game of its gateway.
+pub(super) struct Port {
+    /// The boat, where it is known.
+    pub(super) vehicle: Option<String>,
+    pub(super) at: SocketAddr,
+    pub(super) token: Option<Token>,
+}
+
+impl Port {
+    fn ask(&self, command: &GatewayCommand) -> Result<OperatorReply, BusError> {
+        ask_gateway(self.at, self.token.as_ref(), command, PORT_ANSWER)
+    }
+}
+
+/// The control ports that are known.
+fn ports(args: &Args) -> Result<Vec<Port>> {
+    let given = args.leaf.token()?;
+    let mut ports: Vec<Port> = Vec::new();
+    let stops = args.words.vehicle == ALL && matches!(args.words.command, CommandArg::Estop | CommandArg::Disarm);
+    for entry in args.leaf.local_gateways(stops) {
+        let token = given.clone().or_else(|| entry.token?.parse().ok());
+        ports.push(Port { vehicle: Some(entry.vehicle), at: entry.control, token });
+    }
+    if let Some(at) = args.gateway
+        && !ports.iter().any(|port| port.at == at)
+    {
+        // The game on this machine, if there is one.
+        let token = given.or_else(|| args.leaf.net().ok()?.token);
+        ports.push(Port { vehicle: None, at, token });
+    }
+    Ok(ports)
+}
+
+/// The control ports that are meant, of those that are known.
+fn ports_meant(args: &Args) -> Result<Vec<Port>> {
+    let vehicle = &args.words.vehicle;
+    let is_meant = |port: &Port| match args.gateway {
+        _ if vehicle == ALL => true,
+        Some(at) => port.at == at,
+        None => port.vehicle.as_ref() == Some(vehicle),
+    };
+    let mut ports = ports(args)?;
+    ports.retain(is_meant);
+    if let ([_, _, ..], true) = (ports.as_slice(), vehicle != ALL) {
+        let at: Vec<String> = ports.iter().map(|port| port.at.to_string()).collect();
+        bail!("several gateways on this machine are for {vehicle}: choose with --gateway among {}", at.join(", "));
+    }
+    Ok(ports)
+}
+
+fn tell(args: &Args, command: &OperatorCommand) -> Result<OperatorReply> {
+    let vehicle = &args.words.vehicle;
+    if let Some(port) = ports_meant(args)?.first() {
+        match port.ask(&GatewayCommand::Boat { name: vehicle.clone(), command: command.clone() }) {
+            // It may be ending; the one that comes after it is found by way of the game.
+            Err(error @ BusError::Use { .. }) if args.gateway.is_none() => terminal::remark(&error.to_string()),
+            reply => return Ok(reply?),
+        }
+    }
+    let observer = Observer::connect(&args.leaf)?;
+    observer.vehicle(vehicle)?;
+    let reply = ask(&observer.bus, &observer.game, vehicle, command);
+    observer.bus.close();
+    reply
+}
+
+fn ask(bus: &Bus, game: &GameName, vehicle: &str, command: &OperatorCommand) -> Result<OperatorReply> {
+    let answer = bus.request_node(&topic::operate(game, vehicle), command, bus::ANSWER)?;
+    answer.with_context(|| format!("no gateway of {vehicle} answers"))
+}
+
+/// Sends a command to a boat: to its control port if that is among these, or else over the game's network.
+pub(super) fn to_boat(
+    ports: &[Port],
+    game: Option<(&Bus, &GameName)>,
+    vehicle: &str,
+    command: &OperatorCommand,
+) -> Result<OperatorReply> {
+    let port = ports.iter().find(|port| port.vehicle.as_deref() == Some(vehicle));
+    let asked = port.map(|port| port.ask(&GatewayCommand::Boat { name: vehicle.to_owned(), command: command.clone() }));
+    match (asked, game) {
+        (Some(Ok(reply)), _) => Ok(reply),
+        (None | Some(Err(BusError::Use { .. })), Some((bus, game))) => ask(bus, game, vehicle, command),
+        (Some(Err(error)), _) => Err(error.into()),
+        (None, None) => bail!("no gateway of {vehicle} is known"),
+    }
+}
+
+/// Ends an E-stop of all boats, in the game and at these ports; gives what has failed.
+pub(super) fn release_all(ports: &[Port], game: Option<(&Bus, &GameName)>) -> Vec<String> {
+    std::thread::scope(|scope| {
+        let release = |port: &Port| match port.ask(&GatewayCommand::Fleet(FleetCommand::Release)) {
+            Ok(OperatorReply { refused: Some(reason), status }) => {
+                Some(format!("{} refuses: {reason}", status.vehicle))
+            }
+            Ok(_) => None,
+            Err(e) => Some(e.to_string()),
+        };
+        let asked: Vec<_> = ports.iter().map(|port| scope.spawn(move || release(port))).collect();
+        let of_game = game.map(|(bus, game)| bus::control(bus, game, Control::Release).map_err(|e| e.to_string()));
+        let of_ports = asked.into_iter().filter_map(|asked| asked.join().ok().flatten());
+        of_game.into_iter().filter_map(Result::err).chain(of_ports).collect()
+    })
+}
+
+/// Stops a boat or all of them on every path that is known, and prints what they report.
+fn tell_stop(args: &Args, command: StopCommand) -> Result<ExitCode> {
+    let target = (args.words.vehicle != ALL).then_some(args.words.vehicle.as_str());
+    let ports = ports_meant(args)?;
+    let client = Arc::new(StopClient::open(STOP_MAX)?);
+    client.stop(target, command);
+    for port in &ports {
+        client.add_gateway(port.at, port.vehicle.as_deref(), port.token.clone())?;
+    }
+    let no_game = Arc::new(OnceLock::new());
+    // A gateway that is named needs no game.
+    if target.is_none() || args.gateway.is_none() {
+        if let Ok(net) = args.leaf.net()
+            && net.keys.is_none()
+        {
+            client.add_hub(&net.connect, args.leaf.game.as_ref(), net.token.as_ref())?;
+        }
+        let (leaf, target) = (args.leaf.clone(), target.map(str::to_owned));
+        let (joins, reason) = (Arc::clone(&client), Arc::clone(&no_game));
+        std::thread::spawn(move || {
+            if let Err(e) = join(&leaf, target.as_deref(), &joins) {
+                drop(reason.set(format!("{e:#}")));
+                joins.visit(StopOrders::complete);
+            }
+        });
+    }
+    // Where there is nothing but a game, and that is not there, nothing is waited for.
+    client.wait(STOP_MAX, |orders| orders.is_done(clock::now()) || no_game.get().is_some());
+    let is_alone = ports.is_empty() && no_game.get().is_some();
+    let left = client.finish(if is_alone { Duration::ZERO } else { STOP_MAX });
+    for news in client.visit(StopOrders::take_news) {
+        if let StopNews::Done { vehicle, state, after, .. } = news {
+            terminal::show(&format!("{vehicle}: {} after {} ms\n", super::log_line::state(&state), after.as_millis()));
+        }
+    }
+    match (left.is_empty(), no_game.get()) {
+        (true, None) if client.visit(|orders| orders.is_done(clock::now())) => {}
+        (true, None) => terminal::remark("the game does not answer: only the gateways that are known were told"),
+        (true, Some(reason)) => terminal::remark(&format!("only gateways were told, and no game: {reason}")),
+        (false, None) => return Err(anyhow!(left.join("; "))),
+        (false, Some(reason)) => return Err(anyhow!("{}; {reason}", left.join("; "))),
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Adds the topics of the game to the paths, if it has this boat.
+fn join(leaf: &LeafArgs, target: Option<&str>, client: &StopClient) -> Result<()> {
+    let observer = Observer::connect(leaf)?;
+    let scenario = &observer.info.scenario;
+    let boats: Vec<String> = scenario.externals().map(|boat| scenario.vehicles[boat.index()].name.clone()).collect();
+    if let Some(target) = target {
+        observer.vehicle(target)?;
+        if !boats.iter().any(|boat| boat == target) {
+            bail!("{target} is simulated: it has no gateway");
+        }
+    }
+    Ok(client.join(&observer.bus, &observer.game, &boats)?)
+}
+
+/// What came of a part of a command to all.
+enum Outcome {
+    /// The game was told, and with it all boats in it.
+    Told,
+    /// There is no game to tell.
+    NoGame(Error),
+    Reply(Box<OperatorReply>),
+    Failed(Error),
+}
+
+/// Sends a command to all boats: over the game's network and straight to every gateway that is known, at once. None waits for
+/// another, and the status of every real boat is printed as it comes.
+fn tell_all(args: &Args) -> Result<ExitCode> {
+    let (control, fleet) = match args.words.command {
+        CommandArg::Status => (None, None),
+        CommandArg::Release => (Some(Control::Release), Some(FleetCommand::Release)),
+        _ => bail!("only estop, disarm, release and status go to all; tell each boat by its name"),
+    };
+    let ports = ports(args)?;
+    let known: Vec<String> = ports.iter().filter_map(|port| port.vehicle.clone()).collect();
+    let (sender, outcomes) = channel();
+    for port in ports {
+        let sender = sender.clone();
+        std::thread::spawn(move || {
+            let name = port.vehicle.clone().unwrap_or_default();
+            let status = GatewayCommand::Boat { name, command: OperatorCommand::Status };
+            let reply = port.ask(&fleet.map_or(status, GatewayCommand::Fleet));
+            drop(
+                sender.send(reply.map_or_else(|e| Outcome::Failed(e.into()), |reply| Outcome::Reply(Box::new(reply)))),
+            );
+        });
+    }
+    let leaf = args.leaf.clone();
+    std::thread::spawn(move || tell_game(&leaf, control, &known, &sender));
+    let (mut is_done, mut no_game, mut failed) = (false, None, Vec::new());
+    loop {
+        match outcomes.recv_timeout(NEXT_ANSWER) {
+            Ok(Outcome::Told) => is_done = true,
+            Ok(Outcome::NoGame(error)) => no_game = Some(error),
+            Ok(Outcome::Failed(error)) => failed.push(format!("{error:#}")),
+            Ok(Outcome::Reply(reply)) => {
+                is_done = true;
+                terminal::show(&full(&reply.status));
+                failed.extend(reply.refused.map(|reason| format!("{} refuses: {reason}", reply.status.vehicle)));
+            }
+            Err(RecvTimeoutError::Disconnected) => break,
+            Err(RecvTimeoutError::Timeout) => {
+                failed.push("not everybody answers".to_owned());
+                break;
+            }
+        }
+    }
+    match no_game {
+        Some(error) if is_done => terminal::remark(&format!("only gateways were told, and no game: {error:#}")),
+        Some(error) => failed.push(format!("{error:#}")),
+        None => {}
+    }
+    if failed.is_empty() { Ok(ExitCode::SUCCESS) } else { Err(anyhow!(failed.join("; "))) }
+}
+
+/// Tells the game, then asks for the status of the real boats in it but for `known` ones.
+fn tell_game(leaf: &LeafArgs, control: Option<Control>, known: &[String], outcomes: &Sender<Outcome>) {
+    // Nobody listens any more when the time is up.
+    let say = |outcome| drop(outcomes.send(outcome));
+    let observer = match Observer::connect(leaf) {
+        Ok(observer) => observer,
+        Err(error) => return say(Outcome::NoGame(error)),
+    };
+    if let Some(control) = control {
+        match bus::control(&observer.bus, &observer.game, control) {
+            Ok(()) => say(Outcome::Told),
+            Err(error) => say(Outcome::Failed(error.into())),
+        }
+    }
+    let scenario = &observer.info.scenario;
+    for vehicle in scenario.externals().map(|vehicle| &scenario.vehicles[vehicle.index()].name) {
+        if !known.contains(vehicle) {
+            let reply = ask(&observer.bus, &observer.game, vehicle, &OperatorCommand::Status);
+            say(reply.map_or_else(Outcome::Failed, |reply| Outcome::Reply(Box::new(reply))));
+        }
+    }
+    observer.bus.close();
+}

@@ -1,0 +1,165 @@
+//! The boat's program as somebody types it: help, a check, a gateway that operators reach, its guard, a replay.
+
+#![allow(clippy::disallowed_methods, reason = "processes are waited for by the clock, with a limit")]
+
+use gateway::link::{Link, LinkAddress, LinkEvent, LinkSettings};
+use std::process::{Child, Command, Output, Stdio};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, channel};
+use std::time::{Duration, Instant};
+
+/// Longer than anything should take on a busy machine.
+const LIMIT: Duration = Duration::from_secs(60);
+/// What stops a boat, by its gateway or by the gateway's guard.
+const ZERO: &str = "$PSEAC,T,0,0,0,*";
+
+/// The program in a folder of its own, with a registry of its own.
+struct Folder(tempfile::TempDir);
+
+impl Folder {
+    fn new() -> Folder {
+        Folder(tempfile::tempdir().expect("a folder"))
+    }
+
+    fn command(&self, args: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_squall-gateway"));
+        command.current_dir(self.0.path()).env("XDG_RUNTIME_DIR", self.0.path()).args(args);
+        command
+    }
+
+    fn run(&self, args: &[&str]) -> (Output, String) {
+        let output = self.command(args).output().expect("the program starts");
+        let said = [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text).into_owned());
+        (output, said.concat())
+    }
+
+    /// A gateway of a boat, in whose game there is nobody. It ends when its standard input does.
+    fn gateway(&self, boat: &Boat) -> Running {
+        let link = boat.link.reach();
+        let args = ["surveyor", "--vehicle", "blue_one", "--game", "nowhere", "--link", &link, "--for-parent"];
+        let mut command = self.command(&args);
+        command.args(["--record", "run.mcap"]).stdin(Stdio::piped()).stdout(Stdio::null());
+        Running(command.spawn().expect("the program starts"))
+    }
+
+    /// Repeats a command until it says this.
+    fn run_until(&self, args: &[&str], what: &str) {
+        let start = Instant::now();
+        let mut said = String::new();
+        while !said.contains(what) {
+            assert!(start.elapsed() < LIMIT, "{args:?} does not say {what:?}: {said}");
+            said = self.run(args).1;
+        }
+    }
+}
+
+/// A process that is gone with the test.
+struct Running(Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        drop(self.0.kill());
+        drop(self.0.wait());
+    }
+}
+
+/// A boat's end of a link: it reports that it stands by, and notes what it is sent.
+struct Boat {
+    link: Arc<Link>,
+    received: Receiver<String>,
+    is_gone: Arc<AtomicBool>,
+}
+
+impl Boat {
+    fn new() -> Boat {
+        let (sender, received) = channel();
+        let take = move |event| {
+            if let LinkEvent::Bytes { bytes, .. } = event {
+                drop(sender.send(String::from_utf8_lossy(&bytes).into_owned()));
+            }
+        };
+        let address = LinkAddress::to_listen("tcp://127.0.0.1:0").expect("an address");
+        let settings = LinkSettings { silence: None, ..LinkSettings::default() };
+        let link = Arc::new(Link::open(&address, settings, take).expect("it listens"));
+        let (reporter, is_gone) = (Arc::clone(&link), Arc::<AtomicBool>::default());
+        let ended = Arc::clone(&is_gone);
+        std::thread::spawn(move || {
+            while !ended.load(Ordering::Relaxed) {
+                reporter.send(b"$PSEAG,N*22\r\n".to_vec(), 0);
+                std::thread::sleep(Duration::from_millis(100));
+            }
+        });
+        Boat { link, received, is_gone }
+    }
+
+    /// Waits until this was received, from the last time on.
+    fn wait_for(&self, what: &str) {
+        let (start, mut text) = (Instant::now(), String::new());
+        while !text.contains(what) {
+            assert!(start.elapsed() < LIMIT, "{what:?} does not come: {text:?}");
+            text.extend(self.received.recv_timeout(Duration::from_millis(100)));
+        }
+    }
+}
+
+impl Drop for Boat {
+    fn drop(&mut self) {
+        self.is_gone.store(true, Ordering::Relaxed);
+    }
+}
+
+#[test]
+fn help_and_hints_name_this_program() {
+    let folder = Folder::new();
+    let (output, help) = folder.run(&["--help"]);
+    assert!(output.status.success() && help.contains("squall-gateway"), "{help}");
+    for command in ["surveyor", "check", "stop", "tell", "console", "replay"] {
+        assert!(help.contains(command), "{help}");
+        let (output, help) = folder.run(&[command, "--help"]);
+        assert!(output.status.success() && help.contains(&format!("squall-gateway {command}")), "{help}");
+        assert!(!help.contains("squall gateway"), "{help}");
+    }
+    // Only a simulation needs an emulated boat.
+    assert!(!folder.run(&["emulate", "--help"]).0.status.success());
+    assert!(folder.run(&["replay", "nothing.mcap"]).1.starts_with("squall-gateway: cannot replay nothing.mcap"));
+}
+
+#[test]
+fn a_boat_is_checked_by_a_gateway_file_inside_of_the_program() {
+    let (folder, boat) = (Folder::new(), Boat::new());
+    let link = boat.link.reach();
+    let check = |config: &str| folder.command(&["check", "--link", &link, "--for-s", "60", "--config", config]);
+    let refused = check("blueboot").output().expect("the program starts");
+    let said = String::from_utf8_lossy(&refused.stderr);
+    assert!(!refused.status.success() && said.contains("did you mean blueboat"), "{said}");
+    let mut check = Running(check("emulated").stderr(Stdio::piped()).spawn().expect("the program starts"));
+    let mut said = std::io::BufReader::new(check.0.stderr.take().expect("piped"));
+    let mut line = String::new();
+    std::io::BufRead::read_line(&mut said, &mut line).expect("it says something");
+    assert!(line.contains("listening for 60 s, sending nothing"), "{line}");
+}
+
+#[test]
+fn a_gateway_serves_operators_and_its_recording_is_replayed_and_its_guard_stops_the_boat() {
+    let (folder, boat) = (Folder::new(), Boat::new());
+    let mut gateway = folder.gateway(&boat);
+    boat.wait_for(ZERO);
+    folder.run_until(&["tell", "blue_one", "status", "--game", "nowhere"], "blue_one: safed");
+    let (output, said) = folder.run(&["tell", "blue_one", "arm", "--game", "nowhere"]);
+    assert!(!output.status.success() && said.contains("no game yet"), "{said}");
+    let (output, said) = folder.run(&["stop", &boat.link.reach()]);
+    assert!(output.status.success() && said.contains("has the link: e-stopped"), "{said}");
+    drop(gateway.0.stdin.take());
+    assert!(gateway.0.wait().expect("it ends").success());
+    let (output, said) = folder.run(&["replay", "run.mcap"]);
+    assert!(output.status.success() && said.contains("the replay is the recording, byte for byte"), "{said}");
+
+    std::fs::remove_file(folder.0.path().join("run.mcap")).expect("it was recorded");
+    let mut gateway = folder.gateway(&boat);
+    folder.run_until(&["tell", "blue_one", "status", "--game", "nowhere"], "blue_one: safed");
+    gateway.0.kill().expect("it runs");
+    gateway.0.wait().expect("it is killed");
+    while boat.received.try_recv().is_ok() {}
+    boat.wait_for(ZERO);
+}

@@ -1,0 +1,43 @@
+//! What a node reports to the program that runs it.
+
+use crate::bridge::Event;
+use bus::Token;
+use messages::external::GatewayStatus;
+use std::net::SocketAddr;
+use std::path::Path;
+
+/// What a node reports to the program that runs it.
+pub enum NodeEvent<'a> {
+    /// It cannot begin yet.
+    Looking {
+        /// Why.
+        reason: &'a str,
+    },
+    /// Something happened.
+    Event {
+        /// Time since it began, s.
+        at_s: f64,
+        /// What.
+        event: &'a Event,
+    },
+    /// The status, twice a second.
+    Status(&'a GatewayStatus),
+    /// It has ended, with this status.
+    Ended(&'a GatewayStatus),
+    /// It records into this file.
+    Recording(&'a Path),
+    /// The control port is open, or asks for another token from now on.
+    ControlPort {
+        /// Where it listens.
+        address: SocketAddr,
+        /// The token that it asks for, if that is known.
+        token: Option<Token>,
+    },
+    /// Others can connect here.
+    Listening {
+        /// Which port this is.
+        what: &'a str,
+        /// Its address.
+        reach: &'a str,
+    },
+}

@@ -1,0 +1,38 @@
+//! The settings of a gateway to a real boat.
+
+use crate::bridge::Preflight;
+use crate::config::Gateway;
+use bus::Place;
+use messages::topic::GameName;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
+
+/// The settings of a gateway to a real boat.
+pub struct Settings {
+    /// The game; without a name, the only one there is.
+    pub game: Option<GameName>,
+    /// Where the sim is.
+    pub place: Place,
+    /// The boat's name in the game.
+    pub vehicle: String,
+    /// How it is driven and stopped.
+    pub gateway: Gateway,
+    /// Whether it arms by itself, once.
+    pub arms_itself: bool,
+    /// Whether the boat is sent nothing but standby.
+    pub dry_run: bool,
+    /// Whether its pre-flight check lets it be armed.
+    pub preflight: Preflight,
+    /// Whether its clock runs as fast as the game's: for emulated boats.
+    pub at_game_pace: bool,
+    /// The file of the recording, if any.
+    pub record: Option<PathBuf>,
+    /// The commit that the program was built from.
+    pub commit: &'static str,
+    /// How long to look for the game.
+    pub wait: Duration,
+    /// Set from outside to end.
+    pub stop: Arc<AtomicBool>,
+}

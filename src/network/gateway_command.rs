@@ -1,0 +1,29 @@
+//! `squall gateway`: the commands of the boat's program, and boats emulated for real back seats.
+
+mod emulate;
+
+use anyhow::Result;
+use clap::Subcommand;
+use std::process::ExitCode;
+
+/// What a gateway is to do.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    #[command(flatten)]
+    Boat(gateway_cli::Command),
+    /// Emulates a boat for a real back seat, with the real one's sentences.
+    Emulate(emulate::Args),
+}
+
+pub(crate) fn run(args: &Args) -> Result<ExitCode> {
+    match &args.command {
+        Command::Boat(command) => gateway_cli::run(command, env!("SQUALL_COMMIT")),
+        Command::Emulate(args) => emulate::run(args),
+    }
+}

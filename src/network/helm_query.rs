@@ -1,0 +1,44 @@
+//! Asks the agent of a boat for a report of its helm.
+
+use anyhow::{Context, Result, bail};
+use bus::clock;
+use command_line::observer::Observer;
+use messages::helm::{HelmQuestion, HelmReport};
+use messages::topic;
+use primitives::VehicleId;
+use shore::page::is_sound;
+use std::time::Duration;
+
+/// A boat of which nothing is heard for this long has no agent.
+pub(crate) const SILENCE: Duration = Duration::from_secs(10);
+
+/// The helm report of a vehicle; nothing if it has no agent now.
+pub(crate) fn report(observer: &Observer, vehicle: VehicleId, question: HelmQuestion) -> Result<Option<HelmReport>> {
+    let question = serde_json::to_vec(&question).context("a question is JSON")?;
+    let key = topic::helm(&observer.game, &observer.info.scenario, vehicle);
+    let Some(answer) = observer.bus.ask_node(&key, question, bus::ANSWER)? else { return Ok(None) };
+    let report: Option<HelmReport> =
+        serde_json::from_slice(&answer).context("the agent is of another version of Squall")?;
+    let name = &observer.info.scenario.vehicles[vehicle.index()].name;
+    let report = report.with_context(|| format!("the agent of {name} has no helm"))?;
+    if !is_sound(&report, vehicle, observer.info.scenario.vehicles.len()) {
+        bail!("the answer about the helm of {name} makes no sense");
+    }
+    Ok(Some(report))
+}
+
+/// The helm report of a vehicle that has an agent. An answer that a busy link dropped is asked for again.
+pub(crate) fn report_of_agent(observer: &Observer, vehicle: VehicleId, question: HelmQuestion) -> Result<HelmReport> {
+    let start = clock::now();
+    loop {
+        let asked = clock::now();
+        if let Some(report) = report(observer, vehicle, question)? {
+            return Ok(report);
+        }
+        // Where nobody answers for this boat at all, that is told before the time for an answer is over.
+        let is_answered_for = clock::since(asked) >= bus::ANSWER;
+        if !is_answered_for || clock::since(start) >= SILENCE {
+            bail!("{} has no agent", observer.info.scenario.vehicles[vehicle.index()].name);
+        }
+    }
+}

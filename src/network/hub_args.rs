@@ -1,0 +1,100 @@
+//! Command line arguments of a process that serves a game: where it listens, its keys and its token.
+
+use anyhow::{Result, anyhow, bail};
+use bus::token::TOKEN_VARIABLE;
+use bus::{Net, Token};
+use command_line::leaf_args::{KeysArgs, TokenArgs};
+use messages::topic::GameName;
+use std::path::PathBuf;
+
+/// How a hub can be reached.
+#[derive(clap::Args, Clone, Debug)]
+pub(crate) struct HubArgs {
+    /// Endpoint to listen on, for example tcp/0.0.0.0:7447 [default: a free loopback port, 7447 if it is]
+    #[arg(long, value_name = "ENDPOINT")]
+    pub(crate) listen: Vec<String>,
+    /// Be found by multicast on the local network (listens on all interfaces unless --listen says otherwise)
+    #[arg(long)]
+    lan: bool,
+    /// Lets other machines in although nothing protects the game from strangers on that network
+    #[arg(long)]
+    insecure: bool,
+    /// A zenoh configuration (JSON5) to begin with: access control, interfaces, buffers
+    #[arg(long, value_name = "FILE")]
+    zenoh_config: Option<PathBuf>,
+    #[command(flatten)]
+    keys: KeysArgs,
+    #[command(flatten)]
+    token: TokenArgs,
+}
+
+impl HubArgs {
+    /// Where to listen.
+    pub(crate) fn net(&self) -> Result<Net> {
+        let mut listen = self.listen.clone();
+        if listen.is_empty() && self.lan {
+            listen.push(format!("tcp/0.0.0.0:{}", bus::DEFAULT_PORT));
+        } else if listen.is_empty() {
+            listen.push(format!("tcp/127.0.0.1:{}", free_port(true)?));
+        }
+        listen.iter_mut().try_for_each(with_port)?;
+        let keys = self.keys.load()?;
+        match (&keys, listen.iter().find(|endpoint| !bus::is_loopback(endpoint))) {
+            (None, Some(open)) if !self.insecure => bail!(
+                "{open} can be reached from other machines, and whoever reaches it can see all of the game and stop it: make \
+                 keys with `squall keys new` and serve it with --keys, or say --insecure if nobody else is on that network"
+            ),
+            _ => {}
+        }
+        // With keys, certificates say who may do what.
+        let token = self.token.token()?.or_else(|| keys.is_none().then(Token::random));
+        Ok(Net { listen, connect: vec![], lan: self.lan, config_file: self.zenoh_config.clone(), token, keys })
+    }
+}
+
+/// A port of this machine that nobody listens on.
+pub(crate) fn free_port(prefer_default: bool) -> Result<u16> {
+    bus::free_port(prefer_default).map_err(|e| anyhow!("no free port on this machine: {e}"))
+}
+
+/// Port 0 is any that is free: chosen here, so that it is known to whoever is told the endpoint.
+fn with_port(endpoint: &mut String) -> Result<()> {
+    if let Some(rest) = endpoint.strip_suffix(":0") {
+        *endpoint = format!("{rest}:{}", free_port(false)?);
+    }
+    Ok(())
+}
+
+/// A name for a game that no other game on the network has.
+pub(crate) fn unique_game_name(scenario: &str) -> Result<GameName> {
+    use std::hash::{BuildHasher, Hasher, RandomState};
+    let bits = RandomState::new().build_hasher().finish() & 0xff_ffff;
+    let stem: String = scenario.chars().take(40).collect();
+    GameName::new(&format!("{stem}-{bits:06x}")).map_err(|e| anyhow!(e))
+}
+
+/// What people on other machines, or other users of this one, need for joining and controlling a game.
+pub(crate) fn token_text(token: &Token) -> String {
+    format!("its token, for agents and operators elsewhere: {TOKEN_VARIABLE}={}", token.hex())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn port_0_becomes_one_that_is_free_and_every_other_stays() {
+        let given = |text: &str| {
+            let mut endpoint = text.to_owned();
+            with_port(&mut endpoint).map(|()| endpoint).unwrap()
+        };
+        for text in ["tcp/127.0.0.1:7447", "tcp/127.0.0.1:10", "tcp/0.0.0.0:7440"] {
+            assert_eq!(given(text), text);
+        }
+        for text in ["tcp/127.0.0.1:0", "tcp/[::1]:0"] {
+            let endpoint = given(text);
+            let (before, port) = endpoint.rsplit_once(':').unwrap();
+            assert!(text.starts_with(before) && port.parse::<u16>().unwrap() > 0, "{endpoint}");
+        }
+    }
+}
