@@ -39,6 +39,8 @@ impl ReplayHelms {
 
 impl Helms for ReplayHelms {
     fn report(&mut self, vehicle: VehicleId, decision: u64, _functions: bool) -> HelmAnswer {
+        // Decided again: to record all objective functions would be megabytes a second, and
+        // strategies are deterministic. The recorded order says whether that is so.
         let Some(order) = self.minds.decide(vehicle, decision) else {
             let reason = "no picture of this moment was recorded".to_owned();
             return HelmAnswer { reason: Some(reason), computed: true, ..HelmAnswer::default() };

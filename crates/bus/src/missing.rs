@@ -41,10 +41,14 @@ impl From<BusError> for Missing {
     fn from(error: BusError) -> Missing {
         match error {
             BusError::NeedsToken
+            // No waiting makes these better; a person has to do something. All others may pass:
+            // a sim that begins later, a cable that is plugged in.
             | BusError::WrongToken
             | BusError::Keys(_)
             | BusError::NeedsKeys(_)
             | BusError::NotAllowed { .. } => Missing::Forever(Refusal::Refused(error.to_string())),
+            // An answer that cannot be read comes from another version, and waiting does not
+            // change that.
             BusError::Request { .. } => Missing::Forever(Refusal::Version(error.to_string())),
             other => Missing::Yet(other.to_string()),
         }

@@ -29,6 +29,9 @@ pub(super) fn subscribe(
     };
     let name = &scenario.vehicles[vehicle.index()].name;
     let mut subscriptions = vec![
+        // From the sim, not from agents: whose order counts (tickets), what the referee lets a
+        // boat do, and when an agent is lost are known there alone. A second implementation of
+        // that on the way to the boat would be wrong one day.
         bus.subscribe(topic::external_order(game, scenario, vehicle), take_order)?,
         bus.answer(topic::operate(game, name), move |query| {
             // It is read again, to be answered, behind others.

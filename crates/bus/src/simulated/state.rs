@@ -117,6 +117,7 @@ impl State {
     /// Puts an event into the queue.
     pub(super) fn at(&mut self, at_ns: u64, event: Event) {
         self.order += 1;
+        // A deadline that has passed already must not turn the clock back.
         self.events.push(Queued { at_ns: at_ns.max(self.now_ns), order: self.order, event });
     }
 

@@ -45,6 +45,8 @@ impl State {
     /// Ends the simulation: every node is killed, and nothing happens any more.
     fn give_up(&mut self, verdict: Verdict) {
         self.verdict = verdict;
+        // All nodes are killed in place of left waiting, so that their threads end and the test
+        // can tell what they waited for.
         self.events.clear();
         self.starts_due = 0;
         (0..self.nodes.len()).for_each(|node| self.nodes[node].starts_again = None);
