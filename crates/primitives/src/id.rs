@@ -2,17 +2,17 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A vehicle: its index in [`scenario::Scenario::vehicles`].
+/// A vehicle: its index in `scenario::Scenario::vehicles`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct VehicleId(pub u16);
 
-/// A team: its index in [`scenario::Scenario::teams`].
+/// A team: its index in `scenario::Scenario::teams`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct TeamId(pub u8);
 
-/// A flag: its index in [`rules::Field::flags`].
+/// A flag: its index in `rules::Field::flags`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct FlagId(pub u8);

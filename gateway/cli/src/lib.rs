@@ -1,6 +1,6 @@
 //! The commands of the boat's program: a real boat in a game, its checks, and how operators stop and command it.
 //!
-//! `squall gateway` has the same commands. Open [`surveyor`] first: it drives a boat.
+//! `squall gateway` has the same commands. Open `surveyor.rs` first: it drives a boat.
 
 mod check;
 mod console;

@@ -36,7 +36,7 @@ fn problems(asked: &str, files: &[(String, String)]) -> Vec<String> {
         fs::create_dir_all(path.parent().unwrap()).unwrap();
         fs::write(path, text).unwrap();
     }
-    let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates/onnx/tests/network");
+    let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("crates/onnx/tests/network");
     fs::create_dir(folder.path().join("models")).unwrap();
     for model in ["sb3_dynamo.onnx", "two_inputs.onnx"] {
         fs::copy(models.join(model), folder.path().join("models").join(model)).unwrap();
