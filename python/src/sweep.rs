@@ -3,9 +3,9 @@
 use crate::arguments::{PackedParts, games_and_seed, packed_of, parts_of, refused, stretch};
 use crate::signals;
 use experiment::sweep::{self, Plan, Study, StudyError};
-use scenario::{Sweep, load_sweep};
 use pyo3::exceptions::{PyIndexError, PyOSError};
 use pyo3::prelude::*;
+use scenario::{Sweep, load_sweep};
 use std::convert::Infallible;
 use std::num::NonZeroUsize;
 use std::ops::Range;

@@ -3,9 +3,9 @@
 use crate::arguments::{PackedParts, games_and_seed, packed_of, parts_of, refused, stretch};
 use crate::signals;
 use experiment::tournament::{Plan, Record, Report, WIDTH, csv, play, text};
-use scenario::{Tournament, load_tournament};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
+use scenario::{Tournament, load_tournament};
 use std::num::NonZeroUsize;
 use std::ops::Range;
 use std::path::PathBuf;

@@ -1,11 +1,11 @@
 //! Real inputs: scenario files of the tree, and a short game with everything that was sent in it.
 
-use rules::event::EventCursor;
-use messages::{Frame, GameInfo, Message, Orders, Picture, PolicyProposal, Say, Stamp, VehicleOrder, Word};
 use messages::water::{PlaneWave, Water};
-use scenario::Scenario;
+use messages::{Frame, GameInfo, Message, Orders, Picture, PolicyProposal, Say, Stamp, VehicleOrder, Word};
 use primitives::VehicleId;
 use recording::{Decision, Ending, Entry, Header, Writer};
+use rules::event::EventCursor;
+use scenario::Scenario;
 use std::io::Cursor;
 use std::path::PathBuf;
 
@@ -75,7 +75,11 @@ impl Played {
     /// What a sim says of the game.
     #[must_use]
     pub fn info(&self) -> GameInfo {
-        GameInfo { version: primitives::VERSION.to_owned(), pace: "lockstep".to_owned(), scenario: self.scenario.clone() }
+        GameInfo {
+            version: primitives::VERSION.to_owned(),
+            pace: "lockstep".to_owned(),
+            scenario: self.scenario.clone(),
+        }
     }
 
     /// Its recording.

@@ -8,11 +8,11 @@
 mod sentences;
 
 use chrono::{Datelike, Timelike};
-use primitives::LatLon;
 use gateway::nmea::{Date, Framer, Mwv, Sentence, SpeedUnit, TimeOfDay, Vtg, WindReference, checksum};
 use nmea::ParseResult;
 use nmea::sentences::mwv::{MwvReference, MwvWindSpeedUnits};
 use nmea::sentences::rmc::RmcStatusOfFix;
+use primitives::LatLon;
 use proptest::prelude::*;
 use proptest::sample::select;
 use sentences::{Domain, on_the_globe, standard_sentences};

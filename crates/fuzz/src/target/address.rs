@@ -2,8 +2,8 @@
 
 use super::{Target, check_shown, texts};
 use bus::Token;
-use messages::topic::{GameName, self};
 use gateway::link::LinkAddress;
+use messages::topic::{self, GameName};
 
 pub(super) const TARGET: Target =
     Target { name: "address", seeds, change: texts, check, allocated_max: (100_000, 200) };

@@ -1,11 +1,11 @@
 //! What boats and ground stations send (MAVLink frames).
 
 use super::{Target, binaries};
-use primitives::SimTime;
 use gateway::config::{BoatProtocol, Gateway};
 use gateway::emulator::ArduPilot;
 use gateway::mavlink::{Counts, FRAME_MAX, Framer, Received, Writer};
 use gateway::protocol::Protocol;
+use primitives::SimTime;
 
 pub(super) const TARGET: Target =
     Target { name: "mavlink", seeds, change: binaries, check, allocated_max: (1 << 24, 20_000) };

@@ -4,16 +4,16 @@ use super::{Target, binaries, check_shown};
 use crate::played::{self, Played, mixed, played};
 use agent::MindRunner;
 use agent::node::team_inbox::TeamInbox;
-use primitives::{SimTime, VehicleId, codec};
-use rules::event::EventCursor;
 use messages::external::{ExternalOrder, LinkBytes, NavReport};
 use messages::input::{InputRecord, Inputs};
-use messages::{Frame, JoinRequest, Message, Orders, Picture, PolicyProposal, Role, Say, Stamp};
-use scenario::outcome::EventOutcome;
 use messages::payload::PayloadBytes;
 use messages::picture::Nav;
 use messages::refusal::Refusals;
+use messages::{Frame, JoinRequest, Message, Orders, Picture, PolicyProposal, Role, Say, Stamp};
+use primitives::{SimTime, VehicleId, codec};
+use rules::event::EventCursor;
 use scenario::Scenario;
+use scenario::outcome::EventOutcome;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use sim::Contest;
@@ -78,7 +78,8 @@ impl Readers {
         let names = scenario.vehicles.iter().map(|vehicle| vehicle.name.clone());
         let member = |role, vehicles: Vec<String>| {
             let mut membership = Membership::new(&scenario, role);
-            let request = JoinRequest { version: primitives::VERSION.to_owned(), role, node: "fuzz".to_owned(), vehicles };
+            let request =
+                JoinRequest { version: primitives::VERSION.to_owned(), role, node: "fuzz".to_owned(), vehicles };
             membership.join(&request, TICKET, SimTime::ZERO);
             membership
         };

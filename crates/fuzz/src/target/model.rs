@@ -1,10 +1,10 @@
 //! Trained policies (ONNX): a file is a network that answers whatever it is given, and the same each time, or it is refused.
 
 use super::{Target, binaries, check_shown};
+use onnx::{Activation, Head, Layer, Network, Perceptron};
 use scenario::action::ActionSpace;
 use scenario::observation::ObservationSpace;
 use scenario::policy::{PartialSpec, PolicyModel, PolicySpec};
-use onnx::{Activation, Head, Layer, Network, Perceptron};
 use std::collections::BTreeMap;
 use std::path::Path;
 

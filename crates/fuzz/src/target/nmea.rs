@@ -1,11 +1,11 @@
 //! What boats send (NMEA sentences).
 
 use super::{Target, texts};
-use primitives::LatLon;
 use gateway::nmea::{
     ACCEPTED_MAX, Battery, Command, Counts, EMITTED_MAX, Framer, Gga, Hdg, Mode, Sentence, Talker, TimeOfDay, Waypoint,
     checksum,
 };
+use primitives::LatLon;
 
 /// Addresses that the codec reads: arbitrary fields would seldom find one.
 const ADDRESSES: [&str; 16] = [

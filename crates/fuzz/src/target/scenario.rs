@@ -3,10 +3,10 @@
 
 use super::{Target, check_shown, texts};
 use crate::played::scenarios;
-use scenario::{Kind, Problems, Scenario};
-use primitives::VehicleId;
-use gateway::config::Gateway;
 use gateway::bridge::{Bridge, Plan, Preflight, Site};
+use gateway::config::Gateway;
+use primitives::VehicleId;
+use scenario::{Kind, Problems, Scenario};
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 use tempfile::TempDir;
