@@ -1,6 +1,9 @@
 // A boat that people steer: two pages show one game, and one of them steers.
 
 import assert from 'node:assert/strict';
+import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { Program, Sight, openAnother, openBrowser, scenario } from './harness.mjs';
 
@@ -44,9 +47,20 @@ async function take(sight) {
   await sight.press('#drive');
 }
 
+/** The game in which nobody but the person goes anywhere, the mate included. */
+function alone(t) {
+  const folder = mkdtempSync(join(tmpdir(), 'squall-'));
+  t.after(() => rmSync(folder, { recursive: true, force: true }));
+  const vehicle = (name, strategy) => `[[vehicle]]\nname = "${name}"\nteam = "${name.split('_')[0]}"\nstrategy = "${scenario(`strategies/${strategy}.toml`)}"\n`;
+  const others = ['blue_two', 'red_one', 'red_two'].map((name) => vehicle(name, 'idle'));
+  const file = join(folder, 'alone.toml');
+  writeFileSync(file, [`base = "${scenario('games/person_2v2.toml')}"\n`, vehicle(BOAT, 'teleop'), ...others].join('\n'));
+  return file;
+}
+
 test('two pages see one game; a boat goes as one of them says, and the other is told who steers', async (t) => {
-  // Against boats that lie still: on a slow machine there is time to sail among those that do not, and safety moves the boat.
-  const run = new Program(t, 'run', scenario('games/person_2v2.toml'), '--red', scenario('strategies/idle.toml'), '--view', '--pace', 'realtime', '--no-record', '--listen', '127.0.0.1:0');
+  // Among boats that lie still: on a slow machine there is time to sail among those that do not, and safety moves the boat.
+  const run = new Program(t, 'run', alone(t), '--view', '--pace', 'realtime', '--no-record', '--listen', '127.0.0.1:0');
   const url = await run.url();
   // Two browsers, as two people have: a page that is not in front is shown nothing.
   const other = await openAnother(t);
