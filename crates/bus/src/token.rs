@@ -23,7 +23,7 @@ pub const TOKEN_VARIABLE: &str = "SQUALL_TOKEN";
 /// How long after the challenge a proof counts: a node that intercepts one cannot use it later. A round trip takes less.
 const GOOD_FOR: Duration = Duration::from_millis(900);
 /// How often a request is tried whose proofs come too late, as from a machine that is busy.
-const ATTEMPTS: usize = 5;
+pub const ATTEMPTS: usize = 5;
 /// Challenges that are open at once; the oldest go first.
 const OPEN_MAX: usize = 1024;
 
