@@ -132,7 +132,7 @@ pub fn load_field(path: &Path) -> Result<Field, Problems> {
 /// # Errors
 /// Everything that is wrong in it and its bases.
 pub fn load_boat(path: &Path) -> Result<Boat, Problems> {
-    draw_boat(path, 1).map(|(boat, _)| boat)
+    Boat::load(path)
 }
 
 /// Reads and checks the boat file at `path`, and draws its numbers with this seed.

@@ -189,7 +189,7 @@ pub(super) fn tree(
             }
         }
         let Some((base, at)) = base else { return tree };
-        path = diagnostics.sources.resolve(at, &base);
+        path = diagnostics.resolve(at, &base);
         asked_at = Some(at);
     }
 }

@@ -40,7 +40,7 @@ impl<T> FileCache<T> {
         place: usize,
         owner: &str,
     ) -> Option<usize> {
-        let path = diagnostics.sources.resolve(place, given);
+        let path = diagnostics.resolve(place, given);
         let is_new = !self.index_of.contains_key(&self.key(path.clone(), owner));
         let index = self.index_at(diagnostics, &path, Some(place), owner)?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();

@@ -206,7 +206,7 @@ fn model(
         action: action.and_then(|space| serde_json::from_value(space).ok()),
         period_s: period_s.as_ref().and_then(Json::as_f64),
     };
-    let path = scope.diagnostics.sources.resolve(scope.document.at(&at), file);
+    let path = scope.diagnostics.resolve(scope.document.at(&at), file);
     let read = read::model(scope.diagnostics, &path, said).map_err(|why| why.to_string());
     match read.and_then(|model| misfit(scope, &model, sets).map_or(Ok(model), Err)) {
         Ok(model) => Some(Some(model)),

@@ -100,7 +100,7 @@ fn roles(diagnostics: &mut Diagnostics, document: &Document<raw::Strategy>, give
     let mut roles = vec![];
     for (i, role) in given.iter().enumerate().filter(|(_, role)| !role.0.is_empty()) {
         let at = document.at(&format!("roles.{i}"));
-        let path = diagnostics.sources.resolve(at, &role.0);
+        let path = diagnostics.resolve(at, &role.0);
         let program = read.entry(path.clone()).or_insert_with(|| one_role(diagnostics, at, &role.0, &path));
         roles.extend(program.clone());
     }
