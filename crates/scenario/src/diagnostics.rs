@@ -2,7 +2,7 @@
 
 use super::draw::{Drawing, Drawn};
 use super::files::Files;
-use super::kept::Kept;
+use super::kept::{Kept, Reading};
 use super::kind::{Kind, ScenarioFile};
 use super::overrides::Overrides;
 use super::problem::{Problem, Problems};
@@ -49,6 +49,13 @@ impl Diagnostics {
             problems: vec![],
             faults: 0,
         }
+    }
+
+    /// Goes on from what was made of files before, if anything was; it says which.
+    pub(super) fn resume(&mut self, reading: &Reading) -> bool {
+        let Some(known) = &reading.0 else { return false };
+        (self.sources, self.kept) = (**known).clone();
+        true
     }
 
     /// Notes that the value at `at` is wrong. A line whose syntax is wrong has had its say already.

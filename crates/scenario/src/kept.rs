@@ -58,6 +58,15 @@ impl Reading {
     pub(super) fn of(diagnostics: Diagnostics) -> Reading {
         Reading(Some(Arc::new((diagnostics.sources, diagnostics.kept))))
     }
+
+    /// The files in which no single value takes the place of what they say.
+    pub(super) fn of_unchanged(mut diagnostics: Diagnostics) -> Reading {
+        let kept = Arc::make_mut(&mut diagnostics.kept);
+        let is_unchanged = |(kind, ..): &Key| !diagnostics.overrides.has_settings(*kind);
+        kept.documents.retain(|key, _| is_unchanged(key));
+        kept.strategies.retain(|key, _| is_unchanged(key));
+        Reading::of(diagnostics)
+    }
 }
 
 impl PartialEq for Reading {

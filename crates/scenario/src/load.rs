@@ -40,8 +40,14 @@ pub fn load_with(path: &Path, overrides: &Overrides) -> Result<Scenario, Problem
 /// # Errors
 /// Everything that is wrong in any file, as above.
 pub fn load_with_files(path: &Path, overrides: &Overrides, files: &Arc<Files>) -> Result<Scenario, Problems> {
+    load_knowing(&Reading::default(), path, overrides, files)
+}
+
+/// The same, where some files have been read before, and with the same values in place of what they say.
+fn load_knowing(known: &Reading, path: &Path, overrides: &Overrides, files: &Arc<Files>) -> Result<Scenario, Problems> {
     let read = |drawing: Drawing| {
         let mut diagnostics = Diagnostics::new(drawing);
+        diagnostics.resume(known);
         diagnostics.overrides = overrides.clone();
         diagnostics.files = Arc::clone(files);
         game_of(&mut diagnostics, path).map(|scenario| (scenario, diagnostics))
@@ -80,12 +86,9 @@ impl Scenario {
         };
         let mut diagnostics = Diagnostics::new(Drawing::Seed(seed));
         diagnostics.overrides.clone_from(&recipe.overrides);
-        match &recipe.reading.0 {
-            Some(reading) => (diagnostics.sources, diagnostics.kept) = (**reading).clone(),
-            None => {
-                diagnostics.texts = Some(recipe.files.clone());
-                diagnostics.models = self.strategies.iter().flat_map(Strategy::models).cloned().collect();
-            }
+        if !diagnostics.resume(&recipe.reading) {
+            diagnostics.texts = Some(recipe.files.clone());
+            diagnostics.models = self.strategies.iter().flat_map(Strategy::models).cloned().collect();
         }
         let mut drawn = game_of(&mut diagnostics, &recipe.game)?;
         drawn.seed = seed;
@@ -151,7 +154,8 @@ pub fn draw_sea(path: &Path, seed: u64) -> Result<(Sea, Vec<Drawn>), Problems> {
     of_seed(path, seed)
 }
 
-/// Reads and checks the sweep file at `path` and every file it names, and the game with every level of every axis, one at a time.
+/// Reads and checks the sweep file at `path` and every file it names, and the game with the values of every axis that tell
+/// whether all are allowed, one at a time.
 ///
 /// # Errors
 /// Everything that is wrong in any of them.
@@ -159,16 +163,25 @@ pub fn load_sweep(path: &Path) -> Result<Sweep, Problems> {
     let (sweep, _) = of_seed::<Sweep>(path, 1)?;
     let teams: Vec<String> = load(&sweep.game)?.teams.into_iter().map(|team| team.name).collect();
     let nominal: Vec<_> = sweep.axes.iter().map(super::Axis::nominal).collect();
-    let mut problems: Vec<_> = vec![];
+    let (mut problems, files) = (vec![], Arc::default());
+    // Fifty axes of a thousand levels are many games: what no axis changes is read once.
+    let known = {
+        let mut diagnostics = Diagnostics::new(Drawing::Least);
+        diagnostics.overrides = sweep.overrides(&teams, 0, 0, &nominal);
+        diagnostics.files = Arc::clone(&files);
+        // What is wrong at the nominal point is said below.
+        drop(game_of(&mut diagnostics, &sweep.game));
+        Reading::of_unchanged(diagnostics)
+    };
     let mut read = |values: &[super::AxisValue]| {
-        if let Err(Problems(found)) = load_with(&sweep.game, &sweep.overrides(&teams, 0, 0, values)) {
+        let overrides = sweep.overrides(&teams, 0, 0, values);
+        if let Err(Problems(found)) = load_knowing(&known, &sweep.game, &overrides, &files) {
             problems.extend(found);
         }
     };
     read(&nominal);
     for (i, axis) in sweep.axes.iter().enumerate() {
-        let ends = axis.values.is_empty().then(|| [0.0, 1.0].map(|share| axis.at(share)));
-        for value in axis.levels().into_iter().chain(ends.into_iter().flatten()) {
+        for value in axis.telling_values() {
             let values: Vec<_> =
                 nominal.iter().enumerate().map(|(k, other)| if k == i { &value } else { other }).cloned().collect();
             read(&values);

@@ -199,6 +199,17 @@ impl Axis {
         (0..count).map(|i| self.at(share(i))).collect()
     }
 
+    /// Those of its values that tell whether all of them are allowed: every one that is listed; of a range or a distribution both ends and
+    /// the second level.
+    pub(super) fn telling_values(&self) -> Vec<AxisValue> {
+        let mut values = self.levels();
+        if self.values.is_empty() {
+            // What a key allows is an interval, of whole numbers for some keys: the second level shows whether the steps are whole.
+            values = vec![self.at(0.0), values.swap_remove(1), self.at(1.0)];
+        }
+        values
+    }
+
     /// The value below which this share of its distribution lies, 0 to 1.
     ///
     /// # Panics

@@ -64,7 +64,20 @@ fn seeds() -> Vec<Vec<u8>> {
         let folder = path.parent().expect("a folder").display().to_string();
         [folder.as_bytes(), b"\n", &text].concat()
     };
-    files.map(seed).chain([format!("strategies\n# {broken}").into_bytes()]).collect()
+    files.map(seed).chain([format!("strategies\n# {broken}").into_bytes(), wide_sweep().into_bytes()]).collect()
+}
+
+/// A short file that stands for three thousand games.
+fn wide_sweep() -> String {
+    let axis = |key: &str, range: &str| format!("[[axis]]\nkey = \"{key}\"\nrange = {range}\ncount = 1000\n");
+    [
+        "sweeps\ngame = \"../games/surveyor_2v2.toml\"\nopponent = \"../strategies/strategy_3.toml\"\n".to_owned(),
+        "[[entry]]\nname = \"strategy_4\"\nstrategy = \"../strategies/strategy_4.toml\"\n".to_owned(),
+        axis("sea.wind.speed_m_s", "[1, 16]"),
+        axis("sea.waves.hs_m", "[0.1, 1]"),
+        axis("strategy.behaviour.avoid_boats.weight", "[50, 200]"),
+    ]
+    .concat()
 }
 
 fn check(bytes: &[u8]) {
