@@ -43,10 +43,15 @@ fn number(variable: &str) -> Option<u64> {
     Some(text.parse().unwrap_or_else(|_| panic!("{variable} is {text:?}, expected a whole number")))
 }
 
+/// Combines the traces of all games, in any order: two builds that print the same played the same games, message by message.
+static TRACES: AtomicU64 = AtomicU64::new(0);
+
 /// What is wrong with the game of a seed.
 fn failure(seed: u64) -> Option<String> {
     let plan = Plan::drawn(seed);
-    let wrong = faults_of(&plan, &play(&plan, false));
+    let played = play(&plan, false);
+    TRACES.fetch_add(played.run.trace.wrapping_mul(seed | 1), Ordering::Relaxed);
+    let wrong = faults_of(&plan, &played);
     let again = format!("SQUALL_FAULT_SEED={seed} cargo test --release --test fault_injection -- --nocapture");
     (!wrong.is_empty()).then(|| format!("seed {seed}:\n  {}\n  again: {again}", wrong.join("\n  ")))
 }
@@ -94,6 +99,7 @@ fn whatever_the_network_does_games_keep_their_promises() {
     let took_s = start.elapsed().as_secs_f64();
     let played = next.load(Ordering::Relaxed).min(from + games) - from;
     println!("{played} games in {took_s:.1} s: {:.0} a minute on {workers} cores", 60.0 * played as f64 / took_s);
+    println!("traces {:016x}", TRACES.load(Ordering::Relaxed));
     let failures = failures.into_inner();
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
