@@ -2,11 +2,11 @@
 
 use crate::plan::{FIRST_AGENT, Plan, SIM};
 use crate::play::Played;
-use bus::simulated::{Fault, Verdict};
 use messages::refusal::Refusal;
 use parking_lot::Mutex;
 use scenario::outcome::Outcome;
 use sim::node::{Pace, Report};
+use simulated_network::{Fault, Verdict};
 use std::collections::BTreeMap;
 use std::time::Duration;
 

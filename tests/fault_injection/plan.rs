@@ -1,8 +1,8 @@
 //! The plan of one game: what is played, over which network, and what goes wrong. All of it is drawn from one seed.
 
-use bus::simulated::{Conditions, Damage, Fault};
 use primitives::stream::Stream;
 use sim::node::Pace;
+use simulated_network::{Conditions, Damage, Fault};
 use std::time::Duration;
 
 /// The games that are played, in the folder `games`.

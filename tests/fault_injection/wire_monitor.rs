@@ -1,12 +1,12 @@
 //! What the wire showed of a game, and what must hold of it at every frame.
 
 use crate::plan::Plan;
-use bus::simulated::Published;
 use messages::external::ExternalOrder;
 use messages::{Frame, Order, Orders, VehicleTruth};
 use primitives::{SimTime, codec};
 use scenario::Scenario;
 use sim::node::Pace;
+use simulated_network::Published;
 use std::time::Duration;
 
 /// A boat that is to hold has stopped its thrusters after this much of the game: they take a fifth of their range a second,

@@ -8,7 +8,7 @@ use crate::tree::Tree;
 pub(crate) const LINES_MAX: usize = 500;
 
 /// What each crate of ours may depend on, whatever the section. Folders that are planned are in here already.
-const MAY_IMPORT: [(&str, &[&str]); 22] = [
+const MAY_IMPORT: [(&str, &[&str]); 23] = [
     ("onnx", &[]),
     ("primitives", &[]),
     // `scenario` for tests alone: scenes are judged by the shipped rules files.
@@ -16,6 +16,8 @@ const MAY_IMPORT: [(&str, &[&str]); 22] = [
     ("scenario", &["onnx", "primitives", "rules"]),
     ("messages", &["primitives", "rules", "scenario"]),
     ("bus", &["primitives", "scenario", "messages"]),
+    // For tests alone: no program links it.
+    ("simulated_network", &["primitives", "scenario", "messages", "bus"]),
     ("recording", &["primitives", "scenario", "messages"]),
     ("sim", &["primitives", "rules", "scenario", "messages", "bus", "recording"]),
     ("agent", &["onnx", "primitives", "rules", "scenario", "messages", "bus"]),
@@ -44,6 +46,7 @@ const ALL: &[&str] = &[
     "scenario",
     "messages",
     "bus",
+    "simulated-network",
     "recording",
     "sim",
     "agent",

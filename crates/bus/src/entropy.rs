@@ -1,6 +1,6 @@
-//! Numbers that nobody can guess; in a simulated network they follow from the seed.
+//! Numbers that nobody can guess. Challenges, tickets and names of sessions are drawn here.
 
-use crate::simulated;
+use crate::runtime::runtime;
 
 /// A number nobody can guess.
 #[must_use]
@@ -15,13 +15,6 @@ pub fn random_number() -> u64 {
 #[must_use]
 pub fn random_bytes<const N: usize>() -> [u8; N] {
     let mut bytes = [0; N];
-    // Challenges, tickets and names of sessions are drawn here: without this, no simulated game
-    // could be repeated by its seed.
-    if simulated::is_inside() {
-        let numbers = std::iter::from_fn(simulated::random_number).flat_map(u64::to_le_bytes);
-        bytes.iter_mut().zip(numbers).for_each(|(byte, drawn)| *byte = drawn);
-    } else {
-        getrandom::fill(&mut bytes).expect("the operating system has randomness");
-    }
+    runtime().fill_random(&mut bytes);
     bytes
 }

@@ -1,7 +1,7 @@
 //! What can go wrong between nodes.
 
 use crate::keys::Identity;
-use crate::runtime::KEYS_RUNTIME;
+use crate::zenoh_threads::KEYS_RUNTIME;
 use thiserror::Error;
 
 /// What can go wrong between nodes.

@@ -8,6 +8,7 @@
 
 mod access;
 mod admission;
+mod bus;
 pub mod clock;
 mod connections;
 mod control;
@@ -29,17 +30,19 @@ mod parcel;
 mod place;
 mod query;
 mod runtime;
-mod runtime_check;
 mod seal;
 mod session;
 mod sim_liveness;
-pub mod simulated;
 mod status;
 pub mod stop;
 mod thread;
+mod thread_check;
 pub mod token;
 mod watched;
+mod zenoh_session;
+mod zenoh_threads;
 
+pub use bus::{Bus, Priority, Publisher};
 pub use connections::{Connections, Slot};
 pub use control::control;
 pub use entropy::{random_bytes, random_number};
@@ -53,12 +56,16 @@ pub use local_registry::{
     Entry, GatewayEntry, Registration, gateways as local_gateways, list as local_registry, register, register_gateway,
 };
 pub use net::{DEFAULT_PORT, Net, free_port, is_loopback};
+pub use parcel::Parcel;
 pub use place::{Place, PlacedSession};
 pub use query::Query;
-pub use runtime::{HUB_RUNTIME, RUNTIME, RUNTIME_VARIABLE};
-pub use runtime_check::restart_for_keys;
-pub use session::{Bus, Declaration, Priority, Publisher};
+pub use runtime::{Runtime, System, replace_runtime};
+pub use session::{
+    Declaration, Encoding, OnBytes, OnLinkLost, OnQuery, OnToken, PendingQuery, Sender, Session, keys_meet,
+};
 pub use sim_liveness::{Patience, SimState, SimWatch};
 pub use thread::{NodeThread, start_thread};
+pub use thread_check::restart_for_keys;
 pub use token::{CurrentToken, Token};
 pub use watched::Watched;
+pub use zenoh_threads::{HUB_RUNTIME, RUNTIME, RUNTIME_VARIABLE};

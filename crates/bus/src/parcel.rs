@@ -4,14 +4,17 @@ use zenoh::bytes::ZBytes;
 
 /// The bytes of a question or an answer, with its nonce or seal; that is empty where there is none.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Parcel {
-    pub(crate) bytes: Vec<u8>,
-    pub(crate) attachment: Vec<u8>,
+pub struct Parcel {
+    /// What is asked or answered.
+    pub bytes: Vec<u8>,
+    /// The nonce or seal.
+    pub attachment: Vec<u8>,
 }
 
 impl Parcel {
     /// Bytes with neither.
-    pub(crate) fn new(bytes: Vec<u8>) -> Parcel {
+    #[must_use]
+    pub fn new(bytes: Vec<u8>) -> Parcel {
         Parcel { bytes, attachment: Vec::new() }
     }
 

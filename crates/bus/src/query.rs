@@ -2,53 +2,33 @@
 
 use crate::keys::Bundle;
 use crate::parcel::Parcel;
-use crate::session::{Network, failed};
-use crate::simulated::SimulatedQuery;
-use crate::{Bus, BusError, Declaration, Token, access, token};
+use crate::session::{Declaration, PendingQuery};
+use crate::{Bus, BusError, Priority, Token, access, token};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::time::Duration;
-use zenoh::Wait;
-use zenoh::bytes::Encoding;
-use zenoh::qos::{self, CongestionControl};
-use zenoh::query::{ConsolidationMode, QueryTarget};
 
 /// A query of another node, to be answered once.
 pub struct Query {
-    asker: Asker,
+    asker: Box<dyn PendingQuery>,
     question: Parcel,
     /// The token of the node that was asked.
     token: Option<Token>,
 }
 
-enum Asker {
-    Zenoh(zenoh::query::Query),
-    Simulated(SimulatedQuery),
-}
-
 impl Bus {
-    /// Calls `take` with every query at `key`.
+    /// Calls `receive` with every query at `key`.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
-    pub fn answer(&self, key: String, take: impl Fn(Query) + Send + Sync + 'static) -> Result<Declaration, BusError> {
+    pub fn answer(
+        &self,
+        key: String,
+        receive: impl Fn(Query) + Send + Sync + 'static,
+    ) -> Result<Declaration, BusError> {
         let token = self.token.clone();
-        let session = match &self.network {
-            Network::Zenoh(session) => session,
-            Network::Simulated(session) => {
-                let callback = move |mut query: SimulatedQuery| {
-                    let question = std::mem::take(&mut query.payload);
-                    take(Query { asker: Asker::Simulated(query), question, token: token.clone() });
-                };
-                return Ok(Declaration(Box::new(session.answer(key, callback))));
-            }
-        };
-        let callback = move |query: zenoh::query::Query| {
-            let question = Parcel::of(query.payload(), query.attachment());
-            take(Query { asker: Asker::Zenoh(query), question, token: token.clone() });
-        };
-        let queryable = session.declare_queryable(key.clone()).callback(callback).wait();
-        Ok(Declaration(Box::new(queryable.map_err(failed("answer at", &key))?)))
+        let receive = move |question, asker| receive(Query { asker, question, token: token.clone() });
+        self.session.answer(key, Box::new(receive))
     }
 
     /// Asks at `key`, where only the sim may answer; gives its answer if that comes within `limit`. Answers go behind
@@ -57,7 +37,7 @@ impl Bus {
     /// # Errors
     /// [`BusError`] if the session is closed.
     pub fn ask(&self, key: &str, payload: Vec<u8>, limit: Duration) -> Result<Option<Vec<u8>>, BusError> {
-        self.ask_at(qos::Priority::DataLow, key, Parcel::new(payload), limit, |_| true)
+        self.ask_at(Priority::Normal, key, Parcel::new(payload), limit, |_| true)
     }
 
     /// As [`Bus::ask`], at a key where other nodes answer. In a game without keys anybody may: if this node knows the token,
@@ -66,12 +46,12 @@ impl Bus {
     /// # Errors
     /// [`BusError`] if the session is closed, or if nobody but nodes without the token has answered.
     pub fn ask_node(&self, key: &str, payload: Vec<u8>, limit: Duration) -> Result<Option<Vec<u8>>, BusError> {
-        self.ask_node_at(qos::Priority::DataLow, key, payload, limit)
+        self.ask_node_at(Priority::Normal, key, payload, limit)
     }
 
     fn ask_node_at(
         &self,
-        priority: qos::Priority,
+        priority: Priority,
         key: &str,
         payload: Vec<u8>,
         limit: Duration,
@@ -97,29 +77,14 @@ impl Bus {
     /// The first answer that is accepted.
     fn ask_at(
         &self,
-        priority: qos::Priority,
+        priority: Priority,
         key: &str,
         question: Parcel,
         limit: Duration,
         mut accept: impl FnMut(&Parcel) -> bool,
     ) -> Result<Option<Vec<u8>>, BusError> {
-        let session = match &self.network {
-            Network::Zenoh(session) => session,
-            Network::Simulated(session) => {
-                return Ok(session.ask(key, question, limit, accept).map(|answer| answer.bytes));
-            }
-        };
-        let query = session.get(key).payload(question.bytes).timeout(limit);
-        // All who answer are asked, and each answer is seen when it comes: one that says nothing holds up nobody.
-        let query = query.target(QueryTarget::All).consolidation(ConsolidationMode::None);
-        let query = query.attachment((!question.attachment.is_empty()).then_some(question.attachment));
-        // `express`: not held back to fill a batch. A question is small, and somebody waits for
-        // its answer.
-        let query = query.congestion_control(CongestionControl::Drop).priority(priority).express(true);
-        let replies = query.wait().map_err(failed("ask at", key))?;
-        let answers = std::iter::from_fn(|| replies.recv().ok()).filter_map(|reply| reply.into_result().ok());
-        let mut parcels = answers.map(|sample| Parcel::of(Some(sample.payload()), sample.attachment()));
-        Ok(parcels.find(|answer| accept(answer)).map(|answer| answer.bytes))
+        let answer = self.session.ask(priority, key, question, limit, &mut accept)?;
+        Ok(answer.map(|answer| answer.bytes))
     }
 
     /// Asks the sim at `key` for something that may need the game's token, and proves that this node knows it if asked to;
@@ -136,7 +101,7 @@ impl Bus {
         limit: Duration,
     ) -> Result<Option<T>, BusError> {
         self.check_may_ask(key)?;
-        let ask = |payload| self.ask_at(qos::Priority::RealTime, key, Parcel::new(payload), limit, |_| true);
+        let ask = |payload| self.ask_at(Priority::Urgent, key, Parcel::new(payload), limit, |_| true);
         token::request(self.token.as_ref(), key, body, ask)
     }
 
@@ -154,7 +119,7 @@ impl Bus {
         if self.token.is_none() && self.keys.is_none() {
             return Err(BusError::NeedsToken);
         }
-        let ask = |payload| self.ask_node_at(qos::Priority::RealTime, key, payload, limit);
+        let ask = |payload| self.ask_node_at(Priority::Urgent, key, payload, limit);
         token::request(self.token.as_ref(), key, body, ask)
     }
 
@@ -172,10 +137,7 @@ impl Query {
     /// The key that was asked.
     #[must_use]
     pub fn key(&self) -> &str {
-        match &self.asker {
-            Asker::Zenoh(query) => query.key_expr().as_str(),
-            Asker::Simulated(query) => query.key(),
-        }
+        self.asker.key()
     }
 
     /// What is asked.
@@ -193,16 +155,6 @@ impl Query {
     /// Answers with bytes that are JSON, as a node that knows this token now.
     pub fn answer_as(self, json: Vec<u8>, token: Option<&Token>) {
         let answer = self.question.answer(self.key(), json, token);
-        match self.asker {
-            Asker::Zenoh(query) => {
-                // Unlike published messages, answers are JSON: they are rare, and read by
-                // people.
-                let reply = query.reply(query.key_expr().clone(), answer.bytes).encoding(Encoding::APPLICATION_JSON);
-                let reply = reply.attachment((!answer.attachment.is_empty()).then_some(answer.attachment));
-                // Whoever asked may be gone by now; then nobody misses the answer.
-                drop(reply.wait());
-            }
-            Asker::Simulated(query) => query.answer(answer),
-        }
+        self.asker.answer(answer);
     }
 }

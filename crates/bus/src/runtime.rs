@@ -1,30 +1,129 @@
-//! The threads of zenoh in a process. zenoh reads them from the environment, once, before the first session is opened.
+//! What nodes run on: the clock, randomness, waiting, threads and the opening of sessions, behind one interface.
+//!
+//! A program has [`System`]. Tests of whole games replace all of it at once (`crates/simulated_network`), so the code of a node is the
+//! same in both to the byte, and no program contains a simulated network.
 
-/// The environment variable by which zenoh is told its threads.
-pub const RUNTIME_VARIABLE: &str = "ZENOH_RUNTIME";
+use crate::session::Session;
+use crate::zenoh_session::ZenohSession;
+use crate::{BusError, Net};
+use messages::topic::GameName;
+use scenario::Scenario;
+use std::io;
+use std::sync::{Arc, OnceLock};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
 
-/// A value of [`RUNTIME_VARIABLE`] for a process that is one node: few threads in place of zenoh's pools,
-/// which takes a quarter to a half off a lockstep round trip. What is received has one to itself: a hub that passes
-/// something large on waits in it for the sender to make room, which must then have another thread to run in. So have links
-/// that somebody begins to open: one that is never finished is closed with its linger time on.
-pub const RUNTIME: &str =
-    // One pool of two threads for everything was tried: a hub that forwarded an answer of half
-    // a megabyte had both waiting for room in the sender's queue, which had no thread left to
-    // run in, and all agents were lost for three seconds.
-    "(rx:(worker_threads:1),acc:(worker_threads:1),tx:(handover:app),net:(handover:app),app:(worker_threads:1))";
+/// What nodes run on.
+pub trait Runtime: Send + Sync {
+    /// This moment.
+    fn now(&self) -> Instant;
 
-/// The same for the hub of a game that goes by the clock: real boats may be in it, and people must be able to stop them. A thread
-/// that receives looks at no other link while there is something to read on the one it reads; so each peer that sends without
-/// end holds one, and an E-stop comes by another. In lockstep, where the second one costs time, all boats are simulated.
-pub const HUB_RUNTIME: &str =
-    // Measured with 250 E-stops under 400,000 messages of garbage a second: 12.4 ms (median) to
-    // 124 ms with one thread that receives, less than 0.1 ms to 6.6 ms with two.
-    "(rx:(worker_threads:4),acc:(worker_threads:1),tx:(handover:app),net:(handover:app),app:(worker_threads:1))";
+    /// How long the machine has been suspended since it was started.
+    fn suspended(&self) -> Duration;
 
-/// The same for a process with keys. A TLS link of zenoh (1.10, `zenoh-link-tls`) is read and written at once through one object that
-/// only one thread may use at a time: with two, rustls' state is overwritten, and the process dies. So one thread does everything.
-pub(crate) const KEYS_RUNTIME: &str =
-    // With two threads and sixteen agents in lockstep the sim died within a minute. Upstream,
-    // the stream should be split, or one lock be held for both halves; QUIC, whose directions
-    // are two objects, is the other way out.
-    "(rx:(handover:app),acc:(handover:app),tx:(handover:app),net:(handover:app),app:(worker_threads:1))";
+    /// Lets this much time pass.
+    fn sleep(&self, time: Duration);
+
+    /// Fills `bytes` with random ones.
+    fn fill_random(&self, bytes: &mut [u8]);
+
+    /// Starts a thread of this node. Gives no handle where nobody can join it: its end is then waited for by [`Runtime::wait`].
+    ///
+    /// # Errors
+    /// If the system has no thread to give.
+    fn spawn(&self, name: &str, body: Box<dyn FnOnce() + Send>) -> io::Result<Option<JoinHandle<()>>>;
+
+    /// Says that the value at `address` has changed.
+    fn notify(&self, address: usize);
+
+    /// Waits until the value at `address` changes or the deadline passes (none: for ever), and says whether there is time left. `None`:
+    /// this runtime leaves waiting to condition variables.
+    fn wait(&self, address: usize, deadline: Option<Instant>) -> Option<bool>;
+
+    /// Whether nodes can be reached by sockets of their own, beside their sessions.
+    fn has_sockets(&self) -> bool;
+
+    /// Opens the session of the hub of a game.
+    ///
+    /// # Errors
+    /// [`BusError`] if it cannot listen where it should.
+    fn open_hub(&self, net: &Net, game: &GameName, scenario: &Scenario) -> Result<Arc<dyn Session>, BusError>;
+
+    /// Opens a session that is connected to a hub.
+    ///
+    /// # Errors
+    /// [`BusError`] if nobody listens there now.
+    fn open_leaf(&self, net: &Net) -> Result<Arc<dyn Session>, BusError>;
+}
+
+/// What this process runs on, where that is not [`System`].
+static REPLACED: OnceLock<&'static dyn Runtime> = OnceLock::new();
+
+/// What this process runs on.
+pub(crate) fn runtime() -> &'static dyn Runtime {
+    // One for the process, not one passed to each constructor: a boat's supervisor, an inbox and a
+    // stop order would all have to hold it, and two could meet in one node.
+    REPLACED.get().copied().unwrap_or(&System)
+}
+
+/// Lets this process run on something else than [`System`]: before it does anything on the network. Only the first call counts.
+pub fn replace_runtime(runtime: &'static dyn Runtime) {
+    REPLACED.get_or_init(|| runtime);
+}
+
+/// The operating system, and zenoh.
+pub struct System;
+
+impl Runtime for System {
+    #[expect(clippy::disallowed_methods, reason = "the one place where nodes read the clock")]
+    fn now(&self) -> Instant {
+        Instant::now()
+    }
+
+    fn suspended(&self) -> Duration {
+        #[cfg(target_os = "linux")]
+        {
+            use rustix::time::{ClockId, clock_gettime};
+            let read = |id| Duration::try_from(clock_gettime(id)).unwrap_or_default();
+            // In this order the difference is never too large.
+            let boot_time = read(ClockId::Boottime);
+            // `CLOCK_MONOTONIC` stands still while a machine is suspended, `CLOCK_BOOTTIME` does
+            // not: the difference is the time that a closed lid has cost, for which a sim blames
+            // nobody.
+            boot_time.saturating_sub(read(ClockId::Monotonic))
+        }
+        #[cfg(not(target_os = "linux"))]
+        Duration::ZERO
+    }
+
+    #[expect(clippy::disallowed_methods, reason = "the one place where nodes wait for time to pass")]
+    fn sleep(&self, time: Duration) {
+        std::thread::sleep(time);
+    }
+
+    fn fill_random(&self, bytes: &mut [u8]) {
+        getrandom::fill(bytes).expect("the operating system has randomness");
+    }
+
+    fn spawn(&self, name: &str, body: Box<dyn FnOnce() + Send>) -> io::Result<Option<JoinHandle<()>>> {
+        std::thread::Builder::new().name(name.to_owned()).spawn(body).map(Some)
+    }
+
+    fn notify(&self, _: usize) {}
+
+    fn wait(&self, _: usize, _: Option<Instant>) -> Option<bool> {
+        None
+    }
+
+    fn has_sockets(&self) -> bool {
+        true
+    }
+
+    fn open_hub(&self, net: &Net, game: &GameName, scenario: &Scenario) -> Result<Arc<dyn Session>, BusError> {
+        Ok(Arc::new(ZenohSession::hub(net, game, scenario)?))
+    }
+
+    fn open_leaf(&self, net: &Net) -> Result<Arc<dyn Session>, BusError> {
+        Ok(Arc::new(ZenohSession::leaf(net)?))
+    }
+}

@@ -1,6 +1,7 @@
 //! Threads of a node beside its first one.
 
-use crate::{Watched, simulated};
+use crate::Watched;
+use crate::runtime::runtime;
 use std::sync::Arc;
 use std::thread::JoinHandle;
 
@@ -9,10 +10,7 @@ use std::thread::JoinHandle;
 /// # Errors
 /// If the system has no thread to give.
 pub fn start_thread(name: &str, body: impl FnOnce() + Send + 'static) -> std::io::Result<()> {
-    if simulated::is_inside() {
-        return simulated::spawn(body).map(drop);
-    }
-    std::thread::Builder::new().name(name.to_owned()).spawn(body).map(drop)
+    runtime().spawn(name, Box::new(body)).map(drop)
 }
 
 /// A thread that is waited for when this is dropped. What it does must end then.
@@ -38,17 +36,18 @@ impl NodeThread {
     pub fn start(body: impl FnOnce() + Send + 'static) -> std::io::Result<NodeThread> {
         let is_done = Arc::new(Watched::new(false));
         let done = Done(Arc::clone(&is_done));
-        let handle = simulated::spawn(move || {
+        let body = move || {
             let _done = done;
             body();
-        })?;
+        };
+        let handle = runtime().spawn("node", Box::new(body))?;
         Ok(NodeThread { is_done, handle })
     }
 }
 
 impl Drop for NodeThread {
     fn drop(&mut self) {
-        // `join` alone would block the one thread that may run in a simulation.
+        // Before `join`: not every runtime gives a handle.
         self.is_done.wait(std::time::Duration::MAX, |is_done| *is_done);
         // A thread that panicked has nothing to give back.
         self.handle.take().map(JoinHandle::join).into_iter().for_each(drop);

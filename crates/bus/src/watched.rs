@@ -1,6 +1,7 @@
 //! A value that callbacks change, and that a node reads, or waits on until something holds for it.
 
-use crate::{clock, simulated};
+use crate::clock;
+use crate::runtime::runtime;
 use parking_lot::{Condvar, Mutex};
 use std::time::Duration;
 
@@ -22,29 +23,30 @@ impl<T> Watched<T> {
     pub fn visit<R>(&self, visit: impl FnOnce(&mut T) -> R) -> R {
         let result = visit(&mut self.state.lock());
         self.changed.notify_all();
-        // Woken by address: a condition variable would wake threads of which the simulation
-        // knows nothing.
-        simulated::wake(self.address());
+        runtime().notify(self.address());
         result
     }
 
     /// Waits up to `limit` until `holds`, and returns whether it does.
     pub fn wait(&self, limit: Duration, mut holds: impl FnMut(&T) -> bool) -> bool {
-        if simulated::is_inside() {
-            let deadline = clock::now().checked_add(limit);
-            // The value stays unlocked while others run.
-            while !holds(&self.state.lock()) {
-                if !simulated::wait_until(self.address(), deadline) {
-                    return holds(&self.state.lock());
-                }
+        let (runtime, deadline) = (runtime(), clock::now().checked_add(limit));
+        // The value stays unlocked while a runtime waits.
+        while !holds(&self.state.lock()) {
+            match runtime.wait(self.address(), deadline) {
+                Some(true) => {}
+                Some(false) => return holds(&self.state.lock()),
+                None => return self.wait_for_change(limit, holds),
             }
-            return true;
         }
+        true
+    }
+
+    fn wait_for_change(&self, limit: Duration, mut holds: impl FnMut(&T) -> bool) -> bool {
         let mut state = self.state.lock();
         !self.changed.wait_while_for(&mut state, |state| !holds(state), limit).timed_out()
     }
 
-    /// By which a simulated network knows what is waited for.
+    /// By which a runtime knows what is waited for.
     fn address(&self) -> usize {
         std::ptr::from_ref(self).addr()
     }

@@ -1,12 +1,12 @@
 //! Packets: what travels over links.
 
-use super::query::Asked;
-use crate::parcel::Parcel;
+use crate::query::Asked;
+use bus::Parcel;
 use std::sync::Arc;
 
 /// What travels over a link.
 #[derive(Clone, Debug)]
-pub(super) enum Packet {
+pub(crate) enum Packet {
     Publish {
         key: Arc<str>,
         bytes: Arc<[u8]>,
@@ -46,7 +46,7 @@ pub(super) enum Packet {
 
 /// What a session can declare, as the hub knows it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(crate) enum Kind {
     Subscriber,
     Queryable,
     Token,
@@ -55,7 +55,7 @@ pub(super) enum Kind {
 
 /// Something that a session takes from itself.
 #[derive(Clone, Debug)]
-pub(super) enum Local {
+pub(crate) enum Local {
     Publish { key: Arc<str>, bytes: Arc<[u8]> },
     Token { watch: u64, key: String },
 }

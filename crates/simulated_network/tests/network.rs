@@ -1,10 +1,10 @@
 //! The simulated network itself: time, order, faults, and that a seed is a run.
 
-use bus::simulated::{Conditions, Damage, Fault, Run, SimulatedNetwork, Verdict};
 use bus::{Bus, Net, Priority, Watched, clock, inbox};
 use messages::topic::GameName;
 use parking_lot::Mutex;
 use scenario::Scenario;
+use simulated_network::{Conditions, Damage, Fault, Run, SimulatedNetwork, Verdict};
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;

@@ -1,11 +1,11 @@
 //! The link of a leaf to its hub: it takes time, keeps the order, and is closed when either side is silent for the lease.
 
-use super::call::Call;
-use super::conditions::{Conditions, Damage};
-use super::event::{Event, nanos};
-use super::link_state::{Direction, Link};
-use super::packet::Packet;
-use super::state::{SessionState, State};
+use crate::call::Call;
+use crate::conditions::{Conditions, Damage};
+use crate::event::{Event, nanos};
+use crate::link_state::{Direction, Link};
+use crate::packet::Packet;
+use crate::state::{SessionState, State};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
@@ -17,7 +17,7 @@ const RETRY_LEAST: Duration = Duration::from_millis(100);
 
 impl State {
     /// Opens a link, and tells the hub what the leaf has declared.
-    pub(super) fn connect(&mut self, leaf: usize, hub: usize) {
+    pub(crate) fn connect(&mut self, leaf: usize, hub: usize) {
         let link = self.links.len();
         let (down, up, known) = (Direction::default(), Direction::default(), BTreeMap::new());
         self.links.push(Link {
@@ -38,7 +38,7 @@ impl State {
     }
 
     /// The hub that a leaf can reach now.
-    pub(super) fn reachable_hub(&self, leaf: usize) -> Option<usize> {
+    pub(crate) fn reachable_hub(&self, leaf: usize) -> Option<usize> {
         let (node, endpoints) = (self.sessions[leaf].node, &self.sessions[leaf].endpoints);
         let hub = self.sessions.iter().position(|other| {
             other.is_hub && other.is_open && other.endpoints.iter().any(|endpoint| endpoints.contains(endpoint))
@@ -48,7 +48,7 @@ impl State {
     }
 
     /// Puts something on its way.
-    pub(super) fn send(&mut self, link: usize, up: bool, packet: Packet) {
+    pub(crate) fn send(&mut self, link: usize, up: bool, packet: Packet) {
         let is_open = if up { self.links[link].leaf_open } else { self.links[link].hub_open };
         let packet = match packet {
             _ if !is_open => return,
@@ -116,7 +116,7 @@ impl State {
     }
 
     /// What has travelled long enough arrives.
-    pub(super) fn arrive(&mut self, link: usize, up: bool, arrival: u64) -> Vec<Call> {
+    pub(crate) fn arrive(&mut self, link: usize, up: bool, arrival: u64) -> Vec<Call> {
         let is_stopped = self.is_stopped(link, up);
         let direction = self.links[link].direction(up);
         if direction.arrival != arrival {
@@ -148,7 +148,7 @@ impl State {
     }
 
     /// From now on one side of these links hears nothing.
-    pub(super) fn begin_silence(&mut self, node: usize) {
+    pub(crate) fn begin_silence(&mut self, node: usize) {
         for link in self.links_of(node) {
             for at_hub in [false, true] {
                 if self.links[link].silent_since_ns[usize::from(at_hub)].is_none() {
@@ -167,7 +167,7 @@ impl State {
         self.after(wait, Event::LeaseOver { link, at_hub, since_ns });
     }
 
-    pub(super) fn lease_over(&mut self, link: usize, at_hub: bool, since_ns: u64) -> Vec<Call> {
+    pub(crate) fn lease_over(&mut self, link: usize, at_hub: bool, since_ns: u64) -> Vec<Call> {
         let Link { leaf, hub, silent_since_ns, .. } = self.links[link];
         let own = self.sessions[if at_hub { hub } else { leaf }].node;
         if silent_since_ns[usize::from(at_hub)] != Some(since_ns) || self.nodes[own].is_suspended {
@@ -177,7 +177,7 @@ impl State {
     }
 
     /// Both sides hear each other again: what was on its way goes on, and who has closed tells the other.
-    pub(super) fn end_silence(&mut self, node: usize) {
+    pub(crate) fn end_silence(&mut self, node: usize) {
         for link in self.links_of(node) {
             let Link { leaf, hub, leaf_open, hub_open, .. } = self.links[link];
             let is_silent = [leaf, hub].iter().any(|end| {
@@ -203,7 +203,7 @@ impl State {
     }
 
     /// One end of a link closes: what came over it is gone.
-    pub(super) fn close_end(&mut self, link: usize, at_hub: bool) -> Vec<Call> {
+    pub(crate) fn close_end(&mut self, link: usize, at_hub: bool) -> Vec<Call> {
         let Link { leaf, leaf_open, hub_open, .. } = self.links[link];
         if at_hub {
             if !hub_open {
@@ -230,7 +230,7 @@ impl State {
         self.after(wait, Event::Reconnect { session });
     }
 
-    pub(super) fn reconnect(&mut self, session: usize) -> Vec<Call> {
+    pub(crate) fn reconnect(&mut self, session: usize) -> Vec<Call> {
         let SessionState { is_open, link, node, .. } = self.sessions[session];
         if is_open && link.is_none() {
             let hub = self.reachable_hub(session).filter(|_| !self.nodes[node].is_suspended);
@@ -243,7 +243,7 @@ impl State {
     }
 
     /// A session closes, or its process ends: the others hear of it after what was sent before.
-    pub(super) fn close(&mut self, session: usize) {
+    pub(crate) fn close(&mut self, session: usize) {
         if !std::mem::replace(&mut self.sessions[session].is_open, false) {
             return;
         }

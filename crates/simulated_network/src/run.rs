@@ -1,13 +1,14 @@
 //! A simulation from outside.
 
-use super::conditions::Conditions;
-use super::event::{Event, nanos};
-use super::fault::Fault;
-use super::published::Published;
-use super::scheduler::World;
-use super::state::{Node, State};
-use super::verdict::{NodeEnd, Verdict};
-use crate::clock;
+use crate::conditions::Conditions;
+use crate::event::{Event, nanos};
+use crate::fault::Fault;
+use crate::published::Published;
+use crate::runtime::SimulatedRuntime;
+use crate::scheduler::World;
+use crate::state::{Node, State};
+use crate::verdict::{NodeEnd, Verdict};
+use bus::clock;
 use primitives::stream::Stream;
 use std::collections::{BTreeMap, BinaryHeap};
 use std::hash::{DefaultHasher, Hasher};
@@ -36,6 +37,7 @@ impl SimulatedNetwork {
     /// A network on which everything that is drawn follows from `seed`.
     #[must_use]
     pub fn new(seed: u64, conditions: Conditions) -> SimulatedNetwork {
+        bus::replace_runtime(&SimulatedRuntime);
         let state = State {
             conditions,
             // turmoil and madsim simulate tokio, whose sockets and tasks neither our nodes nor

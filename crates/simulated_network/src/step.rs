@@ -1,15 +1,15 @@
 //! A step of a simulation: its next event happens.
 
-use super::call::Call;
-use super::event::Event;
-use super::scheduler::World;
-use super::state::{State, Status, Thread};
-use super::verdict::Verdict;
+use crate::call::Call;
+use crate::event::Event;
+use crate::scheduler::World;
+use crate::state::{State, Status, Thread};
+use crate::verdict::Verdict;
 use std::sync::Arc;
 
 impl State {
     /// The next event happens; gives what is to be called.
-    pub(super) fn step(&mut self, world: &Arc<World>) -> Vec<Call> {
+    pub(crate) fn step(&mut self, world: &Arc<World>) -> Vec<Call> {
         let Some(queued) = self.events.pop() else {
             self.give_up(Verdict::Deadlock(self.waiting()));
             return vec![];

@@ -1,7 +1,7 @@
 //! Whether a process has the threads that a node with keys must have.
 
 use crate::BusError;
-use crate::runtime::{KEYS_RUNTIME, RUNTIME_VARIABLE};
+use crate::zenoh_threads::{KEYS_RUNTIME, RUNTIME_VARIABLE};
 use std::os::unix::process::CommandExt;
 use std::process::Command;
 

@@ -1,14 +1,14 @@
 //! Everything that changes in a simulation.
 
-use super::call::Call;
-use super::conditions::Conditions;
-use super::declared::Declared;
-use super::event::{Event, Queued, nanos};
-use super::fault::{Fault, FaultEnd};
-use super::link_state::Link;
-use super::published::Published;
-use super::query::PendingQuery;
-use super::verdict::{NodeEnd, Verdict};
+use crate::call::Call;
+use crate::conditions::Conditions;
+use crate::declared::Declared;
+use crate::event::{Event, Queued, nanos};
+use crate::fault::{Fault, FaultEnd};
+use crate::link_state::Link;
+use crate::published::Published;
+use crate::query::PendingQuery;
+use crate::verdict::{NodeEnd, Verdict};
 use primitives::stream::Stream;
 use std::collections::{BTreeMap, BinaryHeap};
 use std::hash::{DefaultHasher, Hash};
@@ -17,33 +17,33 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 /// A process: what it does, and how it is.
-pub(super) struct Node {
-    pub(super) name: String,
-    pub(super) body: Arc<dyn Fn() + Send + Sync>,
-    pub(super) is_running: bool,
-    pub(super) is_suspended: bool,
-    pub(super) is_cut: bool,
+pub(crate) struct Node {
+    pub(crate) name: String,
+    pub(crate) body: Arc<dyn Fn() + Send + Sync>,
+    pub(crate) is_running: bool,
+    pub(crate) is_suspended: bool,
+    pub(crate) is_cut: bool,
     /// How many cuts and suspensions are in force: they may overlap.
-    pub(super) cuts: u32,
-    pub(super) suspensions: u32,
-    pub(super) main_thread: Option<usize>,
+    pub(crate) cuts: u32,
+    pub(crate) suspensions: u32,
+    pub(crate) main_thread: Option<usize>,
     /// A node that was killed starts again after this.
-    pub(super) starts_again: Option<Duration>,
+    pub(crate) starts_again: Option<Duration>,
 }
 
 /// A thread of a node.
-pub(super) struct Thread {
-    pub(super) node: usize,
-    pub(super) handle: Option<JoinHandle<()>>,
-    pub(super) status: Status,
+pub(crate) struct Thread {
+    pub(crate) node: usize,
+    pub(crate) handle: Option<JoinHandle<()>>,
+    pub(crate) status: Status,
     /// Unwinds as soon as it goes on.
-    pub(super) is_killed: bool,
+    pub(crate) is_killed: bool,
     /// How often it has waited.
-    pub(super) waits: u64,
+    pub(crate) waits: u64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Status {
+pub(crate) enum Status {
     /// It can go on, or does.
     Ready,
     /// It waits for a change at this address.
@@ -55,56 +55,56 @@ pub(super) enum Status {
 }
 
 /// A session of a node.
-pub(super) struct SessionState {
-    pub(super) node: usize,
-    pub(super) is_open: bool,
+pub(crate) struct SessionState {
+    pub(crate) node: usize,
+    pub(crate) is_open: bool,
     /// Where a hub listens; where a leaf connects.
-    pub(super) endpoints: Vec<String>,
+    pub(crate) endpoints: Vec<String>,
     /// The link of a leaf, while it has one.
-    pub(super) link: Option<usize>,
-    pub(super) is_hub: bool,
-    pub(super) declared: BTreeMap<u64, Declared>,
+    pub(crate) link: Option<usize>,
+    pub(crate) is_hub: bool,
+    pub(crate) declared: BTreeMap<u64, Declared>,
 }
 
 /// What an observer of the wire is told.
-pub(super) type OnPublish = Box<dyn FnMut(Published<'_>) + Send>;
+pub(crate) type OnPublish = Box<dyn FnMut(Published<'_>) + Send>;
 
 /// Everything that changes in a simulation.
-pub(super) struct State {
-    pub(super) conditions: Conditions,
-    pub(super) stream: Stream,
-    pub(super) now_ns: u64,
-    pub(super) limit_ns: u64,
-    pub(super) order: u64,
-    pub(super) events: BinaryHeap<Queued>,
-    pub(super) starts_due: usize,
-    pub(super) nodes: Vec<Node>,
-    pub(super) threads: Vec<Thread>,
+pub(crate) struct State {
+    pub(crate) conditions: Conditions,
+    pub(crate) stream: Stream,
+    pub(crate) now_ns: u64,
+    pub(crate) limit_ns: u64,
+    pub(crate) order: u64,
+    pub(crate) events: BinaryHeap<Queued>,
+    pub(crate) starts_due: usize,
+    pub(crate) nodes: Vec<Node>,
+    pub(crate) threads: Vec<Thread>,
     /// Kept to save allocations.
-    pub(super) ready: Vec<usize>,
-    pub(super) sessions: Vec<SessionState>,
-    pub(super) links: Vec<Link>,
-    pub(super) queries: BTreeMap<u64, PendingQuery>,
+    pub(crate) ready: Vec<usize>,
+    pub(crate) sessions: Vec<SessionState>,
+    pub(crate) links: Vec<Link>,
+    pub(crate) queries: BTreeMap<u64, PendingQuery>,
     /// To be dropped when the state is not locked: what callbacks hold may use the network when it goes.
-    pub(super) to_drop: Vec<Declared>,
+    pub(crate) to_drop: Vec<Declared>,
     /// The last number that was given to a declaration or a query.
-    pub(super) number: u64,
-    pub(super) on_publish: Option<OnPublish>,
-    pub(super) on_take: Option<OnPublish>,
-    pub(super) verdict: Verdict,
-    pub(super) ends: Vec<NodeEnd>,
-    pub(super) hash: DefaultHasher,
+    pub(crate) number: u64,
+    pub(crate) on_publish: Option<OnPublish>,
+    pub(crate) on_take: Option<OnPublish>,
+    pub(crate) verdict: Verdict,
+    pub(crate) ends: Vec<NodeEnd>,
+    pub(crate) hash: DefaultHasher,
     /// What happened, line by line, where that is wanted.
-    pub(super) lines: Option<Vec<String>>,
+    pub(crate) lines: Option<Vec<String>>,
 }
 
 impl State {
-    pub(super) fn is_over(&self) -> bool {
+    pub(crate) fn is_over(&self) -> bool {
         self.starts_due == 0 && self.threads.iter().all(|thread| thread.status == Status::Done)
     }
 
     /// Takes something down in the trace.
-    pub(super) fn note(&mut self, what: &str, node: usize, key: &str, bytes: &[u8]) {
+    pub(crate) fn note(&mut self, what: &str, node: usize, key: &str, bytes: &[u8]) {
         // The bytes too: a game that took another course shows in the first message that
         // differs, not only at its end.
         (self.now_ns, what, node, key, bytes).hash(&mut self.hash);
@@ -115,23 +115,23 @@ impl State {
     }
 
     /// Puts an event into the queue.
-    pub(super) fn at(&mut self, at_ns: u64, event: Event) {
+    pub(crate) fn at(&mut self, at_ns: u64, event: Event) {
         self.order += 1;
         // A deadline that has passed already must not turn the clock back.
         self.events.push(Queued { at_ns: at_ns.max(self.now_ns), order: self.order, event });
     }
 
-    pub(super) fn after(&mut self, wait: Duration, event: Event) {
+    pub(crate) fn after(&mut self, wait: Duration, event: Event) {
         self.at(self.now_ns.saturating_add(nanos(wait)), event);
     }
 
     /// A time between nothing and `most`.
-    pub(super) fn draw(&mut self, most: Duration) -> Duration {
+    pub(crate) fn draw(&mut self, most: Duration) -> Duration {
         most.mul_f64(self.stream.unit())
     }
 
     /// A fault begins.
-    pub(super) fn begin_fault(&mut self, fault: Fault) -> Vec<Call> {
+    pub(crate) fn begin_fault(&mut self, fault: Fault) -> Vec<Call> {
         match fault {
             Fault::Cut { node, time } => {
                 self.note("is cut off", node, "", &[]);
@@ -164,7 +164,7 @@ impl State {
     }
 
     /// A fault ends.
-    pub(super) fn end_fault(&mut self, node: usize, what: FaultEnd) -> Vec<Call> {
+    pub(crate) fn end_fault(&mut self, node: usize, what: FaultEnd) -> Vec<Call> {
         let node_state = &mut self.nodes[node];
         match what {
             FaultEnd::Cut => node_state.cuts -= 1,
@@ -177,7 +177,7 @@ impl State {
     }
 
     /// Kills a node: its threads unwind as soon as they go on, its links close.
-    pub(super) fn kill(&mut self, node: usize) {
+    pub(crate) fn kill(&mut self, node: usize) {
         self.nodes[node].is_running = false;
         for thread in &mut self.threads {
             if thread.node == node && thread.status != Status::Done {
@@ -190,7 +190,7 @@ impl State {
     }
 
     /// A thread has come to its end; with that of its first thread the node does.
-    pub(super) fn thread_ended(&mut self, thread: usize, node: usize, panic: Option<String>) {
+    pub(crate) fn thread_ended(&mut self, thread: usize, node: usize, panic: Option<String>) {
         self.threads[thread].status = Status::Done;
         if let Some(panic) = panic {
             self.verdict = Verdict::Panic(format!("{}: {panic}", self.nodes[node].name));

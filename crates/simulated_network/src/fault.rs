@@ -30,7 +30,7 @@ pub enum Fault {
 
 /// What has ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum FaultEnd {
+pub(crate) enum FaultEnd {
     Cut,
     Suspension,
 }

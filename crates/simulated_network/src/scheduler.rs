@@ -1,15 +1,14 @@
 //! Which thread runs: exactly one at a time. It hands over where it waits; when all wait, the next event happens.
 
-use super::event::Event;
-use super::state::{Node, State, Status, Thread};
+use crate::event::Event;
+use crate::state::{Node, State, Status, Thread};
 use parking_lot::Mutex;
 use std::any::Any;
 use std::cell::{Cell, RefCell};
-use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
-use std::thread::{self, JoinHandle};
+use std::thread;
 use std::time::{Duration, Instant};
 
 /// The number of the thread that runs the whole simulation: it only waits for the end.
@@ -24,9 +23,9 @@ thread_local! {
 
 /// A thread of a node in a simulation.
 #[derive(Clone)]
-pub(super) struct Current {
-    pub(super) world: Arc<World>,
-    pub(super) node: usize,
+pub(crate) struct Current {
+    pub(crate) world: Arc<World>,
+    pub(crate) node: usize,
     thread: usize,
 }
 
@@ -34,17 +33,17 @@ pub(super) struct Current {
 struct Killed;
 
 /// One simulation.
-pub(super) struct World {
+pub(crate) struct World {
     start: Instant,
     /// Virtual time, ns; changed only with the state locked.
     now_ns: AtomicU64,
     running: AtomicUsize,
-    pub(super) state: Mutex<State>,
+    pub(crate) state: Mutex<State>,
     main: thread::Thread,
 }
 
 /// The simulation that this thread is in.
-pub(super) fn current() -> Option<Current> {
+pub(crate) fn current() -> Option<Current> {
     CURRENT.with_borrow(Clone::clone)
 }
 
@@ -54,7 +53,7 @@ pub(crate) fn is_inside() -> bool {
 }
 
 /// Whether this thread is calling somebody back because of an event: then it must not wait.
-pub(super) fn is_in_callback() -> bool {
+pub(crate) fn is_in_callback() -> bool {
     IN_CALLBACK.get()
 }
 
@@ -99,27 +98,13 @@ pub(crate) fn wait_until(address: usize, deadline: Option<Instant>) -> bool {
     deadline.is_none_or(|deadline| world.now() < deadline)
 }
 
-/// Starts another thread of the same node, inside of a simulation; a thread of its own elsewhere.
-///
-/// # Errors
-/// If the system has no thread to give.
-pub(crate) fn spawn(body: impl FnOnce() + Send + 'static) -> io::Result<Option<JoinHandle<()>>> {
-    match current() {
-        Some(Current { world, node, .. }) => {
-            world.spawn(node, Box::new(body));
-            Ok(None)
-        }
-        None => thread::Builder::new().spawn(body).map(Some),
-    }
-}
-
 impl World {
-    pub(super) fn new(start: Instant, state: State) -> Arc<World> {
+    pub(crate) fn new(start: Instant, state: State) -> Arc<World> {
         let (now_ns, running, state) = (AtomicU64::new(0), AtomicUsize::new(MAIN), Mutex::new(state));
         Arc::new(World { start, now_ns, running, state, main: thread::current() })
     }
 
-    pub(super) fn now(&self) -> Instant {
+    pub(crate) fn now(&self) -> Instant {
         self.start + Duration::from_nanos(self.now_ns.load(Ordering::Relaxed))
     }
 
@@ -128,7 +113,7 @@ impl World {
     }
 
     /// Adds a thread to a node; it runs when its turn comes.
-    pub(super) fn spawn(self: &Arc<World>, node: usize, body: Box<dyn FnOnce() + Send>) -> usize {
+    pub(crate) fn spawn(self: &Arc<World>, node: usize, body: Box<dyn FnOnce() + Send>) -> usize {
         let mut state = self.state.lock();
         let thread = state.threads.len();
         let current = Current { world: Arc::clone(self), node, thread };
@@ -190,7 +175,7 @@ impl World {
     }
 
     /// Runs until no thread is left.
-    pub(super) fn run(self: &Arc<World>) {
+    pub(crate) fn run(self: &Arc<World>) {
         self.pass_on(MAIN);
         let handles: Vec<_> = self.state.lock().threads.iter_mut().filter_map(|thread| thread.handle.take()).collect();
         for handle in handles {
@@ -202,6 +187,11 @@ impl World {
 }
 
 impl Current {
+    /// Starts another thread of the same node.
+    pub(crate) fn spawn(&self, body: Box<dyn FnOnce() + Send>) {
+        self.world.spawn(self.node, body);
+    }
+
     /// The life of a thread of a node.
     fn run(self, body: Box<dyn FnOnce() + Send>) {
         let (world, node, thread) = (Arc::clone(&self.world), self.node, self.thread);

@@ -1,14 +1,16 @@
-//! A session on the simulated network: what [`crate::Bus`] does there.
+//! A session on the simulated network: what [`bus::Bus`] does there.
 
-use super::call::Call;
-use super::declared::{Declared, What};
-use super::packet::{Kind, Packet};
-use super::query::{Asked, PendingQuery, RoutedQuery};
-use super::scheduler::{World, current, is_in_callback, wait_until};
-use super::state::{SessionState, State};
-use crate::parcel::Parcel;
-use crate::{Net, Watched, clock};
-use std::collections::{BTreeMap, VecDeque};
+use crate::call::Call;
+use crate::declared::{Declared, What};
+use crate::packet::{Kind, Packet};
+use crate::query::{Asked, PendingQuery, RoutedQuery};
+use crate::scheduler::{World, current, is_in_callback, wait_until};
+use crate::state::{SessionState, State};
+use bus::{
+    BusError, Declaration, Encoding, Net, OnBytes, OnLinkLost, OnQuery, OnToken, Parcel, Priority, Sender, Session,
+    Watched, clock,
+};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -28,7 +30,7 @@ pub(crate) struct SimulatedSession {
 }
 
 /// Sends on one key.
-pub(crate) struct SimulatedPublisher {
+pub(crate) struct SimulatedSender {
     session: SimulatedSession,
     key: Arc<str>,
 }
@@ -53,7 +55,6 @@ pub(crate) struct SimulatedQuery {
     session: usize,
     query: u64,
     key: String,
-    pub(crate) payload: Parcel,
 }
 
 impl SimulatedSession {
@@ -117,45 +118,8 @@ impl SimulatedSession {
         Ok(SimulatedSession { world, session, id })
     }
 
-    pub(crate) fn id(&self) -> String {
-        self.id.clone()
-    }
-
-    pub(crate) fn publisher(&self, key: &str) -> SimulatedPublisher {
-        SimulatedPublisher { session: self.clone(), key: key.into() }
-    }
-
-    pub(crate) fn subscribe(
-        &self,
-        key: String,
-        take: impl Fn(&[u8]) + Send + Sync + 'static,
-        hears_own: bool,
-    ) -> Undeclare {
-        self.declare(key, What::Subscriber { take: Arc::new(take), hears_own })
-    }
-
-    pub(crate) fn answer(&self, key: String, take: impl Fn(SimulatedQuery) + Send + Sync + 'static) -> Undeclare {
-        self.declare(key, What::Queryable(Arc::new(move |routed| take(SimulatedQuery::new(routed)))))
-    }
-
-    pub(crate) fn show_alive(&self, key: String) -> Undeclare {
-        self.declare(key, What::Token)
-    }
-
-    pub(crate) fn watch_alive(&self, key: String, take: impl Fn(&str, bool) + Send + Sync + 'static) -> Undeclare {
-        self.declare(key, What::Watch(Arc::new(take), Default::default()))
-    }
-
-    /// Calls `take` with the identifier of every leaf whose link to this hub is gone.
-    pub(crate) fn watch_links(&self, take: impl Fn(String) + Send + Sync + 'static) -> Undeclare {
-        self.watch_alive(format!("{LINKS}*"), move |key, is_there| {
-            let gone = key.strip_prefix(LINKS).filter(|_| !is_there);
-            gone.map(str::to_owned).into_iter().for_each(&take);
-        })
-    }
-
-    fn declare(&self, key: String, what: What) -> Undeclare {
-        Undeclare { session: self.clone(), id: self.insert(key, what) }
+    fn declare(&self, key: String, what: What) -> Declaration {
+        Declaration::new(Undeclare { session: self.clone(), id: self.insert(key, what) })
     }
 
     /// Declares for as long as the session is open.
@@ -183,28 +147,12 @@ impl SimulatedSession {
         id
     }
 
-    /// The first answer that is accepted.
-    pub(crate) fn ask(
-        &self,
-        key: &str,
-        payload: Parcel,
-        limit: Duration,
-        accept: impl FnMut(&Parcel) -> bool,
-    ) -> Option<Parcel> {
-        self.query(key, Asked::Payload(payload), limit, accept)
-    }
-
-    pub(crate) fn who_is_alive(&self, key: &str, limit: Duration) -> Vec<String> {
-        let tokens = self.query(key, Asked::Tokens, limit, |_| true);
-        tokens.and_then(|json| serde_json::from_slice(&json.bytes).ok()).unwrap_or_default()
-    }
-
     fn query(
         &self,
         key: &str,
         asked: Asked,
         limit: Duration,
-        mut accept: impl FnMut(&Parcel) -> bool,
+        accept: &mut dyn FnMut(&Parcel) -> bool,
     ) -> Option<Parcel> {
         let answers = Arc::new(Watched::new(Answers::default()));
         let mut state = self.world.state.lock();
@@ -244,22 +192,81 @@ impl SimulatedSession {
         drop(self.world.state.lock().queries.remove(&query));
         accepted
     }
+}
 
-    pub(crate) fn close(&self) {
+impl Session for SimulatedSession {
+    fn id(&self) -> String {
+        self.id.clone()
+    }
+
+    fn publisher(&self, key: String, _: Priority) -> Result<Box<dyn Sender>, BusError> {
+        Ok(Box::new(SimulatedSender { session: self.clone(), key: key.into() }))
+    }
+
+    fn subscribe(&self, key: String, hears_own: bool, receive: OnBytes) -> Result<Declaration, BusError> {
+        Ok(self.declare(key, What::Subscriber { take: receive.into(), hears_own }))
+    }
+
+    fn answer(&self, key: String, receive: OnQuery) -> Result<Declaration, BusError> {
+        let take = move |mut routed: RoutedQuery| {
+            let question = std::mem::take(&mut routed.payload);
+            receive(question, Box::new(SimulatedQuery::new(routed)));
+        };
+        Ok(self.declare(key, What::Queryable(Arc::new(take))))
+    }
+
+    fn ask(
+        &self,
+        _: Priority,
+        key: &str,
+        question: Parcel,
+        limit: Duration,
+        accept: &mut dyn FnMut(&Parcel) -> bool,
+    ) -> Result<Option<Parcel>, BusError> {
+        Ok(self.query(key, Asked::Payload(question), limit, accept))
+    }
+
+    fn show_alive(&self, key: String) -> Result<Declaration, BusError> {
+        Ok(self.declare(key, What::Token))
+    }
+
+    fn watch_alive(&self, key: String, receive: OnToken) -> Result<Declaration, BusError> {
+        Ok(self.declare(key, What::Watch(receive.into(), BTreeSet::default())))
+    }
+
+    fn watch_links(&self, receive: OnLinkLost) -> Result<Declaration, BusError> {
+        self.watch_alive(
+            format!("{LINKS}*"),
+            Box::new(move |key, is_there| {
+                let gone = key.strip_prefix(LINKS).filter(|_| !is_there);
+                gone.map(str::to_owned).into_iter().for_each(&receive);
+            }),
+        )
+    }
+
+    fn who_is_alive(&self, key: &str, limit: Duration) -> Result<Vec<String>, BusError> {
+        let tokens = self.query(key, Asked::Tokens, limit, &mut |_| true);
+        Ok(tokens.and_then(|json| serde_json::from_slice(&json.bytes).ok()).unwrap_or_default())
+    }
+
+    fn close(&self) {
         self.world.state.lock().close(self.session);
     }
 }
 
-impl SimulatedPublisher {
-    pub(crate) fn is_heard(&self) -> bool {
+impl Sender for SimulatedSender {
+    fn is_heard(&self) -> bool {
         self.session.world.state.lock().is_heard(self.session.session, &self.key)
     }
 
-    pub(crate) fn put(&self, bytes: Vec<u8>) {
+    fn send(&self, bytes: Vec<u8>, _: Encoding) -> Result<(), BusError> {
         self.pause_now_and_then();
         self.session.world.state.lock().publish(self.session.session, &self.key, &bytes.into());
+        Ok(())
     }
+}
 
+impl SimulatedSender {
     /// Now and then computing takes its time.
     fn pause_now_and_then(&self) {
         if is_in_callback() {
@@ -299,17 +306,8 @@ impl Drop for Undeclare {
 impl SimulatedQuery {
     fn new(routed: RoutedQuery) -> SimulatedQuery {
         let world = current().expect("events happen in threads of the simulation").world;
-        let RoutedQuery { session, query, key, payload } = routed;
-        SimulatedQuery { world, session, query, key, payload }
-    }
-
-    /// The key that was asked.
-    pub(crate) fn key(&self) -> &str {
-        &self.key
-    }
-
-    pub(crate) fn answer(&self, answer: Parcel) {
-        self.send(Some(answer));
+        let RoutedQuery { session, query, key, .. } = routed;
+        SimulatedQuery { world, session, query, key }
     }
 
     fn send(&self, answer: Option<Parcel>) {
@@ -317,6 +315,16 @@ impl SimulatedQuery {
         let calls = state.answer_from(self.session, self.query, answer);
         drop(state);
         calls.into_iter().for_each(|call| call());
+    }
+}
+
+impl bus::PendingQuery for SimulatedQuery {
+    fn key(&self) -> &str {
+        &self.key
+    }
+
+    fn answer(self: Box<Self>, answer: Parcel) {
+        self.send(Some(answer));
     }
 }
 

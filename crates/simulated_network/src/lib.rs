@@ -1,9 +1,9 @@
 //! A simulated network in virtual time, for tests: the unchanged node code runs over it deterministically, faults included.
 //!
-//! Nodes are threads of this process that block only in this crate. Exactly one of them runs at a time; when all wait,
+//! Nodes are threads of this process that block only through `bus`. Exactly one of them runs at a time; when all wait,
 //! virtual time jumps to the next event. Which of several goes on, how long a message takes and what is lost is drawn from
 //! one seed: the same seed and the same nodes give the same trace. [`SimulatedNetwork`] is where a test begins; inside of a
-//! node [`crate::Bus`], [`crate::clock`] and everything that waits use it without being told.
+//! node [`bus::Bus`], [`bus::clock`] and everything that waits run on it, because it replaces the process's [`bus::Runtime`].
 
 mod call;
 mod conditions;
@@ -17,6 +17,7 @@ mod published;
 mod query;
 mod routing;
 mod run;
+mod runtime;
 mod scheduler;
 mod session;
 mod state;
@@ -28,6 +29,3 @@ pub use fault::Fault;
 pub use published::Published;
 pub use run::{Run, SimulatedNetwork};
 pub use verdict::{NodeEnd, Verdict};
-
-pub(crate) use scheduler::{is_inside, now, random_number, spawn, wait_until, wake};
-pub(crate) use session::{SimulatedPublisher, SimulatedQuery, SimulatedSession};

@@ -1,13 +1,13 @@
 //! The events of a simulation, in the order of virtual time.
 
-use super::fault::{Fault, FaultEnd};
-use super::packet::Local;
+use crate::fault::{Fault, FaultEnd};
+use crate::packet::Local;
 use std::cmp::Ordering;
 use std::time::Duration;
 
 /// Something that happens at its time.
 #[derive(Clone, Debug)]
-pub(super) enum Event {
+pub(crate) enum Event {
     /// A thread that waits has waited long enough.
     Wake {
         thread: usize,
@@ -47,10 +47,10 @@ pub(super) enum Event {
 }
 
 /// An event in the queue. Of several at one moment the one that was put in first comes first.
-pub(super) struct Queued {
-    pub(super) at_ns: u64,
-    pub(super) order: u64,
-    pub(super) event: Event,
+pub(crate) struct Queued {
+    pub(crate) at_ns: u64,
+    pub(crate) order: u64,
+    pub(crate) event: Event,
 }
 
 impl PartialEq for Queued {
@@ -77,6 +77,6 @@ impl Ord for Queued {
 }
 
 /// A time in ns; what is longer than five centuries is as long.
-pub(super) fn nanos(time: Duration) -> u64 {
+pub(crate) fn nanos(time: Duration) -> u64 {
     u64::try_from(time.as_nanos()).unwrap_or(u64::MAX)
 }

@@ -1,24 +1,16 @@
 //! Routing: where the hub sends what travels over links.
 
-use super::call::Call;
-use super::declared::{Declared, TakeQuery, What};
-use super::event::Event;
-use super::packet::{Kind, Local, Packet};
-use super::published::Published;
-use super::query::{Asked, RoutedQuery};
-use super::state::State;
-use crate::parcel::Parcel;
+use crate::call::Call;
+use crate::declared::{Declared, TakeQuery, What};
+use crate::event::Event;
+use crate::packet::{Kind, Local, Packet};
+use crate::published::Published;
+use crate::query::{Asked, RoutedQuery};
+use crate::state::State;
+use bus::{Parcel, keys_meet};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::Duration;
-use zenoh::key_expr::keyexpr;
-
-/// Whether two key expressions have a key in common.
-fn meets(one: &str, other: &str) -> bool {
-    // zenoh's own expressions decide what meets what, so that a simulated game cannot differ
-    // from a real one in that.
-    one == other || matches!((keyexpr::new(one), keyexpr::new(other)), (Ok(one), Ok(other)) if one.intersects(other))
-}
 
 impl State {
     /// The other ends of the links of a hub, on which something of this kind and key is declared.
@@ -28,7 +20,7 @@ impl State {
             if link.hub != hub || !link.hub_open || Some(i) == but {
                 continue;
             }
-            let known = link.known.iter().filter(|(_, (of, at))| *of == kind && meets(at, key));
+            let known = link.known.iter().filter(|(_, (of, at))| *of == kind && keys_meet(at, key));
             found.extend(known.map(|(id, _)| (i, *id)));
         }
         found
@@ -40,7 +32,7 @@ impl State {
         for declared in self.sessions[session].declared.values() {
             if let What::Subscriber { take, hears_own } = &declared.what
                 && (!is_own || *hears_own)
-                && meets(&declared.key, key)
+                && keys_meet(&declared.key, key)
             {
                 let (take, bytes) = (Arc::clone(take), Arc::clone(bytes));
                 calls.push(Box::new(move || take(&bytes)));
@@ -50,10 +42,10 @@ impl State {
     }
 
     /// A session publishes.
-    pub(super) fn publish(&mut self, session: usize, key: &Arc<str>, bytes: &Arc<[u8]>) {
+    pub(crate) fn publish(&mut self, session: usize, key: &Arc<str>, bytes: &Arc<[u8]>) {
         let hears_own = |what: &What| matches!(what, What::Subscriber { hears_own: true, .. });
         let own = &self.sessions[session].declared;
-        if own.values().any(|declared| hears_own(&declared.what) && meets(&declared.key, key)) {
+        if own.values().any(|declared| hears_own(&declared.what) && keys_meet(&declared.key, key)) {
             let local = Local::Publish { key: Arc::clone(key), bytes: Arc::clone(bytes) };
             self.at(self.now_ns, Event::Local { session, local });
         }
@@ -86,7 +78,7 @@ impl State {
     }
 
     /// Whether anybody would hear what is published on a key.
-    pub(super) fn is_heard(&self, session: usize, key: &str) -> bool {
+    pub(crate) fn is_heard(&self, session: usize, key: &str) -> bool {
         // A leaf cannot know.
         !self.sessions[session].is_hub
             || self.on_publish.is_some()
@@ -94,7 +86,7 @@ impl State {
     }
 
     /// Something reaches the hub.
-    pub(super) fn take_at_hub(&mut self, link: usize, packet: Packet) -> Vec<Call> {
+    pub(crate) fn take_at_hub(&mut self, link: usize, packet: Packet) -> Vec<Call> {
         if !self.links[link].hub_open {
             return vec![];
         }
@@ -129,7 +121,7 @@ impl State {
     }
 
     /// Something reaches a leaf.
-    pub(super) fn take_at_leaf(&mut self, link: usize, packet: Packet) -> Vec<Call> {
+    pub(crate) fn take_at_leaf(&mut self, link: usize, packet: Packet) -> Vec<Call> {
         if !self.links[link].leaf_open {
             return vec![];
         }
@@ -161,14 +153,14 @@ impl State {
     /// The tokens under a key that a hub knows.
     fn tokens(&self, hub: usize, key: &str, but: Option<usize>) -> Vec<String> {
         let own = self.sessions[hub].declared.values().filter(|declared| matches!(declared.what, What::Token));
-        let mut keys: Vec<String> = own.map(|declared| declared.key.clone()).filter(|at| meets(at, key)).collect();
+        let mut keys: Vec<String> = own.map(|declared| declared.key.clone()).filter(|at| keys_meet(at, key)).collect();
         let beyond = self.declared_beyond(hub, Kind::Token, key, but);
         keys.extend(beyond.iter().map(|(link, id)| self.links[*link].known[id].1.clone()));
         keys
     }
 
     /// A token has come to the hub or is gone: everybody who watches is told.
-    pub(super) fn announce(&mut self, hub: usize, key: &str, is_there: bool, from: Option<usize>) -> Vec<Call> {
+    pub(crate) fn announce(&mut self, hub: usize, key: &str, is_there: bool, from: Option<usize>) -> Vec<Call> {
         // A leaf that came back may be known by its old link still.
         if !is_there && self.tokens(hub, key, None).iter().any(|there| there == key) {
             return vec![];
@@ -188,7 +180,7 @@ impl State {
         let mut calls: Vec<Call> = Vec::new();
         for declared in self.sessions[session].declared.values_mut() {
             if let What::Watch(take, known) = &mut declared.what
-                && meets(&declared.key, key)
+                && keys_meet(&declared.key, key)
                 && (if is_there { known.insert(key.to_owned()) } else { known.remove(key) })
             {
                 let (take, key) = (Arc::clone(take), key.to_owned());
@@ -199,7 +191,7 @@ impl State {
     }
 
     /// A leaf has lost its link, and with it everything that it knew to be there.
-    pub(super) fn forget_tokens(&mut self, leaf: usize) -> Vec<Call> {
+    pub(crate) fn forget_tokens(&mut self, leaf: usize) -> Vec<Call> {
         let watches = self.sessions[leaf].declared.values().filter_map(|declared| match &declared.what {
             What::Watch(_, known) => Some(known),
             _ => None,
@@ -209,14 +201,14 @@ impl State {
     }
 
     /// The hub forgets what came over a link.
-    pub(super) fn forget(&mut self, link: usize) -> Vec<Call> {
+    pub(crate) fn forget(&mut self, link: usize) -> Vec<Call> {
         let hub = self.links[link].hub;
         let known = std::mem::take(&mut self.links[link].known);
         let tokens = known.into_values().filter(|(kind, _)| *kind == Kind::Token);
         tokens.flat_map(|(_, key)| self.announce(hub, &key, false, Some(link))).collect()
     }
 
-    pub(super) fn take_local(&mut self, session: usize, local: &Local) -> Vec<Call> {
+    pub(crate) fn take_local(&mut self, session: usize, local: &Local) -> Vec<Call> {
         match local {
             Local::Publish { key, bytes } => self.calls_of_subscribers(session, key, bytes, true),
             Local::Token { watch, key } => {
@@ -232,14 +224,14 @@ impl State {
     }
 
     /// A watch at a hub begins with what is there.
-    pub(super) fn begin_watch(&mut self, session: usize, watch: u64, key: &str) {
+    pub(crate) fn begin_watch(&mut self, session: usize, watch: u64, key: &str) {
         for key in self.tokens(session, key, None) {
             self.at(self.now_ns, Event::Local { session, local: Local::Token { watch, key } });
         }
     }
 
     /// A hub passes a query on to all who answer at its key.
-    pub(super) fn route(&mut self, hub: usize, query: u64, key: &str, asked: Asked, from: Option<usize>) -> Vec<Call> {
+    pub(crate) fn route(&mut self, hub: usize, query: u64, key: &str, asked: Asked, from: Option<usize>) -> Vec<Call> {
         let payload = match asked {
             Asked::Payload(payload) => payload,
             Asked::Tokens => {
@@ -251,7 +243,7 @@ impl State {
         let mut calls: Vec<Call> = Vec::new();
         for declared in self.sessions[hub].declared.values() {
             if let What::Queryable(take) = &declared.what
-                && meets(&declared.key, key)
+                && keys_meet(&declared.key, key)
             {
                 calls.push(asking(take, hub, query, key.to_owned(), payload.clone()));
             }
@@ -270,7 +262,7 @@ impl State {
     }
 
     /// Somebody who was asked has answered, or will not any more.
-    pub(super) fn answer_at_hub(&mut self, hub: usize, query: u64, answer: Option<Parcel>) -> Vec<Call> {
+    pub(crate) fn answer_at_hub(&mut self, hub: usize, query: u64, answer: Option<Parcel>) -> Vec<Call> {
         let Some(pending) = self.queries.get_mut(&query) else { return vec![] };
         if answer.is_none() {
             pending.open = pending.open.saturating_sub(1);

@@ -1,23 +1,23 @@
 //! What sessions declare.
 
-use super::packet::{Kind, Packet};
-use super::query::RoutedQuery;
+use crate::packet::{Kind, Packet};
+use crate::query::RoutedQuery;
 use std::collections::BTreeSet;
 use std::fmt;
 use std::sync::Arc;
 
 /// What is called with the bytes of a message, with a query, and with a token that has come or gone.
-pub(super) type TakeBytes = Arc<dyn Fn(&[u8]) + Send + Sync>;
-pub(super) type TakeQuery = Arc<dyn Fn(RoutedQuery) + Send + Sync>;
-pub(super) type TakeToken = Arc<dyn Fn(&str, bool) + Send + Sync>;
+pub(crate) type TakeBytes = Arc<dyn Fn(&[u8]) + Send + Sync>;
+pub(crate) type TakeQuery = Arc<dyn Fn(RoutedQuery) + Send + Sync>;
+pub(crate) type TakeToken = Arc<dyn Fn(&str, bool) + Send + Sync>;
 
 /// Something that a session has declared, with what to call.
-pub(super) struct Declared {
-    pub(super) key: String,
-    pub(super) what: What,
+pub(crate) struct Declared {
+    pub(crate) key: String,
+    pub(crate) what: What,
 }
 
-pub(super) enum What {
+pub(crate) enum What {
     Subscriber {
         take: TakeBytes,
         hears_own: bool,
@@ -29,7 +29,7 @@ pub(super) enum What {
 }
 
 impl Declared {
-    pub(super) fn packet(&self, id: u64) -> Packet {
+    pub(crate) fn packet(&self, id: u64) -> Packet {
         let kind = match self.what {
             What::Subscriber { .. } => Kind::Subscriber,
             What::Queryable(_) => Kind::Queryable,

@@ -1,0 +1,200 @@
+//! A node on the network: publish, subscribe, queries, liveliness tokens, with the node's token and keys.
+
+use crate::keys::Bundle;
+use crate::net::is_loopback;
+use crate::runtime::runtime;
+use crate::session::{Declaration, Encoding, Sender, Session};
+use crate::{BusError, Net, Token};
+use messages::Message;
+use messages::topic::GameName;
+use primitives::codec;
+use scenario::Scenario;
+use serde::Serialize;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// Which messages go first. None waits for a link: what a congested link cannot take at once is dropped, and who needs to be
+/// heard says it again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Priority {
+    /// What stops boats: before everything else, and at once.
+    Urgent,
+    /// Everything that is sent at every decision.
+    Normal,
+}
+
+/// A node's session.
+#[derive(Clone)]
+pub struct Bus {
+    pub(crate) session: Arc<dyn Session>,
+    pub(crate) token: Option<Token>,
+    pub(crate) keys: Option<Arc<Bundle>>,
+    is_on_this_machine: bool,
+}
+
+/// Sends messages on one key.
+pub struct Publisher(Box<dyn Sender>);
+
+impl Bus {
+    /// Opens the hub of a game.
+    ///
+    /// # Errors
+    /// [`BusError`] if it cannot listen where it should.
+    pub fn hub(net: &Net, game: &GameName, scenario: &Scenario) -> Result<Bus, BusError> {
+        runtime().open_hub(net, game, scenario).map(|session| Bus::of(session, net))
+    }
+
+    /// Connects to a hub.
+    ///
+    /// # Errors
+    /// [`BusError`] if nobody listens there now.
+    pub fn leaf(net: &Net) -> Result<Bus, BusError> {
+        runtime().open_leaf(net).map(|session| Bus::of(session, net))
+    }
+
+    fn of(session: Arc<dyn Session>, net: &Net) -> Bus {
+        let is_on_this_machine = !net.lan && net.connect.iter().all(|endpoint| is_loopback(endpoint));
+        Bus { session, token: net.token.clone(), keys: net.keys.clone(), is_on_this_machine }
+    }
+
+    /// The keys of this node, in a game with keys.
+    #[must_use]
+    pub fn keys(&self) -> Option<&Bundle> {
+        self.keys.as_deref()
+    }
+
+    /// Whether the hub is reached by loopback.
+    pub(crate) fn is_on_this_machine(&self) -> bool {
+        self.is_on_this_machine
+    }
+
+    /// The game's token, where it is known.
+    pub(crate) fn token(&self) -> Option<&Token> {
+        self.token.as_ref()
+    }
+
+    /// The same session, for a node that knows this token.
+    #[must_use]
+    pub fn with_token(self, token: Option<Token>) -> Bus {
+        Bus { token, ..self }
+    }
+
+    /// This session's own identifier, unique on the network.
+    #[must_use]
+    pub fn id(&self) -> String {
+        self.session.id()
+    }
+
+    /// Prepares to publish on `key`.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed.
+    pub fn publisher(&self, key: String, priority: Priority) -> Result<Publisher, BusError> {
+        self.session.publisher(key, priority).map(Publisher)
+    }
+
+    /// Calls `receive` with the bytes of everything published on `key`.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed.
+    pub fn subscribe(
+        &self,
+        key: String,
+        receive: impl Fn(&[u8]) + Send + Sync + 'static,
+    ) -> Result<Declaration, BusError> {
+        self.session.subscribe(key, true, Box::new(receive))
+    }
+
+    /// As [`Bus::subscribe`], but not with what this session publishes itself.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed.
+    pub fn subscribe_remote(
+        &self,
+        key: String,
+        receive: impl Fn(&[u8]) + Send + Sync + 'static,
+    ) -> Result<Declaration, BusError> {
+        self.session.subscribe(key, false, Box::new(receive))
+    }
+
+    /// Shows that this node is there, under `key`, until dropped or dead.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed.
+    pub fn show_alive(&self, key: String) -> Result<Declaration, BusError> {
+        self.session.show_alive(key)
+    }
+
+    /// Calls `receive` with the key of every node under `key` that comes (`true`) or goes, beginning with those that are there.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed.
+    pub fn watch_alive(
+        &self,
+        key: String,
+        receive: impl Fn(&str, bool) + Send + Sync + 'static,
+    ) -> Result<Declaration, BusError> {
+        self.session.watch_alive(key, Box::new(receive))
+    }
+
+    /// Calls `receive` with the identifier of every node whose link to this hub is gone.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed.
+    pub fn watch_links(&self, receive: impl Fn(String) + Send + Sync + 'static) -> Result<Declaration, BusError> {
+        self.session.watch_links(Box::new(receive))
+    }
+
+    /// The keys of all nodes under `key` that are there now.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed.
+    pub fn who_is_alive(&self, key: &str, limit: Duration) -> Result<Vec<String>, BusError> {
+        self.session.who_is_alive(key, limit)
+    }
+
+    /// Closes the session, so that the others need not find out.
+    pub fn close(&self) {
+        self.session.close();
+    }
+}
+
+impl Publisher {
+    /// Whether anybody listens; a message that nobody hears need not be made.
+    #[must_use]
+    pub fn is_heard(&self) -> bool {
+        self.0.is_heard()
+    }
+
+    /// Sends a per-tick message as CDR, with its name and version in the encoding.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed.
+    pub fn send<M: Message + Serialize>(&self, message: &M) -> Result<(), BusError> {
+        self.send_encoded::<M>(codec::encode(message))
+    }
+
+    /// Sends a per-tick message that is CDR already.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed.
+    pub fn send_encoded<M: Message>(&self, bytes: Vec<u8>) -> Result<(), BusError> {
+        self.0.send(bytes, Encoding::Cdr { schema: M::SCHEMA, version: M::VERSION })
+    }
+
+    /// Sends bytes that are JSON.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed.
+    pub fn send_json(&self, json: Vec<u8>) -> Result<(), BusError> {
+        self.0.send(json, Encoding::Json)
+    }
+
+    /// Sends bytes as they are.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed.
+    pub fn send_raw(&self, bytes: Vec<u8>) -> Result<(), BusError> {
+        self.0.send(bytes, Encoding::Bytes)
+    }
+}
