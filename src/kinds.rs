@@ -1,5 +1,7 @@
 //! The kinds of scenario files that the program knows, in the order of the reference.
 
+use experiment::sweep::Sweep;
+use experiment::tournament::Tournament;
 use scenario::Kind;
 
 pub(crate) const KINDS: &[Kind] = &[
@@ -9,10 +11,10 @@ pub(crate) const KINDS: &[Kind] = &[
     Kind::BOAT,
     Kind::SEA,
     Kind::STRATEGY,
-    Kind::TOURNAMENT,
+    Kind::of::<Tournament>(),
     #[cfg(feature = "network")]
     Kind::of::<gateway::config::Gateway>(),
     Kind::of::<learn::rewards::Rewards>(),
     Kind::of::<learn::training::Training>(),
-    Kind::SWEEP,
+    Kind::of::<Sweep>(),
 ];

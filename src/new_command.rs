@@ -3,6 +3,8 @@
 use crate::kinds::KINDS;
 use crate::{output_file, scenario_files, screen};
 use anyhow::{Result, anyhow, bail};
+use experiment::sweep::Sweep;
+use experiment::tournament::Tournament;
 use scenario::{Kind, did_you_mean};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -13,9 +15,9 @@ const TEMPLATES: [(Kind, &str); 7] = [
     (Kind::BOAT, include_str!("templates/boat.toml")),
     (Kind::SEA, include_str!("templates/sea.toml")),
     (Kind::GAME, include_str!("templates/game.toml")),
-    (Kind::SWEEP, include_str!("templates/sweep.toml")),
+    (Kind::of::<Sweep>(), include_str!("templates/sweep.toml")),
     (Kind::of::<learn::training::Training>(), include_str!("templates/training.toml")),
-    (Kind::TOURNAMENT, include_str!("templates/tournament.toml")),
+    (Kind::of::<Tournament>(), include_str!("templates/tournament.toml")),
 ];
 
 /// Which file.

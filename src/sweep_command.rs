@@ -4,8 +4,9 @@ use crate::jobs_args::JobsArgs;
 use crate::progress::Progress;
 use crate::{output_file, screen, stop};
 use anyhow::{Context, Result};
+use experiment::sweep::Sweep;
 use experiment::sweep::{self, Condition, FindError, Journal, Plan, Study, UntilError};
-use scenario::{Sweep, load_sweep};
+use scenario::load_file;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -13,7 +14,7 @@ use std::process::ExitCode;
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// The sweep: a file or a name
-    #[arg(value_parser = crate::scenario_files::sweep)]
+    #[arg(value_parser = crate::scenario_files::file_of::<Sweep>)]
     sweep: PathBuf,
     /// Games of each entry at each point, half of them on each side [default: as the file says]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
@@ -167,7 +168,7 @@ fn stopped(journal: &Journal) -> ExitCode {
 
 fn planned(args: &Args) -> Result<Plan> {
     let context = || format!("no sweep in {}", args.sweep.display());
-    let file = load_sweep(&args.sweep).with_context(context)?;
+    let file = load_file::<Sweep>(&args.sweep).with_context(context)?;
     let games = args.games.unwrap_or(file.games);
     if !games.is_multiple_of(2) {
         screen::remark(&format!("{games} games a point are {}: half of them on each side", games + 1));

@@ -8,9 +8,10 @@ use agent::MindRunner;
 use analysis::Step;
 use analysis::quality::{GameQuality, MindState, Quality};
 use anyhow::{Context, Result};
+use experiment::tournament::Tournament;
 use experiment::tournament::{self, Observer, Plan, Record, Report, play, play_observed};
 use rules::event::EventCursor;
-use scenario::{Scenario, Tournament, load_tournament};
+use scenario::{Scenario, load_file};
 use serde::Serialize;
 use sim::Contest;
 use std::num::NonZeroUsize;
@@ -22,7 +23,7 @@ use std::sync::atomic::AtomicBool;
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// The tournament: a file or a name
-    #[arg(value_parser = crate::scenario_files::tournament)]
+    #[arg(value_parser = crate::scenario_files::file_of::<Tournament>)]
     tournament: PathBuf,
     /// Games of each pairing, half of them on each side [default: as the file says]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
@@ -152,7 +153,7 @@ fn play_judged(
 fn planned(args: &Args) -> Result<Plan> {
     let path = &args.tournament;
     let context = || format!("no tournament in {}", path.display());
-    let file = load_tournament(path).with_context(context)?;
+    let file = load_file::<Tournament>(path).with_context(context)?;
     let games = args.games.unwrap_or(file.games);
     if !games.is_multiple_of(2) {
         screen::remark(&format!("{games} games a pairing are {}: half of them on each side", games + 1));

@@ -1,9 +1,9 @@
 //! What Python says is to be played.
 
+use experiment::Packed;
 use learn::environment::{ActionSpace, CriticInput, RawObservation, RawSetup};
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
-use scenario::Packed;
 use std::fmt::Display;
 use std::num::NonZeroUsize;
 use std::ops::Range;

@@ -2,10 +2,11 @@
 
 use crate::arguments::{PackedParts, games_and_seed, packed_of, parts_of, refused, stretch};
 use crate::signals;
+use experiment::sweep::Sweep;
 use experiment::sweep::{self, Plan, Study, StudyError};
 use pyo3::exceptions::{PyIndexError, PyOSError};
 use pyo3::prelude::*;
-use scenario::{Sweep, load_sweep};
+use scenario::load_file;
 use std::convert::Infallible;
 use std::num::NonZeroUsize;
 use std::ops::Range;
@@ -23,7 +24,7 @@ impl SweepPlan {
     fn open(py: Python<'_>, path: PathBuf, games: Option<u32>, seed: Option<u64>) -> PyResult<SweepPlan> {
         let (games, seed) = games_and_seed(games, seed)?;
         let plan = py.detach(|| {
-            let file = load_sweep(&path)?;
+            let file = load_file::<Sweep>(&path)?;
             Plan::new(&Sweep { games: games.unwrap_or(file.games), seed: seed.unwrap_or(file.seed), ..file })
         });
         plan.map(|plan| SweepPlan(Arc::new(plan))).map_err(refused)

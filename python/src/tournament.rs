@@ -2,10 +2,11 @@
 
 use crate::arguments::{PackedParts, games_and_seed, packed_of, parts_of, refused, stretch};
 use crate::signals;
+use experiment::tournament::Tournament;
 use experiment::tournament::{Plan, Record, Report, WIDTH, csv, play, text};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
-use scenario::{Tournament, load_tournament};
+use scenario::load_file;
 use std::num::NonZeroUsize;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -22,7 +23,7 @@ impl TournamentPlan {
     fn open(py: Python<'_>, path: PathBuf, games: Option<u32>, seed: Option<u64>) -> PyResult<TournamentPlan> {
         let (games, seed) = games_and_seed(games, seed)?;
         let plan = py.detach(|| {
-            let file = load_tournament(&path)?;
+            let file = load_file::<Tournament>(&path)?;
             Plan::new(&Tournament { games: games.unwrap_or(file.games), seed: seed.unwrap_or(file.seed), ..file })
         });
         plan.map(|plan| TournamentPlan(Arc::new(plan))).map_err(refused)

@@ -1,6 +1,8 @@
 //! The shipped scenario files: all of them are sound, and say what they are meant to say.
 
 use crate::kinds::KINDS;
+use experiment::sweep::Sweep;
+use experiment::tournament::Tournament;
 use gateway::config::Gateway;
 use primitives::Ned;
 use primitives::id::{TeamId, VehicleId};
@@ -42,8 +44,8 @@ fn name_of(kind: Kind, path: &Path) -> Option<String> {
         "boat" => scenario::load_boat(path).map(|boat| boat.name),
         "sea" => scenario::draw_sea(path, 1).map(|(sea, _)| sea.name),
         "strategy" => scenario::load_strategy(path).map(|strategy| strategy.name),
-        "tournament" => scenario::load_tournament(path).map(|tournament| tournament.name),
-        "sweep" => scenario::load_sweep(path).map(|sweep| sweep.name),
+        "tournament" => scenario::load_file::<Tournament>(path).map(|tournament| tournament.name),
+        "sweep" => scenario::load_file::<Sweep>(path).map(|sweep| sweep.name),
         "gateway" => scenario::load_file::<Gateway>(path).map(|gateway| gateway.name),
         _ => return None,
     };

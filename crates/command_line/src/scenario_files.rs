@@ -123,7 +123,7 @@ macro_rules! finders {
     };
 }
 
-finders! { field Kind::FIELD, game Kind::GAME, sea Kind::SEA, strategy Kind::STRATEGY, tournament Kind::TOURNAMENT, sweep Kind::SWEEP, }
+finders! { field Kind::FIELD, game Kind::GAME, sea Kind::SEA, strategy Kind::STRATEGY, }
 
 /// What an argument for a file that is read as `F` names.
 ///

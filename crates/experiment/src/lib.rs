@@ -5,10 +5,12 @@
 
 mod estimate;
 mod jobs;
+mod packed;
 mod pipeline;
 pub mod sweep;
 pub mod tournament;
 
 pub use estimate::Estimate;
 pub use jobs::threads;
+pub use packed::{Packed, UnpackError};
 pub use pipeline::Game;

@@ -1,7 +1,8 @@
 //! A sweep in a folder: whole, cut off and taken up again, on any number of threads; what is wrong with it is said before a game.
 
+use experiment::sweep::Sweep;
 use experiment::sweep::{self, Condition, FindError, Journal, Plan, Study, StudyError, UntilError};
-use scenario::{Overrides, load_sweep, load_with};
+use scenario::{Overrides, load_file, load_with};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -30,7 +31,7 @@ const WIND: &str = "[[axis]]\nkey = \"sea.wind.speed_m_s\"\nrange = [1, 9]\ncoun
 fn plan_of(folder: &Path, more: &str) -> Plan {
     let path = folder.join("tried.toml");
     std::fs::write(&path, text(more)).expect("it can be");
-    Plan::new(&load_sweep(&path).unwrap_or_else(|problems| panic!("{problems}"))).expect("it can be")
+    Plan::new(&load_file::<Sweep>(&path).unwrap_or_else(|problems| panic!("{problems}"))).expect("it can be")
 }
 
 /// Plays a study from where it is to before the game `to`.
@@ -136,7 +137,7 @@ fn all_points_play_the_same_seeds_and_designs_cover_the_space() {
     let with = |design: &str| {
         let path = dir.path().join("designed.toml");
         std::fs::write(&path, format!("design = {design:?}\npoints = 30\n{}", text(&two))).unwrap();
-        Plan::new(&load_sweep(&path).unwrap()).unwrap()
+        Plan::new(&load_file::<Sweep>(&path).unwrap()).unwrap()
     };
     let winds = |plan: &Plan| plan.points().iter().map(|point| point.values[1].number().unwrap()).collect::<Vec<f64>>();
     let one = with("one_at_a_time");
@@ -172,7 +173,7 @@ fn what_is_wrong_is_said_before_a_game_with_its_place() {
         ("key = \"game.duration_s\"\nvalues = [40]", "key is \"game.duration_s\" again"),
     ] {
         std::fs::write(&path, text(&format!("[[axis]]\n{axis}\n"))).unwrap();
-        let said = load_sweep(&path).and_then(|sweep| Plan::new(&sweep).map(drop)).expect_err(axis).to_string();
+        let said = load_file::<Sweep>(&path).and_then(|sweep| Plan::new(&sweep).map(drop)).expect_err(axis).to_string();
         assert!(said.contains(want), "{axis}: {said}");
     }
 }
@@ -198,7 +199,7 @@ fn the_breaking_point_is_found_where_it_is() {
     let path = dir.path().join("until.toml");
     let ranged = text(more).replace("values = [30]", "range = [10, 90]");
     std::fs::write(&path, ranged.replace("games = 4", "games = 32")).unwrap();
-    let plan = Plan::new(&load_sweep(&path).unwrap()).unwrap();
+    let plan = Plan::new(&load_file::<Sweep>(&path).unwrap()).unwrap();
     let condition = Condition::parse("easy.duration_s > 37", plan.sweep()).unwrap();
     let jobs = (NonZeroUsize::MIN, &AtomicBool::new(false));
     let mut journal = Journal::begin(dir.path(), &plan).unwrap();
@@ -215,7 +216,7 @@ fn a_search_that_was_stopped_anywhere_goes_on_without_playing_its_games_again() 
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("find.toml");
     std::fs::write(&path, text("[[axis]]\nkey = \"sea.wind.speed_m_s\"\nrange = [1, 12]\n")).unwrap();
-    let plan = Plan::new(&load_sweep(&path).unwrap()).unwrap();
+    let plan = Plan::new(&load_file::<Sweep>(&path).unwrap()).unwrap();
     let condition = Condition::parse("easy.closest_m < 9", plan.sweep()).unwrap();
     let find = |journal: &mut Journal, stop: &AtomicBool, after: usize| {
         let mut rounds = 0;

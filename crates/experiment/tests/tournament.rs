@@ -2,9 +2,10 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 use experiment::Game;
+use experiment::tournament::{Entrant, Tournament};
 use experiment::tournament::{Match, Plan, Record, Report, play};
 use rules::count::Counts;
-use scenario::{Entrant, Overrides, Tournament, load_tournament, load_with};
+use scenario::{Overrides, load_file, load_with};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -270,7 +271,7 @@ fn the_shipped_tournaments_can_be_played() {
         std::fs::read_dir(shipped("tournaments")).unwrap().map(|entry| entry.unwrap().path()).collect();
     files.sort();
     for file in files.into_iter().filter(|file| file.extension().is_some_and(|extension| extension == "toml")) {
-        let tournament = load_tournament(&file).unwrap_or_else(|problems| panic!("{problems}"));
+        let tournament = load_file::<Tournament>(&file).unwrap_or_else(|problems| panic!("{problems}"));
         let plan = Plan::new(&Tournament { games: 2, ..tournament }).unwrap_or_else(|problems| panic!("{problems}"));
         let report = Report::new(&plan, &records(&plan, 2));
         assert_eq!((report.seeds_counted, report.failures.len()), (1, 0), "{}", file.display());

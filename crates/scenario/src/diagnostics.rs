@@ -72,6 +72,13 @@ impl Diagnostics {
         self.sources.resolve(at, reference)
     }
 
+    /// The file, line and column (from 1) of the value at `at`.
+    #[must_use]
+    pub fn position(&self, at: usize) -> (PathBuf, usize, usize) {
+        let Problem { path, line, column, .. } = self.sources.problem(at, String::new());
+        (path, line, column)
+    }
+
     /// Reads and checks the file of another kind that the value at `key` of a file refers to.
     pub fn referenced<F: ScenarioFile, D>(
         &mut self,

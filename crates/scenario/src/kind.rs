@@ -8,7 +8,7 @@ use super::{load, raw};
 use crate::boat::Boat;
 use crate::sea::Sea;
 use crate::strategy::Strategy;
-use crate::{Scenario, Sweep, Tournament, check};
+use crate::{Scenario, check};
 use rules::{Field, Rules};
 use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
@@ -36,7 +36,16 @@ pub trait ScenarioFile: Sized + 'static {
     /// # Errors
     /// Everything that is wrong in any of them, by file, line and column.
     fn load(path: &Path) -> Result<Self, Problems> {
-        load::of_seed(path, 1).map(|(value, _)| value)
+        let (value, _) = load::of_seed::<Self>(path, 1)?;
+        value.check_games().map(|()| value)
+    }
+
+    /// Checks the games that a file stands for, once nothing is wrong with the file itself.
+    ///
+    /// # Errors
+    /// Everything that is wrong in any of them.
+    fn check_games(&self) -> Result<(), Problems> {
+        Ok(())
     }
 }
 
@@ -62,11 +71,6 @@ impl Kind {
     pub const SEA: Kind = Kind::of::<Sea>();
     /// A strategy.
     pub const STRATEGY: Kind = Kind::of::<Strategy>();
-    /// A tournament.
-    pub const TOURNAMENT: Kind = Kind::of::<Tournament>();
-    /// How strategies do at many points of a space of scenarios.
-    pub const SWEEP: Kind = Kind::of::<Sweep>();
-
     /// The kind of the files that are read as `F`.
     #[must_use]
     pub const fn of<F: ScenarioFile>() -> Kind {
@@ -218,29 +222,5 @@ impl ScenarioFile for Strategy {
 
     fn check(diagnostics: &mut Diagnostics, document: &Document<raw::Strategy>) -> Option<Strategy> {
         check::strategy(diagnostics, document)
-    }
-}
-
-impl ScenarioFile for Tournament {
-    type Keys = Tournament;
-    const NAME: &'static str = "tournament";
-    const FOLDER: &'static str = "tournaments";
-
-    fn check(diagnostics: &mut Diagnostics, document: &Document<Tournament>) -> Option<Tournament> {
-        check::tournament(diagnostics, document)
-    }
-}
-
-impl ScenarioFile for Sweep {
-    type Keys = Sweep;
-    const NAME: &'static str = "sweep";
-    const FOLDER: &'static str = "sweeps";
-
-    fn check(diagnostics: &mut Diagnostics, document: &Document<Sweep>) -> Option<Sweep> {
-        check::sweep(diagnostics, document)
-    }
-
-    fn load(path: &Path) -> Result<Sweep, Problems> {
-        load::load_sweep(path)
     }
 }

@@ -11,6 +11,7 @@ mod built_in;
 mod chance;
 mod check;
 mod diagnostics;
+mod digest;
 mod draw;
 pub mod fault;
 mod field_value;
@@ -24,7 +25,6 @@ mod load;
 pub mod observation;
 pub mod outcome;
 mod overrides;
-mod packed;
 pub mod policy;
 mod problem;
 mod raw;
@@ -37,9 +37,7 @@ pub mod sensor;
 mod setting;
 mod source;
 pub mod strategy;
-mod sweep;
 mod syntax;
-mod tournament;
 mod tree;
 mod validate;
 
@@ -47,25 +45,24 @@ pub use boat::Boat;
 pub use built_in::{BuiltIn, built_in, set_built_in};
 pub use check::{StrategyFiles, check_corners, check_thrust_map};
 pub use diagnostics::Diagnostics;
+pub use digest::digest_of;
 pub use draw::{Drawn, Recipe};
 pub use files::Files;
 pub use guess::did_you_mean;
 pub use kind::{Kind, ScenarioFile};
 pub use load::{
-    check_file, default_of, draw_boat, draw_sea, load, load_boat, load_field, load_file, load_strategy, load_sweep,
-    load_tournament, load_with, load_with_files, other_kind,
+    GameVariants, check_file, default_of, draw_boat, draw_sea, load, load_boat, load_field, load_file, load_strategy,
+    load_with, load_with_files, other_kind,
 };
 pub use outcome::Outcome;
 pub use overrides::Overrides;
-pub use packed::{Packed, UnpackError, digest_of};
 pub use problem::{Problem, Problems};
 pub use read::Document;
 pub use real_boats::RealBoats;
 pub use reference::{file_reference, reference};
 pub use schema::schema;
 pub use setting::{Setting, SettingError};
-pub use sweep::{Axis, AxisValue, Design, Sweep};
-pub use tournament::{Entrant, Tournament};
+pub use source::tidied as tidied_path;
 
 use crate::fault::Fault;
 use crate::link::Link;

@@ -9,13 +9,13 @@ use super::overrides::Overrides;
 use super::problem::Problems;
 use super::read;
 use super::tree::Node;
-use super::{Scenario, Sweep, Tournament, check};
+use super::{Scenario, check};
 use crate::boat::Boat;
 use crate::sea::Sea;
 use crate::strategy::Strategy;
 use rules::field::Field;
 use std::collections::BTreeSet;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Reads and checks the game file at `path` and every file it names. Where files give distributions, the numbers
@@ -114,14 +114,6 @@ pub fn load_strategy(path: &Path) -> Result<Strategy, Problems> {
     Strategy::load(path)
 }
 
-/// Reads and checks the tournament file at `path` and every file it names.
-///
-/// # Errors
-/// Everything that is wrong in any of them.
-pub fn load_tournament(path: &Path) -> Result<Tournament, Problems> {
-    Tournament::load(path)
-}
-
 /// Reads and checks the field file at `path`.
 ///
 /// # Errors
@@ -154,42 +146,31 @@ pub fn draw_sea(path: &Path, seed: u64) -> Result<(Sea, Vec<Drawn>), Problems> {
     of_seed(path, seed)
 }
 
-/// Reads and checks the sweep file at `path` and every file it names, and the game with the values of every axis that tell
-/// whether all are allowed, one at a time.
-///
-/// # Errors
-/// Everything that is wrong in any of them.
-pub fn load_sweep(path: &Path) -> Result<Sweep, Problems> {
-    let (sweep, _) = of_seed::<Sweep>(path, 1)?;
-    let teams: Vec<String> = load(&sweep.game)?.teams.into_iter().map(|team| team.name).collect();
-    let nominal: Vec<_> = sweep.axes.iter().map(super::Axis::nominal).collect();
-    let (mut problems, files) = (vec![], Arc::default());
-    // Fifty axes of a thousand levels are many games: what no axis changes is read once.
-    let known = {
+/// A game that is loaded again and again with other values. The files that no value changes are read once.
+pub struct GameVariants {
+    game: PathBuf,
+    known: Reading,
+    files: Arc<Files>,
+}
+
+impl GameVariants {
+    /// Reads the game with these values; all others must set the same keys. What is wrong with it says [`GameVariants::load`].
+    #[must_use]
+    pub fn new(game: &Path, overrides: &Overrides) -> GameVariants {
         let mut diagnostics = Diagnostics::new(Drawing::Least);
-        diagnostics.overrides = sweep.overrides(&teams, 0, 0, &nominal);
-        diagnostics.files = Arc::clone(&files);
-        // What is wrong at the nominal point is said below.
-        drop(game_of(&mut diagnostics, &sweep.game));
-        Reading::of_unchanged(diagnostics)
-    };
-    let mut read = |values: &[super::AxisValue]| {
-        let overrides = sweep.overrides(&teams, 0, 0, values);
-        if let Err(Problems(found)) = load_knowing(&known, &sweep.game, &overrides, &files) {
-            problems.extend(found);
-        }
-    };
-    read(&nominal);
-    for (i, axis) in sweep.axes.iter().enumerate() {
-        for value in axis.telling_values() {
-            let values: Vec<_> =
-                nominal.iter().enumerate().map(|(k, other)| if k == i { &value } else { other }).cloned().collect();
-            read(&values);
-        }
+        diagnostics.overrides = overrides.clone();
+        let files = Arc::clone(&diagnostics.files);
+        drop(game_of(&mut diagnostics, game));
+        GameVariants { game: game.to_owned(), known: Reading::of_unchanged(diagnostics), files }
     }
-    problems.sort();
-    problems.dedup();
-    if problems.is_empty() { Ok(sweep) } else { Err(Problems(problems)) }
+
+    /// The game with these values.
+    ///
+    /// # Errors
+    /// Everything that is wrong in any of its files.
+    pub fn load(&self, overrides: &Overrides) -> Result<Scenario, Problems> {
+        load_knowing(&self.known, &self.game, overrides, &self.files)
+    }
 }
 
 /// What a file of a kind that says nothing is.

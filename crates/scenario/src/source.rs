@@ -95,7 +95,8 @@ impl Sources {
 }
 
 /// `path` without `.` and without `name/..`, so that one file has one path.
-pub(super) fn tidied(path: &Path) -> PathBuf {
+#[must_use]
+pub fn tidied(path: &Path) -> PathBuf {
     let mut tidy = PathBuf::new();
     for part in path.components() {
         match part {

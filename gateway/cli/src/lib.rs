@@ -24,17 +24,8 @@ use std::path::Path;
 use std::process::ExitCode;
 
 /// The kinds of scenario files that the boat's program knows.
-pub const KINDS: &[Kind] = &[
-    Kind::of::<Gateway>(),
-    Kind::GAME,
-    Kind::FIELD,
-    Kind::RULES,
-    Kind::BOAT,
-    Kind::SEA,
-    Kind::STRATEGY,
-    Kind::TOURNAMENT,
-    Kind::SWEEP,
-];
+pub const KINDS: &[Kind] =
+    &[Kind::of::<Gateway>(), Kind::GAME, Kind::FIELD, Kind::RULES, Kind::BOAT, Kind::SEA, Kind::STRATEGY];
 
 /// What a gateway is to do.
 #[derive(Subcommand)]

@@ -3,9 +3,9 @@
 use super::games::{Game, Games, Source};
 use super::training::TrainingReport;
 use anyhow::{Context, Result, anyhow, bail};
+use experiment::Packed;
 use experiment::{sweep, tournament};
 use primitives::input_file;
-use scenario::Packed;
 use serde_json::{Value, json};
 use shore::page::{Report, Shown};
 use std::collections::BTreeMap;

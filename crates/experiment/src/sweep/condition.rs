@@ -1,7 +1,7 @@
 //! A condition on a metric of an entry, as people type it: `strategy_5.win_share < 0.5`.
 
+use super::Sweep;
 use super::metric::{METRICS, Metric};
-use scenario::Sweep;
 use std::fmt;
 use thiserror::Error;
 

@@ -5,8 +5,8 @@
 
 use super::metric::{HEADLINES, METRICS, Metric, Metrics};
 use super::plan::{Plan, Point};
+use super::{Axis, AxisValue, Design};
 use crate::estimate::Estimate;
-use scenario::{Axis, AxisValue, Design};
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 

@@ -103,7 +103,7 @@ impl Journal {
 /// What a game is: its entry, its seed, the entry's side and the values of the axes.
 fn key(plan: &Plan, job: &Job) -> Vec<String> {
     let point = &plan.points()[job.point];
-    let values = point.values.iter().map(scenario::AxisValue::toml);
+    let values = point.values.iter().map(super::AxisValue::toml);
     let first = [plan.sweep().entries[job.entry].name.clone(), job.seed.to_string(), job.side.to_string()];
     first.into_iter().chain(values).collect()
 }

@@ -5,8 +5,10 @@
 //! A [`Study`] keeps what came of them in a folder and is taken up again from it; [`Report`] is what all of it says. Everything
 //! depends on the plan alone: not on the number of threads, not on who played which games, not on when it was stopped.
 
+mod axis;
 mod condition;
 mod effects;
+mod file;
 mod find;
 mod html;
 mod journal;
@@ -19,8 +21,10 @@ mod table;
 mod text;
 mod until;
 
+pub use axis::{Axis, AxisValue};
 pub use condition::{Condition, ConditionError};
 pub use effects::{Effect, Interaction, Level};
+pub use file::{Design, Sweep};
 pub use find::{FindError, Found, find};
 pub use html::served;
 pub use journal::Journal;

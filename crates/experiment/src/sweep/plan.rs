@@ -1,10 +1,10 @@
 //! Which games a sweep consists of.
 
+use super::{Axis, AxisValue, Design, Sweep};
+use crate::tournament::Entrant;
+use crate::{Packed, UnpackError};
 use primitives::stream::Stream;
-use scenario::{
-    Axis, AxisValue, Design, Entrant, Files, Overrides, Packed, Problem, Problems, Scenario, Setting, Sweep,
-    UnpackError, digest_of, load_with_files,
-};
+use scenario::{Files, Overrides, Problem, Problems, Scenario, Setting, digest_of, load_with_files};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -1,11 +1,11 @@
 //! What came of a sweep.
 
+use super::Design;
 use super::effects::{Effect, Interaction, Observations, effects, interactions};
 use super::metric::{METRICS, Metric, Metrics};
 use super::plan::Plan;
 use super::table::Row;
 use crate::estimate::Estimate;
-use scenario::Design;
 use serde::Serialize;
 
 /// How many of the worst games of an entry are named.

@@ -1,5 +1,6 @@
 //! The table of games: what is kept of each, a line of CSV as it is played, and all of them as Parquet.
 
+use super::AxisValue;
 use super::metric::{METRICS, Metrics};
 use super::plan::{Job, Plan};
 use parquet::basic::{LogicalType, Repetition, Type as Physical};
@@ -8,7 +9,6 @@ use parquet::errors::ParquetError;
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::{Type, TypePtr};
-use scenario::AxisValue;
 use std::sync::Arc;
 
 /// What is kept of a game.

@@ -4,12 +4,12 @@
 //! are played in batches, until the interval of the metric's mean leaves the threshold, or the games of a point are spent. The
 //! chance of any wrong verdict is shared among all looks (Bonferroni), so that the interval that comes of it is one of 95 % at least.
 
+use super::AxisValue;
 use super::condition::Condition;
 use super::journal::Journal;
 use super::plan::{Job, Plan, Point};
 use super::study::StudyError;
 use crate::estimate::Estimate;
-use scenario::AxisValue;
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::num::NonZeroUsize;
@@ -145,7 +145,7 @@ fn try_value(
     journal: &mut Journal,
     (jobs, stop): (NonZeroUsize, &AtomicBool),
 ) -> Result<Tried, UntilError> {
-    let mut values: Vec<AxisValue> = plan.sweep().axes.iter().map(scenario::Axis::nominal).collect();
+    let mut values: Vec<AxisValue> = plan.sweep().axes.iter().map(super::Axis::nominal).collect();
     values[axis] = plan.sweep().axes[axis].at(share);
     let value = values[axis].number().unwrap_or(f64::NAN);
     let most = plan.seeds();

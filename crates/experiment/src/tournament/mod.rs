@@ -3,6 +3,7 @@
 //! A [`Plan`] says which games are played, [`play()`] plays them on several threads, and a [`Report`] says what came of
 //! it. The report depends on the plan alone, not on the number of threads.
 
+mod file;
 mod league;
 mod plan;
 mod play;
@@ -10,6 +11,7 @@ mod rating;
 mod report;
 mod table;
 
+pub use file::{Entrant, Tournament};
 pub use league::{League, LeagueError};
 pub use plan::{Match, Plan};
 pub use play::{Observer, Record, play, play_observed};

@@ -1,6 +1,8 @@
 //! Which games a tournament consists of.
 
-use scenario::{Entrant, Files, Packed, Problem, Problems, Scenario, Tournament, UnpackError, digest_of};
+use super::{Entrant, Tournament};
+use crate::{Packed, UnpackError};
+use scenario::{Files, Problem, Problems, Scenario, digest_of};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use std::sync::Arc;

@@ -3,10 +3,10 @@
 use super::plan::Plan;
 use super::play::Record;
 use super::rating::{Meeting, Rating, ratings};
+use crate::Packed;
 use crate::estimate::Estimate;
 use crate::pipeline::Game;
 use rules::count::Counts;
-use scenario::Packed;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 

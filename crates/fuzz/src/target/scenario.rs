@@ -3,6 +3,8 @@
 
 use super::{Target, check_shown, texts};
 use crate::played::scenarios;
+use experiment::sweep::Sweep;
+use experiment::tournament::Tournament;
 use gateway::bridge::{Bridge, Plan, Preflight, Site};
 use gateway::config::Gateway;
 use primitives::VehicleId;
@@ -23,11 +25,11 @@ const KINDS: &[Kind] = &[
     Kind::BOAT,
     Kind::SEA,
     Kind::STRATEGY,
-    Kind::TOURNAMENT,
+    Kind::of::<Tournament>(),
     Kind::of::<Gateway>(),
     Kind::of::<learn::rewards::Rewards>(),
     Kind::of::<learn::training::Training>(),
-    Kind::SWEEP,
+    Kind::of::<Sweep>(),
 ];
 
 /// Copies of the files of the tree, with room for one more.
@@ -128,12 +130,12 @@ fn accepted(kind: Kind, path: &Path) {
             drop(Bridge::new(plan));
         }
         "tournament" => {
-            let tournament = scenario::load_tournament(path).expect("it was accepted");
+            let tournament = scenario::load_file::<Tournament>(path).expect("it was accepted");
             if let Err(problems) = experiment::tournament::Plan::new(&tournament) {
                 check_shown(&problems);
             }
         }
-        "sweep" => drop(scenario::load_sweep(path).expect("it was accepted")),
+        "sweep" => drop(scenario::load_file::<Sweep>(path).expect("it was accepted")),
         _ => {}
     }
 }

@@ -13,8 +13,6 @@ mod rules;
 mod sea;
 mod start_position;
 mod strategy;
-mod sweep;
-mod tournament;
 
 pub(super) use boat::boat;
 pub(super) use field::field;
@@ -26,8 +24,6 @@ pub(super) use rules::rules;
 pub(super) use sea::sea;
 pub use strategy::StrategyFiles;
 pub(super) use strategy::{strategy, strategy_file};
-pub(super) use sweep::sweep;
-pub(super) use tournament::tournament;
 
 #[cfg(doc)]
 use super::diagnostics::Diagnostics;

@@ -1,67 +1,10 @@
-//! A sweep: strategies that play the same games again and again while numbers of the scenario change.
+//! The axes of a sweep: what changes from point to point, and its values.
 
-use super::raw::FilePath;
-use super::{Entrant, Overrides, Setting, SettingError};
+use scenario::{Setting, SettingError};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;
-use std::path::{Path, PathBuf};
-
-/// A sweep: how strategies do against one opponent at many points of a space of scenarios.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Sweep {
-    /// The sweep file's stem.
-    #[schemars(skip)]
-    pub name: String,
-    /// Its path.
-    #[serde(default)]
-    #[schemars(skip)]
-    pub path: PathBuf,
-    /// What it is meant for, in a line.
-    #[schemars(extend("default" = ""))]
-    pub about: String,
-    /// The game file; the strategies of its teams are replaced.
-    #[schemars(with = "FilePath")]
-    pub game: PathBuf,
-    /// The strategy file that the entries play against.
-    #[schemars(with = "FilePath")]
-    pub opponent: PathBuf,
-    /// Games of each entry at each point, half of them on each side; an odd number is rounded up. All points play the same seeds.
-    #[schemars(range(min = 2, max = 1000000), extend("default" = 20))]
-    pub games: u32,
-    /// The first seed; one more for every two games. It also chooses the points of a sampled design.
-    #[schemars(range(min = 0, max = i64::MAX), extend("default" = 1))]
-    pub seed: u64,
-    /// Which points of the space are played.
-    #[schemars(extend("default" = "grid"))]
-    pub design: Design,
-    /// How many points a sampled design has.
-    #[schemars(range(min = 1, max = 65536), extend("default" = 64))]
-    pub points: u32,
-    /// The strategies that are compared.
-    #[serde(rename = "entry")]
-    #[schemars(length(min = 1, max = 100))]
-    pub entries: Vec<Entrant>,
-    /// What changes from point to point.
-    #[serde(rename = "axis")]
-    #[schemars(length(min = 1, max = 50))]
-    pub axes: Vec<Axis>,
-}
-
-/// Which points of a space are played.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Design {
-    /// Every level of every axis with every level of every other.
-    Grid,
-    /// The nominal point, and every level of every axis with all others at their nominal values.
-    OneAtATime,
-    /// As many points as `points` says, each axis cut into as many equally likely pieces with one point in each (McKay and
-    /// others, Technometrics 1979).
-    LatinHypercube,
-    /// The first `points` of a scrambled Sobol sequence (Burley, JCGT 2020).
-    Sobol,
-}
+use std::path::Path;
 
 /// A number, or a whole file, that changes from point to point. It has one of `values`, `range`, `normal` and `log_normal`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -253,38 +196,6 @@ fn truncated_normal(share: f64) -> f64 {
         *(if below(middle) < wanted { &mut low } else { &mut high }) = middle;
     }
     0.5 * (low + high)
-}
-
-impl Sweep {
-    /// What takes the place of the game's own files and numbers at a point, where an entry plays on a side (0: the first team,
-    /// 1: the second). `values` are those of the axes.
-    ///
-    /// # Panics
-    /// If there is no such entry or side, or a key is none: a checked sweep has none such.
-    #[must_use]
-    pub fn overrides(&self, teams: &[String], entry: usize, side: usize, values: &[AxisValue]) -> Overrides {
-        let mut opponent = self.opponent.clone();
-        let mut settings = vec![];
-        for (axis, value) in self.axes.iter().zip(values) {
-            if axis.target() != Target::Opponent {
-                let setting = axis.setting(&teams[side], value, &self.path);
-                settings.push(setting.expect("the keys of a checked sweep are keys"));
-            } else if let AxisValue::Text(file) = value {
-                opponent = beside(&self.path, file);
-            }
-        }
-        let own = self.entries[entry].strategy.clone();
-        let strategies = match side {
-            0 => [own, opponent],
-            _ => [opponent, own],
-        };
-        Overrides { strategies: teams.iter().cloned().zip(strategies).collect(), settings, ..Overrides::default() }
-    }
-}
-
-/// A file that is named in another one.
-fn beside(file: &Path, named: &str) -> PathBuf {
-    super::source::tidied(&file.parent().unwrap_or(Path::new("")).join(named))
 }
 
 #[cfg(test)]

@@ -1,10 +1,13 @@
 //! A tournament: who enters, and which game they play against each other.
 
-use super::raw::{FilePath, Name};
-use super::{Files, Overrides, Problems, Scenario, load_with_files};
+use scenario::keys::{FilePath, Name};
+use scenario::sea::Sea;
+use scenario::{
+    Diagnostics, Document, Files, Overrides, Problems, Scenario, ScenarioFile, StrategyFiles, load_with_files,
+};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -79,5 +82,37 @@ impl Tournament {
     /// If there are no such entries.
     pub fn game_of(&self, teams: &[String], sides: [usize; 2], files: &Arc<Files>) -> Result<Scenario, Problems> {
         load_with_files(&self.game, &self.overrides(teams, sides), files)
+    }
+}
+
+impl ScenarioFile for Tournament {
+    type Keys = Tournament;
+    const NAME: &'static str = "tournament";
+    const FOLDER: &'static str = "tournaments";
+
+    fn check(diagnostics: &mut Diagnostics, document: &Document<Tournament>) -> Option<Tournament> {
+        let mut tournament = document.raw.clone();
+        diagnostics.referenced::<Scenario, _>(document, "game", &tournament.game);
+        tournament.game = diagnostics.resolve(document.at("game"), &tournament.game);
+        if let Some(sea) = &mut tournament.sea {
+            diagnostics.referenced::<Sea, _>(document, "sea", &*sea);
+            *sea = diagnostics.resolve(document.at("sea"), &*sea);
+        }
+        let mut strategies = StrategyFiles::default();
+        let mut names = BTreeSet::new();
+        for (i, entry) in tournament.entries.iter_mut().enumerate() {
+            let [name_path, path] = ["name", "strategy"].map(|key| format!("entry.{i}.{key}"));
+            entry.strategy = strategies.read(diagnostics, document, &path, &entry.strategy);
+            if document.is_sound(&name_path) && !names.insert(&entry.name) {
+                let message = format!("name is {:?} again, expected a different one for each entry", entry.name);
+                diagnostics.note(document.at(&name_path), message);
+            }
+        }
+        if let Some(challenger) = tournament.challenger.as_ref().filter(|name| !names.contains(name)) {
+            let listed: Vec<&str> = names.iter().map(|name| name.as_str()).collect();
+            let message = format!("challenger is {challenger:?}, expected an entry: {}", listed.join(", "));
+            diagnostics.note(document.at("challenger"), message);
+        }
+        document.is_faultless(diagnostics).then_some(tournament)
     }
 }

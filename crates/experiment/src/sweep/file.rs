@@ -1,0 +1,214 @@
+//! Sweep files: strategies that play the same games again and again while numbers of the scenario change.
+
+use super::axis::{Axis, AxisValue, Target};
+use crate::tournament::Entrant;
+use scenario::keys::FilePath;
+use scenario::{
+    Diagnostics, Document, GameVariants, Overrides, Problems, Scenario, ScenarioFile, StrategyFiles, tidied_path,
+};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+/// A sweep: how strategies do against one opponent at many points of a space of scenarios.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Sweep {
+    /// The sweep file's stem.
+    #[schemars(skip)]
+    pub name: String,
+    /// Its path.
+    #[serde(default)]
+    #[schemars(skip)]
+    pub path: PathBuf,
+    /// What it is meant for, in a line.
+    #[schemars(extend("default" = ""))]
+    pub about: String,
+    /// The game file; the strategies of its teams are replaced.
+    #[schemars(with = "FilePath")]
+    pub game: PathBuf,
+    /// The strategy file that the entries play against.
+    #[schemars(with = "FilePath")]
+    pub opponent: PathBuf,
+    /// Games of each entry at each point, half of them on each side; an odd number is rounded up. All points play the same seeds.
+    #[schemars(range(min = 2, max = 1000000), extend("default" = 20))]
+    pub games: u32,
+    /// The first seed; one more for every two games. It also chooses the points of a sampled design.
+    #[schemars(range(min = 0, max = i64::MAX), extend("default" = 1))]
+    pub seed: u64,
+    /// Which points of the space are played.
+    #[schemars(extend("default" = "grid"))]
+    pub design: Design,
+    /// How many points a sampled design has.
+    #[schemars(range(min = 1, max = 65536), extend("default" = 64))]
+    pub points: u32,
+    /// The strategies that are compared.
+    #[serde(rename = "entry")]
+    #[schemars(length(min = 1, max = 100))]
+    pub entries: Vec<Entrant>,
+    /// What changes from point to point.
+    #[serde(rename = "axis")]
+    #[schemars(length(min = 1, max = 50))]
+    pub axes: Vec<Axis>,
+}
+
+/// Which points of a space are played.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Design {
+    /// Every level of every axis with every level of every other.
+    Grid,
+    /// The nominal point, and every level of every axis with all others at their nominal values.
+    OneAtATime,
+    /// As many points as `points` says, each axis cut into as many equally likely pieces with one point in each (McKay and
+    /// others, Technometrics 1979).
+    LatinHypercube,
+    /// The first `points` of a scrambled Sobol sequence (Burley, JCGT 2020).
+    Sobol,
+}
+
+impl ScenarioFile for Sweep {
+    type Keys = Sweep;
+    const NAME: &'static str = "sweep";
+    const FOLDER: &'static str = "sweeps";
+
+    fn check(diagnostics: &mut Diagnostics, document: &Document<Sweep>) -> Option<Sweep> {
+        checked(diagnostics, document)
+    }
+
+    /// The game with the values of every axis that tell whether all are allowed, one axis at a time.
+    fn check_games(&self) -> Result<(), Problems> {
+        let teams: Vec<String> = scenario::load(&self.game)?.teams.into_iter().map(|team| team.name).collect();
+        let nominal: Vec<AxisValue> = self.axes.iter().map(Axis::nominal).collect();
+        // Fifty axes of a thousand values are many games: what no axis changes is read once.
+        let game = GameVariants::new(&self.game, &self.overrides(&teams, 0, 0, &nominal));
+        let mut problems = vec![];
+        let mut read = |values: &[AxisValue]| {
+            if let Err(Problems(found)) = game.load(&self.overrides(&teams, 0, 0, values)) {
+                problems.extend(found);
+            }
+        };
+        read(&nominal);
+        for (i, axis) in self.axes.iter().enumerate() {
+            for value in axis.telling_values() {
+                let mut values = nominal.clone();
+                values[i] = value;
+                read(&values);
+            }
+        }
+        problems.sort();
+        problems.dedup();
+        if problems.is_empty() { Ok(()) } else { Err(Problems(problems)) }
+    }
+}
+
+impl Sweep {
+    /// What takes the place of the game's own files and numbers at a point, where an entry plays on a side (0: the first team,
+    /// 1: the second). `values` are those of the axes.
+    ///
+    /// # Panics
+    /// If there is no such entry or side, or a key is none: a checked sweep has none such.
+    #[must_use]
+    pub fn overrides(&self, teams: &[String], entry: usize, side: usize, values: &[AxisValue]) -> Overrides {
+        let mut opponent = self.opponent.clone();
+        let mut settings = vec![];
+        for (axis, value) in self.axes.iter().zip(values) {
+            if axis.target() != Target::Opponent {
+                let setting = axis.setting(&teams[side], value, &self.path);
+                settings.push(setting.expect("the keys of a checked sweep are keys"));
+            } else if let AxisValue::Text(file) = value {
+                opponent = beside(&self.path, file);
+            }
+        }
+        let own = self.entries[entry].strategy.clone();
+        let strategies = match side {
+            0 => [own, opponent],
+            _ => [opponent, own],
+        };
+        Overrides { strategies: teams.iter().cloned().zip(strategies).collect(), settings, ..Overrides::default() }
+    }
+}
+
+/// A file that is named in another one.
+fn beside(file: &Path, named: &str) -> PathBuf {
+    tidied_path(&file.parent().unwrap_or(Path::new("")).join(named))
+}
+
+fn checked(diagnostics: &mut Diagnostics, document: &Document<Sweep>) -> Option<Sweep> {
+    let mut sweep = document.raw.clone();
+    sweep.path = diagnostics.position(document.at("")).0;
+    diagnostics.referenced::<Scenario, _>(document, "game", &sweep.game);
+    sweep.game = diagnostics.resolve(document.at("game"), &sweep.game);
+    let mut strategies = StrategyFiles::default();
+    sweep.opponent = strategies.read(diagnostics, document, "opponent", &sweep.opponent);
+    let mut names = BTreeSet::new();
+    for (i, entry) in sweep.entries.iter_mut().enumerate() {
+        let name_path = format!("entry.{i}.name");
+        entry.strategy = strategies.read(diagnostics, document, &format!("entry.{i}.strategy"), &entry.strategy);
+        if document.is_sound(&name_path) && !names.insert(&entry.name) {
+            let message = format!("name is {:?} again, expected a different one for each entry", entry.name);
+            diagnostics.note(document.at(&name_path), message);
+        }
+    }
+    let mut keys = BTreeSet::new();
+    for (i, axis) in sweep.axes.iter_mut().enumerate() {
+        let at = format!("axis.{i}");
+        let key_at = document.at(&format!("{at}.key"));
+        let (_, line, column) = diagnostics.position(key_at);
+        axis.place = (line, column);
+        if document.is_sound(&at) {
+            check_axis(diagnostics, document, &at, axis);
+            if !keys.insert(axis.key.clone()) {
+                diagnostics
+                    .note(key_at, format!("key is {:?} again, expected a different one for each axis", axis.key));
+            }
+        }
+    }
+    document.is_faultless(diagnostics).then_some(sweep)
+}
+
+fn check_axis(diagnostics: &mut Diagnostics, document: &Document<Sweep>, at: &str, axis: &Axis) {
+    let place = |key: &str| document.at(&format!("{at}.{key}"));
+    let given: Vec<&str> = ["values", "range", "normal", "log_normal"]
+        .into_iter()
+        .filter(|key| document.has(&format!("{at}.{key}")))
+        .collect();
+    let sort = |value: &AxisValue| std::mem::discriminant(value);
+    let wrong = |key: &str, message: String| Some((place(key), message));
+    let files = || "files as values, as in values = [\"../seas/calm.toml\"]";
+    let problem = if !axis.is_of_files()
+        && let Err(error) = axis.setting("team", &AxisValue::Number(0.0), Path::new(""))
+    {
+        wrong("key", format!("key is {:?}, expected sea, boat, rules, field or opponent, or more: {error}", axis.key))
+    } else if given.len() != 1 {
+        let found = if given.is_empty() { "none".to_owned() } else { given.join(" and ") };
+        wrong("key", format!("{} has {found}, expected one of values, range, normal, log_normal", axis.key))
+    } else if axis.is_of_files() && !axis.values.iter().all(|value| matches!(value, AxisValue::Text(_))) {
+        wrong("values", format!("values of {} are not files, expected {}", axis.key, files()))
+    } else if axis.is_of_files() && axis.values.is_empty() {
+        wrong(given[0], format!("{} has no values, expected {}", axis.key, files()))
+    } else if axis.values.is_empty() && given[0] == "values" {
+        wrong("values", format!("{} has no values, expected one at least", axis.key))
+    } else if axis.values.windows(2).any(|pair| sort(&pair[0]) != sort(&pair[1])) {
+        wrong("values", format!("values of {} are of different sorts, expected all numbers or all texts", axis.key))
+    } else if axis.values.iter().enumerate().any(|(k, value)| axis.values[..k].contains(value)) {
+        wrong("values", format!("values of {} has one twice, expected different ones", axis.key))
+    } else if let Some([low, high]) = axis.range.filter(|[low, high]| low >= high) {
+        wrong("range", format!("range is [{low}, {high}], expected the lower number first"))
+    } else if let Some([low, _]) = axis.range.filter(|[low, _]| axis.log && *low <= 0.0) {
+        wrong("range", format!("range begins at {low}, expected more than 0 with log"))
+    } else if axis.log && axis.range.is_none() {
+        wrong("log", "log is given without range, expected with it only".to_owned())
+    } else if let Some([_, sigma]) = axis.normal.filter(|[_, sigma]| *sigma <= 0.0) {
+        wrong("normal", format!("normal has a deviation of {sigma}, expected more than 0"))
+    } else if let Some(pair) =
+        axis.log_normal.filter(|[median, sigma]| *median <= 0.0 || !(0.0..=10.0).contains(sigma) || *sigma == 0.0)
+    {
+        wrong("log_normal", format!("log_normal is {pair:?}, expected a median above 0 and a deviation of at most 10"))
+    } else {
+        None
+    };
+    if let Some((at, message)) = problem {
+        diagnostics.note(at, message);
+    }
+}
