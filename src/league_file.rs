@@ -34,7 +34,11 @@ impl LeagueFile {
             Err(TryLockError::Error(error)) => return Err(error).with_context(what),
             Ok(()) => {}
         }
-        let bytes = file.metadata().with_context(what)?.len();
+        let metadata = file.metadata().with_context(what)?;
+        if !metadata.is_file() {
+            bail!("{} is not a file", path.display());
+        }
+        let bytes = metadata.len();
         if bytes > BYTES_MAX {
             bail!("{} has {bytes} bytes, expected at most {BYTES_MAX}", path.display());
         }

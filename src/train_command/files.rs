@@ -4,9 +4,10 @@ use crate::output_file;
 use anyhow::{Context, Result};
 use learn::environment::{Finished, recording_name};
 use learn::train::{Progress, Trainer};
-use primitives::printable;
+use primitives::{input_file, printable};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
+use xxhash_rust::xxh3::xxh3_64;
 
 /// What the table of updates begins with.
 const UPDATES: &str = "samples,stage,reward,policy_loss,value_loss,entropy,divergence,clipped,epochs\n";
@@ -15,6 +16,8 @@ const EVALUATIONS: &str = "samples,stage,opponent,won,drawn,lost,points,points_a
 /// What the table of episodes begins with.
 const EPISODES: &str = "samples,stage,seed,team,opponent,points,points_against,steps,cut_off,recording\n";
 
+/// The length and the checksum of each table at every state that was kept: `samples,table,bytes,checksum`.
+const SUMS: &str = "sums.csv";
 /// The folder of recordings in that of a training.
 const GAMES: &str = "games";
 
@@ -38,18 +41,30 @@ impl Files {
             tables: tables.map(|(name, head)| (name, head.to_owned())),
             base: std::fs::canonicalize(base).ok(),
         };
+        let mut sums = String::new();
         if samples > 0 {
+            let path = folder.join(SUMS);
+            let text = read(&path)?;
+            // A line may have been cut off as it was written.
+            let is_kept = |line: &&str| line.ends_with('\n') && first_number(line).is_some_and(|at| at <= samples);
+            sums.extend(text.split_inclusive('\n').filter(is_kept));
             for (name, table) in &mut files.tables {
-                let path = folder.join(*name);
-                let text = std::fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
-                // A line may have been cut off as it was written.
-                let text = text.rsplit_once('\n').map_or("", |(whole, _)| whole);
-                let is_kept = |line: &&str| first_number(line).is_some_and(|number| number <= samples);
-                text.lines().skip(1).filter(is_kept).for_each(|line| {
-                    let _ = writeln!(table, "{line}");
-                });
+                *table = read(&folder.join(*name))?;
+                let begins = format!("{samples},{name},");
+                let noted = sums.lines().find_map(|line| line.strip_prefix(&begins)?.split_once(','));
+                let (bytes, sum) =
+                    noted.with_context(|| format!("{} does not know {name} at {samples} samples", path.display()))?;
+                let kept = bytes.parse().ok().and_then(|bytes: usize| table.get(..bytes)).map(str::to_owned);
+                *table = kept.filter(|kept| checksum(kept) == sum).with_context(|| {
+                    let path = folder.join(*name);
+                    format!(
+                        "{}: it has changed since it was written, or a part is missing; --out begins elsewhere",
+                        path.display()
+                    )
+                })?;
             }
         }
+        output_file::write(&folder.join(SUMS), "the training", sums)?;
         for (name, table) in &files.tables {
             output_file::write(&folder.join(name), "the training", table)?;
         }
@@ -113,8 +128,15 @@ impl Files {
         Ok(())
     }
 
-    /// Writes the state, whole or not at all.
-    pub(super) fn keep_state(&self, state: &[u8]) -> Result<()> {
+    /// Writes the state after so many samples, whole or not at all.
+    pub(super) fn keep_state(&self, samples: u64, state: &[u8]) -> Result<()> {
+        let mut sums = String::new();
+        for (name, _) in &self.tables {
+            let table = read(&self.folder.join(name))?;
+            let _ = writeln!(sums, "{samples},{name},{},{}", table.len(), checksum(&table));
+        }
+        // Before the state, which needs them.
+        append(&self.folder.join(SUMS), sums)?;
         let (path, new) = (Files::state(&self.folder), self.folder.join("state.new"));
         output_file::write(&new, "the state", state)?;
         std::fs::rename(&new, &path).with_context(|| format!("cannot write the state to {}", path.display()))
@@ -141,6 +163,15 @@ fn append(path: &Path, bytes: impl AsRef<[u8]>) -> Result<()> {
     let open = || std::fs::OpenOptions::new().append(true).open(path);
     let written = open().and_then(|mut file| file.write_all(bytes.as_ref()));
     written.with_context(|| format!("cannot write to {}", path.display()))
+}
+
+/// A text of the folder, as long as it is.
+fn read(path: &Path) -> Result<String> {
+    input_file::read_text(path, u64::MAX).with_context(|| format!("cannot read {}", path.display()))
+}
+
+fn checksum(text: &str) -> String {
+    format!("{:016x}", xxh3_64(text.as_bytes()))
 }
 
 fn first_number(line: &str) -> Option<u64> {

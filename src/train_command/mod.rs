@@ -88,7 +88,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             progress.print(&line(evaluated, update.is_best));
         }
         if update.can_be_resumed {
-            files.keep_state(&trainer.state())?;
+            files.keep_state(update.samples, &trainer.state())?;
         }
     }
     progress.end();

@@ -81,6 +81,20 @@ fn a_training_goes_on_from_its_state_as_if_it_had_not_stopped() {
     for name in ["best.onnx", "last.onnx", "state.bin", "updates.csv", "evaluations.csv", "episodes.csv"] {
         assert!(read(&here.join("whole"), name) == read(&cut, name), "{name} is another after --resume");
     }
+
+    // What has changed on the disk is named, and nothing is played.
+    for name in ["state.bin", "updates.csv", "evaluations.csv", "episodes.csv", "sums.csv"] {
+        let sound = read(&cut, name);
+        let mut flipped = sound.clone();
+        let middle = flipped.len() / 2;
+        flipped[middle] ^= 1;
+        for damaged in [flipped, sound[..middle].to_vec(), vec![]] {
+            std::fs::write(cut.join(name), damaged).unwrap();
+            let why = refusal(here, &["train", "short.toml", "--out", "cut", "--resume"]);
+            assert!(why.contains(name), "{name}: {why}");
+        }
+        std::fs::write(cut.join(name), sound).unwrap();
+    }
 }
 
 #[test]

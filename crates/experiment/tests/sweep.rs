@@ -66,7 +66,7 @@ fn a_study_that_was_cut_anywhere_and_taken_up_again_is_the_same_bytes_on_any_num
     let names: Vec<&str> = want.iter().map(|(name, _)| name.as_str()).collect();
     assert_eq!(
         names,
-        ["boats.csv", "games.csv", "games.parquet", "plan.json", "plan.txt", "report.html", "report.json"]
+        ["boats.csv", "games.csv", "games.parquet", "plan.json", "plan.txt", "report.html", "report.json", "sums.txt"]
     );
     let packed = serde_json::from_slice(&want[3].1).expect("a packed plan");
     assert_eq!(Plan::unpack(packed).expect("it is this version's").digest(), plan.digest());
@@ -89,6 +89,40 @@ fn a_study_that_was_cut_anywhere_and_taken_up_again_is_the_same_bytes_on_any_num
         study.report(&plan).unwrap();
         assert!(files(&cut) == want, "cut by {games} and {boats} bytes");
     }
+
+    // A full disk leaves empty files, or none; and any digit may change.
+    let lines = |name: &str| std::fs::read_to_string(whole.join(name)).unwrap().lines().count();
+    for name in ["games.csv", "boats.csv", "sums.txt", "plan.json"] {
+        for damage in ["empty", "none", "a digit", "no head"] {
+            let path = cut.join(name);
+            let text = std::fs::read_to_string(&path).unwrap();
+            let digit = text.rfind(|c: char| c.is_ascii_digit()).unwrap();
+            let other = if &text[digit..=digit] == "1" { "2" } else { "1" };
+            match damage {
+                "empty" => std::fs::write(&path, "").unwrap(),
+                "none" => std::fs::remove_file(&path).unwrap(),
+                "a digit" => std::fs::write(&path, format!("{}{other}{}", &text[..digit], &text[digit + 1..])).unwrap(),
+                _ => std::fs::write(&path, text.split_once('\n').unwrap().1).unwrap(),
+            }
+            let mut study = Study::resume(&cut, &plan).unwrap();
+            let is_kept = name == "plan.json";
+            assert_eq!(
+                study.done(),
+                if is_kept {
+                    24
+                } else if damage == "a digit" {
+                    23
+                } else {
+                    0
+                },
+                "{name}: {damage}"
+            );
+            go_on(&mut study, &plan, 24, 3);
+            study.report(&plan).unwrap();
+            assert!(files(&cut) == want, "{name}: {damage}");
+        }
+    }
+    assert_eq!(lines("sums.txt"), 24);
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! A file that somebody names, read up to a limit. Only files: a pipe may never end, and a device is no place for data.
 
-use std::fs::{File, Metadata};
+use std::fs::{File, Metadata, OpenOptions};
 use std::io::{Error, ErrorKind, Read};
+use std::os::unix::fs::OpenOptionsExt;
 use std::path::Path;
 
 /// Opens a file to read it.
@@ -11,7 +12,10 @@ use std::path::Path;
 pub fn open(path: &Path) -> Result<File, Error> {
     // A pipe is not even opened: that waits for whoever writes.
     is_file(&std::fs::metadata(path)?)?;
-    let file = File::open(path)?;
+    // Some files of `/proc` never end although they are files: reading `kmsg` waits for the kernel to
+    // say something. For files on a disk this flag means nothing.
+    let flags = rustix::fs::OFlags::NONBLOCK.bits() as i32;
+    let file = OpenOptions::new().read(true).custom_flags(flags).open(path)?;
     is_file(&file.metadata()?)?;
     Ok(file)
 }
@@ -22,7 +26,10 @@ pub fn open(path: &Path) -> Result<File, Error> {
 /// What the system says, that it is no file, or that it is longer.
 pub fn read(path: &Path, bytes_max: u64) -> Result<Vec<u8>, Error> {
     let mut bytes = vec![];
-    let length = open(path)?.take(bytes_max.saturating_add(1)).read_to_end(&mut bytes)?;
+    let length = open(path)?.take(bytes_max.saturating_add(1)).read_to_end(&mut bytes).map_err(|error| {
+        let waits = error.kind() == ErrorKind::WouldBlock;
+        if waits { Error::new(ErrorKind::InvalidInput, "it has no end") } else { error }
+    })?;
     if length as u64 > bytes_max {
         return Err(Error::new(ErrorKind::FileTooLarge, format!("it is longer than {bytes_max} bytes")));
     }
@@ -65,6 +72,8 @@ mod tests {
         assert_eq!(std::fs::metadata("/proc/self/pagemap").expect("it is there").len(), 0);
         let endless = read(Path::new("/proc/self/pagemap"), 1023).expect_err("it is refused");
         assert_eq!(endless.kind(), ErrorKind::FileTooLarge);
+        // Root alone may open it; others are refused at once.
+        assert!(read(Path::new("/proc/kmsg"), 1 << 20).is_err());
         assert_eq!(read(Path::new("/dev/zero"), 10).expect_err("it is refused").kind(), ErrorKind::InvalidInput);
     }
 }

@@ -4,7 +4,7 @@
 use super::metric::{METRICS, Metric, Metrics};
 use super::plan::{Job, Plan};
 use super::play::play_jobs;
-use super::study::{StudyError, io};
+use super::study::{StudyError, io, text};
 use super::table::{cell_of, number_of, record};
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
@@ -12,6 +12,7 @@ use std::io::Write;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
+use xxhash_rust::xxh3::xxh3_64;
 
 /// The file.
 const NAME: &str = "search.csv";
@@ -35,7 +36,7 @@ impl Journal {
     pub fn begin(folder: &Path, plan: &Plan) -> Result<Journal, StudyError> {
         let path = folder.join(NAME);
         std::fs::create_dir_all(folder).map_err(io("make the folder", folder))?;
-        let games = std::fs::read_to_string(&path).unwrap_or_default().lines().count().saturating_sub(1);
+        let games = text(&path).unwrap_or_default().lines().count().saturating_sub(1);
         if games > 0 {
             return Err(StudyError::Exists { folder: folder.to_owned(), games });
         }
@@ -43,16 +44,15 @@ impl Journal {
         Journal::open(path, BTreeMap::new())
     }
 
-    /// The journal of a folder with all its whole lines: one that was torn off when the machine stopped is dropped.
+    /// The journal of a folder with all its whole lines: games whose lines were torn off or have changed are played again.
     ///
     /// # Errors
     /// [`StudyError`]: the file cannot be read or written, there is none, or it is of another sweep.
     pub fn resume(folder: &Path, plan: &Plan) -> Result<Journal, StudyError> {
         let path = folder.join(NAME);
-        let Ok(bytes) = std::fs::read(&path) else {
+        let Ok(text) = text(&path) else {
             return Err(StudyError::Missing { folder: folder.to_owned() });
         };
-        let text = String::from_utf8_lossy(&bytes);
         let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
         let (found, lines) = whole.split_once('\n').unwrap_or_default();
         if found != plan.digest() {
@@ -108,15 +108,30 @@ fn key(plan: &Plan, job: &Job) -> Vec<String> {
     first.into_iter().chain(values).collect()
 }
 
-/// A line: the numbers, why there are none, and what the game is.
+/// A line: its checksum, the numbers, why there are none, and what the game is.
 fn line_of(key: &[String], result: &Outcome) -> String {
     let number = |metric: &Metric| cell_of(result.as_ref().map_or(f64::NAN, |all| metric.of(all)));
     let why = result.as_ref().err().cloned().unwrap_or_default();
-    record(METRICS.iter().map(number).chain([why]).chain(key.iter().cloned()))
+    let cells: Vec<String> = METRICS.iter().map(number).chain([why]).chain(key.iter().cloned()).collect();
+    let sum = sum_of(cells.iter().map(String::as_str));
+    record(std::iter::once(sum).chain(cells))
 }
 
-/// What a line says.
+/// The checksum of the other cells of a line.
+fn sum_of<'a>(cells: impl Iterator<Item = &'a str>) -> String {
+    let cells: Vec<&str> = cells.collect();
+    // By a character that stands in no cell.
+    format!("{:016x}", xxh3_64(cells.join("\u{1f}").as_bytes()))
+}
+
+/// What a line says, if it has not changed.
 fn game_of(line: &csv::StringRecord) -> Option<(Vec<String>, Outcome)> {
+    let mut cells = line.iter();
+    let sum = cells.next()?;
+    let line: csv::StringRecord = cells.collect();
+    if sum != sum_of(line.iter()) {
+        return None;
+    }
     let mut numbers = line.iter();
     let metrics = Metrics::from_each(|_| numbers.next().and_then(number_of).ok_or(()));
     let why = line.get(METRICS.len())?;

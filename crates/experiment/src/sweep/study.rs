@@ -1,22 +1,29 @@
 //! A sweep in a folder: the tables of its games as they are played, and the report.
 //!
-//! `games.csv` is written a line a game, in order, and is all that a study is taken up again from; `boats.csv` has a line for each boat
-//! of each game. What was torn off when the machine stopped is dropped.
+//! `games.csv` is written a line a game, in order; `boats.csv` has a line for each boat of each game; `sums.txt` has a checksum of
+//! each game's lines in both. A study is taken up again from the games whose lines are whole and fit their checksums: what was torn off
+//! when the machine stopped, or changed since, is played again.
 
 use super::html;
 use super::plan::Plan;
 use super::play::{BoatRow, Played};
 use super::report::Report;
 use super::table::{self, Row};
+use primitives::input_file;
 use std::fs::{File, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
+use xxhash_rust::xxh3::xxh3_64;
 
 /// The table of games.
 pub const GAMES: &str = "games.csv";
 /// The table of boats.
 const BOATS: &str = "boats.csv";
+/// The checksums of the games' lines.
+const SUMS: &str = "sums.txt";
+/// A checksum is 16 hexadecimal digits and the end of the line.
+const SUM_BYTES: usize = 17;
 /// What identifies the plan.
 const PLAN: &str = "plan.txt";
 /// The plan with all that its games need, so that any of them can be played again.
@@ -47,6 +54,7 @@ pub struct Study {
     folder: PathBuf,
     games: File,
     boats: File,
+    sums: File,
     done: usize,
 }
 
@@ -112,16 +120,16 @@ impl Study {
         if games > 0 {
             return Err(StudyError::Exists { folder: folder.to_owned(), games });
         }
+        write_plan(folder, plan)?;
+        for (name, head) in heads(plan) {
+            write(&folder.join(name), &head)?;
+        }
+        // Last: a folder without it holds no study, whatever a full disk has left of the others.
         write(&folder.join(PLAN), &(plan.digest() + "\n"))?;
-        let packed = serde_json::to_string(&plan.pack());
-        let packed = packed.map_err(|error| StudyError::Table { what: PACKED_PLAN, why: error.to_string() })?;
-        write(&folder.join(PACKED_PLAN), &(packed + "\n"))?;
-        write(&folder.join(GAMES), &table::csv_head(plan))?;
-        write(&folder.join(BOATS), &table::record(BOAT_COLUMNS.map(str::to_owned)))?;
         Study::open(folder, 0)
     }
 
-    /// A study that is taken up again: its last line is dropped if it was cut off.
+    /// A study that is taken up again, from the first game on whose lines are whole.
     ///
     /// # Errors
     /// [`StudyError`]: a file cannot be read or written, or the folder holds none, or one of another plan.
@@ -133,13 +141,16 @@ impl Study {
         if found != expected {
             return Err(StudyError::Other { folder: folder.to_owned(), expected, found });
         }
-        let [games, boats] = [GAMES, BOATS].map(|name| folder.join(name));
-        let (games_text, boats_text) = (text(&games)?, text(&boats)?);
-        let (done, lengths) = whole(plan, &games_text, &boats_text);
-        for (path, text, length) in [(&games, &games_text, lengths[0]), (&boats, &boats_text, lengths[1])] {
-            if length < text.len() {
-                let file = OpenOptions::new().write(true).open(path).map_err(io("open", path))?;
-                file.set_len(length as u64).map_err(io("cut", path))?;
+        write_plan(folder, plan)?;
+        let texts = [GAMES, BOATS, SUMS].map(|name| text(&folder.join(name)).unwrap_or_default());
+        let (done, lengths) = whole(plan, &texts);
+        for (((name, head), text), length) in heads(plan).into_iter().zip(&texts).zip(lengths) {
+            let path = folder.join(name);
+            if length == 0 {
+                write(&path, &head)?;
+            } else if length < text.len() {
+                let file = OpenOptions::new().write(true).open(&path).map_err(io("open", &path))?;
+                file.set_len(length as u64).map_err(io("cut", &path))?;
             }
         }
         Study::open(folder, done)
@@ -150,7 +161,7 @@ impl Study {
             let path = folder.join(name);
             OpenOptions::new().append(true).open(&path).map_err(io("open", &path))
         };
-        Ok(Study { folder: folder.to_owned(), games: open(GAMES)?, boats: open(BOATS)?, done })
+        Ok(Study { folder: folder.to_owned(), games: open(GAMES)?, boats: open(BOATS)?, sums: open(SUMS)?, done })
     }
 
     /// How many games it has: the next one's place.
@@ -186,10 +197,11 @@ impl Study {
     /// If it is not the next one.
     pub fn add_lines(&mut self, index: usize, game: &str, boats: &str) -> Result<(), StudyError> {
         assert_eq!(index, self.done, "games come in order");
-        // The game's line says that its boats' are there.
-        let folder = &self.folder;
+        // The last one says that the others are there.
+        let (folder, sum) = (&self.folder, sum_line(game, boats));
         self.boats.write_all(boats.as_bytes()).map_err(io("write", &folder.join(BOATS)))?;
         self.games.write_all(game.as_bytes()).map_err(io("write", &folder.join(GAMES)))?;
+        self.sums.write_all(sum.as_bytes()).map_err(io("write", &folder.join(SUMS)))?;
         self.done += 1;
         Ok(())
     }
@@ -236,27 +248,47 @@ pub fn rows_in(plan: &Plan, text: &str) -> Vec<Row> {
     table::csv_rows(plan, text).map(|(row, _)| row).collect()
 }
 
-/// How many games are whole in both tables, and how long these are then.
-fn whole(plan: &Plan, games: &str, boats: &str) -> (usize, [usize; 2]) {
-    let head = |text: &str| text.find('\n').map_or(text.len(), |at| at + 1);
-    let (mut done, mut lengths) = (0, [head(games), head(boats)]);
-    for (row, end) in table::csv_rows(plan, games) {
-        let mut boats_end = lengths[1];
-        for _ in 0..row.boats {
-            let rest = &boats[boats_end..];
-            let Some(length) = rest.find('\n') else { return (done, lengths) };
-            if rest.split(',').next().and_then(|game| game.parse().ok()) != Some(row.job.index) {
-                return (done, lengths);
-            }
-            boats_end += length + 1;
+/// The tables as they begin.
+fn heads(plan: &Plan) -> [(&'static str, String); 3] {
+    let boats = table::record(BOAT_COLUMNS.map(str::to_owned));
+    [(GAMES, table::csv_head(plan)), (BOATS, boats), (SUMS, String::new())]
+}
+
+/// The checksum of a game's lines, as a line.
+fn sum_line(game: &str, boats: &str) -> String {
+    format!("{:016x}\n", xxh3_64([game, boats].concat().as_bytes()))
+}
+
+/// How many games are whole in the tables of games and of boats and fit their checksums, and how long the three files are then: of no
+/// length where their beginnings are not what they should be.
+fn whole(plan: &Plan, [games, boats, sums]: &[String; 3]) -> (usize, [usize; 3]) {
+    let [(_, games_head), (_, boats_head), _] = heads(plan);
+    if !games.starts_with(&games_head) || !boats.starts_with(&boats_head) {
+        return (0, [0; 3]);
+    }
+    let (mut done, mut lengths) = (0, [games_head.len(), boats_head.len(), 0]);
+    for (row, games_end) in table::csv_rows(plan, games) {
+        let rest = &boats[lengths[1]..];
+        let boats_end = lengths[1] + rest.split_inclusive('\n').take(row.boats).map(str::len).sum::<usize>();
+        let sum = sums.get(lengths[2]..lengths[2] + SUM_BYTES);
+        if sum != Some(&sum_line(&games[lengths[0]..games_end], &boats[lengths[1]..boats_end])) {
+            break;
         }
-        (done, lengths) = (row.job.index + 1, [end, boats_end]);
+        (done, lengths) = (row.job.index + 1, [games_end, boats_end, lengths[2] + SUM_BYTES]);
     }
     (done, lengths)
 }
 
-fn text(path: &Path) -> Result<String, StudyError> {
-    let bytes = std::fs::read(path).map_err(io("read", path))?;
+/// Writes the plan with all that its games need.
+fn write_plan(folder: &Path, plan: &Plan) -> Result<(), StudyError> {
+    let packed = serde_json::to_string(&plan.pack());
+    let packed = packed.map_err(|error| StudyError::Table { what: PACKED_PLAN, why: error.to_string() })?;
+    write(&folder.join(PACKED_PLAN), &(packed + "\n"))
+}
+
+pub(super) fn text(path: &Path) -> Result<String, StudyError> {
+    // As long as it is: all of it is needed.
+    let bytes = input_file::read(path, u64::MAX).map_err(io("read", path))?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 

@@ -9,6 +9,10 @@ use crate::pipeline::Game;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use thiserror::Error;
+use xxhash_rust::xxh3::xxh3_64;
+
+/// What stands before the checksum, the last key of a line: that of the line without it.
+const SUM: &str = ",\"sum\":\"";
 
 /// What is known of a league's games.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -41,7 +45,7 @@ enum Outcome {
 #[error("line {line} is no game of a league: {why}")]
 pub struct LeagueError {
     line: usize,
-    why: serde_json::Error,
+    why: String,
 }
 
 impl League {
@@ -52,8 +56,16 @@ impl League {
     pub fn parse(text: &str) -> Result<League, LeagueError> {
         let whole = text.rsplit_once('\n').map_or("", |(whole, _)| whole);
         let game = |(line, text): (usize, &str)| {
+            let failed = |why: String| LeagueError { line: line + 1, why };
+            let text = match text.rsplit_once(SUM) {
+                // Lines of earlier versions have none.
+                None => text.to_owned(),
+                Some((body, sum)) => Some(format!("{body}}}"))
+                    .filter(|body| format!("{:016x}\"}}", xxh3_64(body.as_bytes())) == sum)
+                    .ok_or_else(|| failed("it has changed since it was written: its checksum is another".to_owned()))?,
+            };
             let Line { pairing, seed, outcome, .. } =
-                serde_json::from_str(text).map_err(|why| LeagueError { line: line + 1, why })?;
+                serde_json::from_str(&text).map_err(|why| failed(why.to_string()))?;
             let result = match outcome {
                 Outcome::Game(game) => Ok(game),
                 Outcome::Failed(why) => Err(why),
@@ -76,7 +88,9 @@ impl League {
         };
         let pairing = pairings[plan.place_of(record.of) % pairings.len()].clone();
         let line = Line { pairing, blue, red, seed: record.of.seed, outcome };
-        serde_json::to_string(&line).expect("it has names for keys") + "\n"
+        let body = serde_json::to_string(&line).expect("it has names for keys");
+        let sum = xxh3_64(body.as_bytes());
+        format!("{}{SUM}{sum:016x}\"}}\n", &body[..body.len() - 1])
     }
 
     /// The games of a plan that are known, and the places of the others.

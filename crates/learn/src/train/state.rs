@@ -7,6 +7,7 @@ use crate::environment::SetupError;
 use crate::training::Training;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
+use xxhash_rust::xxh3::xxh3_64;
 
 /// Where a training stands as games begin anew.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -107,7 +108,10 @@ impl State {
     }
 
     pub(super) fn write(&self, training: &Training) -> Vec<u8> {
-        postcard::to_stdvec(&(Head::of(training), self)).expect("numbers and lists can be written")
+        let mut bytes = postcard::to_stdvec(&(Head::of(training), self)).expect("numbers and lists can be written");
+        let sum = xxh3_64(&bytes);
+        bytes.extend(sum.to_le_bytes());
+        bytes
     }
 
     pub(super) fn read(bytes: &[u8], training: &Training) -> Result<State, StateError> {
@@ -115,6 +119,12 @@ impl State {
         let (version, _) = postcard::take_from_bytes::<String>(bytes).map_err(|_| StateError::Damaged)?;
         if version != primitives::VERSION {
             return Err(StateError::Version { found: version });
+        }
+        // A flipped bit in a weight is a number like any other: without a checksum another policy would
+        // come of it.
+        let (bytes, sum) = bytes.split_last_chunk().ok_or(StateError::Damaged)?;
+        if xxh3_64(bytes) != u64::from_le_bytes(*sum) {
+            return Err(StateError::Damaged);
         }
         let (head, state): (Head, State) = postcard::from_bytes(bytes).map_err(|_| StateError::Damaged)?;
         if head != Head::of(training) {
