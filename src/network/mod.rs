@@ -28,7 +28,7 @@ use std::process::ExitCode;
 #[derive(Subcommand)]
 pub(crate) enum Command {
     /// Shows a game in strong wind in the browser.
-    #[command(after_help = "Examples:\n  squall demo\n  squall demo --listen 0.0.0.0:8088 --token secret")]
+    #[command(after_help = "Examples:\n  squall demo\n  SQUALL_PAGE_TOKEN=secret squall demo --listen 0.0.0.0:8088")]
     Demo(run_command::DemoArgs),
     /// Plays a whole game: starts the sim and the agents, shows what happens, prints the result.
     #[command(
@@ -46,7 +46,7 @@ pub(crate) enum Command {
     Watch(watch_command::Args),
     /// Shows a running game on a page, or a report with its games.
     #[command(
-        after_help = "Examples:\n  squall view\n  squall view report.json\n  squall view runs/sweep/wind\n  squall view runs/train/first\n  squall view --listen 0.0.0.0:8088 --token secret"
+        after_help = "Examples:\n  squall view\n  squall view report.json\n  squall view runs/sweep/wind\n  squall view runs/train/first\n  SQUALL_PAGE_TOKEN=secret squall view --listen 0.0.0.0:8088"
     )]
     View(view_command::Args),
     /// Shows a recorded game again, or checks that the same comes of it.

@@ -1,16 +1,22 @@
 //! The command line's way of saying where the page is served.
 
 use crate::screen;
-use anyhow::Result;
+use anyhow::{Context, Result, ensure};
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
+use primitives::input_file;
 use shore::page::{Background, Page, PageError, PageSettings};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, UdpSocket};
 use std::path::PathBuf;
+use std::process::Command;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 /// The port of the page, if it is free.
 const PORT: u16 = 8088;
+/// The environment variable with the page's token.
+const TOKEN_VARIABLE: &str = "SQUALL_PAGE_TOKEN";
+/// A token file is a line of text; what is longer is another file, bytes.
+const TOKEN_FILE_MAX: u64 = 4096;
 
 /// Where the page is served.
 #[derive(clap::Args, Clone, Debug)]
@@ -19,9 +25,13 @@ pub(crate) struct PageArgs {
     /// another port if that is taken]
     #[arg(long, value_name = "ADDRESS")]
     listen: Option<SocketAddr>,
-    /// What a page has to show to pause, stop or drive; looking is free
+    /// The token that a page needs to pause, stop or drive; watching is free. Every user of this machine can read it in the
+    /// list of processes: better use --page-token-file
     #[arg(long, value_name = "TEXT")]
     token: Option<String>,
+    /// A file with that token [default: from SQUALL_PAGE_TOKEN]
+    #[arg(long, value_name = "FILE", conflicts_with = "token")]
+    page_token_file: Option<PathBuf>,
     /// A further name under which the page may be asked for; it needs a token
     #[arg(long, value_name = "NAME")]
     host: Vec<String>,
@@ -42,7 +52,7 @@ impl PageArgs {
 
     fn settings(&self, listen: SocketAddr, stop: &Arc<AtomicBool>) -> Result<PageSettings> {
         let background = self.chart.as_deref().map(Background::read).transpose()?;
-        let (token, hosts, stop) = (self.token.clone(), self.host.clone(), Arc::clone(stop));
+        let (token, hosts, stop) = (self.token()?, self.host.clone(), Arc::clone(stop));
         Ok(PageSettings { listen, token, hosts, background, stop })
     }
 
@@ -61,17 +71,36 @@ impl PageArgs {
 
     /// Whether anything is said of the page.
     pub(crate) fn is_given(&self) -> bool {
-        self.listen.is_some() || self.token.is_some() || !self.host.is_empty() || self.chart.is_some() || self.open
+        let has_token = self.token.is_some() || self.page_token_file.is_some();
+        self.listen.is_some() || has_token || !self.host.is_empty() || self.chart.is_some() || self.open
     }
 
     /// Whether pages have to show a token that somebody chose, which the page's address has.
     pub(crate) fn has_token(&self) -> bool {
-        self.token.is_some()
+        self.token().is_ok_and(|token| token.is_some())
+    }
+
+    /// The token that somebody chose.
+    fn token(&self) -> Result<Option<String>> {
+        let (text, place) = match (&self.token, &self.page_token_file, std::env::var(TOKEN_VARIABLE)) {
+            (Some(token), ..) => return Ok(Some(token.clone())),
+            (None, Some(file), _) => {
+                let text = input_file::read_text(file, TOKEN_FILE_MAX);
+                let place = file.display().to_string();
+                (text.with_context(|| format!("cannot read {place}"))?, place)
+            }
+            (None, None, Ok(text)) => (text, TOKEN_VARIABLE.to_owned()),
+            (None, None, Err(_)) => return Ok(None),
+        };
+        let token = text.trim();
+        ensure!(!token.is_empty() && !token.contains('\n'), "{place}: expected a token, one line of text");
+        Ok(Some(token.to_owned()))
     }
 
     /// Where a browser finds the page, with its rights.
     pub(crate) fn url(&self, page: &Page) -> String {
-        address_of(page, self.token.as_deref())
+        // It was read before the page was served.
+        address_of(page, self.token().unwrap_or_default().as_deref())
     }
 
     /// The same, and the page is opened in the browser.
@@ -86,14 +115,16 @@ impl PageArgs {
         }
     }
 
-    /// The same as arguments of another process of this program.
-    pub(crate) fn words(&self) -> Vec<String> {
+    /// Gives the same to another process of this program, the token where no other user can read it.
+    pub(crate) fn give_to(&self, command: &mut Command) {
         let listen = self.listen.iter().map(|listen| ("--listen", listen.to_string()));
-        let token = self.token.iter().map(|token| ("--token", token.clone()));
         let hosts = self.host.iter().map(|host| ("--host", host.clone()));
         let chart = self.chart.iter().map(|chart| ("--chart", chart.display().to_string()));
-        let words = listen.chain(token).chain(hosts).chain(chart).flat_map(|(name, value)| [name.to_owned(), value]);
-        words.chain(self.open.then(|| "--open".to_owned())).collect()
+        let words = listen.chain(hosts).chain(chart).flat_map(|(name, value)| [name.to_owned(), value]);
+        command.args(words.chain(self.open.then(|| "--open".to_owned())));
+        if let Ok(Some(token)) = self.token() {
+            command.env(TOKEN_VARIABLE, token);
+        }
     }
 }
 
@@ -127,7 +158,32 @@ fn own_ip() -> Option<IpAddr> {
 
 #[cfg(test)]
 mod tests {
-    use super::in_address;
+    use super::*;
+    use clap::{Args as _, FromArgMatches as _};
+
+    fn page_args(words: &[&str]) -> PageArgs {
+        let command = PageArgs::augment_args(clap::Command::new("page").no_binary_name(true));
+        PageArgs::from_arg_matches(&command.get_matches_from(words)).expect("they are options of the page")
+    }
+
+    #[test]
+    fn no_other_user_can_read_the_token_of_a_page_that_a_game_starts() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("token");
+        std::fs::write(&file, "sesame\n").expect("it is written");
+        for words in [["--token", "sesame"], ["--page-token-file", file.to_str().expect("text")]] {
+            let mut command = Command::new("squall");
+            page_args(&words).give_to(&mut command);
+            assert!(!format!("{:?}", command.get_args().collect::<Vec<_>>()).contains("sesame"), "{command:?}");
+            let given: Vec<_> = command.get_envs().collect();
+            assert_eq!(given, [(TOKEN_VARIABLE.as_ref(), Some("sesame".as_ref()))]);
+        }
+        for (text, why) in [("", "expected a token"), ("two\nlines", "one line of text")] {
+            std::fs::write(&file, text).expect("it is written");
+            let error = page_args(&["--page-token-file", file.to_str().expect("text")]).check().expect_err(text);
+            assert!(error.to_string().contains(why) && error.to_string().contains("token"), "{error}");
+        }
+    }
 
     #[test]
     fn a_token_stands_in_an_address_as_one_word() {

@@ -25,7 +25,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let file = &args.replay.file;
     if args.replay.check {
         if args.page.is_given() {
-            bail!("--check shows no page: --listen, --token and --host are of no use with it");
+            bail!("--check shows no page: --listen, --token, --page-token-file and --host are of no use with it");
         }
         return replay_command::check(file);
     }

@@ -54,9 +54,8 @@ pub(crate) struct DemoArgs {
 /// Plays a game for people who want to see one.
 pub(crate) fn demo(args: &DemoArgs) -> Result<ExitCode> {
     let words = ["run", "surveyor_2v2", "--sea", "fresh_breeze", "--blue", "learned", "--red", "strategy_3", "--view"];
-    let words = words.into_iter().map(str::to_owned).chain(args.page.opened().words());
     let matches = Args::augment_args(clap::Command::new("demo")).try_get_matches_from(words)?;
-    run(&Args::from_arg_matches(&matches)?)
+    run(&Args { page: args.page.opened(), ..Args::from_arg_matches(&matches)? })
 }
 
 /// As fast as a person can follow a game, simulated seconds a second.
@@ -64,7 +63,7 @@ const SPEED_TO_WATCH: f64 = 10.0;
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     if args.page.is_given() && !args.view {
-        bail!("--listen, --token, --host and --open say how the page is served: they need --view");
+        bail!("--listen, --token, --page-token-file, --host and --open say how the page is served: they need --view");
     }
     if args.run.in_process {
         return run_command::run(&args.run, &mut InProcess);
@@ -152,7 +151,7 @@ fn start_page(args: &Args, game: &str, endpoint: &str) -> Result<ChildProcess> {
     let mut command = child_process::squall(&["view", "--game", game, "--connect", endpoint])?;
     // Whoever looks at it may do what the page's own token allows.
     child_process::give_keys(&mut command, args.keys.as_deref(), &Identity::Operator);
-    command.args(args.page.words());
+    args.page.give_to(&mut command);
     ChildProcess::start("the page", command, Stdio::inherit())
 }
 

@@ -5,6 +5,7 @@ use anyhow::{Context, Result};
 use learn::environment::{Finished, recording_name};
 use learn::train::{Progress, Trainer};
 use primitives::{input_file, printable};
+use scenario::{built_in, tidied_path};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use xxhash_rust::xxh3::xxh3_64;
@@ -39,7 +40,7 @@ impl Files {
         let mut files = Files {
             folder: folder.to_owned(),
             tables: tables.map(|(name, head)| (name, head.to_owned())),
-            base: std::fs::canonicalize(base).ok(),
+            base: base_for(base),
         };
         let mut sums = String::new();
         if samples > 0 {
@@ -163,6 +164,12 @@ fn append(path: &Path, bytes: impl AsRef<[u8]>) -> Result<()> {
     let open = || std::fs::OpenOptions::new().append(true).open(path);
     let written = open().and_then(|mut file| file.write_all(bytes.as_ref()));
     written.with_context(|| format!("cannot write to {}", path.display()))
+}
+
+/// How a strategy in any folder names this one; none if it is neither on the disk nor inside of the program.
+fn base_for(strategy: &Path) -> Option<PathBuf> {
+    let inside = || Some(tidied_path(strategy)).filter(|path| built_in(path).is_some());
+    std::fs::canonicalize(strategy).ok().or_else(inside)
 }
 
 /// A text of the folder, as long as it is.

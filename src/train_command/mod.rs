@@ -86,6 +86,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         if let Some(evaluated) = &update.evaluated {
             files.models(&trainer, update.is_best)?;
             progress.print(&line(evaluated, update.is_best));
+            let how = play_command(&trainer, &folder).filter(|_| update.is_best);
+            how.iter().for_each(|how| progress.print(&format!("           {how}")));
         }
         if update.can_be_resumed {
             files.keep_state(update.samples, &trainer.state())?;
@@ -141,14 +143,20 @@ fn line(evaluated: &Evaluated, is_best: bool) -> String {
     )
 }
 
+/// The command that plays the best policy, in the game in which it learnt last.
+fn play_command(trainer: &Trainer, folder: &Path) -> Option<String> {
+    let (strategy, stage) = (folder.join("best.toml"), trainer.training().stage.last()?);
+    let command = || format!("squall run {} --blue {}", stage.game.display(), strategy.display());
+    strategy.exists().then(command)
+}
+
 fn finish(trainer: &Trainer, folder: &Path) -> Result<ExitCode> {
     let Some(best) = trainer.best() else { return Ok(ExitCode::SUCCESS) };
     let digest = onnx::Network::read(&best.onnx).context("the policy has become none")?.digest();
     let (samples, won) = (best.samples, 100.0 * best.won);
     let mut text = format!("best after {samples} samples: won {won:.0} %, digest {digest:032x}\n");
-    let strategy = folder.join("best.toml");
-    if strategy.exists() {
-        text += &format!("to play it: squall run GAME --blue {}\n", strategy.display());
+    if let Some(how) = play_command(trainer, folder) {
+        text += &format!("to play it: {how}\n");
     }
     screen::print(&text);
     output_file::write(&folder.join("digest.txt"), "the digest", format!("{digest:032x}\n"))?;

@@ -7,7 +7,8 @@ use std::path::Path;
 fn training() -> String {
     let [game, rewards, idle, pav01] =
         ["games/pav01_afloat.toml", "rewards/bold.toml", "strategies/idle.toml", "strategies/pav01.toml"].map(scenario);
-    let policy = scenario("strategies/policy.toml");
+    // Not on the disk here: the one inside of the program.
+    let policy = "scenarios/strategies/policy.toml";
     let stage = |name: &str, opponent: &str, samples: u32| {
         format!(
             "[[stage]]\nname = {name:?}\ngame = {game:?}\nrewards = {rewards:?}\nopponent = [{{ strategy = {opponent:?} }}]\n\

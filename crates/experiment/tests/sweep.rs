@@ -278,6 +278,16 @@ fn a_search_that_was_stopped_anywhere_goes_on_without_playing_its_games_again() 
     assert_eq!(find(&mut journal, &AtomicBool::new(false), 99).unwrap(), want);
     assert_eq!(std::fs::read(&file).unwrap(), std::fs::read(whole.join("search.csv")).unwrap());
 
+    // A digit of a game in the middle changes: that game is played again.
+    drop(journal);
+    let mut bytes = std::fs::read(&file).unwrap();
+    let middle = (bytes.len() / 2..).find(|i| bytes[*i].is_ascii_digit()).unwrap();
+    bytes[middle] = if bytes[middle] == b'1' { b'2' } else { b'1' };
+    std::fs::write(&file, bytes).unwrap();
+    let mut journal = Journal::resume(&cut, &plan).unwrap();
+    assert_eq!(journal.games(), 119);
+    assert_eq!(find(&mut journal, &AtomicBool::new(false), 99).unwrap(), want);
+
     // A breaking point asks for other games: none is lost.
     let condition = Condition::parse("easy.score < 1", plan.sweep()).unwrap();
     let stop = AtomicBool::new(false);

@@ -60,13 +60,13 @@ pub enum PageError {
     /// Everybody on the network could act.
     #[error(
         "the page would be open to the network at {0}: listen on a loopback address such as 127.0.0.1, or give a token \
-         that those who may act have to show"
+         (--page-token-file) that those who may act have to show"
     )]
     Open(SocketAddr),
     /// Everybody who comes by the name could act: a proxy in front of a loopback address lets in whom it likes.
     #[error(
-        "the page would be open to all who reach it as {0:?} (--host): give a token (--token) that those who may act have to \
-         show"
+        "the page would be open to all who reach it as {0:?} (--host): give a token (--page-token-file) that those who may \
+         act have to show"
     )]
     Named(String),
     /// A token that is none.
