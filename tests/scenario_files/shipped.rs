@@ -309,11 +309,17 @@ fn keys(schema: &Value) -> Vec<String> {
     }
 }
 
-#[test]
-fn the_examples_of_the_handbook_are_sound() {
-    let handbook = std::fs::read_to_string(shipped("README.md")).unwrap();
+/// Writes a file below `folder`, and gives its path.
+fn written(folder: &Path, name: &str, text: &str) -> PathBuf {
+    let path = folder.join(name);
+    std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+    std::fs::write(&path, text).unwrap();
+    path
+}
+
+/// A folder with the files that examples are laid over, and the model that one of them names.
+fn folder_of_bases() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
-    // What they are laid over, and the model that one of them names.
     for (from, to) in [
         ("strategies/safety.toml", "strategies/safety.toml"),
         ("strategies/policy.toml", "strategies/policy.toml"),
@@ -325,28 +331,53 @@ fn the_examples_of_the_handbook_are_sound() {
         std::fs::create_dir_all(folder.path().join(to).parent().unwrap()).unwrap();
         std::fs::copy(shipped(from), folder.path().join(to)).unwrap();
     }
+    folder
+}
+
+#[test]
+fn the_examples_of_every_key_are_sound_and_show_the_defaults() {
+    let folder = folder_of_bases();
     let mut examples = vec![];
-    for block in handbook.split("```toml\n").skip(1) {
-        let text = block.split("```").next().unwrap();
-        let Some(name) = text.lines().next().and_then(|line| line.strip_prefix("# ")) else { continue };
-        let path = folder.path().join(name);
-        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-        std::fs::write(&path, text).unwrap();
-        examples.push((path, text));
+    for &kind in KINDS {
+        let from = shipped("../tests/scenario_files/every_key").join(kind.folder());
+        for entry in std::fs::read_dir(from).unwrap() {
+            let path = entry.unwrap().path();
+            let text = std::fs::read_to_string(&path).unwrap();
+            let name = format!("{}/{}.toml", kind.folder(), stem(&path));
+            examples.push((kind, written(folder.path(), &name, &text), text));
+        }
     }
     // All texts of a kind: there are two kinds of boat.
     let mut texts = BTreeMap::<&str, String>::new();
-    for (path, text) in &examples {
+    for (kind, path, text) in &examples {
         let checked = scenario::check_file(KINDS, path).unwrap_or_else(|problems| panic!("{problems}"));
-        texts.entry(checked.name()).or_default().push_str(text);
+        assert_eq!(checked, *kind, "{}", path.display());
         assert_shows_defaults(&scenario::schema(checked), text);
+        texts.entry(checked.name()).or_default().push_str(text);
     }
-    assert_eq!(texts.len(), KINDS.len());
     for &kind in KINDS {
         // Every key of the schema is shown.
         let (schema, text) = (scenario::schema(kind), &texts[kind.name()]);
         for key in keys(&schema) {
             assert!(key == "base" || text.contains(&key), "{key} is not in the example of a {kind}");
         }
+    }
+}
+
+#[test]
+fn the_examples_of_the_handbook_are_sound() {
+    let handbook = std::fs::read_to_string(shipped("README.md")).unwrap();
+    // Beside the shipped files that they name.
+    let folder = tempfile::tempdir().unwrap();
+    for path in KINDS.iter().flat_map(|kind| files(*kind)) {
+        let text = std::fs::read_to_string(&path).unwrap();
+        written(folder.path(), path.strip_prefix(shipped("")).unwrap().to_str().unwrap(), &text);
+    }
+    let blocks = handbook.split("```toml\n").skip(1).map(|block| block.split("```").next().unwrap());
+    let named = blocks.filter_map(|text| Some((text.lines().next()?.strip_prefix("# ")?, text)));
+    let paths: Vec<PathBuf> = named.map(|(name, text)| written(folder.path(), name, text)).collect();
+    assert!(!paths.is_empty());
+    for path in paths {
+        scenario::check_file(KINDS, &path).unwrap_or_else(|problems| panic!("{problems}"));
     }
 }
