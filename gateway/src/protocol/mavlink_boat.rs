@@ -7,7 +7,7 @@ use crate::mavlink::dialect::{
     MavAutopilot, MavCmd, MavMessage, MavModeFlag, MavResult, MavSeverity, MavType, NAV_CONTROLLER_OUTPUT_DATA,
 };
 use crate::mavlink::{AUTOPILOT, Received, RoverMode};
-use crate::nmea::{Mode, Operator, date_and_time};
+use crate::nmea::{FixQuality, Mode, Operator, date_and_time};
 use ::mavlink::Message;
 use primitives::frame::Ned;
 use primitives::{LatLon, SimTime};
@@ -248,7 +248,7 @@ impl Boat {
         take(Report::Velocity(Ned { north: 0.01 * f64::from(vx), east: 0.01 * f64::from(vy) }));
         // The position is an estimate that goes on without a receiver: its fix says what it is worth.
         let fix = self.fix.filter(|(at, _)| (now - *at).as_s() <= FIX_TYPE_AGE_MAX_S);
-        let fix = fix.map_or(Fix { quality: Some(0), ..Fix::default() }, |(_, fix)| fix);
+        let fix = fix.map_or(Fix { quality: Some(FixQuality::NONE), ..Fix::default() }, |(_, fix)| fix);
         let at = LatLon { lat_deg: 1e-7 * f64::from(lat), lon_deg: 1e-7 * f64::from(lon) };
         let is_on_globe = at.lat_deg.abs() <= 90.0 && at.lon_deg.abs() <= 180.0;
         take(Report::Fix(Fix { at: is_on_globe.then_some(at), ..fix }));
@@ -273,14 +273,16 @@ fn fix(gps: &GPS_RAW_INT_DATA) -> Fix {
 }
 
 /// The quality of a fix as GGA counts it.
-fn quality(gps: &GPS_RAW_INT_DATA) -> u8 {
-    match gps.fix_type {
+fn quality(gps: &GPS_RAW_INT_DATA) -> FixQuality {
+    FixQuality::from_gga(match gps.fix_type {
         GpsFixType::GPS_FIX_TYPE_NO_GPS | GpsFixType::GPS_FIX_TYPE_NO_FIX | GpsFixType::GPS_FIX_TYPE_2D_FIX => 0,
-        GpsFixType::GPS_FIX_TYPE_3D_FIX | GpsFixType::GPS_FIX_TYPE_STATIC => 1,
+        GpsFixType::GPS_FIX_TYPE_3D_FIX => 1,
         GpsFixType::GPS_FIX_TYPE_DGPS | GpsFixType::GPS_FIX_TYPE_PPP => 2,
         GpsFixType::GPS_FIX_TYPE_RTK_FLOAT => 5,
         GpsFixType::GPS_FIX_TYPE_RTK_FIXED => 4,
-    }
+        // A base station knows its place because somebody entered it.
+        GpsFixType::GPS_FIX_TYPE_STATIC => 7,
+    })
 }
 
 /// A voltage, V, if it is measured.
