@@ -56,6 +56,9 @@ impl ArduPilot {
             return if arm { self.refuse("PreArm: GPS 1: Bad fix") } else { DONE };
         };
         if !self.is_armed {
+            if !self.mode.allows_arming() {
+                return self.refuse("Arm: Mode not armable");
+            }
             self.is_armed = true;
             // Where it is armed is its home, unless that was set.
             let at = self.frame.lat_lon(own.nav.at());
