@@ -6,13 +6,13 @@ use thiserror::Error;
 
 /// The speeds a serial line may have, baud.
 // Which speed and format a Surveyor's serial line has is not published: the usual ones of NMEA
-// devices, 8N1.
-pub const BAUDS: [u32; 6] = [4800, 9600, 19_200, 38_400, 57_600, 115_200];
+// devices, 8N1. RTK receivers have the faster ones, and the telemetry ports of autopilots 921600.
+pub const BAUDS: [u32; 9] = [4800, 9600, 19_200, 38_400, 57_600, 115_200, 230_400, 460_800, 921_600];
 
 /// The default speed of a serial line: NMEA 0183-HS.
 const BAUD: u32 = 38_400;
 
-const BAUDS_ALLOWED: &str = "4800, 9600, 19200, 38400, 57600, 115200";
+const BAUDS_ALLOWED: &str = "4800, 9600, 19200, 38400, 57600, 115200, 230400, 460800, 921600";
 const TO_CONNECT: &str = "tcp://HOST:PORT, udp://HOST:PORT, serial:///dev/DEVICE?baud=38400";
 const TO_LISTEN: &str =
     "tcp://HOST:PORT, udp://HOST:PORT, serial:///dev/DEVICE?baud=38400, pty, pty:///path/of/symlink";
