@@ -318,7 +318,7 @@ impl SensorCheck {
                 };
             }),
             Framer::Mavlink(framer) => framer.push(bytes, &mut |mavlink::Received { message, .. }| {
-                note(received, now, message.message_name(), (format!("{message:?}"), true));
+                note(received, now, message.message_name(), (mavlink::message_text(&message), true));
                 if let MavMessage::SYSTEM_TIME(time) = &message
                     && time.time_unix_usec > 0
                 {

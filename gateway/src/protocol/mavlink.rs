@@ -173,6 +173,7 @@ impl Mavlink {
                     target_system: self.target().system,
                     target_component: self.target().component,
                     mavtype: MavMissionResult::MAV_MISSION_OPERATION_CANCELLED,
+                    ..MISSION_ACK_DATA::default()
                 }),
                 out,
             ),

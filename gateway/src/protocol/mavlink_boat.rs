@@ -2,6 +2,7 @@
 
 use super::mavlink::Asked;
 use super::report::{ControlReport, Fix, Heading, North, Power, Report, Shown};
+use super::status_text::StatusTexts;
 use crate::mavlink::dialect::{
     ATTITUDE_DATA, COMMAND_ACK_DATA, GLOBAL_POSITION_INT_DATA, GPS_RAW_INT_DATA, GpsFixType, HEARTBEAT_DATA,
     MavAutopilot, MavCmd, MavMessage, MavModeFlag, MavResult, MavSeverity, MavType, NAV_CONTROLLER_OUTPUT_DATA,
@@ -45,6 +46,7 @@ pub(super) struct Boat {
     ordered: Option<(SimTime, f64)>,
     /// When it last showed that it goes to a position in GUIDED.
     position_target_at: SimTime,
+    texts: StatusTexts,
     /// Other ground stations that were heard: system and component.
     stations: Vec<(u8, u8)>,
 }
@@ -62,6 +64,7 @@ impl Boat {
             has_volts: false,
             ordered: None,
             position_target_at: SimTime::LONG_AGO,
+            texts: StatusTexts::default(),
             stations: vec![],
         }
     }
@@ -181,6 +184,7 @@ impl Boat {
 
     /// What a message reports.
     pub(super) fn report(&mut self, now: SimTime, message: &MavMessage, take: &mut dyn FnMut(Report)) {
+        self.texts.take_overdue(now, &mut |text| take(Report::Notice(text)));
         match message {
             MavMessage::NAV_CONTROLLER_OUTPUT(_) | MavMessage::POSITION_TARGET_GLOBAL_INT(_) => {
                 self.take_target(now, message);
@@ -212,10 +216,9 @@ impl Boat {
             }
             // What is less than a warning is said all the time, and would hide what matters.
             MavMessage::STATUSTEXT(status) if status.severity as u8 <= MavSeverity::MAV_SEVERITY_WARNING as u8 => {
-                let text = status.text.to_str().unwrap_or("a text that is not UTF-8").trim().to_owned();
-                take(Report::Notice(text));
+                self.texts.take(now, status, &mut |text| take(Report::Notice(text)));
             }
-            MavMessage::COMMAND_ACK(COMMAND_ACK_DATA { command, result }) => {
+            MavMessage::COMMAND_ACK(COMMAND_ACK_DATA { command, result, .. }) => {
                 // Only of commands that we send ourselves: an answer goes to everybody on the
                 // link.
                 let is_orderly = matches!(
