@@ -1,4 +1,4 @@
-//! Who is who: small indices into the scenario's lists.
+//! Identities: small indices into the scenario's lists.
 
 use serde::{Deserialize, Serialize};
 
