@@ -68,19 +68,19 @@ pub enum Walls {
     AllRound,
 }
 
-/// A flag and whose it is.
+/// A flag with its team.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Flag {
     /// The team that defends it.
     pub team: TeamId,
-    /// Where it stands when nobody carries it.
+    /// Its position while nobody carries it.
     pub home: Ned,
 }
 
-/// Something solid in the water.
+/// A solid obstacle in the water.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Obstacle {
-    /// A round one.
+    /// A circle.
     Circle {
         /// Its centre.
         centre: Ned,
@@ -89,7 +89,7 @@ pub enum Obstacle {
     },
     /// A polygon without self-crossings, corners in order (either way round).
     Polygon {
-        /// Its corners, three at least.
+        /// Its corners, at least three.
         corners: Vec<Ned>,
     },
 }
