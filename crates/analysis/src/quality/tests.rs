@@ -23,7 +23,8 @@ fn in_mode(role: &str, mode: &str) -> MindState {
     MindState { role: role.to_owned(), mode: mode.to_owned() }
 }
 
-/// What comes of a game of so many steps of 0.1 s, in which all lie at rest in mode `m` but for what `change` makes of it.
+/// The quality of a game of `steps` steps of 0.1 s, in which all boats rest in mode `m` unless
+/// `change` alters that.
 fn quality(steps: usize, change: impl Fn(usize, &mut [Sample], &mut [Option<MindState>], &mut Vec<Logged>)) -> Quality {
     let scenario = scenario();
     let mut game = GameQuality::new(&scenario);
