@@ -338,6 +338,7 @@ fn thruster_faults(faults: &[FaultSpan]) -> Vec<FaultSpan> {
     faults.iter().filter(|span| is_of_thrusters(span.kind)).copied().collect()
 }
 
+/// The settings of the port and starboard thrusters for a command.
 fn settings(
     boat: &mut BoatState,
     heading_error_rad: f64,
