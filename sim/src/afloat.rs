@@ -1,5 +1,5 @@
-//! A game without a referee's consequences: some of its boats afloat in its sea, for `squall sim
-//! --afloat`.
+//! A game without a referee's consequences, for `squall sim --afloat`: some of its boats afloat in
+//! its sea.
 //!
 //! Emulated boats float here, while their game treats them as real. Sea, boats and sensors are
 //! those of the game. Tags, flags, limits of sharing and radio have no effect.

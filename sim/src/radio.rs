@@ -277,7 +277,8 @@ mod tests {
             radio.open_next();
         }
         let n = n as f64;
-        // Closed forms: bad for 2 of 10 s; a stay seen at every tenth of a second lasts tenth / (1 - stay).
+        // Closed forms: bad for 2 of 10 s; a stay sampled every tenth of a second lasts
+        // tenth / (1 - stay).
         assert!((bad / n - 0.2).abs() < 0.01, "{}", bad / n);
         for lost in lost {
             assert!((lost / n - (0.8 * 0.01 + 0.2 * 0.6)).abs() < 0.005, "{}", lost / n);

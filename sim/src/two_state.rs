@@ -1,4 +1,5 @@
-//! A two-state Markov chain in continuous time, sampled at equal intervals: receiver outages, bursts of radio loss.
+//! A two-state Markov chain in continuous time, sampled at equal intervals: receiver outages,
+//! bursts of radio loss.
 //!
 //! With turn-on rate λ and turn-off rate μ, a chain that is off is on after a period p with
 //! probability λ / (λ + μ) (1 − e^−(λ+μ)p). Durations are therefore exponential, and the share of

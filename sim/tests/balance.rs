@@ -18,7 +18,8 @@ fn blowing(speed_10m_m_s: f64) -> Wind {
     Wind { speed_10m_m_s, from_rad: 0.0, profile_exponent: 0.0, gusts: Gusts::None }
 }
 
-/// The speed at which a boat drifts beam to the wind: ½ρ_a C_y A_L (W − V)² = Y_v V + ½ρ C_d L T V².
+/// The speed at which a boat drifts beam to the wind:
+/// ½ρ_a C_y A_L (W − V)² = Y_v V + ½ρ C_d L T V².
 fn beam_drift_m_s(scenario: &Scenario, wind_m_s: f64) -> f64 {
     let (boat, water_kg_m3) = (&scenario.boats[0], scenario.sea.water_density_kg_m3);
     let air = 0.5 * 1.225 * boat.windage.sway_coefficient * boat.windage.lateral_area_m2;

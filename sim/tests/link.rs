@@ -56,7 +56,8 @@ fn an_order_is_in_force_once_the_delay_has_passed() {
     let mut contest = started(&over(Link { delay_s: 0.25, ..link() }));
     for k in 0..100_u64 {
         play(&mut contest);
-        // The last tick of decision k begins at (k + 1/2) tenths of a second, just when order k - 2 arrives.
+        // The last tick of decision k begins at (k + 1/2) tenths of a second, just when order k - 2
+        // arrives.
         let want = k.checked_sub(2).map_or(Order::Hold, labelled);
         assert_eq!(contest.order_in_force(BLUE), want, "decision {k}");
     }

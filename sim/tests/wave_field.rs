@@ -53,7 +53,8 @@ fn the_variance_is_that_of_the_significant_height_to_the_last_digits() {
 
 #[test]
 fn the_spectrum_has_the_published_mean_periods() {
-    // Tz/Tp and T1/Tp: DNV-RP-C205, 3.5.5.4 to 3.5.5.5, and for gamma = 1 those of Pierson and Moskowitz.
+    // Tz/Tp and T1/Tp: DNV-RP-C205, 3.5.5.4 to 3.5.5.5, and for gamma = 1 those of Pierson and
+    // Moskowitz.
     for (gamma, zero_up, mean) in [(3.3, 0.778, 0.834), (1.0, 0.710, 0.772)] {
         let [m0, m1, m2] = moments_of_spectrum(&Waves { gamma, tp_s: 1.0, ..sea(1) });
         let got = (TAU * (m0 / m2).sqrt(), TAU * m0 / m1);
@@ -141,7 +142,8 @@ fn mean_vector(components: &[Component], from_rad: f64) -> (f64, f64) {
 
 #[test]
 fn directions_have_the_mean_and_the_spread_of_their_distribution_at_all_frequencies() {
-    // First Fourier coefficients: 8 / 3π for cos², s / (s + 1) for cos^2s (Longuet-Higgins, Cartwright and Smith 1963).
+    // First Fourier coefficients: 8 / 3π for cos², s / (s + 1) for cos^2s (Longuet-Higgins,
+    // Cartwright and Smith 1963).
     let cases = [
         (Spreading::None, 1.0),
         (Spreading::CosineSquared, 8.0 / (3.0 * PI)),

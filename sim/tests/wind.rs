@@ -76,7 +76,8 @@ fn ornstein_uhlenbeck_gusts_have_the_moments_and_the_memory_of_their_process() {
 
 #[test]
 fn the_spectrum_of_ornstein_uhlenbeck_gusts_bends_at_the_length_scale() {
-    // Dryden: S(ω) proportional to 1 / (1 + (ω τ)²). Periodograms of 3000 stretches of 64 τ with Hann's window.
+    // Dryden: S(ω) proportional to 1 / (1 + (ω τ)²). Periodograms of 3000 stretches of 64 τ with
+    // Hann's window.
     const STRETCH: usize = 1024;
     const STRETCHES: usize = 3000;
     let mean_m_s = WindField::new(&wind(0.0, Gusts::None), HEIGHT_M, &field(), &1.into()).mean_m_s(HEIGHT_M);

@@ -6,7 +6,7 @@ use scenario::{Overrides, Scenario, load_with};
 use sim::Contest;
 use std::path::Path;
 
-/// The digest after the first minute of a game: only there may it depend on the seed.
+/// The digest of a game after its first minute.
 fn digest(scenario: &Scenario, seed: u64) -> String {
     let mut game = scenario.of_seed(seed).unwrap_or_else(|problems| panic!("{problems}"));
     game.rules.time_limit = SimTime::from_s(60.0);

@@ -212,7 +212,7 @@ pub fn ned_from_body(rotation: Rotation, body: Body) -> Ned {
     }
 }
 
-/// A vector of the field's frame seen from the boat.
+/// Converts a vector of the field's frame to body axes.
 #[inline]
 #[must_use]
 pub fn body_from_ned(rotation: Rotation, ned: Ned) -> Body {

@@ -1,6 +1,7 @@
 //! Foundations of all crates: angles, frames, time, ids, random streams, bytes.
 //!
-//! Every number of the simulation goes through [`math`] and [`stream`], so that the same seed gives the same bits on every machine.
+//! Every number of the simulation goes through [`math`] and [`stream`], so that the same seed gives
+//! the same bits on every machine.
 
 pub mod angle;
 pub mod codec;

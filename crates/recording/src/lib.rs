@@ -1,21 +1,21 @@
 //! Recordings of games and of gateways: MCAP files that ROS 2 tools read as bags.
 //!
-//! | topic of a game | what | as |
+//! | topic of a game | content | form |
 //! |---|---|---|
-//! | `frame` | the truth, at every decision | message |
-//! | `picture/<team>` | what a team's minds were shown | message |
-//! | `inputs` | before each frame, all that the game was given since the last: it can be played again from this | message |
-//! | `nav/<boat>`, `external/<boat>`, `link/<boat>` | of real boats: where they are, what they are to do, every byte of the link | message |
-//! | `say/<team>`, `policy/<boat>` | what minds and policies sent | message |
+//! | `frame` | the true state, at every decision | message |
+//! | `picture/<team>` | the picture of a team's minds | message |
+//! | `inputs` | before each frame, all inputs of the game since the last one: sufficient for a rerun | message |
+//! | `nav/<boat>`, `external/<boat>`, `link/<boat>` | of real boats: navigation, commands, every byte of the link | message |
+//! | `say/<team>`, `policy/<boat>` | messages of minds and policies | message |
 //! | `status/<boat>` | the state of gateways | JSON |
-//! | `control`, `run` | what operators requested, and the state of the run | JSON |
+//! | `control`, `run` | operator requests, and the state of the run | JSON |
 //!
-//! | topic of a gateway | what | as |
+//! | topic of a gateway | content | form |
 //! |---|---|---|
 //! | `link/<boat>` | every byte of the link, both ways | message |
-//! | `input`, `event` | everything else that the gateway was given, and what happened | JSON |
+//! | `input`, `event` | all other inputs of the gateway, and its events | JSON |
 //! | `payload/<name>` | every byte between a payload of the boat and its clients, both ways | message |
-//! | `values/<name>` | what a sensor among them measured, as far as its bytes are understood | JSON |
+//! | `values/<name>` | measurements of a sensor among them, as far as its bytes are understood | JSON |
 //!
 //! All messages are CDR, as the profile `ros2` demands: either one of ours, or a JSON object as the
 //! text of a `std_msgs/msg/String`. `log_time` is the time of the game or of the gateway's clock,

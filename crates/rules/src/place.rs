@@ -60,7 +60,8 @@ impl Rules {
         }
     }
 
-    /// The centre of the nearest circle in which a tagged boat of `team` is freed; its radius is `untag_radius_m`.
+    /// The centre of the nearest circle in which a tagged boat of `team` is freed; its radius is
+    /// `untag_radius_m`.
     #[must_use]
     pub fn untag_centre(&self, field: &Field, team: TeamId, at: Ned) -> Option<Ned> {
         match self.untag_at {

@@ -1,7 +1,8 @@
 //! The wave spectrum (JONSWAP) and the directional spreading, and the components that represent
 //! them.
 //!
-//! JONSWAP (Hasselmann et al. 1973) in terms of Hs and Tp, with the normalisation of Goda and DNV-RP-C205:
+//! JONSWAP (Hasselmann et al. 1973) in terms of Hs and Tp, with the normalisation of Goda and
+//! DNV-RP-C205:
 //!
 //! ```text
 //! S(w) = (1 - 0.287 ln g) 5/16 Hs^2 wp^4 w^-5 exp(-5/4 (wp/w)^4) g^exp(-(w - wp)^2 / (2 s^2 wp^2))

@@ -143,7 +143,8 @@ mod tests {
         let boat = scenario::load_boat(&root.join("boats/surveyor_m1_8.toml")).unwrap_or_else(|e| panic!("{e}"));
         let game = scenario::load(&root.join("games/attack_1v1.toml")).unwrap_or_else(|e| panic!("{e}"));
         let mut sea = Sea::at_rest();
-        // 0.128 m/s at 5 and 0.340 m/s at 10 m/s of wind at the boat; the estimate had a little more windage.
+        // 0.128 m/s at 5 and 0.340 m/s at 10 m/s of wind at the boat; the estimate had a little
+        // more windage.
         for (wind_m_s, want_m_s) in [(5.0, 0.128), (10.0, 0.340)] {
             sea.wind = Some(Wind { speed_10m_m_s: wind_m_s, from_rad: 0.3, profile_exponent: 0.0, gusts: Gusts::None });
             let summary = Summary::new(&sea, &boat, &game.field, 1);

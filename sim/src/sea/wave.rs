@@ -68,8 +68,8 @@ impl PlaneWave {
         libm::exp(-k * below_m) * (1.0 + libm::exp(-2.0 * k * (self.depth_m - below_m)))
     }
 
-    /// Twice the ratio of group speed to phase speed: 1 in deep water, 2 in shallow. 1 + 2kh / sinh
-    /// 2kh.
+    /// Twice the ratio of group speed to phase speed, 1 + 2kh / sinh 2kh: 1 in deep water, 2 in
+    /// shallow.
     fn group_factor(&self) -> f64 {
         let twice = 2.0 * self.depth_rad();
         // Beyond this the quotient is 0 to the last bit, and soon after the hyperbolic sine

@@ -7,7 +7,8 @@ use primitives::SimTime;
 use rules::event::{Event, Logged, TagCause};
 use std::path::Path;
 
-/// Two blue boats with Pav01's two roles, then two red ones, on the field of 160 m east by 80 m north of the datum.
+/// Two blue boats with Pav01's two roles, then two red ones, on the field of 160 m east by 80 m
+/// north of the datum.
 fn scenario() -> Scenario {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
     scenario::load(&file).unwrap_or_else(|e| panic!("{e}"))

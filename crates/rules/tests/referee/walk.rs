@@ -161,7 +161,8 @@ fn assert_lawful(referee: &Referee, before: &Standing, after: &Standing, fleet: 
         Event::Tagged { vehicle, cause: TagCause::Boundary } => assert!(!field.contains(at(vehicle))),
         Event::Grabbed { vehicle, flag } => {
             let boat = &after.vehicles[vehicle.index()];
-            // In turn, a boat may be tagged after it grabbed, and a flag grabbed that the boundary has just brought home.
+            // In turn, a boat may be tagged after it grabbed, and a flag grabbed that the boundary
+            // has just brought home.
             assert!(!before.vehicles[vehicle.index()].tagged && !boat.disabled && (!boat.tagged || in_turn));
             assert!(field.contains(at(vehicle)));
             assert!(at(vehicle).distance(field.flags[flag.index()].home) < rules.grab_radius_m);
