@@ -32,7 +32,7 @@ pub(crate) use output::{BehaviourOutput, Functions};
 
 use scenario::strategy::Task;
 
-/// The logic of a behaviour with this task.
+/// Creates the logic of a behaviour with this task.
 pub(crate) fn logic_of(task: &Task) -> Box<dyn BehaviourLogic> {
     match task.clone() {
         Task::Waypoint(task) => Box::new(waypoint::WaypointBehaviour::new(task)),
