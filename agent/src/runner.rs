@@ -1,14 +1,14 @@
-//! Runs minds, decision by decision: messages of mates come in, then policy proposals; every mind decides; its messages to
-//! its team are passed on.
+//! Runs minds, decision by decision: delivers messages of mates, then policy proposals; every mind
+//! decides; then collects its messages to its team.
 //!
-//! No network and no clock. The arena, agent processes, replays and emulated boats all run minds by this one loop, so a
-//! game is the same bytes in each of them.
+//! No network and no clock. The arena, agent processes, replays and emulated boats all use this
+//! loop, so a game has the same bytes in each of them.
 
 use crate::mind::{Mind, Proposal};
 use messages::{Message, Order, Orders, Picture, PolicyProposal, Stamp, VehicleOrder, Word};
 use primitives::VehicleId;
 
-/// A boat, the mind that decides for it, and what that ordered last.
+/// A boat, its mind, and its last order.
 struct Boat<M: ?Sized> {
     vehicle: VehicleId,
     order: Order,
@@ -18,7 +18,7 @@ struct Boat<M: ?Sized> {
 /// The minds of one process.
 pub struct MindRunner<M: Mind + ?Sized = dyn Mind> {
     boats: Vec<Boat<M>>,
-    /// The picture that was decided on last.
+    /// The picture of the last decision.
     decided: Option<Stamp>,
     /// The minds' messages to their teams after the last decision.
     sent: Vec<Word>,
