@@ -1,8 +1,9 @@
-//! Interval programming: which course and speed serve the objective functions of all behaviours best.
+//! Interval programming: selects the course and speed that best serve all behaviours' objective
+//! functions.
 //!
-//! Every behaviour of a helm states what it would like as an *objective function*: a utility of 0 to 100
-//! for each candidate course and speed, and a priority weight. The helm takes the candidate with the largest
-//! weighted sum,
+//! Every behaviour of a helm expresses its preferences as an *objective function*: a utility of 0
+//! to 100 for each candidate course and speed, and a priority weight. The helm takes the candidate
+//! with the largest weighted sum,
 //!
 //! ```text
 //! x* = arg max  sum_i  w_i f_i(x)        over x on the decision grid.
@@ -15,11 +16,12 @@
 //! tiles by branch and bound: exact for the tiles, approximate for the functions. Over course and speed alone the
 //! functions themselves are cheap to evaluate, so [`Problem`] evaluates them, and its answer is exact on the grid:
 //!
-//! - functions of course only, of speed only, or of one plus the other, are added up in two lists;
-//! - the others are evaluated for four courses by four speeds at a time, side by side, and those of which a bound does not
-//!   reach the best found so far are passed over, many such together where a bound for all of them does not;
-//! - weight times utility is rounded to [`QUANTUM`] before it is added, so sums are of integers: the order of functions
-//!   cannot matter, and two candidates are equal or they are not.
+//! - functions of course only, of speed only, or sums of both, are added up in two lists;
+//! - the others are evaluated for tiles of four courses by four speeds at a time. Tiles whose bound
+//!   is below the best value found so far are skipped, many at once where a bound for all of them
+//!   is;
+//! - weight times utility is rounded to [`QUANTUM`] before it is added, so sums are of integers:
+//!   the order of functions does not matter, and ties are exact.
 //!
 //! Open [`Objective`] first, then [`Problem`].
 
