@@ -1,8 +1,8 @@
 //! Groups of numbers that fill a vector register.
 
-/// How many.
-// Sixteen `f32` are one register of AVX-512. With less the compiler takes two or four, and the
-// results are the same to the bit: no lane ever depends on how many there are.
+/// Number of lanes.
+// Sixteen `f32` are one AVX-512 register. With narrower registers the compiler uses two or four,
+// with the same bits: no lane depends on the number of lanes per register.
 pub(crate) const LANES: usize = 16;
 
 /// Courses and speeds per tile side: a tile is `SIDE` courses by `SIDE` speeds, a sector `SIDE` by
