@@ -48,12 +48,12 @@ impl HeadingOffset {
         }
     }
 
-    /// The order changes by this angle, and the wind's angle with it.
+    /// Decays the offset when the order turns by this angle.
     pub(crate) fn turn(&mut self, by_rad: f64) {
         self.offset_rad *= math::exp(-by_rad.abs() / FORGOTTEN_RAD);
     }
 
-    /// Resets the model when the boat is not steered as ordered.
+    /// Resets the estimate when the boat is not steered as ordered.
     pub(crate) fn forget(&mut self) {
         *self = HeadingOffset::default();
     }
