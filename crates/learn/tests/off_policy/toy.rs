@@ -17,8 +17,7 @@ fn moved(place: f32, action: f32) -> f32 {
 }
 
 /// Random steps on the line. The cost is the square of the distance from the middle, plus a cost
-/// for the useless second component. In a fifth of the steps the action is ignored and the position
-/// moves at random.
+/// for a second component other than 0.5. In a fifth of the steps the action is ignored.
 fn steps_on_a_line(count: usize) -> Replay<td3::Numbers> {
     let (mut replay, stream) = (Replay::new(1, count), &mut Stream::new(2, "test/line"));
     for i in 0..count {
