@@ -146,7 +146,7 @@ impl Terms<'_> {
         Expression::Variable(index as u16)
     }
 
-    /// A comparison of a term with a constant, if `side` is a term and `other` a constant.
+    /// One side of a comparison between a term and a constant; none for other comparisons.
     fn compared(&mut self, side: &Expression, other: &Expression) -> Option<Expression> {
         if let Some(constant) = side.constant() {
             return Some(Expression::Constant(constant));
