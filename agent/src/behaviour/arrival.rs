@@ -1,4 +1,4 @@
-//! When a point counts as reached.
+//! The condition for a point to count as reached.
 
 use primitives::Ned;
 use primitives::angle::wrap_pi;

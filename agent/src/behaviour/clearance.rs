@@ -76,7 +76,7 @@ impl Clearance<'_> {
     #[inline(always)]
     fn may_be_low(&self, courses: &Courses, turns: &Turns, edge: &Edge) -> bool {
         let least_m = self.save_m + f64::from(edge.drift_m).max(0.0) + f64::from(ROUNDING_M);
-        // At the larger of the old and the fastest speed.
+        // At the larger of the old and the top speed.
         // Courses that lead away from an edge, or cannot reach it, are skipped 16 at a time: most
         // are, even near an edge.
         let out_s = (f64::from(edge.start_m) - least_m) / self.surge_m_s.max(self.grid.speed_max_m_s());

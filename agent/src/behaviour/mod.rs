@@ -1,4 +1,5 @@
-//! Behaviours: each produces objective functions of course and speed, and the helm weighs them against each other.
+//! Behaviours: each produces objective functions of course and speed, which the helm weighs against
+//! each other.
 
 mod arrival;
 mod attractor;

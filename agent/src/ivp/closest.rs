@@ -1,10 +1,11 @@
 //! The closest point of approach to a contact for every course and speed.
 //!
-//! With the contact at `p` from the own ship, moving with `c`, and the own ship on course `d` (a unit vector) at speed
-//! `s`, the contact moves past with `w = c - s d`. Its distance `|p + w t|` is least at
+//! With the contact at `p` from the own ship, moving with `c`, and the own ship on course `d` (a
+//! unit vector) at speed `s`, the contact's relative velocity is `w = c - s d`. Its distance `|p +
+//! w t|` is least at
 //!
 //! ```text
-//! t* = - p.w / w.w      held within 0 and the horizon,
+//! t* = - p.w / w.w      clamped to 0 and the horizon,
 //! ```
 //!
 //! since the square of the distance is a parabola in `t`.

@@ -34,7 +34,7 @@ impl Turns {
 pub(super) struct Distances<'a> {
     known: Option<&'a Ready>,
     turns: Turns,
-    /// m
+    /// Least distances of approach, m.
     pub(super) distances: Lanes<f32>,
 }
 

@@ -1,8 +1,8 @@
 //! The own ship's response to a decision: it keeps its motion for its reaction time, turns the
 //! shorter way along an arc at its present speed, then goes straight, with limited acceleration.
 //!
-//! From the heading `h` to the course `d`, unit vectors with the angle `a` between them, a turn at the yaw rate `r` lasts
-//! `a / r`. With the speed `u` it is an arc of the radius `u / r`, the chord of which ends at
+//! From the heading `h` to the course `d`, unit vectors with the angle `a` between them, a turn at
+//! the yaw rate `r` lasts `a / r`. At speed `u` it is an arc of radius `u / r`, whose chord ends at
 //!
 //! ```text
 //! (u / r) |d - h| (h + d) / |h + d|           a = 2 asin(x) = 2 x (1 + x^2 / 6 + 0.36 x^8), within 6 %, x = |d - h| / 2

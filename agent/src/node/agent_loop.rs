@@ -1,4 +1,5 @@
-//! The loop of an agent process: pictures come in, its minds decide, messages to mates and orders go out.
+//! The loop of an agent process: receives pictures, lets its minds decide, and sends orders and
+//! messages to mates.
 
 use super::error::NodeError;
 use super::helm_queries::HelmQueries;
@@ -194,7 +195,7 @@ fn with_missed_events(mut picture: Picture, before: Option<Picture>, decided: Op
 struct Subscriptions {
     pictures: Arc<Latest<Vec<Vec<u8>>>>,
     sim: SimWatch,
-    /// The teams whose pictures come.
+    /// The teams of this agent's boats, whose pictures it receives.
     teams: Vec<TeamId>,
     _declarations: Vec<Declaration>,
 }

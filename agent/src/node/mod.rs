@@ -1,4 +1,5 @@
-//! An agent on the network: finds a game, joins it, and decides for its vehicles until the game is over.
+//! An agent on the network: finds a game, joins it, and decides for its vehicles until the game is
+//! over.
 //!
 //! Everything but the vehicles' names comes from the sim: field, rules, strategies, seed.
 

@@ -105,7 +105,8 @@ impl DriftEstimate {
         self.drift
     }
 
-    /// Standard deviation of the velocity about the drift, m/s: waves and gusts, without the receiver's noise.
+    /// Standard deviation of the velocity about the drift, m/s: waves and gusts, without the
+    /// receiver's noise.
     pub(crate) fn spread_m_s(&self) -> f64 {
         (self.square_m2_s2 - NOISE_M_S * NOISE_M_S).max(0.0).sqrt()
     }

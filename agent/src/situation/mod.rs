@@ -30,7 +30,8 @@ const KEEPS_ON_S: f64 = 15.0;
 const STILL_AFTER_S: f64 = 30.0;
 /// Distance of an unknown thing, m.
 const NOWHERE_M: f64 = 1e9;
-/// A boat this far within its untagging place, as a share of the radius, was tagged there and must leave it.
+/// A boat this far inside its untagging place was tagged there and must leave it, as a share of the
+/// radius.
 const WELL_INSIDE: f64 = 0.5;
 /// It counts as having left beyond this share of the radius.
 const WELL_OUTSIDE: f64 = 1.2;
@@ -101,7 +102,7 @@ pub(crate) struct Situation {
     pub(crate) motion: OwnMotion,
     /// All other boats that are known: mates first, then enemies, each in the scenario's order.
     pub(crate) others: Vec<OtherBoat>,
-    /// How contacts turn, by vehicle.
+    /// Turn estimates of contacts, by vehicle index.
     turns: Vec<Option<TurnEstimate>>,
     /// The earliest time of the next tag of enemies that tagged one of the team, by vehicle index.
     tag_ready: Vec<SimTime>,

@@ -20,7 +20,8 @@ fn shipped(name: &str) -> Training {
         .unwrap_or_else(|problems| panic!("{problems}"))
 }
 
-/// Two short stages with strategies, past policies, a helm for the second, and a buffer that overflows.
+/// Two short stages with strategies, past policies, a helm for the second, and a buffer that
+/// overflows.
 fn short(algorithm: Algorithm) -> Training {
     let stage = |name: &str, game: &str, helm: Option<&str>| Stage {
         name: name.to_owned(),

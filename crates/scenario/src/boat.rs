@@ -3,8 +3,8 @@
 //! Everything is SI, in the boat's own frame with its origin midships (CO): x ahead, y to
 //! starboard, yaw clockwise. `sim::hull` contains the equation with these numbers.
 //!
-//! These types also declare the keys of boat files. Where a key is in another unit, `rename` names the key, its
-//! description gives that unit, and `x-field` names the field.
+//! These types also declare the keys of boat files. For a key in another unit, `rename` sets the
+//! key's name, its description gives that unit, and `x-field` names the field.
 
 use crate::sensor::Sensors;
 use primitives::omitted::number_or_nan;
@@ -20,18 +20,18 @@ pub struct Boat {
     pub length_m: f64,
     /// Beam, m.
     pub beam_m: f64,
-    /// Draught, m: the depth over which waves push and beyond which they do not.
+    /// Draught, m: the depth down to which waves act on the boat.
     pub draught_m: f64,
     /// Inertia and resistance.
     pub hull: Hull,
-    /// What the wind gets hold of.
+    /// Areas and coefficients of the wind force.
     pub windage: Windage,
-    /// What drives it.
+    /// The propulsion model.
     pub drive: Drive,
-    /// What it does when it holds. Older recordings are without it.
+    /// Behaviour during a hold. Older recordings lack it.
     #[serde(default)]
     pub hold: Hold,
-    /// What it knows of itself.
+    /// Sensors of its own state.
     pub sensors: Sensors,
 }
 

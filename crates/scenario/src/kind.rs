@@ -18,32 +18,33 @@ use std::collections::BTreeSet;
 use std::fmt;
 use std::path::Path;
 
-/// What a kind of scenario file is read as. The crate that uses the file implements this; the kinds that make up a game do so here.
+/// The checked form of a kind of scenario file, implemented by the crate that uses the file; this
+/// crate implements it for the files of a game.
 pub trait ScenarioFile: Sized + 'static {
-    /// The file key by key; `schema.rs` says how keys are declared.
+    /// The file key by key; `schema.rs` describes the declaration of keys.
     type Keys: DeserializeOwned + JsonSchema;
-    /// The name of the kind, which is also that of its schema file.
+    /// The name of the kind, also that of its schema file.
     const NAME: &'static str;
-    /// The folder its files lie in.
+    /// The folder of its files.
     const FOLDER: &'static str;
 
-    /// Makes the value of a file that fits its schema. `None` if anything is wrong, which has been noted.
+    /// Converts a file that satisfies its schema. `None` if there are faults, which are reported.
     fn check(diagnostics: &mut Diagnostics, document: &Document<Self::Keys>) -> Option<Self>;
 
-    /// Reads and checks the file at `path`, its bases and the files it names. Where it gives distributions, the numbers are
-    /// those of seed 1.
+    /// Reads and checks the file at `path`, its bases and the files it refers to. Distributions are
+    /// drawn with seed 1.
     ///
     /// # Errors
-    /// Everything that is wrong in any of them, by file, line and column.
+    /// All faults of any of them, by file, line and column.
     fn load(path: &Path) -> Result<Self, Problems> {
         let (value, _) = load::of_seed::<Self>(path, 1)?;
         value.check_games().map(|()| value)
     }
 
-    /// Checks the games that a file stands for, once nothing is wrong with the file itself.
+    /// Checks the games that a file defines, once the file itself has no faults.
     ///
     /// # Errors
-    /// Everything that is wrong in any of them.
+    /// All faults of any of them.
     fn check_games(&self) -> Result<(), Problems> {
         Ok(())
     }

@@ -84,41 +84,41 @@ use thiserror::Error;
 pub struct Scenario {
     /// The game file's stem.
     pub name: String,
-    /// Chooses the game; `--seed` replaces it.
+    /// The seed, which selects the game; `--seed` overrides it.
     pub seed: u64,
-    /// What takes its place in the midst of the game, by rising times.
+    /// Later seeds that replace it during the game, by rising times.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub reseed: Vec<Reseed>,
     /// Physics tick.
     pub tick: SimTime,
-    /// Physics ticks between two decisions of a mind.
+    /// Physics ticks per decision of a mind.
     pub ticks_per_decision: u32,
-    /// In lockstep, how long (wall clock) the sim waits for a mind before it is lost, s.
+    /// In lockstep, wall-clock time that the sim waits for a mind before it counts as lost, s.
     pub patience_s: f64,
-    /// In real time, how old (simulated time) an order may grow before the boat holds, s.
+    /// In real time, maximum age (simulated time) of an order before the boat holds, s.
     pub order_ttl_s: f64,
-    /// Where.
+    /// The field of play.
     pub field: Field,
-    /// By which rules.
+    /// The rules of the game.
     pub rules: Rules,
-    /// On what water.
+    /// The water and the air above it.
     pub sea: Sea,
-    /// Over which radio links minds and boats talk; `None` is at once and without loss.
+    /// The radio links between minds and boats; `None`: without delay and loss.
     pub link: Option<Link>,
-    /// What fails in the midst of it.
+    /// Faults during the game.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Fault>,
-    /// Who against whom.
+    /// The opposing teams.
     pub teams: Vec<Team>,
-    /// The kinds of boat that occur.
+    /// The kinds of boat in the game.
     pub boats: Vec<Boat>,
-    /// The strategies that occur.
+    /// The strategies in the game.
     pub strategies: Vec<Strategy>,
-    /// Who plays, in the order in which everything is resolved.
+    /// The vehicles, in order of processing.
     pub vehicles: Vec<Vehicle>,
-    /// Numbers that were drawn for this game.
+    /// Numbers drawn for this game.
     pub drawn: Vec<Drawn>,
-    /// How to draw others, where there are any.
+    /// The data for drawing other numbers, if there are any to draw.
     pub recipe: Option<Recipe>,
 }
 

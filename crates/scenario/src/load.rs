@@ -99,7 +99,8 @@ impl Scenario {
     }
 }
 
-/// Reads and checks the file at `path` as one of its kind: for types that implement [`ScenarioFile`].
+/// Reads and checks the file at `path` as one of its kind: for types that implement
+/// [`ScenarioFile`].
 ///
 /// # Errors
 /// All faults of it, its bases and the files it refers to, by file, line and column.

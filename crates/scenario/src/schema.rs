@@ -1,4 +1,5 @@
-//! The JSON Schema of each kind of scenario file: the single owner of every key's type, range, default and meaning.
+//! The JSON Schema of each kind of scenario file: the single source of every key's type, range,
+//! default and meaning.
 //!
 //! A key is a field of a type, and is declared once, there:
 //!

@@ -20,7 +20,7 @@ pub struct Sea {
     pub name: String,
     /// Density of the water, kg/m³.
     pub water_density_kg_m3: f64,
-    /// Depth of the water, m; `None` is deeper than any wave feels.
+    /// Depth of the water, m; `None`: too deep to affect waves.
     pub depth_m: Option<f64>,
     /// Waves, if there are any.
     pub waves: Option<Waves>,

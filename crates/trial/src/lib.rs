@@ -1,4 +1,4 @@
-//! Sea trials: one boat in open water, commanded by a recorded series or put through a standard manoeuvre.
+//! Sea trials: one boat in open water, with a recorded series of commands or a standard manoeuvre.
 //!
 //! Open [`replay`] first. The command line handles files, units and plots; this crate handles the
 //! boat. [`identify`] fits a boat file to a recorded run.

@@ -9,7 +9,8 @@ use trial::identify::{self, Fit, Log, NoFit, Setting};
 use trial::{Engine, Orders, Sheet, Start, TrialBoat};
 
 const TICK: SimTime = SimTime(50_000_000);
-/// Standard deviation of the noise on each measured column of a trial: x, y, heading, surge, sway, yaw rate.
+/// Standard deviation of the noise on each measured column of a trial: x, y, heading, surge, sway,
+/// yaw rate.
 const NOISE: [f64; 6] = [0.3, 0.3, 1.0, 0.05, 0.05, 0.5];
 
 fn boat() -> Boat {

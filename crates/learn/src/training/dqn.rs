@@ -1,4 +1,5 @@
-//! Double DQN, Q-learning with two networks (van Hasselt, Guez and Silver, AAAI 2016), as a training file sets it.
+//! Training file settings of double DQN, Q-learning with two networks (van Hasselt, Guez and
+//! Silver, AAAI 2016).
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -106,7 +106,8 @@ pub(crate) struct Rule {
     pub(crate) set: Values,
 }
 
-/// A behaviour: the keys of [`strategy::Behaviour`], one for each [`Moment`], and those of its kind, which [`Task`] declares.
+/// A behaviour: the keys of [`strategy::Behaviour`], one for each [`Moment`], and those of its
+/// kind, which [`Task`] declares.
 #[derive(Debug, Deserialize)]
 #[serde(transparent)]
 pub(crate) struct Behaviour(pub(crate) Json);

@@ -42,7 +42,8 @@ pub struct Strategy {
     pub name: String,
     /// The file's description of the strategy.
     pub about: String,
-    /// The programs, dealt to the team's boats of this strategy in order, again from the start when they run out.
+    /// The programs, dealt to the team's boats of this strategy in order, again from the first when
+    /// they run out.
     pub roles: Vec<Program>,
     /// How the roles are dealt.
     pub assignment: Assignment,

@@ -132,7 +132,7 @@ pub struct Step {
 /// Fits `parameters` of `boat` to a log, and reports every step.
 ///
 /// # Errors
-/// [`NoFit`]
+/// [`NoFit`] gives the reason.
 pub fn fit(
     boat: &Boat,
     log: &Log,

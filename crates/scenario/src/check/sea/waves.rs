@@ -84,8 +84,8 @@ fn height_and_period(
         }
         (Some(hs_m), Some(tp_s), ..) => Some((hs_m, tp_s)),
         (_, _, Some(x_km), Some(u)) if !is_fully_grown => {
-            // Carter, D. J. T. (1982). Prediction of wave height and period for a constant wind velocity. The sea is fully
-            // grown, with Hs = 0.02481 U², after 2.317 U² km.
+            // Carter, D. J. T. (1982). Prediction of wave height and period for a constant wind
+            // velocity. The sea is fully grown, with Hs = 0.02481 U², after 2.317 U² km.
             let x_km = x_km.min(2.317 * u * u);
             Some((0.0163 * x_km.sqrt() * u, 0.566 * math::exp(0.3 * libm::log(x_km) + 0.4 * libm::log(u))))
         }
@@ -105,8 +105,8 @@ fn height_and_period(
 
 /// Height and period of a fully grown sea with this height.
 ///
-/// Pierson and Moskowitz (1964): S = 8.1e-3 g² ω^-5 exp(-0.74 (g / (U ω))^4), with U 19.5 m above the water. Hence
-/// Hs = 0.2092 U² / g, and the peak is at 0.8772 g / U.
+/// Pierson and Moskowitz (1964): S = 8.1e-3 g² ω^-5 exp(-0.74 (g / (U ω))^4), with U 19.5 m above
+/// the water. Hence Hs = 0.2092 U² / g, and the peak is at 0.8772 g / U.
 fn fully_grown_with(hs_m: f64) -> (f64, f64) {
     let u_m_s = (hs_m * GRAVITY_M_S2 / 0.209_2).sqrt().max(0.1);
     (hs_m, std::f64::consts::TAU * u_m_s / (0.877_2 * GRAVITY_M_S2))
