@@ -73,7 +73,7 @@ pub(super) struct Bounded<'a> {
     last: Turns,
     off: Lanes<f32>,
     off_s: Lanes<f32>,
-    /// m
+    /// Lower bounds of the distances, m.
     pub(super) least: Lanes<f32>,
     pub(super) most: Lanes<f32>,
 }

@@ -81,7 +81,7 @@ pub(super) struct Turning {
 /// A turn onto a course.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Turn {
-    /// s
+    /// Its duration, s.
     pub(super) duration: f32,
     /// Its end point, through the water, m.
     pub(super) by: Vector,

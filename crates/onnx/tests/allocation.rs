@@ -10,7 +10,7 @@ use std::alloc::System;
 #[global_allocator]
 static HEAP: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-/// Maximum memory for a file of a megabyte, whatever its content, bytes.
+/// Maximum memory for any file of a megabyte, bytes.
 const FILE_COST_MAX: usize = 50 << 20;
 
 /// A field of a message with a bytes value.

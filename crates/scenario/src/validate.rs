@@ -3,7 +3,7 @@
 //!
 //! The result always satisfies the schema. A faulty or missing value is reported and replaced by
 //! its default, or else by the least allowed value or an empty text, so that later checks can
-//! continue and find more; `Document::is_sound` tells them whether the value is original.
+//! continue and find more; `Document::is_sound` returns whether the value is original.
 
 use super::diagnostics::{Diagnostics, NAME_EXPECTED, NAME_PATTERN, is_name};
 use super::draw::{Owner, distribution_kind, draw};
