@@ -1,4 +1,5 @@
-//! What a decision of the helm costs, with building its functions, and what it would cost to look at every point.
+//! The cost of a helm decision including building its functions, compared with evaluating every
+//! point.
 
 use agent::ivp::{Approach, Closest, Grid, Objective, Peak, Preference, Problem};
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -7,10 +8,10 @@ use primitives::stream::Stream;
 use std::f64::consts::{PI, TAU};
 use std::hint::black_box;
 
-/// Decisions that are taken in turn, so that none is learnt by heart.
+/// Decisions benchmarked in rotation, so that branch predictors and caches learn none of them.
 const SCENES: usize = 64;
 
-/// A waypoint, and contacts within 80 m, as a helm meets them.
+/// A waypoint, and contacts within 80 m, as in real helm decisions.
 fn scenes(contacts: usize) -> Vec<(Vec<(f64, Objective<'static>)>, Preference)> {
     let mut stream = Stream::new(1, "bench/ivp");
     let scene = |_| {
@@ -59,8 +60,8 @@ fn decide(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// The closed form at every point of the grid, in plain double precision and with no bounds: what anybody would write
-/// first. The waypoint's two lists are made once, as in the solver.
+/// The naive baseline: the closed form at every point of the grid, in double precision and without
+/// bounds. The waypoint's two lists are built once, as in the solver.
 fn every_point(criterion: &mut Criterion) {
     let grid = Grid::new(360, 36, 3.5);
     let scenes = scenes(3);

@@ -1,7 +1,9 @@
-//! Squall minds: what decides for a boat. One mind a boat; it sees a [`messages::Picture`] and gives an [`messages::Order`].
+//! Squall minds: decision-making for boats. One mind per boat; it receives a [`messages::Picture`]
+//! and returns an [`messages::Order`].
 //!
-//! A mind cannot tell the sea from simulation: this crate never imports `sim`. Open [`Mind`] first, then [`MindRunner`],
-//! which runs minds, then [`HelmMind`], which follows a strategy, then the behaviours, then [`ivp`], which weighs them.
+//! A mind cannot tell a real sea from a simulated one: this crate never imports `sim`. Open
+//! [`Mind`] first, then [`MindRunner`], which runs minds, then [`HelmMind`], which follows a
+//! strategy, then the behaviours, then [`ivp`], which weighs them.
 
 mod behaviour;
 mod helm;
@@ -31,13 +33,14 @@ use primitives::VehicleId;
 use scenario::Scenario;
 use scenario::strategy::Strategy;
 
-/// The mind that the scenario's strategy gives this vehicle in the game that the scenario's seed chooses.
+/// The mind that the scenario's strategy assigns to this vehicle in the game of the scenario's
+/// seed.
 #[must_use]
 pub fn mind_of(scenario: &Scenario, vehicle: VehicleId) -> Box<dyn Mind> {
     restart::helm_of(scenario, vehicle, roles::role_of(scenario, vehicle))
 }
 
-/// The mind that `strategy` gives this vehicle, whatever the scenario's own strategy for it is.
+/// The mind that `strategy` assigns to this vehicle, whatever the scenario's own strategy.
 #[must_use]
 pub fn mind_by(scenario: &Scenario, vehicle: VehicleId, strategy: &Strategy) -> Box<dyn Mind> {
     restart::helm_of(scenario, vehicle, roles::role_in(scenario, vehicle, strategy))

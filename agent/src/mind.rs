@@ -1,24 +1,26 @@
-//! A mind: what decides for one boat.
+//! A mind: the decision-maker of one boat.
 
 use messages::helm::HelmReport;
 use messages::{Order, Picture, Word};
 use primitives::SimTime;
 use scenario::strategy::Proposer;
 
-/// What decides for one boat.
+/// The decision-maker of one boat.
 ///
-/// The same pictures, words and proposals, from the first on, must give the same orders on every machine: a mind reads no
-/// clock and takes randomness only from its own [`primitives::stream::Stream`].
+/// Identical pictures, words and proposals from the start must give identical orders on every
+/// machine. A mind reads no clock and takes randomness only from its own
+/// [`primitives::stream::Stream`].
 pub trait Mind: Send {
     /// Decides on the newest picture.
     fn decide(&mut self, picture: &Picture) -> Order;
 
-    /// Whether the boat ever sends messages to its team: then it receives those of its mates too.
+    /// Whether the boat ever sends messages to its team; only then does it receive those of its
+    /// mates.
     fn shares(&self) -> bool {
         false
     }
 
-    /// Who may propose courses and speeds to it, if anybody.
+    /// The accepted source of proposed courses and speeds, if any.
     fn proposer(&self) -> Option<Proposer> {
         None
     }
@@ -26,14 +28,14 @@ pub trait Mind: Send {
     /// Adds the messages to the team after a decision.
     fn send(&self, _messages: &mut Vec<Word>) {}
 
-    /// Takes in what mates sent after the decision before.
+    /// Receives the messages that mates sent after the previous decision.
     fn receive(&mut self, _messages: &[Word]) {}
 
-    /// Takes in what a policy proposes.
+    /// Receives a policy's proposal.
     fn propose(&mut self, _proposal: Proposal) {}
 
-    /// Whether somebody looks inside: from the next decision on the utilities of all functions are kept for
-    /// [`Mind::report`].
+    /// Turns inspection on or off: when on, [`Mind::report`] includes the utilities of all
+    /// functions from the next decision on.
     fn show(&mut self, _shown: bool) {}
 
     /// The state of its helm, if it has one.
@@ -45,7 +47,7 @@ pub trait Mind: Send {
 /// A course and a speed that a policy proposes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Proposal {
-    /// The time of the picture that it answers.
+    /// The time of the picture that the proposal answers.
     pub at: SimTime,
     /// Desired course, rad clockwise from north.
     pub course_rad: f64,

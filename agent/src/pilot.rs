@@ -1,5 +1,5 @@
-//! A mind whose decisions are made outside of it, by a trainer or a program: it shows what its boat knows as numbers, and does
-//! what it is told.
+//! A mind controlled from outside by a trainer or a program: it encodes its boat's knowledge as
+//! numbers and applies the actions it receives.
 
 use crate::helm::HelmMind;
 use crate::mind::{Mind, Proposal};
@@ -20,30 +20,30 @@ use std::collections::BTreeMap;
 
 /// How actions reach the boat.
 enum Control {
-    /// As they are: the set-point is the order.
+    /// Directly: the set-point is the order.
     Direct(Box<Situation>),
     /// Through a helm, as a proposal that it weighs against safety.
     Helm(Box<HelmMind>),
-    /// Not at all: a strategy plays, and shows what it does.
+    /// Actions are ignored: a strategy plays, and its actions serve as a demonstration.
     Taught(Box<Teacher>),
 }
 
-/// A strategy that plays instead of a policy which is to learn to do as it does.
+/// A strategy that plays in place of the policy that imitates it.
 struct Teacher {
     helm: HelmMind,
-    /// Which option each of its modes is, by index.
+    /// The option that each of its modes corresponds to, by mode index.
     options: Vec<Option<usize>>,
-    /// What it did at its first decision since it was last observed, if the policy could have chosen that.
+    /// Its first action since the last observation, if the policy could have chosen that action.
     did: Option<Action>,
     is_observed: bool,
 }
 
-/// What a policy sees and what it may do.
+/// The observation and action spaces of a policy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Spaces {
-    /// What it is given.
+    /// The observation space.
     pub observation: ObservationSpace,
-    /// What it chooses from.
+    /// The action space.
     pub action: ActionSpace,
 }
 
@@ -53,18 +53,19 @@ pub struct Pilot {
     observer: Observer,
     actions: ActionSpace,
     set_point: SetPoint,
-    /// What decides instead of somebody outside.
+    /// A model that decides in place of an external source.
     policy: Option<BoardPolicy>,
 }
 
 impl Pilot {
-    /// Actions become orders as they are. A tagged boat is steered home all the same, since there is nothing else for it to do.
+    /// Actions become orders directly. A tagged boat is steered home regardless, since it can do
+    /// nothing else.
     #[must_use]
     pub fn direct(scenario: &Scenario, vehicle: VehicleId, spaces: Spaces) -> Pilot {
         let program = role_of(scenario, vehicle);
         let model = GameModel::new(scenario, vehicle, program);
-        // With the drift estimated: it is part of what a policy is given, also where nothing
-        // makes up for it.
+        // With the drift estimated: it is part of the observation, even where nothing compensates
+        // for it.
         let motion = OwnMotion::new(scenario.boat_of(vehicle), model.speed_max_m_s, true);
         let team_messages = TeamMessages::new(program, &model.mates);
         let situation = Box::new(Situation::new(model, motion, program, team_messages));
@@ -77,8 +78,8 @@ impl Pilot {
         Pilot::new(Control::Helm(Box::new(HelmMind::new(scenario, vehicle, program))), spaces)
     }
 
-    /// A strategy plays, by its program for this boat: [`Pilot::taught`] says what a policy would have had to choose. `options` says of
-    /// each mode, by its path, which option it is.
+    /// The strategy's program for this boat plays: [`Pilot::taught`] returns the action that a
+    /// policy would have had to choose. `options` maps each mode path to its option.
     #[must_use]
     pub fn by_teacher(
         scenario: &Scenario,
@@ -97,14 +98,14 @@ impl Pilot {
         Pilot { observer, control, actions: spaces.action, set_point: SetPoint::default(), policy: None }
     }
 
-    /// The same with its decisions made by a model.
+    /// The same pilot, with decisions made by a model.
     #[must_use]
     pub fn by_model(mut self, model: PolicyModel) -> Pilot {
         self.policy = Some(BoardPolicy::new(model));
         self
     }
 
-    /// Asks the model, if there is one and it is time to.
+    /// Evaluates the model, if there is one and its decision is due.
     fn ask_model(&mut self, picture: &Picture) {
         let Some(policy) = self.policy.as_mut().filter(|policy| policy.is_due(picture.stamp.valid_ns)) else { return };
         preview(&mut self.control, picture);
@@ -112,8 +113,8 @@ impl Pilot {
         if let Ok(chosen) = policy.chosen() {
             self.follow(chosen);
         } else {
-            // A model that gives no number lets the boat lie still: the last action would go on
-            // for ever.
+            // If the model outputs a non-finite value, the boat stops: otherwise the last action
+            // would continue for ever.
             self.set_point = SetPoint::default();
         }
     }
@@ -126,7 +127,7 @@ impl Pilot {
         }
     }
 
-    /// Takes in the picture on which it will decide next, and gives the observation.
+    /// Takes in the picture for the next decision and returns the observation.
     pub fn observe(&mut self, picture: &Picture) -> &[f32] {
         preview(&mut self.control, picture);
         if let Control::Taught(teacher) = &mut self.control {
@@ -135,19 +136,20 @@ impl Pilot {
         self.observer.observe(situation_of(&self.control))
     }
 
-    /// Does this from the next decision on.
+    /// Applies this action from the next decision on.
     pub fn act(&mut self, action: Action) {
         self.follow(Chosen::of(self.actions, action, situation_of(&self.control)));
     }
 
-    /// Whether the boat does as it is told: a tagged one sails home, and one out of action lies still.
+    /// Whether actions take effect: a tagged boat drives home, and one out of action stays still.
     #[must_use]
     pub fn obeys(&self) -> bool {
         let situation = situation_of(&self.control);
         !situation.own.tagged && situation.fact(Fact::Disabled) == 0.0
     }
 
-    /// What a teacher did when it was last observed, as an action; none if there is no teacher, or no action does that.
+    /// The teacher's decision at the last observation, as an action; none without a teacher, or if
+    /// no action corresponds to it.
     #[must_use]
     pub fn taught(&self) -> Option<Action> {
         match &self.control {
@@ -170,8 +172,7 @@ impl Teacher {
     }
 
     fn steered(&self, order: Order, actions: ActionSpace) -> Option<Action> {
-        // A teacher that holds has done nothing that a policy could have chosen: such a
-        // decision is left out of what is imitated.
+        // A teacher's hold is not among the policy's actions, so imitation skips such a decision.
         let Order::Steer { heading_rad, speed_m_s } = order else { return None };
         let situation = self.helm.situation();
         let asked = SetPoint { course_rad: heading_rad, speed_m_s };
@@ -179,7 +180,7 @@ impl Teacher {
     }
 }
 
-/// Takes in the picture on which it will decide next.
+/// Takes in the picture for the next decision.
 fn preview(control: &mut Control, picture: &Picture) {
     match control {
         Control::Direct(situation) => situation.preview(picture),
@@ -219,7 +220,7 @@ impl Mind for Pilot {
         let situation = match &mut self.control {
             Control::Direct(situation) => situation,
             Control::Helm(helm) => {
-                // It holds until the next action, however long a period that is.
+                // Valid until the next action, however long the period.
                 let SetPoint { course_rad, speed_m_s } = self.set_point;
                 helm.propose(Proposal { at: picture.stamp.valid_ns, course_rad, speed_m_s });
                 return helm.decide(picture);

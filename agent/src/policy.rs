@@ -1,4 +1,5 @@
-//! A trained policy on board: at each of its decisions it is given an observation, and chooses a course and a speed.
+//! A trained policy on board: at each of its decisions it receives an observation and chooses a
+//! course and a speed.
 
 use crate::observation::Observer;
 use crate::situation::Situation;
@@ -11,15 +12,15 @@ use thiserror::Error;
 /// Why a policy proposes nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub(crate) enum PolicyFault {
-    /// The model was made for teams of another size.
+    /// The model was made for a different team size.
     #[error("the model takes {expected} numbers, and a boat of this game has {found}: it is for teams of another size")]
     Size {
-        /// How many numbers the model takes.
+        /// Number of inputs of the model.
         expected: usize,
-        /// How many there are.
+        /// Number of values in the observation.
         found: usize,
     },
-    /// The network gave a number that is none.
+    /// The network output a non-finite value.
     #[error("the model gave a number that is NaN or infinite")]
     NotFinite,
 }
@@ -28,19 +29,19 @@ pub(crate) enum PolicyFault {
 pub(crate) struct BoardPolicy {
     model: PolicyModel,
     network: Network,
-    /// Made at the first decision.
+    /// Created at the first decision.
     observer: Option<Observer>,
-    /// When it decides next; none: at once.
+    /// The time of its next decision; none: at once.
     due: Option<SimTime>,
     chosen: Result<Chosen, PolicyFault>,
 }
 
-/// What a policy chose.
+/// A policy's choice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Chosen {
     /// A course and a speed.
     SetPoint(SetPoint),
-    /// One of the options of the strategy.
+    /// The index of one of the strategy's options.
     Option(usize),
 }
 
@@ -50,33 +51,33 @@ impl BoardPolicy {
         BoardPolicy { model, network, observer: None, due: None, chosen: Ok(Chosen::SetPoint(SetPoint::default())) }
     }
 
-    /// Whether it decides at this time.
+    /// Whether a decision is due at this time.
     pub(crate) fn is_due(&self, now: SimTime) -> bool {
         self.due.is_none_or(|due| now >= due)
     }
 
-    /// Decides if it is time to.
+    /// Decides if a decision is due.
     pub(crate) fn choose_if_due(&mut self, situation: &Situation) {
         if !self.is_due(situation.now) {
             return;
         }
         let period = SimTime::from_s(self.model.spec.period_s);
-        // From decision to decision, not from picture to picture: lost ones move nothing.
+        // Counted from decision to decision, not from picture to picture: lost pictures shift
+        // nothing.
         let next = self.due.map_or(situation.now, |due| due) + period;
-        // After a long gap the decisions that fell into it are not made up for.
+        // After a long gap, missed decisions are not made up.
         self.due = Some(if next > situation.now { next } else { situation.now + period });
         self.chosen = self.choose(situation);
     }
 
-    /// What it chose last.
+    /// The last choice.
     pub(crate) fn chosen(&self) -> Result<Chosen, PolicyFault> {
         self.chosen
     }
 
     fn choose(&mut self, situation: &Situation) -> Result<Chosen, PolicyFault> {
         let spec = self.model.spec;
-        // Not before: how many numbers there are depends on the teams, which are known from the
-        // situation.
+        // Created late: the observation size depends on the teams, which the situation provides.
         let observer = self.observer.get_or_insert_with(|| Observer::new(spec.observation, situation));
         let observation = observer.observe(situation);
         if observation.len() != self.model.input_size() {
@@ -88,7 +89,7 @@ impl BoardPolicy {
         Ok(Chosen::of(spec.action, action, situation))
     }
 
-    /// The model, and how sure it was of each discrete action; empty where actions are continuous.
+    /// The policy's probability of each discrete action; empty for continuous actions.
     pub(crate) fn probabilities(&self) -> Vec<f32> {
         let output = self.network.output(self.model.output());
         if self.model.actions() != Some(output.len()) {
@@ -97,7 +98,7 @@ impl BoardPolicy {
         action::probabilities(output)
     }
 
-    /// The numbers that it was given last.
+    /// The last observation.
     pub(crate) fn observed(&self) -> &[f32] {
         self.observer.as_ref().map_or(&[], Observer::observed)
     }
@@ -109,7 +110,7 @@ impl BoardPolicy {
 }
 
 impl Chosen {
-    /// What an action of this space asks for in a situation.
+    /// Converts an action of this space to a choice in a situation.
     pub(crate) fn of(space: ActionSpace, action: Action, situation: &Situation) -> Chosen {
         match (space, action) {
             (ActionSpace::Options, Action::Discrete(option)) => Chosen::Option(option),
@@ -121,15 +122,15 @@ impl Chosen {
     }
 }
 
-/// The action that a network's output makes: the likeliest of the discrete ones.
+/// Converts a network output to an action: the likeliest of discrete actions.
 fn action_of(model: &PolicyModel, output: &[f32]) -> Result<Action, PolicyFault> {
-    // Checked on each output: a network may overflow on numbers that it was never trained on,
-    // and of NaN the likeliest action would be the first.
+    // Checked on each output: a network may overflow on inputs outside its training range, and the
+    // likeliest action of NaN outputs would be the first.
     if !output.iter().all(|number| number.is_finite()) {
         return Err(PolicyFault::NotFinite);
     }
     Ok(match (model.actions(), output) {
-        // The number of the action itself.
+        // The index of the action.
         (Some(count), [index]) if count > 1 => Action::Discrete(*index as usize),
         (Some(_), logits) => Action::likeliest(logits),
         (None, numbers) => Action::Continuous([0, 1].map(|i| numbers.get(i).copied().unwrap_or_default())),

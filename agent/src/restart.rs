@@ -1,4 +1,5 @@
-//! A mind whose agent is killed in a game and comes back: it begins anew, as a process does that was started again.
+//! A mind whose agent is killed during a game and returns: it starts afresh, as a restarted process
+//! does.
 
 use crate::helm::HelmMind;
 use crate::mind::{Mind, Proposal};
@@ -11,12 +12,13 @@ use scenario::Scenario;
 use scenario::fault::FaultKind;
 use scenario::strategy::{Program, Proposer};
 
-/// The mind of a vehicle that follows `program`; where the scenario has faults that kill its agent, one that forgets everything with each.
+/// The mind of a vehicle that follows `program`; if the scenario has faults that kill its agent, it
+/// loses its memory at each.
 pub(crate) fn helm_of(scenario: &Scenario, vehicle: VehicleId, program: &Program) -> Box<dyn Mind> {
     let is_killed =
         |fault: &scenario::fault::Fault| fault.kind == FaultKind::AgentLost && fault.vehicles.contains(&vehicle);
     let helm = HelmMind::new(scenario, vehicle, program);
-    // Only where a fault says so: a copy of the scenario for each boat would cost a fleet too
+    // Only if a fault requires it: a copy of the scenario for each boat would cost a fleet too
     // much.
     if !scenario.faults.iter().any(is_killed) {
         return Box::new(helm);
@@ -26,7 +28,7 @@ pub(crate) fn helm_of(scenario: &Scenario, vehicle: VehicleId, program: &Program
     Box::new(Restarted { vehicle, helm, begin, shown: false })
 }
 
-/// A helm that begins anew when the picture says that its agent is back.
+/// A helm that starts afresh when the picture says that its agent is back.
 struct Restarted {
     vehicle: VehicleId,
     helm: HelmMind,
@@ -39,8 +41,8 @@ impl Mind for Restarted {
         let is_back =
             |record: &EventRecord| record.logged().is_some_and(|logged| logged.event == Event::AgentBack(self.vehicle));
         if picture.events.iter().any(is_back) {
-            // In the arena nothing is killed, and the result must be the one that processes
-            // come to: so the mind forgets what a process would.
+            // The arena kills no process, and its result must match that of separate processes: so
+            // the mind forgets what a process would.
             self.helm = (self.begin)();
             self.helm.show(self.shown);
         }

@@ -1,4 +1,4 @@
-//! Who plays which role: a strategy's roles dealt to the boats of a team.
+//! Role assignment: a strategy's roles dealt to the boats of a team.
 
 use primitives::VehicleId;
 use primitives::stream::Stream;
@@ -8,15 +8,16 @@ use scenario::strategy::{Assignment, Program, Strategy};
 /// The role of a vehicle in the game that the scenario's seed chooses.
 ///
 /// The roles are dealt to the team's boats of the same strategy, in the scenario's order, and again
-/// from the first role when they run out; a seeded deal shuffles them by the team's own stream. Every
-/// mind of a team comes to the same result by itself.
+/// from the first role when they run out. A seeded deal shuffles them with the team's own stream.
+/// Every mind of a team computes the same result on its own.
 #[must_use]
 pub fn role_of(scenario: &Scenario, vehicle: VehicleId) -> &Program {
     let me = &scenario.vehicles[vehicle.index()];
     dealt(scenario, vehicle, scenario.strategy_of(vehicle), |i| scenario.vehicles[i].strategy == me.strategy)
 }
 
-/// The role that `strategy` gives a vehicle of which the scenario says otherwise: as if its whole team followed it.
+/// The role that `strategy` gives a vehicle with another strategy in the scenario, as if its whole
+/// team followed it.
 #[must_use]
 pub fn role_in<'a>(scenario: &Scenario, vehicle: VehicleId, strategy: &'a Strategy) -> &'a Program {
     dealt(scenario, vehicle, strategy, |_| true)
@@ -34,8 +35,7 @@ fn dealt<'a>(
     let mut roles: Vec<usize> = (0..strategy.roles.len()).cycle().take(boats.len()).collect();
     if strategy.assignment == Assignment::Seeded {
         let team = &scenario.teams[team.index()].name;
-        // A stream of its own by the team's name: a second team, or other draws, do not change
-        // how this one is dealt.
+        // A stream per team name: a second team, or other draws, do not change this deal.
         Stream::new(scenario.seed, &format!("roles/{team}")).shuffle(&mut roles);
     }
     let place = boats.iter().position(|i| *i == vehicle.index()).expect("a vehicle is one of those that follow");

@@ -1,14 +1,14 @@
-//! Runs minds, decision by decision: messages of mates come in, then policy proposals; every mind decides; its messages to
-//! its team are passed on.
+//! Runs minds, decision by decision: delivers messages of mates, then policy proposals; every mind
+//! decides; then collects its messages to its team.
 //!
-//! No network and no clock. The arena, agent processes, replays and emulated boats all run minds by this one loop, so a
-//! game is the same bytes in each of them.
+//! No network and no clock. The arena, agent processes, replays and emulated boats all use this
+//! loop, so a game has the same bytes in each of them.
 
 use crate::mind::{Mind, Proposal};
 use messages::{Message, Order, Orders, Picture, PolicyProposal, Stamp, VehicleOrder, Word};
 use primitives::VehicleId;
 
-/// A boat, the mind that decides for it, and what that ordered last.
+/// A boat, its mind, and its last order.
 struct Boat<M: ?Sized> {
     vehicle: VehicleId,
     order: Order,
@@ -18,7 +18,7 @@ struct Boat<M: ?Sized> {
 /// The minds of one process.
 pub struct MindRunner<M: Mind + ?Sized = dyn Mind> {
     boats: Vec<Boat<M>>,
-    /// The picture that was decided on last.
+    /// The picture of the last decision.
     decided: Option<Stamp>,
     /// The minds' messages to their teams after the last decision.
     sent: Vec<Word>,
@@ -42,26 +42,27 @@ impl<M: Mind + ?Sized> MindRunner<M> {
         self.boats.iter_mut().map(|boat| (boat.vehicle, &mut *boat.mind))
     }
 
-    /// The mind of a boat, if it is run here.
+    /// The mind of a boat, if this process runs it.
     #[must_use]
     pub fn mind(&self, vehicle: VehicleId) -> Option<&M> {
         self.boats.iter().find(|boat| boat.vehicle == vehicle).map(|boat| &*boat.mind)
     }
 
-    /// The mind of a boat, if it is run here.
+    /// The mind of a boat, if this process runs it.
     #[must_use]
     pub fn mind_mut(&mut self, vehicle: VehicleId) -> Option<&mut M> {
         self.boats.iter_mut().find(|boat| boat.vehicle == vehicle).map(|boat| &mut *boat.mind)
     }
 
-    /// Takes in what mates in other processes sent after the decision before. Minds ignore messages of the other team.
+    /// Delivers messages that mates in other processes sent after the previous decision. Minds
+    /// ignore messages of the other team.
     pub fn receive(&mut self, messages: &[Word]) {
         if !messages.is_empty() {
             self.boats.iter_mut().for_each(|boat| boat.mind.receive(messages));
         }
     }
 
-    /// Takes in what a policy proposes, before the decision on the picture with this stamp.
+    /// Delivers a policy's proposal before the decision on the picture with this stamp.
     pub fn propose(&mut self, proposal: &PolicyProposal, stamp: Stamp) {
         let PolicyProposal { vehicle, course_rad, speed_m_s, .. } = *proposal;
         if let Some(mind) = self.mind_mut(vehicle) {
@@ -70,8 +71,8 @@ impl<M: Mind + ?Sized> MindRunner<M> {
         }
     }
 
-    /// Lets every mind decide on its boat's picture, which has this stamp; a boat without a picture holds. What the minds
-    /// send then, their mates here know at the next decision.
+    /// Lets every mind decide on its boat's picture, which has this stamp; a boat without a picture
+    /// holds. Mates in this process receive the resulting messages at the next decision.
     pub fn decide<'p>(&mut self, stamp: Stamp, picture_of: impl Fn(VehicleId) -> Option<&'p Picture>) {
         for Boat { vehicle, order, mind } in &mut self.boats {
             *order = picture_of(*vehicle).map(|picture| mind.decide(picture)).unwrap_or_default();
@@ -79,8 +80,8 @@ impl<M: Mind + ?Sized> MindRunner<M> {
         self.decided = Some(stamp);
         let mut sent = std::mem::take(&mut self.sent);
         sent.clear();
-        // After all have decided: what one boat tells is known to its mates at the next
-        // decision, in one process as across several, whatever the order of the minds.
+        // After all have decided: mates receive a boat's messages at the next decision, in one
+        // process as across several, for any order of the minds.
         self.boats.iter().for_each(|boat| boat.mind.send(&mut sent));
         self.receive(&sent);
         self.sent = sent;
@@ -103,11 +104,11 @@ impl<M: Mind + ?Sized> MindRunner<M> {
         &self.sent
     }
 
-    /// The orders of the last decision as a message to the sim, which gave this ticket; the same whenever it is asked for
-    /// again. None before the first decision.
+    /// The orders of the last decision as a message to the sim that issued this ticket; identical
+    /// on every call. None before the first decision.
     #[must_use]
     pub fn answer(&self, ticket: u64) -> Option<Orders> {
-        // With the picture's own time and number: the sim tells by it which tick is answered.
+        // With the picture's own time and number, which identify the answered tick to the sim.
         let stamp = Stamp { version: Orders::VERSION, ..self.decided? };
         Some(Orders { stamp, ticket, orders: self.orders().map(|(v, order)| VehicleOrder::new(v, order)).collect() })
     }
@@ -118,7 +119,8 @@ mod tests {
     use super::*;
     use primitives::SimTime;
 
-    /// Orders the speed that is proposed plus what it has received, and sends how often it has decided.
+    /// Orders the proposed speed plus the values it has received, and sends its number of
+    /// decisions.
     struct Adder {
         me: VehicleId,
         decisions: f64,

@@ -1,4 +1,5 @@
-//! Points of a strategy that a boat cannot reach, since they lie within its turning circle.
+//! Warnings about points of a strategy that lie within a boat's turning circle, so that it cannot
+//! reach them.
 
 use crate::behaviour::corners_of;
 use crate::own_motion::OwnMotion;
@@ -9,20 +10,20 @@ use scenario::Scenario;
 use scenario::strategy::{Behaviour, Mark, Parameter, Place, Shape, Task};
 use std::collections::BTreeSet;
 
-/// Warnings of a game: what each boat's role asks for that the boat cannot do, though the game is a good one.
+/// Warnings about a valid game: demands of each boat's role that the boat cannot meet.
 ///
-/// A boat that has reached a point of a `waypoint` or a corner of a `loiter` turns at once for the next one. If that lies within
-/// the circle of this turn by more than the capture radius, the boat goes round it or past it. Only points that are the same
-/// throughout the game are looked at.
+/// A boat that has reached a point of a `waypoint` or a corner of a `loiter` turns at once for the
+/// next one. If that lies inside this turning circle by more than the capture radius, the boat
+/// circles it or misses it. Only points that are constant throughout the game are checked.
 #[must_use]
 pub fn warnings(scenario: &Scenario) -> Vec<String> {
     let boats = (0..scenario.vehicles.len()).map(VehicleId::at);
-    // Boats of one role have the same warning: said once, in a fixed order.
+    // Boats of one role have the same warning: listed once, in a fixed order.
     let warnings: BTreeSet<String> = boats.flat_map(|vehicle| of_boat(scenario, vehicle)).collect();
     warnings.into_iter().collect()
 }
 
-/// Those of one boat.
+/// The warnings for one boat.
 fn of_boat(scenario: &Scenario, vehicle: VehicleId) -> Vec<String> {
     let program = role_of(scenario, vehicle);
     let boat = scenario.boat_of(vehicle);
@@ -52,7 +53,7 @@ fn of_boat(scenario: &Scenario, vehicle: VehicleId) -> Vec<String> {
     program.behaviours.iter().filter_map(warning).collect()
 }
 
-/// The points of a way, if they are always the same; whether it begins again; its speed and its capture radius.
+/// The points of a path, if constant; whether it repeats; its speed and its capture radius.
 fn way<'a>(task: &'a Task, situation: &Situation) -> Option<(Vec<Ned>, bool, &'a Parameter, &'a Parameter)> {
     match task {
         Task::Waypoint(task) => {
@@ -77,13 +78,14 @@ fn way<'a>(task: &'a Task, situation: &Situation) -> Option<(Vec<Ned>, bool, &'a
     }
 }
 
-/// Where a place is, if it is there throughout the game.
+/// The position of a place, if it is constant throughout the game.
 fn fixed(place: &Place, situation: &Situation) -> Option<Ned> {
     let stays = matches!(place, Place::At(_) | Place::Point(_) | Place::Mark(Mark::OwnFlag));
     stays.then(|| situation.locate(place))?.map(|point| point.at)
 }
 
-/// Which points lie within the turning circle of a boat that comes to the point before them straight from the one before that.
+/// Indices of the points within the turning circle of a boat that reaches the previous point
+/// straight from the one before.
 fn beyond_reach(points: &[Ned], again: bool, circle_m: f64, capture_m: f64) -> Vec<usize> {
     let count = points.len();
     let is_missed = |i: &usize| {
@@ -93,7 +95,7 @@ fn beyond_reach(points: &[Ned], again: bool, circle_m: f64, capture_m: f64) -> V
         if came_m < 1e-6 || goes_m < 1e-6 {
             return false;
         }
-        // The circle touches the way at `at`, on the side of `to`.
+        // The circle is tangent to the path at `at`, on the side of `to`.
         let ahead_m = came.dot(goes) / came_m;
         let aside_m = (came.north * goes.east - came.east * goes.north).abs() / came_m;
         let to_centre_m = primitives::math::length(ahead_m, circle_m - aside_m);
@@ -109,7 +111,7 @@ mod tests {
 
     #[test]
     fn a_point_within_the_circle_is_beyond_reach() {
-        // North for 20 m, then to a point 8 m aside: the middle of a circle of 8 m.
+        // North for 20 m, then to a point 8 m abeam: the centre of a circle of radius 8 m.
         let to = |north: f64, east: f64| [Ned { north: -20.0, east: 0.0 }, Ned::default(), Ned { north, east }];
         for (what, points, circle_m, capture_m, want) in [
             ("its middle", to(0.0, 8.0), 8.0, 3.0, vec![2]),
@@ -122,7 +124,7 @@ mod tests {
         ] {
             assert_eq!(beyond_reach(&points, false, circle_m, capture_m), want, "{what}");
         }
-        // Round and round, every corner of a small square is one.
+        // On a repeated small square every corner is out of reach.
         let square = [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)].map(|(north, east)| Ned { north, east });
         assert_eq!(beyond_reach(&square, true, 10.0, 1.0), [0, 1, 2, 3]);
         assert_eq!(beyond_reach(&square, false, 10.0, 1.0), [2, 3]);

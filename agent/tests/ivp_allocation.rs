@@ -1,6 +1,7 @@
-//! What a decision of the helm asks of the heap.
+//! Heap allocations of a helm decision.
 //!
-//! `stats_alloc` counts for us, see `sim/tests/allocation.rs`; one test, since it counts the whole process.
+//! `stats_alloc` does the counting, see `sim/tests/allocation.rs`; a single test, since it counts
+//! the whole process.
 
 use agent::ivp::{Approach, Closest, Grid, Objective, Peak, Preference, Problem, SpeedLimit, Table};
 use primitives::Ned;
@@ -10,7 +11,7 @@ use std::alloc::System;
 #[global_allocator]
 static HEAP: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-/// Decisions in which every list has grown, and the test harness has done with starting this thread.
+/// Decisions until every list has grown and the test harness has finished starting this thread.
 const WARM_UP: usize = 1_500;
 
 #[test]

@@ -1,22 +1,23 @@
-//! When a point counts as reached.
+//! The condition for a point to count as reached.
 
 use primitives::Ned;
 use primitives::angle::wrap_pi;
 use std::f64::consts::TAU;
 
-/// A point draws away when it is this much farther than it once was, m: less may be noise of the position.
+/// A point recedes once it is this much farther away than at its closest, m; less may be position
+/// noise.
 const AWAY_M: f64 = 0.5;
 
-/// A point that is being approached: reached within one radius, or within the other when it draws away again. A boat that has
-/// gone all the way round it cannot turn as sharply as the point asks for: it is reached too, and so is every later one that
-/// comes as near as this one was.
+/// A point that the boat approaches. It is reached within the capture radius, or within the slip
+/// radius once it recedes. A boat that has circled the point cannot turn tightly enough for it: the
+/// point then counts as reached, as does every later point that comes as near as this one did.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Arrival {
     nearest_m: f64,
-    /// The bearing of the point, and how far it has turned, rad.
+    /// The bearing of the point and its accumulated rotation, rad.
     bearing_rad: Option<f64>,
     turned_rad: f64,
-    /// Points that are no farther than this are reached, since one of them was gone round, m.
+    /// Points within this distance count as reached because the boat has circled one at it, m.
     gone_round_m: f64,
 }
 
@@ -25,12 +26,12 @@ impl Arrival {
         Arrival { nearest_m: f64::INFINITY, bearing_rad: None, turned_rad: 0.0, gone_round_m: 0.0 }
     }
 
-    /// The approach of the next point.
+    /// The approach to the next point.
     pub(super) fn next(self) -> Arrival {
         Arrival { gone_round_m: self.gone_round_m, ..Arrival::new() }
     }
 
-    /// Whether the point is reached, now that it lies there from the boat.
+    /// Whether the point at `line` from the boat is reached.
     pub(super) fn reaches(&mut self, line: Ned, capture_radius_m: f64, slip_radius_m: f64) -> bool {
         let (distance_m, bearing_rad) = (line.length(), Ned::default().bearing_rad(line));
         let before_rad = self.bearing_rad.replace(bearing_rad).unwrap_or(bearing_rad);
@@ -50,7 +51,7 @@ mod tests {
     use primitives::{Ned, math};
     use std::f64::consts::TAU;
 
-    /// The line to a point that is so far away in this direction.
+    /// The line to a point at this distance and bearing.
     fn line(distance_m: f64, bearing_rad: f64) -> Ned {
         let (sin, cos) = math::sin_cos(bearing_rad);
         Ned { north: distance_m * cos, east: distance_m * sin }
@@ -74,7 +75,8 @@ mod tests {
 
     #[test]
     fn a_point_that_was_gone_round_is_reached_and_so_are_those_as_near_after_it() {
-        // Round the point at 5 m, 10 degrees a decision, either way: never within the capture radius, never drawing away.
+        // A 5 m circle round the point at 10 degrees per decision, either way: never within the
+        // capture radius, never receding.
         for side in [1.0, -1.0] {
             let mut arrival = Arrival::new();
             let bearing_rad = |decision: u32| side * TAU * f64::from(decision) / 36.0;
@@ -84,7 +86,7 @@ mod tests {
             assert!(arrival.reaches(line(4.9, 0.0), 3.0, 15.0), "as near as the one before");
             assert!(!arrival.next().reaches(line(5.2, 0.0), 3.0, 15.0), "farther off");
         }
-        // A weaving course does not go round.
+        // A weaving course does not circle the point.
         let mut arrival = Arrival::new();
         assert!((0..1000).all(|i| !arrival.reaches(line(50.0 - 0.04 * f64::from(i), f64::from(i % 2)), 3.0, 15.0)));
     }

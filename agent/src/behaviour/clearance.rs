@@ -1,6 +1,7 @@
-//! Clearance: how far inside of the edges of a region the boat stays on each course, at each speed.
+//! Clearance: how far the boat stays inside the edges of a region on each course, at each speed.
 //!
-//! A boat that is given a decision goes on for its reaction time, then turns the shorter way at its rate, then goes straight.
+//! After a decision the boat keeps its motion for its reaction time, turns the shorter way at its
+//! turn rate, then goes straight.
 
 use crate::ivp::{Courses, Grid, LANES, Lanes, Table, larger, smaller};
 use crate::own_motion::Handling;
@@ -9,31 +10,31 @@ use primitives::instructions::Kernel;
 use primitives::{Ned, math};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// What single precision may take from a bound on a distance, m, with room to spare.
+/// Largest single-precision error of a distance bound, m, with a margin.
 const ROUNDING_M: f32 = 0.01;
 
-/// Lowers the utilities of a table to what candidates keep of a distance to the edges.
+/// Lowers the utilities of a table to the clearance that each candidate keeps from the edges.
 ///
-/// A candidate is worth as much as it keeps of `save_m`: half of it for the least distance to an edge on the way, half for the
-/// distance at the end of the look-ahead; the worst edge counts. With the share `x` of the distance that is kept it is worth
-/// `x + bend x (1 - x)` of the half.
+/// A candidate is worth the share of `save_m` that it keeps: half for the least distance to an edge
+/// on the way, half for the distance at the end of the look-ahead. The worst edge counts. If the
+/// candidate keeps the share `x`, it is worth `x + bend x (1 - x)` of each half.
 pub(super) struct Clearance<'a> {
     pub(super) table: &'a mut Table,
     pub(super) grid: &'a Grid,
-    /// By edge: outward unit normal, and how far inside of it the boat is, m.
+    /// By edge: outward unit normal, and the boat's distance inside the edge, m.
     pub(super) edges: &'a [(Ned, f64)],
-    /// Edges farther off than this count nothing, m.
+    /// Edges beyond this distance are ignored, m.
     pub(super) reach_m: f64,
     pub(super) heading_rad: f64,
-    /// Speed ahead, through the water as candidates are, m/s.
+    /// Speed ahead through the water, as for candidates, m/s.
     pub(super) surge_m_s: f64,
-    /// What wind and current add to the boat's way, m/s.
+    /// Velocity that wind and current add to the boat's, m/s.
     pub(super) drift: Ned,
     pub(super) handling: Handling,
     pub(super) lookahead_s: f64,
     pub(super) save_m: f64,
-    /// How much more the first metres from the edge are worth than they would be if all of `save_m` were worth the same, and the
-    /// last ones less: 0 for not at all, 1 for twice as much and nothing.
+    /// How much more the first metres from the edge are worth than the last ones: 0 weighs all
+    /// metres of `save_m` alike, 1 weighs the first ones double and the last ones zero.
     pub(super) bend: f64,
 }
 
@@ -60,10 +61,10 @@ impl Kernel for Clearance<'_> {
 }
 
 impl Clearance<'_> {
-    /// An edge as it is seen from the boat.
+    /// An edge in coordinates relative to the boat.
     fn seen(&self, (normal, inside_m): (Ned, f64)) -> Edge {
-        // Everything below is told relative to an edge's outward normal: then four edges are
-        // one formula, and out is a cosine.
+        // Everything below is relative to the edge's outward normal: one formula then serves all
+        // four edges, and the outward direction is a cosine.
         let from_rad = wrap_pi(self.heading_rad - math::atan2(normal.east, normal.north));
         let (sin_from, cos_from) = math::sin_cos(from_rad);
         let start_m = (inside_m - self.handling.reaction_s * self.surge_m_s * cos_from) as f32;
@@ -71,31 +72,31 @@ impl Clearance<'_> {
         Edge { normal, from_rad, sin_from, start_m, drift_m }
     }
 
-    /// Whether one of the courses may come near to an edge: of those that lead away from it this is soon told.
+    /// Whether any of the courses may come near the edge; cheap for courses that lead away from it.
     #[inline(always)]
     fn may_be_low(&self, courses: &Courses, turns: &Turns, edge: &Edge) -> bool {
         let least_m = self.save_m + f64::from(edge.drift_m).max(0.0) + f64::from(ROUNDING_M);
-        // At the larger of the old and the fastest speed.
-        // Courses that lead away from an edge, or cannot reach it, are passed over 16 at a
-        // time: most are, even near an edge.
+        // At the larger of the old and the top speed.
+        // Courses that lead away from an edge, or cannot reach it, are skipped 16 at a time: most
+        // are, even near an edge.
         let out_s = (f64::from(edge.start_m) - least_m) / self.surge_m_s.max(self.grid.speed_max_m_s());
         let mut may_be_low = false;
         for i in 0..LANES {
             let cos_to = courses.north.0[i] * edge.normal.north + courses.east.0[i] * edge.normal.east;
             let straight_s = turns.straight_s.0[i] * cos_to;
-            // The turn goes out by no more than it is long.
+            // The turn goes out by at most its length.
             let most_s = turns.duration_s.0[i] + if straight_s > 0.0 { straight_s } else { 0.0 };
             may_be_low |= most_s > out_s;
         }
         may_be_low
     }
 
-    /// Lowers the utilities of courses side by side.
+    /// Lowers the utilities of a group of courses.
     #[inline(always)]
     fn lower(&mut self, first: usize, ways: &Ways) {
         let (worth, old_m_s) = (((50.0 / self.save_m) as f32, self.bend as f32), self.surge_m_s as f32);
         let most_m_s = larger(old_m_s, self.grid.speed_max_m_s() as f32);
-        // Bits, so that the courses that need work are found without a branch for each.
+        // A bit mask finds the courses that need work without a branch for each.
         let mut low = ways.low(most_m_s, self.save_m as f32);
         while low != 0 {
             let i = low.trailing_zeros() as usize;
@@ -104,8 +105,7 @@ impl Clearance<'_> {
                 return;
             }
             let (way, speeds) = (ways.at(i), self.grid.speeds_side_by_side());
-            // Lowered, not set: the boat is near two edges in a corner, and the worse of them
-            // counts.
+            // Lowered, not set: in a corner the boat is near two edges, and the worse one counts.
             for (row, speed_m_s) in self.table.lowered_mut(first + i).iter_mut().zip(speeds) {
                 for i in 0..LANES {
                     row.0[i] = smaller(row.0[i], way.utility(old_m_s, speed_m_s.0[i], worth));
@@ -115,24 +115,24 @@ impl Clearance<'_> {
     }
 }
 
-/// An edge of the region, as it is seen from the boat.
+/// An edge of the region relative to the boat.
 #[derive(Clone, Copy, Default)]
 struct Edge {
-    /// Outward.
+    /// Outward unit normal.
     normal: Ned,
-    /// The heading's angle to it, and its sine.
+    /// The heading's angle to the normal, rad, and its sine.
     from_rad: f64,
     sin_from: f64,
-    /// How far inside of the edge the turn begins, m.
+    /// Distance inside the edge at the start of the turn, m.
     start_m: f32,
-    /// How much of that drift takes in the end, m.
+    /// Outward drift over the whole way, m.
     drift_m: f32,
 }
 
-/// A turn to a course, and the straight run after it.
+/// A turn to a course and the straight run after it.
 #[derive(Clone, Copy)]
 struct Turn {
-    /// To starboard.
+    /// Turn angle, rad, positive to starboard.
     by_rad: f64,
     turn_rad_s: f64,
     duration_s: f64,
@@ -146,13 +146,13 @@ impl Turn {
     }
 }
 
-/// Turns to courses side by side, and what does not depend on the edge of the straight run after them.
+/// Turns to a group of courses, and the edge-independent part of the straight runs after them.
 struct Turns {
     by_rad: Lanes<f64>,
     turn_rad_s: Lanes<f64>,
     duration_s: Lanes<f64>,
     straight_s: Lanes<f64>,
-    /// The least and the most of the mean speed on the straight run, m/s.
+    /// The least and the greatest mean speed on the straight run, m/s.
     slowest_m_s: Lanes<f32>,
     fastest_m_s: Lanes<f32>,
 }
@@ -193,46 +193,46 @@ impl Turns {
     }
 }
 
-/// The least and the most speed after so long, m/s: as fast as the boat gains and loses it.
+/// The least and the greatest speed after this time, m/s, within the boat's acceleration.
 #[inline(always)]
 fn reached(old_m_s: f64, after_s: f64, handling: &Handling) -> (f32, f32) {
     let slowest_m_s = old_m_s - handling.deceleration_m_s2 * after_s;
     (slowest_m_s as f32, (old_m_s + handling.acceleration_m_s2 * after_s) as f32)
 }
 
-/// A turn as seen from an edge: distances outwards for each m/s of speed.
+/// A turn relative to an edge: outward distances per m/s of speed.
 #[derive(Clone, Copy)]
 struct Outward {
-    /// The farthest out that the boat gets while it turns, s times its speed.
+    /// The farthest outward distance during the turn, s (times the speed).
     farthest_s: f64,
-    /// When it gets there, s.
+    /// The time of the farthest point, s.
     farthest_after_s: f64,
-    /// How far out it is when it has turned, s times its speed.
+    /// The outward distance at the end of the turn, s (times the speed).
     end_s: f64,
 }
 
 impl Outward {
-    /// From an angle to the edge's outward normal (and its sine) to another one (its sine).
+    /// From an angle to the edge's outward normal (and its sine) to another (its sine).
     ///
-    /// The way outwards is the integral of the cosine: the sine, divided by the rate of turn, whose extremes are at right
-    /// angles to the normal.
+    /// The outward distance is the integral of the cosine: the sine divided by the turn rate, with
+    /// extremes at right angles to the normal.
     #[inline(always)]
     fn new(turn: &Turn, (from_rad, sin_from): (f64, f64), sin_to: f64) -> Outward {
-        // Mirrored, so that one formula serves turns to either side, and a mirrored scene has
-        // the same bits.
+        // Mirrored, so that one formula serves turns to either side and a mirrored scene gives the
+        // same bits.
         let side = if turn.by_rad < 0.0 { -1.0 } else { 1.0 };
         let end_s = side * (sin_to - sin_from) / turn.turn_rad_s;
         let to_parallel_rad = (side * FRAC_PI_2 - from_rad) * side;
-        // Both angles are within half a turn: no division is needed.
+        // Both angles are within half a turn, so no division is needed.
         let to_parallel_rad = if to_parallel_rad < 0.0 { to_parallel_rad + TAU } else { to_parallel_rad };
         let parallel_s = (1.0 - side * sin_from) / turn.turn_rad_s;
         let parallel_after_s = to_parallel_rad / turn.turn_rad_s;
-        // All of it, whichever is meant: so it can be done for courses side by side.
+        // All cases are computed without branches, so that this vectorises over a group of courses.
         let ends_out = end_s > 0.0;
         let (end_out_s, end_after_s) =
             (if ends_out { end_s } else { 0.0 }, if ends_out { turn.duration_s } else { 0.0 });
-        // A turn goes farthest out where the boat is parallel to the edge, if it passes that on
-        // the way; otherwise at its beginning or end.
+        // The farthest point is where the boat is parallel to the edge, if the turn passes that
+        // heading; otherwise it is the beginning or the end.
         let is_parallel = (to_parallel_rad < turn.by_rad.abs()) & (parallel_s > end_s);
         Outward {
             farthest_s: if is_parallel { parallel_s } else { end_out_s },
@@ -242,49 +242,50 @@ impl Outward {
     }
 }
 
-/// A way on a course, as seen from an edge, as it depends on the new speed: out to the farthest point of the turn, back to its
-/// end, and straight on. The speed goes over from the old to the new one as fast as the boat gains and loses it, but not faster
-/// than evenly on the way out.
+/// A way on a course relative to an edge, as a function of the new speed: out to the farthest point
+/// of the turn, back to its end, and straight on. The speed changes from old to new within the
+/// boat's acceleration, but no faster than evenly on the way out.
 #[derive(Clone, Copy)]
 struct Way {
-    /// How far inside of the edge the turn begins, m.
+    /// Distance inside the edge at the start of the turn, m.
     start_m: f32,
-    /// How much of that drift takes in the end, m.
+    /// Outward drift over the whole way, m.
     drift_m: f32,
-    /// The way out to the farthest point of the turn, and back from there, s times its speed.
+    /// Outward distance to the farthest point of the turn, and back from there, s (times the
+    /// speed).
     out_s: f32,
     back_s: f32,
-    /// The way out on the straight run, s times its speed.
+    /// Outward distance on the straight run, s (times the speed).
     straight_s: f32,
-    /// The least and the most of the mean speed on each part of the way, m/s.
+    /// The least and the greatest mean speed on each part of the way, m/s.
     within: [(f32, f32); 3],
 }
 
 impl Way {
-    /// What is kept of the least distance to the edge and of the one in the end.
+    /// The utility of the least distance to the edge and of the final one.
     #[inline(always)]
     fn utility(&self, old_m_s: f32, new_m_s: f32, (per_m, bend): (f32, f32)) -> f32 {
         let [out, back, straight] = self.within;
-        // The arc is run at the mean of old and new speed, the rest at the new one, both within
-        // what the boat can gain or lose by then.
+        // The arc is run at the mean of old and new speed and the rest at the new speed, both
+        // within the acceleration limits.
         let farthest_m = self.start_m - self.out_s * held(0.5 * (old_m_s + new_m_s), out);
         let end_m =
             farthest_m - self.drift_m + self.back_s * held(new_m_s, back) - self.straight_s * held(new_m_s, straight);
         let least_m = smaller(farthest_m, end_m);
-        // The nearest point and the end count half each: of two courses that come as near, the
-        // one that then leads away is better, also for a boat that is out already.
+        // The nearest point and the end count half each: of two courses that come equally near, the
+        // one that then leads away is better, also for a boat that is already outside.
         kept(least_m * per_m, bend) + kept(end_m * per_m, bend)
     }
 }
 
-/// Ways on courses side by side.
+/// Ways on a group of courses.
 struct Ways {
     start_m: f32,
     drift_m: f32,
     out_s: Lanes<f32>,
     back_s: Lanes<f32>,
     straight_s: Lanes<f32>,
-    /// The least and the most of the mean speeds, m/s.
+    /// The least and the greatest mean speeds, m/s.
     slowest_m_s: [Lanes<f32>; 3],
     fastest_m_s: [Lanes<f32>; 3],
 }
@@ -332,14 +333,14 @@ impl Ways {
         }
     }
 
-    /// The ways that may come nearer to the edge than this at some speed, of which `most_m_s` and the old one are the largest: a
-    /// bit for each.
+    /// A bit mask of the ways that may come within `save_m` of the edge at some speed; `most_m_s`
+    /// and the old speed are the largest.
     #[inline(always)]
     fn low(&self, most_m_s: f32, save_m: f32) -> u32 {
         let begins_m = self.start_m - larger(self.drift_m, 0.0) - ROUNDING_M;
         let mut bits = 0;
         for i in 0..LANES {
-            // Mean speeds are not negative, and not more than the larger of the old and the new one.
+            // Mean speeds are non-negative and at most the larger of the old and the new one.
             let least_m = begins_m - (self.out_s.0[i] + larger(self.straight_s.0[i], 0.0)) * most_m_s;
             bits |= u32::from(least_m < save_m) << i;
         }
@@ -347,13 +348,13 @@ impl Ways {
     }
 }
 
-/// A speed held within two others.
+/// A speed clamped to a range.
 #[inline(always)]
 fn held(speed_m_s: f32, (slowest, fastest): (f32, f32)) -> f32 {
     smaller(larger(speed_m_s, slowest), fastest)
 }
 
-/// Half of the utility, as far as a distance in parts of it reaches: 0 to 50.
+/// Half of the utility, 0 to 50, for a distance as a share of `save_m`.
 #[inline(always)]
 fn kept(part: f32, bend: f32) -> f32 {
     let linear = larger(smaller(part, 50.0), 0.0);
@@ -365,10 +366,10 @@ mod tests {
     use super::*;
     use primitives::instructions::Instructions;
 
-    /// A boat that always turns alike.
+    /// A boat that makes every turn at the same yaw rate.
     const HANDLING: Handling = Handling::evenly(0.35);
 
-    /// The farthest and the last distance outwards of a boat that turns at a speed of 1 m/s, by small steps, m.
+    /// The farthest and the last outward distance of a boat that turns at 1 m/s, in small steps, m.
     fn stepped(from_rad: f64, by_rad: f64) -> (f64, f64) {
         let steps = 100_000;
         let dt_s = by_rad.abs() / HANDLING.turn_rad_s / f64::from(steps);

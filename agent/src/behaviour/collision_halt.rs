@@ -1,5 +1,5 @@
-//! The collision halt: a boat that has come too near to another stops, whatever others want, until it is released. As at
-//! the games of 2023, where people then sorted the boats out.
+//! The collision halt: a boat that has come too near to another stops, whatever other behaviours
+//! want, until it is released. As at the games of 2023, where people then separated the boats.
 
 use super::logic::BehaviourLogic;
 use super::output::BehaviourOutput;
@@ -7,7 +7,7 @@ use crate::situation::Situation;
 use primitives::SimTime;
 use scenario::strategy::{AvoidCollision, Parameter};
 
-/// Collision avoidance, and the halt where it was not enough.
+/// Collision avoidance, with a halt as the last resort.
 pub(super) struct HaltingAvoidance {
     avoidance: AvoidCollision,
     halt: Halt,
@@ -21,7 +21,8 @@ enum Halt {
     Halted {
         since: SimTime,
     },
-    /// Released after its time, with others still near: it halts again only after it has been clear of them.
+    /// Released after its time with others still near: it halts again only once it has been clear
+    /// of them.
     Released,
 }
 
@@ -34,12 +35,11 @@ impl HaltingAvoidance {
         let value = |parameter: &Option<Parameter>| parameter.as_ref().map(|parameter| parameter.value(situation));
         let AvoidCollision { halt_m, release_m, release_s, .. } = &self.avoidance;
         let Some(halt_m) = value(halt_m) else { return Halt::Clear };
-        // Three times the distance by default: a halt that ends where it began would begin
-        // again at once.
+        // Three times the halt distance by default: a halt released at the distance where it began
+        // would begin again at once.
         let (release_m, release_s) = (value(release_m).unwrap_or(3.0 * halt_m), value(release_s));
         let distances = situation.others.iter().map(|other| situation.at.distance(other.at));
-        // All boats, also those that `contacts` leaves out: the halt is about hulls, not about
-        // tags.
+        // All boats, including those that `contacts` excludes: the halt is about hulls, not tags.
         let nearest_m = distances.fold(f64::INFINITY, f64::min);
         let is_clear = nearest_m >= release_m.max(halt_m);
         match self.halt {
@@ -59,7 +59,7 @@ impl BehaviourLogic for HaltingAvoidance {
     }
 
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
-        // The avoidance runs while halted, so that its functions are seen, and are there when
+        // The avoidance also runs during a halt, so that its functions are visible, and ready when
         // the halt ends.
         self.avoidance.run(situation, output);
         self.halt = self.next(situation);

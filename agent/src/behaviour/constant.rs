@@ -7,7 +7,7 @@ use crate::situation::Situation;
 use primitives::angle::rad_from_compass_deg;
 use scenario::strategy::{ConstantHeading, ConstantSpeed};
 
-/// How much less the edge of a peak is worth than its summit.
+/// Utility drop from the summit of a peak to its edge.
 const SUMMIT_DELTA: f64 = 25.0;
 
 impl BehaviourLogic for ConstantHeading {
@@ -25,8 +25,8 @@ impl BehaviourLogic for ConstantHeading {
 impl BehaviourLogic for ConstantSpeed {
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
         output.add(&Objective::Speed(Peak {
-            // A summit beyond the fastest speed would make the fastest worth less than it could
-            // be, and the course would outweigh it.
+            // A summit beyond the top speed would lower the utility of the top speed, and the
+            // course would outweigh it.
             summit: self.speed_m_s.value(situation).min(situation.model.speed_max_m_s),
             peak_width: self.peak_width_m_s.value(situation),
             base_width: self.base_width_m_s.value(situation),

@@ -1,4 +1,4 @@
-//! Cut range: closes in on a boat, by rate of closure now and closest point of approach later.
+//! Cut range: closes in on a boat, by present closing speed and later closest point of approach.
 
 use super::logic::BehaviourLogic;
 use super::output::BehaviourOutput;
@@ -15,7 +15,7 @@ impl BehaviourLogic for CutRange {
             return;
         }
         let patience = self.patience.value(situation) / 100.0;
-        // Candidates are through the water: so is the contact.
+        // Candidates are relative to the water, so the contact's velocity is too.
         let velocity = contact.velocity() - situation.motion.drift();
         let closing = Closing { offset: line, velocity };
         let closest = Closest {
@@ -23,15 +23,14 @@ impl BehaviourLogic for CutRange {
             velocity,
             horizon_s: self.time_on_leg_s.value(situation),
             min_m: 0.0,
-            // What counts is to be nearer than now: so the utility is scaled by the present
-            // distance.
+            // Only getting nearer counts, so the utility is scaled by the present distance.
             max_m: distance_m.max(1.0),
             touch_m: 0.0,
             approach: Approach::Seek,
             lag: None,
         };
-        // MOOS-IvP's CutRange: with no patience it closes in as fast as it can now, with all of
-        // it it heads for where they will meet.
+        // MOOS-IvP's CutRange: at patience 0 it closes in as fast as it can now, at patience 1 it
+        // heads for the meeting point.
         output.add_share(1.0 - patience, Some(contact.vehicle), &Objective::Closing(closing));
         output.add_share(patience, Some(contact.vehicle), &Objective::Closest(closest));
     }

@@ -1,4 +1,4 @@
-//! Intercept: steers for the point where a boat can be met soonest (lead pursuit).
+//! Intercept: steers for the earliest point where a boat can be met (lead pursuit).
 
 use super::logic::BehaviourLogic;
 use super::output::BehaviourOutput;
@@ -15,7 +15,8 @@ impl BehaviourLogic for Intercept {
             return;
         }
         let speed_m_s = self.speed_m_s.value(situation).min(situation.model.speed_max_m_s);
-        // Both are carried by the same water: seen from it the contact moves with what is left of its velocity.
+        // The same water carries both boats: relative to it the contact moves at its velocity less
+        // the drift.
         let velocity = contact.velocity() - situation.motion.drift();
         let meeting = meeting_point(situation.at, speed_m_s, MovingPoint { at: contact.at, velocity });
         let heading_rad = situation.at.bearing_rad(meeting);
@@ -23,12 +24,12 @@ impl BehaviourLogic for Intercept {
     }
 }
 
-/// Where a boat at `from`, going straight at this speed, meets one that keeps its velocity soonest; where that one is now
-/// if it never does.
+/// The earliest point where a boat at `from`, going straight at this speed, meets a contact of
+/// constant velocity; the contact's present position if they never meet.
 pub(super) fn meeting_point(from: Ned, speed_m_s: f64, contact: MovingPoint) -> Ned {
     let time_s = meeting_time_s(contact.at - from, contact.velocity, speed_m_s);
-    // A contact that cannot be met, being faster and going away, is steered for where it is: it
-    // may turn.
+    // A faster contact that is moving away cannot be met. The boat steers for its present position:
+    // it may turn.
     contact.at + contact.velocity.scaled(time_s.unwrap_or(0.0))
 }
 
@@ -42,7 +43,7 @@ mod tests {
             at: Ned { north, east },
             velocity: Ned { north: v_north, east: v_east },
         };
-        // Crossing at right angles: 3-4-5.
+        // At right angles: a 3-4-5 triangle.
         let got = meeting_point(Ned::default(), 2.0, contact(40.0, 0.0, 0.0, 1.2));
         assert!(got.distance(Ned { north: 40.0, east: 30.0 }) < 1e-9, "{got:?}");
         for point in [contact(50.0, 10.0, -1.0, 0.5), contact(-20.0, 30.0, 1.5, 1.0), contact(9.0, 9.0, 0.0, 0.0)] {
@@ -51,10 +52,10 @@ mod tests {
             let times_s = (got.length() / 2.5, if speed_m_s > 0.0 { got.distance(point.at) / speed_m_s } else { -1.0 });
             assert!(times_s.1 < 0.0 || (times_s.0 - times_s.1).abs() < 1e-9, "{point:?}: {times_s:?}");
         }
-        // One that flees faster is chased where it is.
+        // A faster contact moving away: chased at its present position.
         let got = meeting_point(Ned::default(), 1.0, contact(10.0, 0.0, 2.0, 0.0));
         assert_eq!(got, Ned { north: 10.0, east: 0.0 });
-        // One of the same speed that comes on is met half way.
+        // An approaching contact of the same speed: met half way.
         let got = meeting_point(Ned::default(), 2.0, contact(10.0, 0.0, -2.0, 0.0));
         assert!(got.distance(Ned { north: 5.0, east: 0.0 }) < 1e-9, "{got:?}");
     }

@@ -1,4 +1,4 @@
-//! Loiter: drives round and round a convex polygon.
+//! Loiter: circles a convex polygon.
 
 use super::arrival::Arrival;
 use super::logic::BehaviourLogic;
@@ -14,7 +14,7 @@ pub(super) struct LoiterBehaviour {
     task: Loiter,
     /// The corners, clockwise.
     corners: Vec<Ned>,
-    /// The corner that is steered for; none until the first is chosen.
+    /// The corner to steer for; none until the first is chosen.
     target: Option<usize>,
     clockwise: bool,
     arrival: Arrival,
@@ -25,14 +25,15 @@ impl LoiterBehaviour {
         LoiterBehaviour { task, corners: Vec::new(), target: None, clockwise: true, arrival: Arrival::new() }
     }
 
-    /// The corner to steer for first, and which way round from there: the corners ahead in the chosen direction.
+    /// Chooses the first corner and the direction: the corners ahead in the chosen direction.
     fn choose(&mut self, situation: &Situation) {
         let centre = centre_of(&self.corners);
         let out = situation.at - centre;
         self.clockwise = match self.task.turn {
             Turn::Clockwise => true,
             Turn::Counterclockwise => false,
-            // North-east-down: the cross product is positive where the course goes clockwise round the centre.
+            // North-east-down: the cross product is positive for a clockwise course around the
+            // centre.
             Turn::Best => {
                 let (east, north) = math::sin_cos(situation.own.nav.psi_rad);
                 out.north * east - out.east * north >= 0.0
@@ -41,8 +42,8 @@ impl LoiterBehaviour {
         let count = self.corners.len();
         let distance = |i: usize| situation.at.distance_squared(self.corners[i]);
         let nearest = (1..count).fold(0, |best, i| if distance(i) < distance(best) { i } else { best });
-        // The corner after the nearest: the nearest itself may be behind the boat, which would
-        // turn round for it.
+        // The corner after the nearest: the nearest one may be behind the boat, which would turn
+        // back for it.
         self.target = Some(self.after(nearest));
         self.arrival = self.arrival.next();
     }
@@ -61,14 +62,14 @@ impl BehaviourLogic for LoiterBehaviour {
 
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
         if self.corners.len() < 3 {
-            // What it goes round was not known when it began.
+            // The place that it circles was unknown when it began.
             corners_of(&self.task.shape, situation, &mut self.corners);
         }
         if self.corners.len() < 3 {
             return;
         }
-        // A boat that was driven off, by an evasion or a tag, goes to the nearest part of the
-        // way again, not to the corner that it had in mind.
+        // A boat that an evasion or a tag drove off rejoins the nearest part of the polygon, not
+        // its previous target corner.
         let far = distance_to_outline(&self.corners, situation.at) > self.task.acquire_m.value(situation);
         if self.target.is_none() || far {
             self.choose(situation);
@@ -76,7 +77,7 @@ impl BehaviourLogic for LoiterBehaviour {
         let Some(mut target) = self.target else { return };
         let (capture_m, slip_m) =
             (self.task.capture_radius_m.value(situation), self.task.slip_radius_m.value(situation));
-        // On a short way round several corners may be behind the boat at once, but never all of them.
+        // On a small polygon several corners may be behind the boat at once, but never all of them.
         for _ in 1..self.corners.len() {
             if !self.arrival.reaches(self.corners[target] - situation.at, capture_m, slip_m) {
                 break;
@@ -89,7 +90,7 @@ impl BehaviourLogic for LoiterBehaviour {
     }
 }
 
-/// The corners of a shape, clockwise; none if a place of it is not known.
+/// The corners of a shape, clockwise; none if one of its places is unknown.
 pub(crate) fn corners_of(shape: &Shape, situation: &Situation, corners: &mut Vec<Ned>) {
     corners.clear();
     match shape {
@@ -109,13 +110,13 @@ pub(crate) fn corners_of(shape: &Shape, situation: &Situation, corners: &mut Vec
             }));
         }
     }
-    // Files may list corners either way round; `turn` says how to go round them.
+    // Files may list corners in either direction; `turn` sets the direction of travel.
     if turns_clockwise(corners) < 0.0 {
         corners.reverse();
     }
 }
 
-/// Twice the area that the corners go round clockwise, m²; negative if they go the other way.
+/// Twice the signed area of the polygon, m²; positive if its corners are in clockwise order.
 fn turns_clockwise(corners: &[Ned]) -> f64 {
     sides(corners).map(|(a, b)| a.north * b.east - a.east * b.north).sum()
 }

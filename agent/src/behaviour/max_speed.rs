@@ -1,4 +1,4 @@
-//! Maximum speed: slows down near other boats, or always.
+//! Maximum speed: limits the speed near other boats, or always.
 
 use super::logic::BehaviourLogic;
 use super::nearest::is_meant;
@@ -18,7 +18,7 @@ impl BehaviourLogic for MaxSpeed {
     }
 }
 
-/// Whether a boat is near enough ahead.
+/// Whether a boat ahead is near enough.
 fn is_near(task: &MaxSpeed, situation: &Situation, other: &OtherBoat) -> bool {
     let off_bow_rad = wrap_pi(situation.at.bearing_rad(other.at) - situation.own.nav.psi_rad).abs();
     is_meant(task.contacts, situation, other)

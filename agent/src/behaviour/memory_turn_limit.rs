@@ -1,4 +1,4 @@
-//! Memory turn limit: discourages turns away from the mean heading of the last while.
+//! Memory turn limit: discourages turns away from the mean recent heading.
 
 use super::logic::BehaviourLogic;
 use super::output::BehaviourOutput;
@@ -9,9 +9,9 @@ use scenario::strategy::MemoryTurnLimit;
 use std::collections::VecDeque;
 use std::f64::consts::PI;
 
-/// The most headings that are remembered.
+/// Maximum number of remembered headings.
 const MOST: usize = 256;
-/// From the range that costs nothing down to nothing, as a share of what is left of half a turn.
+/// Width of the fall from the free range to zero, as a share of the rest of half a turn.
 const BASE: f64 = 1.0;
 
 pub(super) struct MemoryTurnLimitBehaviour {
@@ -24,12 +24,12 @@ impl MemoryTurnLimitBehaviour {
         MemoryTurnLimitBehaviour { task, headings: VecDeque::with_capacity(MOST) }
     }
 
-    /// The mean of the headings remembered, rad: that of their directions.
+    /// The mean of the remembered headings, rad, as a mean of directions.
     fn mean_rad(&self) -> f64 {
         let (mut sum_sin, mut sum_cos) = (0.0, 0.0);
         for (_, heading_rad) in &self.headings {
             let (sin, cos) = math::sin_cos(*heading_rad);
-            // Of directions, not of angles: the mean of 359 and 1 degrees is north.
+            // A mean of directions, not of angles: the mean of 359 and 1 degrees is north.
             (sum_sin, sum_cos) = (sum_sin + sin, sum_cos + cos);
         }
         math::atan2(sum_sin, sum_cos)
@@ -46,7 +46,7 @@ impl BehaviourLogic for MemoryTurnLimitBehaviour {
         while self.headings.front().is_some_and(|(at, _)| *at + memory < situation.now) {
             self.headings.pop_front();
         }
-        // Evenly spread over a memory that is longer than fits decision by decision.
+        // Evenly spaced when the memory is too long to store every decision.
         let spacing = SimTime::from_s(memory.as_s() / (MOST - 1) as f64);
         if self.headings.back().is_none_or(|(at, _)| *at + spacing <= situation.now) && self.headings.len() < MOST {
             self.headings.push_back((situation.now, situation.own.nav.psi_rad));

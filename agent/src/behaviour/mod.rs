@@ -1,4 +1,5 @@
-//! Behaviours: each produces objective functions of course and speed, and the helm weighs them against each other.
+//! Behaviours: each produces objective functions of course and speed, which the helm weighs against
+//! each other.
 
 mod arrival;
 mod attractor;
@@ -32,7 +33,7 @@ pub(crate) use output::{BehaviourOutput, Functions};
 
 use scenario::strategy::Task;
 
-/// The logic of a behaviour with this task.
+/// Creates the logic of a behaviour with this task.
 pub(crate) fn logic_of(task: &Task) -> Box<dyn BehaviourLogic> {
     match task.clone() {
         Task::Waypoint(task) => Box::new(waypoint::WaypointBehaviour::new(task)),

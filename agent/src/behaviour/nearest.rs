@@ -1,14 +1,14 @@
-//! Which of many boats or obstacles a behaviour responds to, and how much: the nearest, the nearer the more.
+//! Selects the nearest boats or obstacles that a behaviour responds to; nearer ones weigh more.
 
 use crate::situation::{OtherBoat, Situation};
 use scenario::strategy::{Boat, Contacts, NEAREST_MAX};
 
-/// How far ahead a boat looks whether it comes to the side on which it can be tagged, s.
+/// Look-ahead for whether a boat enters the side on which it can be tagged, s.
 const TAG_FORESIGHT_S: f64 = 5.0;
 
-/// The nearest of a few, without a list on the heap: no behaviour responds to more.
+/// The nearest few, without a heap allocation: no behaviour responds to more.
 pub(super) struct Nearest {
-    /// Distance, m, and index; the nearest first, of equally near ones the first.
+    /// Distance, m, and index; nearest first, ties by insertion order.
     entries: [(f64, usize); NEAREST_MAX],
     count: usize,
 }
@@ -18,8 +18,8 @@ impl Nearest {
         let mut nearest = Nearest { entries: [(f64::INFINITY, 0); NEAREST_MAX], count: 0 };
         for entry in those {
             let place = nearest.entries[..nearest.count].partition_point(|known| known.0 <= entry.0);
-            // At most sixteen, so that the cost of a decision is bounded whatever the fleet;
-            // the nearest, so that nothing is dropped for its place in a list.
+            // At most sixteen, so that the cost of a decision is bounded for any fleet; the
+            // nearest, so that list order drops none.
             if place < NEAREST_MAX {
                 nearest.count = (nearest.count + 1).min(NEAREST_MAX);
                 nearest.entries[place..nearest.count].rotate_right(1);
@@ -34,7 +34,7 @@ impl Nearest {
     }
 }
 
-/// How much of a weight is left at a distance: all of it up to `inner_m`, nothing from `outer_m` on.
+/// The share of a weight at a distance: 1 up to `inner_m`, 0 from `outer_m` on.
 pub(super) fn nearness(distance_m: f64, inner_m: f64, outer_m: f64) -> f64 {
     if distance_m <= inner_m {
         1.0
@@ -45,22 +45,23 @@ pub(super) fn nearness(distance_m: f64, inner_m: f64, outer_m: f64) -> f64 {
     }
 }
 
-/// Whether a boat is one of those meant.
+/// Whether `contacts` includes this boat.
 pub(super) fn is_meant(contacts: Contacts, situation: &Situation, other: &OtherBoat) -> bool {
     match contacts {
         Contacts::All => true,
         Contacts::Enemies => other.is_enemy,
         Contacts::Mates => !other.is_enemy,
-        // Boats that keep clear of enemies by more than the distance of a tag never tag
-        // anybody, and all strategies score alike: so a boat may ask to avoid only those with
-        // whom no tag is possible.
+        // Boats that keep clear of enemies by more than the tag distance never tag anybody, and all
+        // strategies score alike. A strategy may therefore avoid only boats with which no tag is
+        // possible.
         Contacts::NoTag => !other.is_enemy || other.tagged || situation.own.tagged,
         Contacts::Opponent => {
             let opponent = situation.boat(Boat::Opponent).map(|opponent| opponent.vehicle);
             opponent == Some(other.vehicle) && is_meant(Contacts::Taggers, situation, other)
         }
         Contacts::Taggers => {
-            // It tags on its own side only; where the own boat is about to be there it counts already.
+            // An enemy tags on its own side only; it already counts when the own boat is about to
+            // enter that side.
             let soon = situation.at + situation.velocity.scaled(TAG_FORESIGHT_S);
             let exposed = !situation.model.is_own_side(situation.at) || !situation.model.is_own_side(soon);
             other.is_enemy && !other.tagged && !other.intrudes && exposed && !situation.own.tagged

@@ -1,4 +1,4 @@
-//! Operation region: keeps the boat on the field, and brings it back slowly if it got out.
+//! Operation region: keeps the boat on the field, and brings it back slowly when it is outside.
 
 use super::clearance::Clearance;
 use super::logic::BehaviourLogic;
@@ -11,16 +11,18 @@ use primitives::{Ned, SimTime};
 use scenario::strategy::{BeyondHalt, OpRegion};
 use std::f64::consts::PI;
 
-/// How far inside of the edge a boat steers for that comes back, m.
+/// A returning boat steers for a point this far inside the edge, m.
 const WELL_IN_M: f64 = 5.0;
-/// A boat keeps off the edges by so many seconds of the drift's spread more: waves and gusts push it about, and hold up its
-/// turns. In a gale over a lake the spread is 0.3 to 0.5 m/s. The farthest of these metres count little, or a boat near them
-/// minds a few centimetres of them more than its task, which weighs a twentieth.
+/// A boat keeps off the edges by this many seconds of the drift's standard deviation more: waves
+/// and gusts displace it and delay its turns. In a gale over a lake that deviation is 0.3 to 0.5
+/// m/s. The farthest metres count little. Otherwise a few centimetres would outweigh the boat's
+/// task, which weighs a twentieth.
 const GUST_S: f64 = 36.0;
-/// From the recovery speed down to nothing, m/s: it comes back as slowly as said.
+/// Speed range from the recovery speed down to zero utility, m/s: the boat returns as slowly as
+/// configured.
 const RECOVERY_BASE_M_S: f64 = 0.5;
 
-/// Where the boat counts as being.
+/// Which side of the edge the boat counts as being on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Side {
     In,
@@ -30,7 +32,7 @@ enum Side {
 pub(super) struct OpRegionBehaviour {
     task: OpRegion,
     side: Side,
-    /// Since when the boat has been on the other side of the edge than it counts.
+    /// When the boat crossed to the side opposite its counted one.
     crossed: Option<SimTime>,
     table: Table,
     instructions: Instructions,
@@ -42,7 +44,7 @@ impl OpRegionBehaviour {
         OpRegionBehaviour { task, side: Side::In, crossed: None, table, instructions }
     }
 
-    /// A boat counts as out, or in again, when it has been so for a while.
+    /// A boat counts as outside, or inside again, once it has been there for a while.
     fn debounce(&mut self, situation: &Situation, inside_m: f64) {
         let (is_other, wait_s) = match self.side {
             Side::In => (inside_m < 0.0, self.task.exit_s.value(situation)),
@@ -53,8 +55,8 @@ impl OpRegionBehaviour {
             return;
         }
         let since = *self.crossed.get_or_insert(situation.now);
-        // Seconds are rounded, nanoseconds are not: without this a wait may last one decision
-        // more.
+        // Seconds are rounded, nanoseconds are not: without this tolerance a wait may last one
+        // decision longer.
         if (situation.now - since).as_s() + 1e-9 >= wait_s {
             self.side = if self.side == Side::In { Side::Out } else { Side::In };
             self.crossed = None;
@@ -76,7 +78,7 @@ impl BehaviourLogic for OpRegionBehaviour {
                 output.stop();
                 return;
             }
-            // Over the ground, so that it comes back however fast it drifts.
+            // Over the ground, so that it returns whatever the drift.
             let (heading_rad, speed_m_s) = situation.motion.steer(
                 situation.at.bearing_rad(region.nearest_inside(situation)),
                 self.task.recovery_speed_m_s.value(situation),
@@ -89,21 +91,21 @@ impl BehaviourLogic for OpRegionBehaviour {
             return;
         }
         let (lookahead_s, save_m) = (self.task.lookahead_s.value(situation), self.task.save_m.value(situation));
-        // With the spread of the drift, boats left the field a quarter to a half less often in
-        // wind and waves.
+        // With the drift's deviation, boats left the field a quarter to a half less often in wind
+        // and waves.
         let gust_m = GUST_S * situation.motion.spread_m_s();
         let save_m = (save_m + gust_m).max(0.1);
-        // Farther inside no course within sight can lead out, and the table is not worked out
-        // at all.
+        // Beyond this distance no course can lead out within the look-ahead, and the table is
+        // skipped.
         let reach_m = region.reach_m(situation, lookahead_s, save_m);
         if inside_m > reach_m {
             return;
         }
         self.table.clear(output.grid());
         let nav = &situation.own.nav;
-        // A straight line from the boat's place predicts that turning round at full speed
-        // clears the edge; a Surveyor at 2 m/s needs 7 s and 9 m for it. The arc brought
-        // departures from 6.2 a boat-hour down to 0.2 (200 games of 120 s, calm water,
+        // A straight line from the boat's position predicts that turning round at full speed clears
+        // the edge; a Surveyor at 2 m/s needs 7 s and 9 m for it. The arc reduced departures from
+        // 6.2 to 0.2 per boat-hour (200 games of 120 s, calm water,
         // `crates/arena/examples/safety.rs`).
         self.instructions.run(Clearance {
             table: &mut self.table,
@@ -122,14 +124,14 @@ impl BehaviourLogic for OpRegionBehaviour {
     }
 }
 
-/// The region about the boat.
+/// The region around the boat.
 struct Region {
-    /// By edge: outward normal, and how far inside of it the boat is, m.
+    /// By edge: outward unit normal, and the boat's distance inside the edge, m.
     edges: [(Ned, f64); 4],
-    /// What wind and current add to the boat's way, m/s.
+    /// Velocity that wind and current add to the boat's, m/s.
     drift: Ned,
     handling: Handling,
-    /// How far the region is inside of the field, m.
+    /// Distance of the region's edges inside those of the field, m.
     margin_m: f64,
 }
 
@@ -146,23 +148,23 @@ impl Region {
                 (minus(field.across), y - margin_m),
                 (field.across, depth_m - margin_m - y),
             ],
-            // The drift as it is now where it is not estimated: what carries a boat over the
-            // edge is not a matter of taste.
+            // The present drift where drift is not estimated: a drift over the edge must always
+            // count.
             drift: situation.motion.drift_now(&situation.own.nav),
             handling: situation.motion.handling(),
             margin_m,
         }
     }
 
-    /// How far inside the boat is, m; negative outside.
+    /// The boat's distance inside the region, m; negative outside.
     fn inside_m(&self) -> f64 {
         self.edges.iter().map(|(_, inside_m)| *inside_m).fold(f64::INFINITY, f64::min)
     }
 
-    /// Farther inside than this no candidate comes near an edge, m.
+    /// At this distance inside no candidate comes near an edge, m.
     fn reach_m(&self, situation: &Situation, lookahead_s: f64, save_m: f64) -> f64 {
         let fastest_m_s = situation.model.speed_max_m_s.max(situation.own.nav.surge_m_s);
-        // The widest turn there is goes out by twice its radius.
+        // The widest turn goes out by twice its radius.
         let turn_s = 2.0 / self.handling.mean_turn_rad_s(PI);
         save_m + (lookahead_s.max(turn_s) + self.handling.reaction_s) * (fastest_m_s + self.drift.length())
     }
@@ -171,8 +173,8 @@ impl Region {
     fn nearest_inside(&self, situation: &Situation) -> Ned {
         let field = &situation.model.field;
         let (x, y) = field.along_across(situation.at);
-        // At most half of the field: in a field narrower than twice the margin the target is
-        // its middle, and `clamp` panics where its limits cross.
+        // At most half of the field: in a field narrower than twice the margin the target is its
+        // middle, and `clamp` panics if its limits cross.
         let within = |v: f64, extent_m: f64| {
             let in_m = (self.margin_m + WELL_IN_M).min(0.5 * extent_m);
             v.clamp(in_m, extent_m - in_m)

@@ -1,7 +1,7 @@
-//! Outline: how near the boat comes to a polygon on each course, at each speed.
+//! Outline: the boat's least distance to a polygon on each course, at each speed.
 //!
-//! A boat that is given a decision goes on as it goes while it turns, and then straight. A faster run is a longer one, so its
-//! pass is the smaller of its own and the slower runs'.
+//! After a decision the boat keeps its motion while it turns, then goes straight. A faster run is a
+//! longer one, so its pass distance is the minimum of its own and the slower runs'.
 
 use super::steering::CPA_MIN_UTILITY;
 use crate::ivp::{Courses, Grid, LANES, Lag, Lanes, Table, larger, smaller};
@@ -9,33 +9,33 @@ use primitives::Ned;
 use primitives::instructions::Kernel;
 use rules::field::{is_within, sides};
 
-/// What rounding may take from a bound, m, with room to spare.
+/// Largest rounding error of a bound, m, with a margin.
 const ROUNDING_M: f64 = 1e-6;
 
-/// A polygon, with what bounds its distance from below.
+/// A polygon with lower bounds of its distance.
 pub(super) struct Outline {
     corners: Vec<Ned>,
     sides: Vec<Side>,
-    /// Half planes that hold all of it.
+    /// Half planes that contain the polygon.
     half_planes: Vec<HalfPlane>,
-    /// Those that the boat is not in.
+    /// The half planes that exclude the boat.
     facing: Vec<HalfPlane>,
-    /// Of the run that is being looked at: where it passes each corner.
+    /// For the current run: where it passes each corner.
     feet: Vec<Foot>,
-    /// Utilities of courses side by side by speed, from the first one that tells on.
+    /// Utilities of a group of courses by speed, from the first speed that matters.
     utilities: Vec<Lanes<f32>>,
 }
 
-/// A side, from a corner to the next.
+/// A side, from one corner to the next.
 #[derive(Clone, Copy)]
 struct Side {
     corner: Ned,
     along: Ned,
-    /// One by the square of its length.
+    /// Reciprocal of the squared length, 1/m².
     per_m2: f64,
 }
 
-/// What is no farther out than so much along an outward unit normal, m.
+/// The points at most this far along an outward unit normal, m.
 #[derive(Clone, Copy)]
 struct HalfPlane {
     normal: Ned,
@@ -43,14 +43,14 @@ struct HalfPlane {
 }
 
 impl HalfPlane {
-    /// How far out of it a place is, m.
+    /// The distance of a place outside the half plane, m.
     #[inline(always)]
     fn out_m(&self, north: f64, east: f64) -> f64 {
         self.normal.north * north + self.normal.east * east - self.reach_m
     }
 }
 
-/// Places or velocities, side by side.
+/// Places or velocities of a group of courses.
 #[derive(Clone, Copy)]
 struct Places {
     north: Lanes<f64>,
@@ -63,7 +63,7 @@ impl Places {
         Places { north: Lanes::splat(place.north), east: Lanes::splat(place.east) }
     }
 
-    /// Places after so long with a velocity.
+    /// The places after this time at a velocity.
     #[inline(always)]
     fn after(&self, along: &Places, after_s: &Lanes<f64>) -> Places {
         let mut places = *self;
@@ -75,15 +75,15 @@ impl Places {
     }
 }
 
-/// Where straight runs side by side are nearest to a corner.
+/// The points of a group of straight runs nearest to a corner.
 struct Foot {
-    /// When, s: it may be before they begin.
+    /// When, s; negative if before the run begins.
     after_s: Lanes<f64>,
-    /// How near, m²; infinite before they begin.
+    /// Squared distance, m²; infinite if before the run begins.
     squared_m2: Lanes<f64>,
 }
 
-/// Straight runs side by side.
+/// A group of straight runs.
 struct Runs {
     from: Places,
     along: Places,
@@ -102,12 +102,11 @@ impl Outline {
         let mut half_planes: Vec<HalfPlane> = Vec::new();
         for side in &sides {
             let unit = side.along.scaled(side.per_m2.sqrt());
-            // Half planes on both sides of each side's line: which one the polygon lies behind
-            // is not asked, since a half plane that reaches over all corners is a bound in any
-            // case, also of a concave polygon.
+            // Half planes on both sides of each side's line: a half plane that contains all corners
+            // is a valid bound on either side, also for a concave polygon.
             for out in [1.0, -1.0] {
                 let normal = Ned { north: out * unit.east, east: -out * unit.north };
-                // Parallel sides have the same half plane, and each is tried for all courses.
+                // Parallel sides share a half plane, and each half plane is tested for all courses.
                 if half_planes.iter().all(|known| known.normal.dot(normal) < 1.0 - 1e-9) {
                     let reach_m = corners.iter().map(|corner| corner.dot(normal)).fold(f64::NEG_INFINITY, f64::max);
                     half_planes.push(HalfPlane { normal, reach_m });
@@ -134,7 +133,7 @@ impl Outline {
         least
     }
 
-    /// Looks at runs: where they pass the corners, and when they cross a side.
+    /// Computes where runs pass the corners and when they cross a side.
     #[inline(always)]
     fn runs(&mut self, from: Places, along: Places) -> Runs {
         let (mut per_m2_s2, mut crossing_s) = (Lanes::splat(0.0), Lanes::splat(f64::INFINITY));
@@ -152,9 +151,9 @@ impl Outline {
                 let (off_north, off_east) = (north - after_s * run_north, east - after_s * run_east);
                 let squared_m2 = off_north * off_north + off_east * off_east;
                 foot.after_s.0[i] = after_s;
-                // A corner that is behind is passed by no run, however long.
+                // No run passes a corner behind it, however long.
                 foot.squared_m2.0[i] = if after_s >= 0.0 { squared_m2 } else { f64::INFINITY };
-                // Where the lines cross, by Cramer's rule; parallel ones have their corners.
+                // Line intersection by Cramer's rule; for parallel lines the corners suffice.
                 let per = 1.0 / (run_north * side.along.east - run_east * side.along.north);
                 let when_s = (north * side.along.east - east * side.along.north) * per;
                 let share = (north * run_east - east * run_north) * per;
@@ -166,8 +165,8 @@ impl Outline {
         Runs { from, along, crossing_s }
     }
 
-    /// The least squared distance of runs so long, or what it was before if that is less, m². What lies between their corners
-    /// and ends is farther off.
+    /// The least squared distance of runs of this duration, or `before_m2` if that is less, m².
+    /// Points between their corners and ends are farther away.
     #[inline(always)]
     fn passed_m2(&self, runs: &Runs, after_s: &Lanes<f64>, before_m2: &Lanes<f64>) -> Lanes<f64> {
         let mut least = self.squared_m2(&runs.from.after(&runs.along, after_s));
@@ -185,7 +184,7 @@ impl Outline {
     }
 }
 
-/// Lowers the utilities of a table, which is clear, to what passes of a polygon are worth.
+/// Lowers the utilities of an empty table to the worth of passes of a polygon.
 pub(super) struct Passes<'a> {
     pub(super) table: &'a mut Table,
     pub(super) grid: &'a Grid,
@@ -193,12 +192,12 @@ pub(super) struct Passes<'a> {
     pub(super) at: Ned,
     /// Over the ground, m/s.
     pub(super) velocity: Ned,
-    /// What wind and current add to the boat's way, m/s.
+    /// Velocity that wind and current add to the boat's, m/s.
     pub(super) drift: Ned,
     pub(super) lag: Lag,
-    /// How long the straight run lasts, s.
+    /// Duration of the straight run, s.
     pub(super) horizon_s: f64,
-    /// Passes that are worth half, and everything, m.
+    /// Pass distances of half and of full utility, m.
     pub(super) min_m: f64,
     pub(super) max_m: f64,
 }
@@ -208,8 +207,8 @@ impl Kernel for Passes<'_> {
 
     #[inline(always)]
     fn run(mut self) {
-        // Inside there is no distance to keep: all courses are as bad, and the others decide
-        // how to get out.
+        // Inside there is no distance to keep: all courses are equally bad, and other behaviours
+        // decide how to get out.
         if is_within(&self.outline.corners, self.at) {
             for k in 0..self.grid.courses() {
                 self.table.lowered_mut(k).fill(Lanes::splat(0.0));
@@ -227,7 +226,7 @@ impl Kernel for Passes<'_> {
 }
 
 impl Passes<'_> {
-    /// Lowers the utilities of courses side by side.
+    /// Lowers the utilities of a group of courses.
     #[inline(always)]
     fn pass(&mut self, first: usize, courses: &Courses) {
         let along = Places { north: courses.north, east: courses.east };
@@ -238,9 +237,9 @@ impl Passes<'_> {
         let fastest_m = self.grid.speed_max_m_s() * self.horizon_s;
         let end = begin.after(&along, &Lanes::splat(fastest_m));
         let mut before_m2 = Lanes::splat(f64::INFINITY);
-        // Near an obstacle two thirds of a helm's time went into distances between a polygon
-        // and each of 36 legs on each of 360 courses. Half planes rule out most courses at
-        // once: games with obstacles take 0.34 to 0.53 of the time, with the same digests.
+        // Near an obstacle a helm spent two thirds of its time on distances between a polygon and
+        // each of 36 legs on each of 360 courses. Half planes rule out most courses at once: games
+        // with obstacles take 0.34 to 0.53 of the time, with the same digests.
         match self.clear_of(&start, &begin, &end) {
             Clear::AllTheWay => return,
             Clear::WhileItTurns => {}
@@ -259,8 +258,8 @@ impl Passes<'_> {
             if last < 100.0 {
                 let row = self.table.lowered_mut(first + i);
                 row.fill(Lanes::splat(last));
-                // By rising speed: first those that come no nearer than the turn did, then
-                // those that were worked out, then the last for all faster ones.
+                // By rising speed: first those that come no nearer than the turn, then the computed
+                // ones, then the last value for all faster ones.
                 let known = std::iter::repeat_n(before.0[i], least);
                 let known = known.chain(self.outline.utilities.iter().map(|by_course| by_course.0[i]));
                 for (j, utility) in known.enumerate() {
@@ -270,7 +269,7 @@ impl Passes<'_> {
         }
     }
 
-    /// How long the boat goes on as it goes, s.
+    /// How long the boat keeps its motion, s.
     #[inline(always)]
     fn turns_s(&self, courses: &Courses) -> Lanes<f64> {
         let mut duration_s = Lanes::splat(0.0);
@@ -280,8 +279,8 @@ impl Passes<'_> {
         duration_s
     }
 
-    /// How far one of the half planes alone tells that ways pass farther off than counts: from here to where the straight run
-    /// starts, begins and ends.
+    /// How far a single half plane proves ways to be clear of the polygon: from here to the
+    /// straight run's release, start and end points.
     #[inline(always)]
     fn clear_of(&self, start: &Places, begin: &Places, end: &Places) -> Clear {
         let most_m = self.max_m + ROUNDING_M;
@@ -304,8 +303,8 @@ impl Passes<'_> {
         clear
     }
 
-    /// Fills in what straight runs are worth by speed, from the first speed on that makes a difference to the last one; says
-    /// which is the first.
+    /// Computes the worth of straight runs by speed, from the first speed that makes a difference
+    /// to the last. Returns the first.
     #[inline(always)]
     fn run_straight(&mut self, begin: Places, along: Places, before_m2: &Lanes<f64>) -> usize {
         let (speeds_m_s, max_m2) = (self.grid.speeds_m_s(), self.max_m * self.max_m);
@@ -325,7 +324,7 @@ impl Passes<'_> {
             let least_m2 = self.outline.passed_m2(&runs, &Lanes::splat(run_m), before_m2);
             self.outline.utilities.push(self.worth(&least_m2));
             // All corners are behind.
-            // A longer run adds nothing: from here on all speeds have the utility of the last.
+            // A longer run adds nothing: from here on all speeds have the last utility.
             if run_m >= last_m {
                 break;
             }
@@ -333,7 +332,7 @@ impl Passes<'_> {
         first
     }
 
-    /// How far all straight runs go, m, before one may come as near as this.
+    /// The distance that all straight runs can go, m, before one may come within `near_m`.
     #[inline(always)]
     fn clear_m(&self, begin: &Places, along: &Places, near_m: f64) -> f64 {
         let mut most_m = f64::NEG_INFINITY;
@@ -350,7 +349,7 @@ impl Passes<'_> {
         most_m - ROUNDING_M
     }
 
-    /// Utility of passes, as for contacts: from nothing at no distance to 100 at the largest.
+    /// Utility of passes, as for contacts: from 0 at no distance to 100 at the largest.
     #[inline(always)]
     fn worth(&self, squared_m2: &Lanes<f64>) -> Lanes<f32> {
         let low_per_m = CPA_MIN_UTILITY / larger(self.min_m, f64::MIN_POSITIVE);
@@ -389,7 +388,7 @@ mod tests {
         Ned { north: stream.between(-most, most), east: stream.between(-most, most) }
     }
 
-    /// A boat near a polygon of any shape, sides that cross each other and no drift at all included.
+    /// A boat near a polygon of any shape, including self-intersecting ones and zero drift.
     struct Scene {
         corners: Vec<Ned>,
         at: Ned,
@@ -436,7 +435,7 @@ mod tests {
             table
         }
 
-        /// What a course is worth by speed, leg by leg.
+        /// The utilities of a course by speed, leg by leg.
         fn worth(&self, grid: &Grid, k: usize) -> Vec<f64> {
             let course = Ned { north: grid.direction(k).0.into(), east: grid.direction(k).1.into() };
             let start = self.at + self.velocity.scaled(self.lag.duration_s(course));

@@ -1,4 +1,4 @@
-//! What behaviours produce at one decision: weighted objective functions, and what has become of their tasks.
+//! The output of behaviours at one decision: weighted objective functions and task status.
 
 use crate::ivp::{Grid, Objective, Problem};
 use primitives::VehicleId;
@@ -6,12 +6,12 @@ use primitives::VehicleId;
 /// A function that a behaviour added.
 #[derive(Clone, Debug)]
 pub(crate) struct WeightedFunction {
-    /// The behaviour, by index.
+    /// Index of the behaviour.
     pub(crate) behaviour: usize,
-    /// The contact it is about.
+    /// The contact that it concerns.
     pub(crate) contact: Option<VehicleId>,
     pub(crate) weight: f64,
-    /// All its utilities, a row of speeds for each course; kept only while somebody looks.
+    /// All its utilities, a row of speeds for each course; kept only on request.
     pub(crate) utilities: Vec<f32>,
 }
 
@@ -19,7 +19,7 @@ pub(crate) struct WeightedFunction {
 pub(crate) struct Functions {
     pub(crate) problem: Problem,
     pub(crate) list: Vec<WeightedFunction>,
-    /// Whether utilities are kept, for those who look.
+    /// Whether to keep utilities for helm reports.
     pub(crate) shown: bool,
 }
 
@@ -34,18 +34,18 @@ impl Functions {
     }
 }
 
-/// What one behaviour produces.
+/// The output of one behaviour.
 pub(crate) struct BehaviourOutput<'a> {
     functions: &'a mut Functions,
     behaviour: usize,
     weight: f64,
     /// Whether it influences the helm.
     pub(crate) active: bool,
-    /// Reached a point.
+    /// Whether it reached a point.
     pub(crate) reached: bool,
-    /// Is done.
+    /// Whether it has completed.
     pub(crate) complete: bool,
-    /// Wants the boat stopped, whatever others want.
+    /// Whether it requires the boat to stop, whatever other behaviours want.
     pub(crate) stop: bool,
 }
 
@@ -54,12 +54,12 @@ impl<'a> BehaviourOutput<'a> {
         BehaviourOutput { functions, behaviour, weight, active: false, reached: false, complete: false, stop: false }
     }
 
-    /// Adds a function with all of the behaviour's weight.
+    /// Adds a function at the behaviour's full weight.
     pub(crate) fn add(&mut self, objective: &Objective<'_>) {
         self.add_share(1.0, None, objective);
     }
 
-    /// Adds a function with a share (0 to 1) of the behaviour's weight: never with more than that.
+    /// Adds a function at a share (0 to 1) of the behaviour's weight; larger shares are clamped.
     pub(crate) fn add_share(&mut self, share: f64, contact: Option<VehicleId>, objective: &Objective<'_>) {
         let weight = self.weight * share.clamp(0.0, 1.0);
         if weight <= 0.0 {
@@ -68,8 +68,8 @@ impl<'a> BehaviourOutput<'a> {
         self.active = true;
         self.functions.problem.add(weight, objective);
         let mut utilities = Vec::new();
-        // A decision with its functions is a hundred thousand numbers, ten times a second and
-        // boat, and most of the time nobody looks.
+        // A decision with its functions is 100,000 numbers, ten times per second per boat, and most
+        // of the time nobody requests them.
         if self.functions.shown {
             let grid = self.grid();
             let points = (0..grid.courses()).flat_map(|k| (0..grid.speeds()).map(move |j| (k, j)));
@@ -78,7 +78,7 @@ impl<'a> BehaviourOutput<'a> {
         self.functions.list.push(WeightedFunction { behaviour: self.behaviour, contact, weight, utilities });
     }
 
-    /// Wants the boat stopped.
+    /// Requires the boat to stop.
     pub(crate) fn stop(&mut self) {
         self.active = true;
         self.stop = true;

@@ -1,4 +1,5 @@
-//! Policy: lets a model, or somebody outside of the helm, propose course and speed, weighed with everything else.
+//! Policy: lets a model or an external program propose course and speed, weighed with everything
+//! else.
 
 use super::logic::BehaviourLogic;
 use super::output::BehaviourOutput;
@@ -8,13 +9,13 @@ use crate::situation::Situation;
 use scenario::action::SetPoint;
 use scenario::strategy::Policy;
 
-/// From the peak of the proposed speed down to nothing, m/s.
+/// Width of the fall from the proposed speed to zero utility, m/s.
 const SPEED_BASE_M_S: f64 = 1.0;
 
 /// A policy behaviour.
 pub(super) struct PolicyBehaviour {
     task: Policy,
-    /// What proposes; none: somebody outside.
+    /// The model that proposes; none for an external source.
     policy: Option<BoardPolicy>,
 }
 
@@ -24,7 +25,7 @@ impl PolicyBehaviour {
         PolicyBehaviour { task, policy }
     }
 
-    /// What is proposed now.
+    /// The current proposal.
     fn proposed(&self, situation: &Situation) -> Option<SetPoint> {
         match &self.policy {
             Some(policy) => match policy.chosen() {
@@ -33,8 +34,8 @@ impl PolicyBehaviour {
             },
             None => {
                 let proposal = situation.proposed?;
-                // A proposal holds for `ttl_s` and no longer: a program that dies leaves a boat
-                // that its other behaviours keep safe.
+                // A proposal expires after `ttl_s`: if the program dies, the other behaviours keep
+                // the boat safe.
                 let is_fresh = (situation.now - proposal.at).as_s() <= self.task.ttl_s.value(situation);
                 is_fresh.then_some(SetPoint { course_rad: proposal.course_rad, speed_m_s: proposal.speed_m_s })
             }
@@ -62,8 +63,8 @@ impl BehaviourLogic for PolicyBehaviour {
             return;
         }
         let Some(SetPoint { course_rad, speed_m_s }) = self.proposed(situation) else { return };
-        // A policy proposes and the helm decides: what comes from outside is only weighed, and
-        // within what the boat can do.
+        // A policy proposes and the helm decides: external proposals are only weighed, and limited
+        // to what the boat can do.
         let speed_m_s = speed_m_s.clamp(0.0, situation.model.speed_max_m_s);
         let (heading_rad, speed_m_s) = situation.motion.steer(course_rad, speed_m_s);
         output.add(&Objective::Coupled {

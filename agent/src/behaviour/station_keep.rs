@@ -1,4 +1,4 @@
-//! Station keeping: holds a place, the more eagerly the farther it has drifted off.
+//! Station keeping: holds a place, with more weight the farther the boat has drifted off.
 
 use super::logic::BehaviourLogic;
 use super::output::BehaviourOutput;
@@ -8,12 +8,12 @@ use primitives::Ned;
 use scenario::strategy::StationKeep;
 use std::f64::consts::PI;
 
-/// From the peak of the speed down to nothing, m/s.
+/// Width of the fall from the peak of the speed to zero utility, m/s.
 const SPEED_BASE_M_S: f64 = 0.8;
 
 pub(super) struct StationKeepBehaviour {
     task: StationKeep,
-    /// Where the boat was when it began.
+    /// The boat's position when the behaviour began.
     anchor: Ned,
 }
 
@@ -22,7 +22,7 @@ impl StationKeepBehaviour {
         StationKeepBehaviour { task, anchor: Ned::default() }
     }
 
-    /// The speed so far away from the station, m/s.
+    /// The speed at this distance from the station, m/s.
     fn speed_m_s(&self, situation: &Situation, distance_m: f64) -> f64 {
         let (inner_m, outer_m) = (self.task.inner_radius_m.value(situation), self.task.outer_radius_m.value(situation));
         if distance_m <= inner_m {
@@ -47,8 +47,8 @@ impl BehaviourLogic for StationKeepBehaviour {
         let speed_m_s = self.speed_m_s(situation, distance_m).min(situation.model.speed_max_m_s);
         // At the station itself every heading is as good as the present one.
         let (heading_rad, speed_m_s) = if speed_m_s > 0.0 {
-            // Through the water against the drift: seen from the station the boat may have to
-            // go full ahead to stay.
+            // Through the water against the drift: the boat may need full speed ahead to hold the
+            // station.
             situation.motion.steer(situation.at.bearing_rad(point.at), speed_m_s)
         } else {
             (situation.own.nav.psi_rad, 0.0)

@@ -1,4 +1,4 @@
-//! Trail: keeps a place relative to a boat that moves.
+//! Trail: keeps a position relative to a moving boat.
 
 use super::logic::BehaviourLogic;
 use super::output::BehaviourOutput;
@@ -7,7 +7,7 @@ use crate::situation::Situation;
 use primitives::{Ned, math};
 use scenario::strategy::Trail;
 
-/// Extra speed for each metre off the place, 1/s.
+/// Extra speed per metre off position, 1/s.
 const CATCH_UP_PER_S: f64 = 0.2;
 
 impl BehaviourLogic for Trail {
@@ -19,7 +19,7 @@ impl BehaviourLogic for Trail {
         let contact_m_s = contact.velocity().length();
         let distance_m = situation.at.distance(place);
         let fastest_m_s = self.speed_m_s.value(situation);
-        // Within the radius it goes as the contact goes: to steer for the place itself would
+        // Within the radius it matches the contact's motion: steering for the exact position would
         // turn the boat at each small error.
         let (course_rad, speed_m_s) = if distance_m <= self.radius_m.value(situation) {
             (contact.psi_rad, contact_m_s)

@@ -10,11 +10,11 @@ use scenario::strategy::Waypoint;
 
 pub(super) struct WaypointBehaviour {
     task: Waypoint,
-    /// How many points of this round were reached.
+    /// Number of points reached in this round.
     reached: usize,
     rounds: u32,
     arrival: Arrival,
-    /// Where the leg to the next point begins.
+    /// Start of the leg to the next point.
     from: Ned,
 }
 
@@ -31,8 +31,8 @@ impl WaypointBehaviour {
         if lead_m <= 0.0 || length_m < 1e-6 {
             return to;
         }
-        // A point on the leg ahead of the boat, as MOOS-IvP's `lead`: a boat that was pushed
-        // off comes back to the line, not only to its end.
+        // A point on the leg ahead of the boat, like MOOS-IvP's `lead`: a boat that was pushed off
+        // returns to the line, not only to its end.
         let along_m = (situation.at - self.from).dot(leg) / length_m + lead_m;
         if along_m >= length_m { to } else { self.from + leg.scaled(along_m.max(0.0) / length_m) }
     }

@@ -1,8 +1,9 @@
-//! The helm of one boat: it follows a strategy's program, and decides course and speed by interval programming.
+//! The helm of one boat: follows a strategy's program and decides course and speed by interval
+//! programming.
 //!
-//! A decision is: take in the picture, apply the rules, choose the mode, run every behaviour that may run, and take the
-//! course and speed with the largest weighted sum of utilities. Values that behaviours post become known when all have
-//! run, so that their order does not matter.
+//! A decision takes in the picture, applies the rules, chooses the mode, runs every behaviour that
+//! may run, and selects the course and speed with the largest weighted sum of utilities. Values
+//! that behaviours post take effect after all have run, so that their order does not matter.
 
 mod report;
 mod run_state;
@@ -30,10 +31,10 @@ struct BehaviourInstance {
     weight: f64,
 }
 
-/// What was decided last.
+/// The last decision.
 #[derive(Clone, Copy, Debug)]
 enum Decided {
-    /// Nothing yet, or the boat holds, and why.
+    /// No decision yet, or the boat holds; with the reason.
     Hold(&'static str),
     /// A course and a speed.
     Steer(Choice),
@@ -46,7 +47,7 @@ pub struct HelmMind {
     mode: Option<usize>,
     instances: Vec<BehaviourInstance>,
     functions: Functions,
-    /// Values posted in this decision, to be known when all behaviours have run.
+    /// Values posted in this decision, which take effect after all behaviours have run.
     posted: Vec<(u16, f64)>,
     decided: Decided,
 }
@@ -71,29 +72,30 @@ impl HelmMind {
         }
     }
 
-    /// Takes in the picture on which it will decide next.
+    /// Observes the picture before deciding on it.
     pub(crate) fn preview(&mut self, picture: &Picture) {
         self.situation.preview(picture);
     }
 
-    /// What it knows.
+    /// The current situation.
     pub(crate) fn situation(&self) -> &Situation {
         &self.situation
     }
 
-    /// The mode that it chose last, by index in its program.
+    /// The mode of the last decision, by index in its program.
     pub(crate) fn mode(&self) -> Option<usize> {
         self.mode
     }
 
-    /// Chooses the option that somebody outside wants, if the program has options.
+    /// Selects the option requested from outside, if the program has options.
     pub(crate) fn choose(&mut self, option: usize) {
         if let Some(variable) = self.program.options().filter(|variable| option < self.program.texts(*variable).len()) {
             self.situation.variables[usize::from(variable)] = option as f64;
         }
     }
 
-    /// Behaviours look at the situation, and policies choose among options, to which the rules of this decision answer.
+    /// Lets behaviours observe the situation and policies choose options, before the rules of this
+    /// decision apply.
     fn observe_situation(&mut self) {
         for instance in &mut self.instances {
             instance.logic.observe(&self.situation);
@@ -103,20 +105,20 @@ impl HelmMind {
         }
     }
 
-    /// Rules give values to variables, one after the other.
+    /// Applies the rules to the variables in order.
     fn apply_rules(&mut self, picture: &Picture) {
         for rule in &self.program.rules {
             if is_due(rule, &self.situation, picture) {
-                // At once, unlike what behaviours post: rules are read from top to bottom, and
-                // a later one sees what an earlier one has set.
+                // Immediately, unlike posts by behaviours: rules apply from top to bottom, and a
+                // later rule sees the values that an earlier one set.
                 set(&mut self.situation, &rule.set, &mut self.posted);
             }
         }
     }
 
     fn choose_mode(&mut self) {
-        // Of the parts of a mode the first whose condition holds is active, and the last has
-        // none, so exactly one leaf is active. In MOOS the last that holds is, and none may
+        // The first part of a mode whose condition holds is active. The last part has no condition,
+        // so exactly one leaf is active. In MOOS the last one that holds is active, and none may
         // hold.
         let mode = self.program.leaf(&self.situation);
         let before = self.mode.replace(mode);
@@ -124,7 +126,7 @@ impl HelmMind {
             return;
         }
         self.situation.mode_since = self.situation.now;
-        // Modes that begin, outermost first; parents stand before their children.
+        // Modes that begin, outermost first; parents precede their children.
         for (i, entered) in self.program.modes.iter().enumerate() {
             if is_within(&self.program, mode, i) && !before.is_some_and(|before| is_within(&self.program, before, i)) {
                 set(&mut self.situation, &entered.enter, &mut self.posted);
@@ -132,7 +134,7 @@ impl HelmMind {
         }
     }
 
-    /// Runs all behaviours that may run; says whether one wants the boat stopped.
+    /// Runs all behaviours that may run. Returns whether one requires the boat to stop.
     fn run_behaviours(&mut self, mode: usize) -> bool {
         let (situation, posted) = (&self.situation, &mut self.posted);
         let mut stop = false;
@@ -180,8 +182,7 @@ impl HelmMind {
         if problem.is_empty() {
             return Decided::Hold("no behaviour asks for anything");
         }
-        // A decision with no opinion of a course would be the first on the grid, which is
-        // north.
+        // A decision without a preferred course would be the first on the grid, which is north.
         if !problem.decides_course() {
             return Decided::Hold("no behaviour asks for a course");
         }
@@ -192,13 +193,13 @@ impl HelmMind {
             Decided::Steer(choice) => Some(choice.decision),
             Decided::Hold(_) => None,
         };
-        // A share of all weights, at most a tenth (checked when a file is loaded): it can hold
-        // up a change of mind, not safety.
+        // A share of all weights, at most a tenth (checked when a file is loaded): it can delay a
+        // change of mind, but not outweigh safety.
         let weights: f64 = self.functions.list.iter().map(|function| function.weight).sum();
         let steadiness = last.and_then(|last| Steadiness::new(problem, last, self.program.helm.hysteresis * weights));
         let nav = &self.situation.own.nav;
         let speed_m_s = nav.surge_m_s - self.situation.motion.drift().dot(self.situation.ahead);
-        // Of equal sums the one nearest to how the boat goes now is taken, so that nothing
+        // Ties go to the course and speed nearest to the boat's present motion, so that nothing
         // depends on where the grid begins.
         let choice = problem.solve(Preference { course_rad: nav.psi_rad, speed_m_s });
         Decided::Steer(steadiness.map_or(choice, |steadiness| steadiness.without(problem.grid(), choice)))
@@ -207,8 +208,7 @@ impl HelmMind {
     fn order(&mut self) -> Order {
         match self.decided {
             Decided::Hold(_) => {
-                // What was ordered before a hold tells nothing of how the boat lies beside its
-                // heading now.
+                // An order from before a hold says nothing about the present heading offset.
                 self.situation.motion.hold();
                 Order::Hold
             }
@@ -273,7 +273,7 @@ fn is_within(program: &Program, mode: usize, whole: usize) -> bool {
     mode == whole || program.modes[mode].parent.is_some_and(|parent| is_within(program, parent, whole))
 }
 
-/// Gives values to variables: all are worked out before the first is given.
+/// Assigns values to variables; evaluates all expressions before the first assignment.
 fn set(situation: &mut Situation, values: &[(u16, Expression)], scratch: &mut Vec<(u16, f64)>) {
     scratch.clear();
     scratch.extend(values.iter().map(|(variable, value)| (*variable, value.value(situation))));
@@ -283,8 +283,8 @@ fn set(situation: &mut Situation, values: &[(u16, Expression)], scratch: &mut Ve
 }
 
 fn is_due(rule: &Rule, situation: &Situation, picture: &Picture) -> bool {
-    // By events of the picture, not by comparing facts with the last one: a picture may be
-    // lost, and its events come with the next.
+    // By events of the picture, not by comparing facts with the last one: a picture may be lost,
+    // and its events arrive with the next.
     let happened = rule.on.is_none_or(|trigger| {
         let events = picture.events.iter().filter_map(|record| record.logged());
         events
@@ -295,7 +295,7 @@ fn is_due(rule: &Rule, situation: &Situation, picture: &Picture) -> bool {
     happened && rule.when.as_ref().is_none_or(|when| when.is_true(situation))
 }
 
-/// The boats that do or suffer this, if the event is it.
+/// The boats involved in this event, if it is of the given kind.
 fn happening(event: Event, what: What) -> [Option<VehicleId>; 2] {
     match (what, event) {
         (What::Collides, Event::Collided { .. }) => [event.vehicle(), event.other()],

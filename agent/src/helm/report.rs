@@ -1,4 +1,4 @@
-//! The helm report: what is shown to those who look inside.
+//! The helm report, for people and programs that inspect a helm.
 
 use super::{Decided, HelmMind};
 use crate::policy::{BoardPolicy, Chosen};
@@ -19,7 +19,7 @@ impl HelmMind {
             contact: function.contact,
             weight: function.weight,
             utility: utility(&function.utilities),
-            // Empty unless somebody looks, so a report of a boat nobody looks into is small.
+            // Empty unless requested, which keeps most reports small.
             utilities: function.utilities.clone(),
         });
         let behaviours =

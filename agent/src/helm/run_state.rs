@@ -1,4 +1,4 @@
-//! The run state of a behaviour and how it changes: idle, running, active, complete.
+//! The run state of a behaviour and its transitions: idle, running, active, complete.
 
 use messages::helm::RunState;
 use primitives::SimTime;
@@ -8,7 +8,7 @@ use scenario::strategy::Moment;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BehaviourRun {
     pub(crate) state: RunState,
-    /// When it last began to run.
+    /// When it last started running.
     since: SimTime,
 }
 
@@ -17,7 +17,7 @@ impl BehaviourRun {
         BehaviourRun { state: RunState::Idle, since: SimTime::ZERO }
     }
 
-    /// It may run, or not. Says whether it begins to run now.
+    /// Allows or forbids running. Returns whether the behaviour starts running now.
     pub(crate) fn allow(&mut self, may_run: bool, now: SimTime, mut post: impl FnMut(Moment)) -> bool {
         match (self.state, may_run) {
             (RunState::Idle, true) => {
@@ -37,7 +37,7 @@ impl BehaviourRun {
         }
     }
 
-    /// Whether it runs.
+    /// Whether it is running.
     pub(crate) fn runs(&self) -> bool {
         matches!(self.state, RunState::Running | RunState::Active)
     }
@@ -47,7 +47,7 @@ impl BehaviourRun {
         (now - self.since).as_s()
     }
 
-    /// It has produced a function, or none.
+    /// Records whether it produced a function.
     pub(crate) fn produced(&mut self, active: bool, mut post: impl FnMut(Moment)) {
         match (self.state, active) {
             (RunState::Running, true) => {
@@ -62,7 +62,7 @@ impl BehaviourRun {
         }
     }
 
-    /// It is done; one that is perpetual begins anew at the next decision.
+    /// Completes it; a perpetual behaviour restarts at the next decision.
     pub(crate) fn complete(&mut self, perpetual: bool, mut post: impl FnMut(Moment)) {
         if self.state == RunState::Active {
             post(Moment::Inactive);
@@ -76,7 +76,7 @@ impl BehaviourRun {
 mod tests {
     use super::*;
 
-    /// What is posted while a behaviour may or may not run, is active or not, and completes.
+    /// The moments posted for steps of (may run, active, complete).
     fn posted(perpetual: bool, steps: &[(bool, bool, bool)]) -> (Vec<Moment>, RunState) {
         let (mut run, mut moments) = (BehaviourRun::new(), vec![]);
         for (i, (may_run, active, complete)) in steps.iter().enumerate() {

@@ -1,8 +1,8 @@
-//! Steadiness: of two decisions that are nearly as good, the helm takes the one near the last.
+//! Steadiness: of two decisions that are nearly as good, the helm takes the one nearer to the last.
 //!
-//! Where a scene has two ways out, noise makes now one the better and now the other, and a boat that obeys at once follows
-//! neither. What is near the last decision is therefore worth a little more. The best near it is free to move as things go on,
-//! so that nothing is held up but a change of mind.
+//! Where a scene has two ways out, noise favours one and then the other, and a boat that obeys at
+//! once follows neither. A small bonus therefore goes to candidates near the last decision. The
+//! best of them may still move as the scene changes, so only changes of mind are delayed.
 
 use crate::ivp::{Choice, Decision, FUNCTIONS_MAX, Grid, Objective, Peak, Problem};
 
@@ -10,24 +10,24 @@ use crate::ivp::{Choice, Decision, FUNCTIONS_MAX, Grid, Objective, Peak, Problem
 const NEAR_RAD: f64 = std::f64::consts::FRAC_PI_6;
 /// Speeds within this of the last one are near it, m/s.
 const NEAR_M_S: f64 = 0.75;
-/// From what is near down to nothing, rad or m/s: a step, but for rounding.
+/// Width of the fall from near to zero, rad or m/s: a step, but for rounding.
 const STEP: f64 = 1e-6;
 
-/// What is near the last decision is worth more by this.
+/// The bonus for candidates near the last decision.
 pub(super) struct Steadiness {
     objective: Objective<'static>,
     weight: f64,
 }
 
 impl Steadiness {
-    /// Adds it to a problem, of half this weight for course and half for speed; nothing without a weight.
+    /// Adds it to a problem, half of this weight each for course and speed; none at weight 0.
     pub(super) fn new(problem: &mut Problem, last: Decision, weight: f64) -> Option<Steadiness> {
-        // A full problem has no room for it; a checked program never asks for so many.
+        // A full problem has no room for it; a checked program never has that many functions.
         if weight <= 0.0 || problem.len() >= FUNCTIONS_MAX {
             return None;
         }
-        // What is near the last decision, not the decision itself: holding that made a boat lag
-        // behind whatever moves.
+        // Near the last decision, not the decision itself: a bonus for that made a boat lag behind
+        // moving targets.
         let near = |summit, peak_width| Peak { summit, peak_width, base_width: STEP, summit_delta: 0.0, height: 100.0 };
         let grid = problem.grid();
         let objective = Objective::Coupled {
@@ -39,7 +39,7 @@ impl Steadiness {
         Some(Steadiness { objective, weight })
     }
 
-    /// A choice by the value that behaviours give it.
+    /// A choice with the value that behaviours alone give it.
     pub(super) fn without(&self, grid: &Grid, choice: Choice) -> Choice {
         let (course, speed) = (usize::from(choice.decision.course), usize::from(choice.decision.speed));
         let extra = f64::from(self.objective.contribution(grid, self.weight, course, speed)) * crate::ivp::QUANTUM;

@@ -1,14 +1,16 @@
-//! Cells of the decision grid: neighbouring courses by neighbouring speeds, of which a function gives one bound.
+//! Cells of the decision grid: neighbouring courses by neighbouring speeds, with one bound of a
+//! function for all of them.
 //!
-//! As velocities these are a piece of a ring, which lies within the polygon of four corners: at the first course and at the
-//! last, at the slowest speed and at so much more than the fastest that the side between those two touches the outer arc.
-//! Where it is wide, the square about all speeds is taken instead.
+//! As velocities they form a ring segment. It lies within a polygon of four corners: at the first
+//! and the last course, at the slowest speed and at the fastest speed extended so far that the side
+//! between them touches the outer arc. For a wide segment, the square around all speeds is used
+//! instead.
 
 use super::grid::Grid;
 use super::lanes::{LANES, Lanes, SIDE};
 use std::f64::consts::{FRAC_PI_3, TAU};
 
-/// A ring's piece that is wider than this to either side is taken for a whole disc, rad.
+/// A wider ring segment is treated as a whole disc, rad to either side.
 const WIDEST_RAD: f64 = FRAC_PI_3;
 
 /// A cell.
@@ -17,45 +19,46 @@ pub(super) struct Cell {
     /// Its first and its last course, unit vectors.
     pub(super) first: (f32, f32),
     pub(super) last: (f32, f32),
-    /// The course in the middle, a unit vector.
+    /// The middle course, a unit vector.
     pub(super) north: f32,
     pub(super) east: f32,
-    /// No course of the cell is farther from that one, rad.
+    /// The largest angle between that course and any other of the cell, rad.
     pub(super) half: f32,
     pub(super) slow: f32,
     pub(super) fast: f32,
     pub(super) mean: f32,
-    /// By how much the outer corners are farther out than the fastest speed; 1 for a whole disc.
+    /// The factor of the outer corners beyond the fastest speed; 1 for a whole disc.
     stretch: f32,
     is_disc: bool,
 }
 
 impl Cell {
-    /// Velocities, north and east, m/s: all of the cell's lie within the polygon between them.
+    /// Velocities, north and east, m/s: the polygon between them contains all velocities of the
+    /// cell.
     #[inline(always)]
     pub(super) fn corners(&self) -> [(f32, f32); 4] {
         let at = |(north, east): (f32, f32), speed: f32| (speed * north, speed * east);
-        // Of a disc the corners lie on both sides of the middle: the square is made of the same
-        // four products as a ring's piece, so that no lane takes another branch.
+        // For a disc the corners lie on both sides of the middle: the square uses the same four
+        // products as a ring segment, so that no lane branches.
         let (slow, fast) = (if self.is_disc() { -self.slow } else { self.slow }, self.stretch * self.fast);
         [at(self.first, slow), at(self.last, slow), at(self.first, fast), at(self.last, fast)]
     }
 
-    /// Whether it is taken for a whole disc.
+    /// Whether it is treated as a whole disc.
     #[inline(always)]
     pub(super) fn is_disc(&self) -> bool {
         self.is_disc
     }
 }
 
-/// The courses of cells, side by side.
+/// The courses of a group of cells.
 #[derive(Clone, Debug)]
 pub(super) struct CourseSpans {
     first_north: Lanes<f32>,
     first_east: Lanes<f32>,
     last_north: Lanes<f32>,
     last_east: Lanes<f32>,
-    /// The courses in the middle, unit vectors.
+    /// The middle courses, unit vectors.
     pub(super) north: Lanes<f32>,
     pub(super) east: Lanes<f32>,
     half: f32,
@@ -63,7 +66,7 @@ pub(super) struct CourseSpans {
     is_disc: bool,
 }
 
-/// The speeds of cells, side by side.
+/// The speeds of a group of cells.
 #[derive(Clone, Debug)]
 pub(super) struct SpeedSpans {
     slow: Lanes<f32>,
@@ -71,22 +74,22 @@ pub(super) struct SpeedSpans {
     pub(super) mean: Lanes<f32>,
 }
 
-/// How many courses and speeds a cell has, and so its shape.
+/// The number of courses and speeds of a cell, which defines its shape.
 #[derive(Clone, Copy)]
 pub(super) struct CellSize {
     side: usize,
-    /// Half of the angle between its first course and its last; none if it is taken for a disc.
+    /// Half of the angle between its first and last course; none if it is treated as a disc.
     half_rad: Option<f64>,
 }
 
 impl CellSize {
-    /// Of so many courses by so many speeds.
+    /// A cell of `side` courses by `side` speeds.
     pub(super) fn new(grid: &Grid, side: usize) -> CellSize {
         let half_rad = 0.5 * (side - 1) as f64 * TAU / grid.courses() as f64;
         CellSize { side, half_rad: (half_rad <= WIDEST_RAD).then_some(half_rad) }
     }
 
-    /// Courses of cells, the numbers of which (counted by courses) are given for each place.
+    /// The courses of a group of cells; `number` maps each lane to a cell index along the courses.
     pub(super) fn courses(self, grid: &Grid, number: impl Fn(usize) -> usize) -> CourseSpans {
         let spans: [[f32; 6]; LANES] = std::array::from_fn(|i| self.course(grid, number(i)));
         let part = |part: usize| Lanes::each(|i| spans[i][part]);
@@ -98,28 +101,28 @@ impl CellSize {
             north: part(4),
             east: part(5),
             half: self.half_rad.unwrap_or(std::f64::consts::PI) as f32,
-            // The chord between two corners at the fastest speed lies within the arc by this
-            // factor: pushed out, no velocity of the cell is beyond it.
+            // The chord between two corners at the fastest speed lies inside the arc by this
+            // factor; extended by it, the polygon contains every velocity of the cell.
             stretch: self.half_rad.map_or(1.0, |half_rad| 1.0 / primitives::math::sin_cos(half_rad).1) as f32,
             is_disc: self.half_rad.is_none(),
         }
     }
 
-    /// Speeds of cells, the numbers of which (counted by speeds) are given for each place.
+    /// The speeds of a group of cells; `number` maps each lane to a cell index along the speeds.
     pub(super) fn speeds(self, grid: &Grid, number: impl Fn(usize) -> usize) -> SpeedSpans {
         let spans: [[f32; 3]; LANES] = std::array::from_fn(|i| self.speed(grid, number(i)));
         let part = |part: usize| Lanes::each(|i| spans[i][part]);
         SpeedSpans { slow: part(0), fast: part(1), mean: part(2) }
     }
 
-    /// First, last and middle course; beyond the grid as its last one.
+    /// First, last and middle course; beyond the grid those of its last course.
     fn course(self, grid: &Grid, number: usize) -> [f32; 6] {
-        // A grid need not be a multiple of the cells: places beyond it repeat the last course,
-        // which no bound gets wrong, and their sums mark them as not there.
+        // The grid size need not be a multiple of the cell size. Lanes beyond it repeat the last
+        // course, which keeps all bounds valid, and their sums mark them as absent.
         let of = |i: usize| (self.side * number + i).min(grid.courses() - 1);
         let (first, last) = (of(0), of(self.side - 1));
         if self.half_rad.is_none() {
-            // The square about all speeds, of which `speed` gives half a side.
+            // The square around all speeds; `speed` gives half a side.
             return [1.0, 1.0, 1.0, -1.0, 1.0, 0.0];
         }
         let (east, north) = primitives::math::sin_cos(0.5 * (grid.course_rad(first) + grid.course_rad(last)));
@@ -127,7 +130,7 @@ impl CellSize {
         [first.0, first.1, last.0, last.1, north as f32, east as f32]
     }
 
-    /// The slowest, the fastest and the mean speed, m/s; beyond the grid as its last one.
+    /// The slowest, the fastest and the mean speed, m/s; beyond the grid those of its last speed.
     fn speed(self, grid: &Grid, number: usize) -> [f32; 3] {
         let of = |i: usize| grid.speed_m_s((self.side * number + i).min(grid.speeds() - 1)) as f32;
         let (slow, fast) = (of(0), of(self.side - 1));
@@ -135,7 +138,7 @@ impl CellSize {
     }
 }
 
-/// The cell at a place.
+/// The cell in lane `i`.
 #[inline(always)]
 pub(super) fn cell(courses: &CourseSpans, speeds: &SpeedSpans, i: usize) -> Cell {
     Cell {
@@ -152,22 +155,23 @@ pub(super) fn cell(courses: &CourseSpans, speeds: &SpeedSpans, i: usize) -> Cell
     }
 }
 
-/// The grid in cells: tiles of [`SIDE`] courses by as many speeds, and sectors of [`SIDE`] tiles by as many.
+/// The grid in cells: tiles of [`SIDE`] by [`SIDE`] points, and sectors of [`SIDE`] by [`SIDE`]
+/// tiles.
 #[derive(Clone, Debug)]
 pub(super) struct Cells {
-    /// Sectors one beside the other in courses.
+    /// Number of sectors along the courses.
     pub(super) sector_courses: usize,
-    /// Sectors one beside the other in speeds.
+    /// Number of sectors along the speeds.
     pub(super) sector_speeds: usize,
-    /// Of sectors, side by side: all courses with the first speeds come first.
+    /// Groups of sectors, courses varying fastest.
     pub(super) sectors: Vec<(CourseSpans, SpeedSpans)>,
-    /// Of the tiles of a sector, by its place in courses: all its courses with its first speeds come first.
+    /// For the tiles of a sector, by its index along the courses; courses vary fastest.
     pub(super) tile_courses: Vec<CourseSpans>,
-    /// Of the tiles of a sector, by its place in speeds.
+    /// For the tiles of a sector, by its index along the speeds.
     pub(super) tile_speeds: Vec<SpeedSpans>,
-    /// Courses of the points of a tile, by the tile's place in courses: north, east.
+    /// Courses of a tile's points, by the tile's index along the courses: north, east.
     pub(super) points: Vec<(Lanes<f32>, Lanes<f32>)>,
-    /// Speeds of the points of a tile, m/s, by the tile's place in speeds.
+    /// Speeds of a tile's points, m/s, by the tile's index along the speeds.
     pub(super) point_speeds: Vec<Lanes<f32>>,
 }
 
@@ -210,7 +214,7 @@ mod tests {
         Ned { north: stream.between(-most, most), east: stream.between(-most, most) }
     }
 
-    /// A formula of any kind.
+    /// A random formula of any kind.
     fn field(stream: &mut Stream, grid: &Grid) -> Field {
         let fastest_m_s = grid.speed_max_m_s();
         let range_m = [3.0, 30.0, 400.0][stream.below(3) as usize];
@@ -247,7 +251,7 @@ mod tests {
         field
     }
 
-    /// What nothing within a cell exceeds, and what nothing falls short of.
+    /// Upper and lower bound of the function over a cell.
     fn bounds(field: &Field, cell: &Cell) -> (f32, f32) {
         match field {
             Field::Closest(ready) => {

@@ -1,87 +1,91 @@
-//! How near a contact would come: the closest point of approach of every course and speed.
+//! The closest point of approach to a contact for every course and speed.
 //!
-//! With the contact at `p` from the own ship, moving with `c`, and the own ship on course `d` (a unit vector) at speed
-//! `s`, the contact moves past with `w = c - s d`. Its distance `|p + w t|` is least at
+//! With the contact at `p` from the own ship, moving with `c`, and the own ship on course `d` (a
+//! unit vector) at speed `s`, the contact's relative velocity is `w = c - s d`. Its distance `|p +
+//! w t|` is least at
 //!
 //! ```text
-//! t* = - p.w / w.w      held within 0 and the horizon,
+//! t* = - p.w / w.w      clamped to 0 and the horizon,
 //! ```
 //!
 //! since the square of the distance is a parabola in `t`.
 //!
-//! A boat does not turn or brake at once: with a [`Lag`] it goes on as it goes for its reaction time, then straight to where its
-//! [turn](Turning) ends, and then as the candidate says, at the mean [speed](MeanSpeed) until the contact would be met. The least
-//! distance of these three legs counts.
+//! A boat does not turn or brake at once. With a [`Lag`] it keeps its motion for its reaction time,
+//! then goes straight to the end of its [turn](Turning), then follows the candidate at the mean
+//! [speed](MeanSpeed) until it meets the contact. The least distance of these three legs counts.
 //!
-//! Two boats that keep clear of each other, each to the side that suits it, may choose the same side, and come together. If they
-//! are to leave each other on a [`Side`], the distance of a way on which the line of sight turns to the other side counts as less.
+//! Two boats that avoid each other may choose the same side and collide. If they are to leave each
+//! other on a [`Side`], the distance counts less where the line of sight turns to the other side.
 //!
-//! For bounds over a cell: its first and last course at its slowest and fastest speed are four ways. At any time each other way
-//! of the cell is between them, but for how much arcs bend between these courses. The distance at that time is convex in the
-//! place, so its largest value is at one of the four; and since the closest approach is no farther than that, it is a bound for
-//! all of the cell. The other way round, nothing on a leg is nearer than the least extent of the four along any direction.
+//! Bounds over a cell: its first and last course at its slowest and fastest speed are four ways. At
+//! any time every other way of the cell is between them, except for the bend of the arcs between
+//! these courses. The distance at that time is convex in the position, so its largest value is at
+//! one of the four. The closest approach is no farther than that, so it is an upper bound for the
+//! cell. Conversely, nothing on a leg is nearer than the least extent of the four along any
+//! direction.
 
 use super::cell::Cell;
 use super::lanes::{larger, smaller};
 use super::turn::{Fan, Lag, MeanSpeed, Turn, Turning, Vector};
 use primitives::Ned;
 
-/// What one number in single precision may be wrong by, with room to spare, in parts of the lengths that went into it.
+/// Largest rounding error of a number in single precision, with a margin, relative to the lengths
+/// that it is computed from.
 const ROUNDING: f64 = 1e-5;
 
-/// A slope that stands for a step.
+/// The slope of a step.
 const STEP: f64 = 1e12;
 
-/// A contact that is met sooner than this, or not at all, is taken to be met then, s.
+/// Lower bound of the time to meet a contact, also for contacts that are never met, s.
 const MEETING_MIN_S: f64 = 1.0;
 
 /// A side of a boat.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// Left, looking ahead: the line of sight to a contact that is left there turns against the clock.
+    /// Left, looking ahead: the line of sight to a contact left on this side rotates anticlockwise.
     Port,
     /// Right, looking ahead.
     Starboard,
 }
 
-/// What a distance counts that is kept on the other side than it is to be, in parts of it: so little that a boat does not turn
-/// there to get away from a third one.
+/// Weight of a distance kept on the wrong side: so small that a boat does not turn there to avoid a
+/// third one.
 const OTHER_SIDE: f32 = 0.2;
 
-/// Whether to keep away or to come close.
+/// Whether to avoid or to approach the contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Approach {
-    /// Farther is better: linearly from nothing where they touch to `at_min` at the least, and from there to 100 at the
-    /// largest. MOOS-IvP makes a step of 25 at the least distance and calls all below it worth nothing, so that a boat
-    /// that is too near already does not care how much nearer it comes.
+    /// Farther is better: linear from 0 where they touch to `at_min` at the least distance, and
+    /// from there to 100 at the largest. MOOS-IvP has a step of 25 at the least distance and zero
+    /// below it, so that a boat that is too near is indifferent to coming nearer.
     Avoid {
         /// Utility at the least distance, 0 to 100.
         at_min: f64,
-        /// On which side the contact is to be left; none if it does not matter.
+        /// The side on which to leave the contact; none if it does not matter.
         leave_to: Option<Side>,
     },
-    /// Closer is better: 100 at or below the least distance, linearly to nothing at the largest.
+    /// Closer is better: 100 at or below the least distance, falling linearly to 0 at the largest.
     Seek,
 }
 
-/// Utility of the distance at the closest point of approach to a contact that keeps its course and speed.
+/// Utility of the distance at the closest point of approach to a contact of constant velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Closest {
-    /// The contact from the own ship, m.
+    /// The contact's position relative to the own ship, m.
     pub offset: Ned,
     /// Velocity of the contact, m/s.
     pub velocity: Ned,
-    /// How long the course and speed are kept after the turn, s.
+    /// How long course and speed are kept after the turn, s.
     pub horizon_s: f64,
     /// The least distance to keep, m.
     pub min_m: f64,
     /// The largest distance that makes a difference, m.
     pub max_m: f64,
-    /// The distance at which they touch, m: nothing is worth less.
+    /// The distance at which they touch, m; the utility is 0 there and below.
     pub touch_m: f64,
-    /// Keep away or come close.
+    /// Whether to avoid or to approach.
     pub approach: Approach,
-    /// How long the own ship goes on as it goes; none if it does as decided at once.
+    /// The own ship's delay; none if it follows decisions at once.
     pub lag: Option<Lag>,
 }
 
@@ -98,15 +102,15 @@ impl Closest {
         let sound = vectors.as_flattened().iter().chain(&limits).all(|x| x.is_finite() && x.abs() < 1e7)
             && self.horizon_s >= 0.0
             && lag.is_none_or(Lag::is_sound);
-        // Pictures are checked when they come in, so this is a mistake of ours: tests stop, a
-        // boat on the water goes on without this function.
+        // Incoming pictures are validated, so this is a bug: tests stop, a boat on the water
+        // continues without this function.
         debug_assert!(sound, "{self:?}");
         if !sound {
             return None;
         }
         let at_min = at_min.clamp(0.0, 100.0);
         let width_m = self.max_m - self.min_m;
-        // Least and largest distance may be the same, which divides by nothing.
+        // Least and largest distance may be equal, which would divide by zero.
         let slope = |rise: f64, width_m: f64| if width_m > 0.0 { (rise / width_m).min(STEP) } else { STEP };
         let contact_m_s = self.velocity.length();
         let own_m_s = lag.map_or(0.0, |lag| lag.velocity.length()).max(speed_max_m_s);
@@ -121,14 +125,14 @@ impl Closest {
             Some(Side::Starboard) => ((-offset.1, offset.0), OTHER_SIDE),
             None => ((0.0, 0.0), 1.0),
         };
-        // The mean speed depends on when the contact is met, and that on the speed. The time as
-        // both go now is taken for it, once for all candidates: solved for each, the distance
-        // would be no parabola any more.
+        // The mean speed depends on the meeting time, which depends on the speed. The meeting time
+        // at present velocities is used for all candidates: solved for each, the squared distance
+        // would no longer be a parabola.
         let meeting_s = f64::from(time(offset, present, self.horizon_s as f32)).max(MEETING_MIN_S);
         Some(Ready {
             start: (offset.0 + present.0 * reaction, offset.1 + present.1 * reaction),
-            // No candidate can change what happens within the reaction time, so it is worked
-            // out once.
+            // Motion within the reaction time is the same for all candidates, so it is computed
+            // once.
             least_before: square(offset, present, time(offset, present, reaction)),
             velocity: single(self.velocity),
             speed: contact_m_s as f32 * (1.0 + ROUNDING as f32),
@@ -143,9 +147,9 @@ impl Closest {
             mean_speed: MeanSpeed::new(lag, meeting_s),
             beside,
             other_side,
-            // Bounds and points are worked out by different formulas in single precision. A
-            // bound that is short by a rounding would pass over the best point, so all are
-            // widened by what rounding can do.
+            // Bounds and points use different formulas in single precision. A bound too tight by a
+            // rounding error would miss the best point, so all bounds are widened by the largest
+            // error.
             margin: (ROUNDING * scale_m) as f32,
             group: 0,
         })
@@ -155,88 +159,91 @@ impl Closest {
 /// The function in single precision, m and s throughout.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ready {
-    /// Where the contact is when a decision shows, and the square of the least distance until then.
+    /// Where the contact is when a decision takes effect, and the square of the least distance
+    /// until then.
     start: Vector,
     least_before: f32,
     velocity: Vector,
-    /// The contact's, m/s.
+    /// The contact's speed, m/s.
     speed: f32,
     horizon: f32,
     min: f32,
-    /// Beyond the least distance, for each m.
+    /// Utility per metre beyond the least distance.
     slope: f32,
     touch: f32,
-    /// Between there and the least distance.
+    /// Utility per metre below the least distance.
     inner_slope: f32,
     at_min: f32,
     seek: bool,
-    /// The own ship's.
+    /// The own ship's turn.
     turning: Turning,
     mean_speed: MeanSpeed,
-    /// Square to the present line of sight, towards the side on which the contact is to be left, and what distances on the other
-    /// side count.
+    /// Perpendicular to the present line of sight, towards the side on which to leave the contact;
+    /// and the weight of distances on the other side.
     beside: Vector,
     other_side: f32,
-    /// What rounding may take from a bound on a distance.
+    /// Largest rounding error of a bound on a distance, m.
     margin: f32,
-    /// Those of a search that have the same have the same distances.
+    /// Functions of a search with the same group have the same distances.
     pub(super) group: usize,
 }
 
-/// How the contact moves past on the ways of a cell: those to its first and its last course, each at its slowest and its fastest
-/// speed, and one in the middle.
+/// The contact's relative motion on the ways of a cell: to its first and its last course, each at
+/// its slowest and fastest speed, and one in the middle.
 #[derive(Clone, Copy)]
 pub(super) struct Ways {
-    /// Where the contact is after the turns.
+    /// The contact's position after the turns.
     first: Vector,
     last: Vector,
     from_first: [Vector; 2],
     from_last: [Vector; 2],
-    /// Of the way in the middle: where the contact is after the turn, how it moved until then and which share of that until it
-    /// was nearest, how it moves then, and when it is nearest.
+    /// For the middle way: the contact's position after the turn, its motion until then and the
+    /// share of that until it was nearest, its motion afterwards, and the time when it is nearest.
     middle: Vector,
     past: Vector,
     share: f32,
     w: Vector,
     t: f32,
-    /// How far ways may be from between these, m, and how much farther each second takes them.
+    /// How far other ways may deviate from the polygon of these, m, and the increase per second,
+    /// m/s.
     off: f32,
     bend: f32,
 }
 
 impl Ready {
-    /// Whether it is to come close.
+    /// Whether to approach.
     pub(super) fn seeks(&self) -> bool {
         self.seek
     }
 
-    /// Utility of a course, a unit vector, at a speed.
+    /// Utility of a course, a unit vector, at a speed, m/s.
     pub(super) fn utility(&self, north: f32, east: f32, speed: f32) -> f32 {
         let course = (north, east);
-        // Reports and tests take the same arithmetic as the search, lane by lane: the value
-        // shown is the one that decided.
+        // Reports and tests use the same arithmetic as the search, lane by lane: the displayed
+        // value is the one that decided.
         let distance = self.distance(&self.turning.to(course), course, speed);
         if self.seek { self.worth_near(distance) } else { self.worth_far(distance) }
     }
 
-    /// How the own ship turns.
+    /// The own ship's turn model.
     pub(super) fn turning(&self) -> Turning {
         self.turning
     }
 
-    /// Whether another function is of the same distances.
+    /// Whether another function has the same distances.
     pub(super) fn has_distances_of(&self, other: &Ready) -> bool {
         let ways = |ready: &Ready| (ready.start, ready.least_before, ready.velocity, ready.horizon, ready.seek);
         let sides = |ready: &Ready| (ready.beside, ready.other_side);
-        // Two behaviours may keep clear of the same boats at different distances: the distances
-        // are the costly part, and what they are worth is not.
+        // Two behaviours may avoid the same boats at different distances: the distances are
+        // expensive, their utilities are not.
         ways(self) == ways(other)
             && sides(self) == sides(other)
             && self.turning == other.turning
             && self.mean_speed == other.mean_speed
     }
 
-    /// The least distance on a course, a unit vector, at a speed after the turn to it, as far as it counts, m.
+    /// The effective least distance, m, on a course, a unit vector, at a speed after the turn to
+    /// it.
     #[inline(always)]
     pub(super) fn distance(&self, turn: &Turn, course: Vector, speed: f32) -> f32 {
         let (at, speed) = (self.after(turn), self.mean_speed.of(speed));
@@ -244,10 +251,10 @@ impl Ready {
         let turning = square(self.start, past, time(self.start, past, 1.0));
         let t = time(at, w, self.horizon);
         let straight = square(at, w, t);
-        // Where the contact is when it is nearest: whether the line of sight turned to the
-        // wrong side until then.
+        // The contact's position when it is nearest: whether the line of sight has turned to the
+        // wrong side by then.
         let share = if dot(self.beside, (at.0 + w.0 * t, at.1 + w.1 * t)) < 0.0 { self.other_side } else { 1.0 };
-        // One root for all three legs: of squares the smallest is that of the smallest.
+        // One square root for all three legs: the least distance has the least square.
         smaller(smaller(straight, turning), self.least_before).sqrt() * share
     }
 
@@ -274,7 +281,7 @@ impl Ready {
         }
     }
 
-    /// What no least distance on ways of a cell exceeds, m.
+    /// Upper bound of the least distances on ways of a cell, m.
     #[inline(always)]
     pub(super) fn most(&self, ways: &Ways) -> f32 {
         let Ways { first, last, t, .. } = *ways;
@@ -286,7 +293,7 @@ impl Ready {
         smaller(smaller(straight, turning), self.least_before).sqrt() + ways.off + ways.bend * t
     }
 
-    /// What no least distance on ways of a cell falls short of, m.
+    /// Lower bound of the least distances on ways of a cell, m.
     #[inline(always)]
     pub(super) fn least(&self, ways: &Ways) -> f32 {
         let nearest = (self.start.0 + ways.share * ways.past.0, self.start.1 + ways.share * ways.past.1);
@@ -299,31 +306,31 @@ impl Ready {
         let extent = smaller(dot(ways.first, nearest), dot(ways.last, nearest)) + slowest * self.horizon;
         let straight = extent * per_length(nearest);
         let least = smaller(smaller(straight, turning), self.least_before.sqrt()) - ways.off - ways.bend * self.horizon;
-        // As if all of them were on the other side.
+        // As if all of them passed on the wrong side.
         smaller(least * self.other_side, least)
     }
 
-    /// Where the contact is when the own ship is on its course.
+    /// The contact's position when the own ship is on its course.
     #[inline(always)]
     fn after(&self, turn: &Turn) -> Vector {
         let past = (self.velocity.0 * turn.duration - turn.by.0, self.velocity.1 * turn.duration - turn.by.1);
         (self.start.0 + past.0, self.start.1 + past.1)
     }
 
-    /// How the contact moves past the own ship on a course, a unit vector, at a speed, m/s.
+    /// The contact's velocity relative to the own ship on a course, a unit vector, at a speed, m/s.
     #[inline(always)]
     fn passing(&self, course: Vector, speed: f32) -> Vector {
         (self.velocity.0 - speed * course.0, self.velocity.1 - speed * course.1)
     }
 
-    /// Utility of a distance to a contact that is to be near.
+    /// Utility of a distance to a contact to approach.
     #[inline(always)]
     pub(super) fn worth_near(&self, distance: f32) -> f32 {
         let rise = (distance - self.min) * self.slope;
         smaller(larger(100.0 - rise, 0.0), 100.0)
     }
 
-    /// Utility of a distance to a contact that is to be far.
+    /// Utility of a distance to a contact to avoid.
     #[inline(always)]
     pub(super) fn worth_far(&self, distance: f32) -> f32 {
         let rise = (distance - self.min) * self.slope;
@@ -333,11 +340,11 @@ impl Ready {
     }
 }
 
-/// The time of the closest point of approach, within 0 and a longest one, s.
+/// The time of the closest point of approach, clamped to 0 and `longest`, s.
 #[inline(always)]
 fn time(p: Vector, w: Vector, longest: f32) -> f32 {
-    // With hardly any motion past each other any time will do.
-    // Not a branch on zero: it would not be done side by side.
+    // At almost zero relative speed any time will do. A maximum in place of a branch on zero
+    // vectorises.
     let time = -dot(p, w) / larger(dot(w, w), 1e-20);
     smaller(larger(time, 0.0), longest)
 }
@@ -347,7 +354,7 @@ fn minus(a: Vector, b: Vector) -> Vector {
     (a.0 - b.0, a.1 - b.1)
 }
 
-/// One by the length of a vector that is not very short.
+/// The reciprocal length of a vector that is not very short.
 #[inline(always)]
 fn per_length(v: Vector) -> f32 {
     1.0 / larger(dot(v, v).sqrt(), 1e-6)
@@ -358,7 +365,7 @@ fn dot(a: Vector, b: Vector) -> f32 {
     a.0 * b.0 + a.1 * b.1
 }
 
-/// The square of the distance at a time, m2, from a place with a velocity.
+/// The squared distance at a time, m², from a position with a velocity.
 #[inline(always)]
 fn square(p: Vector, w: Vector, t: f32) -> f32 {
     let (north, east) = (p.0 + w.0 * t, p.1 + w.1 * t);

@@ -1,17 +1,17 @@
-//! How fast the own ship comes nearer to a point or a contact, or draws away from it.
+//! How fast the own ship closes on a point or a contact, or opens from it.
 
 use super::cell::Cell;
 use super::lanes::{larger, smaller};
 use primitives::Ned;
 
-/// Utility of the rate of closure: linear from 0, opening as fast as own ship and contact could, to 100, closing as fast
-/// as they could.
+/// Utility of the closing speed: linear from 0, opening at the greatest possible rate, to 100,
+/// closing at that rate.
 ///
-/// The rate of closure is the sum of both velocities along the line of sight, at this moment. With no distance there is no
-/// line of sight, and all candidates are worth 50.
+/// The closing speed is the sum of both velocities along the present line of sight. At zero
+/// distance there is no line of sight, and all candidates get 50.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Closing {
-    /// The contact from the own ship, m.
+    /// The contact's position relative to the own ship, m.
     pub offset: Ned,
     /// Velocity of the contact, m/s; 0 for a point.
     pub velocity: Ned,
@@ -31,7 +31,7 @@ impl Closing {
             if range_m > 0.0 { (self.offset.north / range_m, self.offset.east / range_m) } else { (0.0, 0.0) };
         let contact_m_s = self.velocity.length();
         let towards_m_s = -(sight_north * self.velocity.north + sight_east * self.velocity.east);
-        // Both at their fastest, so that the utility uses its range whoever the contact is.
+        // Both at top speed, so that the utility uses its full range for any contact.
         let slope = 50.0 / (speed_max_m_s + contact_m_s);
         Some(Ready {
             north: sight_north as f32,
@@ -48,24 +48,24 @@ pub(super) struct Ready {
     /// The line of sight, a unit vector.
     north: f32,
     east: f32,
-    /// Utility for each m/s along it.
+    /// Utility per m/s along it.
     slope: f32,
-    /// Utility at rest.
+    /// Utility at zero speed.
     rest: f32,
 }
 
-/// What rounding may take from a bound, in points of utility, with room to spare.
+/// Largest rounding error of a bound, in points of utility, with a margin.
 const ROUNDING: f32 = 1e-3;
 
 impl Ready {
-    /// Utility of a course, a unit vector, at a speed.
+    /// Utility of a course, a unit vector, at a speed, m/s.
     #[inline(always)]
     pub(super) fn utility(&self, north: f32, east: f32, speed: f32) -> f32 {
         let along = (self.north * north + self.east * east) * self.slope;
         smaller(larger(self.rest + along * speed, 0.0), 100.0)
     }
 
-    /// What nothing within a cell exceeds: utility is linear in velocity, so it is largest at a corner.
+    /// Upper bound over a cell: utility is linear in velocity, so it is largest at a corner.
     #[inline(always)]
     pub(super) fn bound(&self, cell: &Cell) -> f32 {
         let along = |(north, east): (f32, f32)| (self.north * north + self.east * east) * self.slope;

@@ -4,40 +4,41 @@ use super::lanes::{larger, smaller};
 
 /// The step to which weight times utility is rounded.
 ///
-/// With it a product counts at most 6.4 million steps, which an `f32` and the sum of [`FUNCTIONS_MAX`] of them in an
-/// `i32` hold exactly.
+/// A product is then at most 6.4 million steps, exact in an `f32`, and [`FUNCTIONS_MAX`] of them
+/// sum exactly in an `i32`.
 pub const QUANTUM: f64 = 1.0 / 64.0;
 
-/// The largest priority weight; larger ones count as this.
+/// The largest priority weight; larger ones are clamped to it.
 pub const WEIGHT_MAX: f64 = 1000.0;
 
-/// The most functions a problem takes.
+/// The maximum number of functions in a problem.
 pub const FUNCTIONS_MAX: usize = 256;
 
-// What a checked program may ask for is heard.
+// A checked program never exceeds this limit.
 const _: () = assert!(scenario::strategy::FUNCTIONS_MAX <= FUNCTIONS_MAX);
 
-/// The value of a place that does not exist: below all others, and far enough from overflow for two of them.
+/// The value of an absent place: below all others, and far enough from overflow for a sum of two.
 pub(super) const NOWHERE: i32 = i32::MIN / 4;
 
-/// From here to twice as much the numbers that an `f32` holds are the integers: what is added to it is rounded to one.
+/// From here to twice this value, the numbers representable in an `f32` are the integers: adding to
+/// it rounds to an integer.
 const INTEGERS: f32 = (1_u32 << 23) as f32;
 
-// A product is less, so the sum of both is rounded to nearest, half to even.
+// A product is smaller, so the sum of both rounds to nearest, half to even.
 const _: () = assert!(100.0 * WEIGHT_MAX / QUANTUM < INTEGERS as f64);
 
-/// A priority weight, in quanta for each point of utility.
+/// A priority weight, in quanta per point of utility.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Weight(f32);
 
 impl Weight {
-    /// The weight brought into 0 to [`WEIGHT_MAX`]; a non-finite one counts 0.
+    /// The weight clamped to 0 to [`WEIGHT_MAX`]; 0 for a non-finite one.
     pub(super) fn new(weight: f64) -> Weight {
         debug_assert!(weight.is_finite(), "weight {weight}");
-        // Weights may be expressions of a strategy, so what they come to is known only now.
+        // Weights may be expressions of a strategy, so their values are known only now.
         let weight = if weight.is_finite() { weight.clamp(0.0, WEIGHT_MAX) } else { 0.0 };
-        // In single precision here and in the bounds: rounded twice in different ways, a bound
-        // could fall short of its points.
+        // Single precision here and in the bounds: with two different roundings a bound could fall
+        // below its points.
         Weight((weight / QUANTUM) as f32)
     }
 
@@ -47,7 +48,7 @@ impl Weight {
         Weight((f64::from(self.0) * share) as f32)
     }
 
-    /// Whether nothing can come of it.
+    /// Whether functions of this weight have no effect.
     pub(super) fn is_zero(self) -> bool {
         self.0 == 0.0
     }
@@ -55,12 +56,13 @@ impl Weight {
     /// A weighted utility (0 to 100) in quanta, rounded to nearest, half to even.
     #[inline(always)]
     pub(super) fn quanta(self, utility: f32) -> i32 {
-        // Without a conversion, which is slow where numbers that are too large for an integer are provided for.
+        // Without a float-to-integer conversion, which is slow because it handles out-of-range
+        // values.
         (utility * self.0 + INTEGERS).to_bits() as i32 - INTEGERS.to_bits() as i32
     }
 }
 
-/// A utility brought into 0 to 100; a non-finite one counts 0.
+/// A utility clamped to 0 to 100; 0 for a non-finite one.
 #[inline(always)]
 pub(super) fn utility(utility: f64) -> f32 {
     debug_assert!(utility.is_finite(), "utility {utility}");
@@ -69,7 +71,8 @@ pub(super) fn utility(utility: f64) -> f32 {
     (if utility.abs() < f64::INFINITY { within } else { 0.0 }) as f32
 }
 
-/// A utility in single precision brought into 0 to 100; a non-finite one counts 0. The same as [`utility`].
+/// A utility in single precision clamped to 0 to 100; 0 for a non-finite one. Same result as
+/// [`utility`].
 #[inline(always)]
 pub(super) fn single(utility: f32) -> f32 {
     debug_assert!(utility.is_finite(), "utility {utility}");

@@ -1,16 +1,16 @@
-//! The decision grid: the courses and speeds a helm chooses from.
+//! The decision grid: the candidate courses and speeds of a helm.
 
 use super::lanes::{LANES, Lanes};
 use std::f64::consts::TAU;
 
-/// Ticks from one course to the next: angles from a course are integers of these, so that a scene that is turned or
-/// mirrored has exactly the same ones. An `f64` holds them exactly.
+/// Ticks between neighbouring courses. Angles from a course are whole ticks, so that a turned or
+/// mirrored scene has exactly the same angles. An `f64` represents them exactly.
 const TICKS: f64 = 65_536.0;
 
-/// Courses all round, and speeds from rest to the fastest, both evenly spaced.
+/// Courses over the full circle, and speeds from rest to the top speed, both evenly spaced.
 ///
-/// Course `k` is `k` times a full turn divided by the number of courses, clockwise from north; speed `j` is `j` times
-/// the fastest divided by one less than the number of speeds.
+/// Course `k` is `k` times a full turn divided by the number of courses, clockwise from north;
+/// speed `j` is `j` times the top speed divided by one less than the number of speeds.
 #[derive(Clone, Debug)]
 pub struct Grid {
     courses: usize,
@@ -22,7 +22,7 @@ pub struct Grid {
     speeds_side_by_side: Vec<Lanes<f32>>,
 }
 
-/// Courses side by side; beyond the last one, that one again.
+/// A group of courses; lanes beyond the last course repeat it.
 #[derive(Clone, Debug)]
 pub(crate) struct Courses {
     /// Rad clockwise from north.
@@ -33,14 +33,14 @@ pub(crate) struct Courses {
 }
 
 impl Grid {
-    /// A grid of so many courses and speeds, the fastest in m/s.
+    /// A grid of `courses` by `speeds`, up to `speed_max_m_s`.
     ///
     /// # Panics
-    /// With less than one course or two speeds, more than 65,536 of either, or a fastest speed that is not a positive
-    /// number.
+    /// With less than one course or two speeds, more than 65,536 of either, or a top speed that is
+    /// not a positive number.
     #[must_use]
     pub fn new(courses: usize, speeds: usize, speed_max_m_s: f64) -> Grid {
-        // A decision holds its place as two `u16`.
+        // A decision stores its course and speed indices as two `u16`.
         assert!((1..=1 << 16).contains(&courses), "{courses} courses, allowed are 1 to 65536");
         assert!((2..=1 << 16).contains(&speeds), "{speeds} speeds, allowed are 2 to 65536");
         assert!(speed_max_m_s.is_finite() && speed_max_m_s > 0.0, "a fastest speed of {speed_max_m_s} m/s");
@@ -73,7 +73,7 @@ impl Grid {
         self.speeds
     }
 
-    /// The fastest speed, m/s.
+    /// The top speed, m/s.
     #[must_use]
     pub fn speed_max_m_s(&self) -> f64 {
         self.speed_max_m_s
@@ -93,19 +93,20 @@ impl Grid {
 
     /// The unit vector of course `k`: north, east.
     ///
-    /// Courses that are mirror images in an axis or a diagonal, or turned by a quarter or half, have exactly the same
-    /// components but for order and sign, where the number of courses allows it.
+    /// Courses that are mirror images in an axis or a diagonal, or rotated by a quarter or half
+    /// turn, have exactly the same components except for order and sign, where the number of
+    /// courses allows it.
     #[must_use]
     pub fn direction(&self, k: usize) -> (f32, f32) {
         self.directions[k]
     }
 
-    /// All courses, side by side.
+    /// All courses in groups of [`LANES`].
     pub(crate) fn courses_side_by_side(&self) -> &[Courses] {
         &self.side_by_side
     }
 
-    /// All speeds, m/s, side by side; beyond the last one, that one again.
+    /// All speeds, m/s, in groups of [`LANES`]; lanes beyond the last speed repeat it.
     pub(crate) fn speeds_side_by_side(&self) -> &[Lanes<f32>] {
         &self.speeds_side_by_side
     }
@@ -116,18 +117,18 @@ impl Grid {
         &self.speed_m_s
     }
 
-    /// Where an angle lies on the circle of ticks, 0 to below `circle`.
+    /// An angle in ticks, 0 to below `circle`.
     pub(super) fn ticks_of(&self, angle_rad: f64) -> f64 {
         let turns = angle_rad / TAU;
         let part = turns - turns.trunc();
         ((part * self.circle()).round() as i64).rem_euclid(self.circle() as i64) as f64
     }
 
-    /// Ticks from an angle (as ticks) to course `k`, the short way: positive to starboard, and exactly half a turn is
-    /// to starboard.
+    /// Ticks from an angle (in ticks) to course `k`, the short way: positive to starboard; exactly
+    /// half a turn counts as starboard.
     #[inline(always)]
     pub(super) fn ticks_between(&self, from: f64, k: usize) -> f64 {
-        // Both are below a full turn: no division is needed.
+        // Both are below a full turn, so no division is needed.
         let (circle, ahead) = (self.circle(), f64::from(k as i32) * TICKS - from);
         let ahead = if ahead < 0.0 { ahead + circle } else { ahead };
         if 2.0 * ahead > circle { ahead - circle } else { ahead }
@@ -138,7 +139,7 @@ impl Grid {
         TAU / self.circle()
     }
 
-    /// Ticks all round.
+    /// Ticks in a full turn.
     #[inline(always)]
     pub(super) fn circle(&self) -> f64 {
         self.courses as f64 * TICKS
@@ -150,10 +151,10 @@ fn course_rad(k: usize, n: usize) -> f64 {
     k as f64 * TAU / n as f64
 }
 
-/// The unit vector of course `k` of `n`, made of one in the first octant by mirroring.
+/// The unit vector of course `k` of `n`, mirrored from one in the first octant.
 fn direction(k: usize, n: usize) -> (f32, f32) {
-    // By mirroring, not by the library for each course: cosines of angles that are mirror
-    // images may differ in the last bit, and then a mirrored game would take another course.
+    // Mirrored rather than computed for each course: library cosines of mirrored angles may differ
+    // in the last bit, and a mirrored game would then take another course.
     if 2 * k > n {
         let (north, east) = direction(n - k, n);
         return (north, -east);

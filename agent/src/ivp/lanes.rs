@@ -1,42 +1,42 @@
-//! Numbers side by side, as they lie in the widest registers.
+//! Groups of numbers that fill a vector register.
 
-/// How many.
-// Sixteen `f32` are one register of AVX-512. With less the compiler takes two or four, and the
-// results are the same to the bit: no lane ever depends on how many there are.
+/// Number of lanes.
+// Sixteen `f32` are one AVX-512 register. With narrower registers the compiler uses two or four,
+// with the same bits: no lane depends on the number of lanes per register.
 pub(crate) const LANES: usize = 16;
 
-/// Courses of a tile, and speeds of one: a tile is so many courses and so many speeds, and so many tiles by as many are a
-/// sector.
+/// Courses and speeds per tile side: a tile is `SIDE` courses by `SIDE` speeds, a sector `SIDE` by
+/// `SIDE` tiles.
 pub(super) const SIDE: usize = 4;
 
 const _: () = assert!(SIDE * SIDE == LANES);
 
-/// Numbers side by side. Plain loops over all of them become single instructions.
+/// A group of numbers. Plain loops over all lanes become single instructions.
 #[derive(Clone, Copy, Debug)]
 // A cache line and the widest register: loads that straddle two lines cost twice.
 #[repr(align(64))]
 pub(crate) struct Lanes<T>(pub(crate) [T; LANES]);
 
 impl<T: Copy> Lanes<T> {
-    /// The same number in all places.
+    /// The same number in all lanes.
     #[inline(always)]
     pub(crate) fn splat(number: T) -> Lanes<T> {
         Lanes([number; LANES])
     }
 
-    /// A number for each place. Not for what has to be fast: closures are not always inlined.
+    /// A number for each lane. Not for hot code: closures are not always inlined.
     pub(super) fn each(number: impl FnMut(usize) -> T) -> Lanes<T> {
         Lanes(std::array::from_fn(number))
     }
 }
 
 impl<T: Copy> Lanes<T> {
-    /// All of them brought to one, two at a time.
+    /// All lanes reduced to one number, two at a time.
     #[inline(always)]
     pub(crate) fn reduced(&self, of_two: impl Fn(T, T) -> T) -> T {
         let mut halves = self.0;
         let mut width = LANES / 2;
-        // In halves, always the same pairs: sums and comparisons have one order on every
+        // In halves, always the same pairs: sums and comparisons have the same order on every
         // machine.
         while width > 0 {
             for i in 0..width {
@@ -55,7 +55,7 @@ impl Lanes<i32> {
         self.reduced(larger)
     }
 
-    /// The first place of a number that is there.
+    /// The first lane with this number, which must be present.
     #[inline(always)]
     pub(super) fn place_of(&self, number: i32) -> usize {
         let mut places = 0_u32;
@@ -65,7 +65,7 @@ impl Lanes<i32> {
         places.trailing_zeros() as usize
     }
 
-    /// The largest of each four neighbours.
+    /// The largest of each group of four neighbours.
     #[inline(always)]
     pub(super) fn most_of_fours(&self) -> [i32; SIDE] {
         let mut fours = [0; SIDE];
@@ -77,14 +77,14 @@ impl Lanes<i32> {
     }
 }
 
-/// The larger of two numbers, as processors compare them: the second where they do not compare.
+/// The larger of two numbers, as in processor instructions: the second if unordered.
 #[inline(always)]
 pub(crate) fn larger<T: PartialOrd>(a: T, b: T) -> T {
-    // Not `f32::max`: that asks for NaN, and a processor's own instruction does not.
+    // Not `f32::max`, which handles NaN unlike the processor's instruction.
     if a > b { a } else { b }
 }
 
-/// The smaller of two numbers, as processors compare them: the second where they do not compare.
+/// The smaller of two numbers, as in processor instructions: the second if unordered.
 #[inline(always)]
 pub(crate) fn smaller<T: PartialOrd>(a: T, b: T) -> T {
     if a < b { a } else { b }

@@ -1,11 +1,11 @@
-//! How near contacts come, side by side: what functions of the same distances share is worked out once.
+//! Vectorised contact distances: computed once for all functions that share them.
 
 use super::cell::{CourseSpans, SpeedSpans, cell};
 use super::closest::Ready;
 use super::lanes::{LANES, Lanes};
 use super::turn::{Fan, Turn};
 
-/// Turns to courses side by side.
+/// Turns to a group of courses.
 struct Turns {
     duration: Lanes<f32>,
     by_north: Lanes<f32>,
@@ -30,11 +30,11 @@ impl Turns {
     }
 }
 
-/// How near contacts come at points side by side: what was worked out last is known.
+/// Contact distances at a group of points; caches the last result.
 pub(super) struct Distances<'a> {
     known: Option<&'a Ready>,
     turns: Turns,
-    /// m
+    /// Least distances of approach, m.
     pub(super) distances: Lanes<f32>,
 }
 
@@ -44,17 +44,16 @@ impl<'a> Distances<'a> {
         Distances { known: None, turns: Turns::new(), distances: Lanes::splat(0.0) }
     }
 
-    /// On courses, as unit vectors' parts north and east, at speeds.
+    /// For courses, as north and east components of unit vectors, at speeds.
     #[inline(always)]
     pub(super) fn measure(&mut self, ready: &'a Ready, (north, east, speed): (&Lanes<f32>, &Lanes<f32>, &Lanes<f32>)) {
-        // Functions of a group are kept one after the other, so only the last distances have to
-        // be remembered.
+        // Functions of a group are stored consecutively, so only the last distances need caching.
         if self.known.is_some_and(|known| ready.group == known.group) {
             return;
         }
         let turning = ready.turning();
-        // The own ship's turns are the same for all contacts: they cost a root each, and are
-        // worked out once.
+        // The own ship's turns are the same for all contacts: they cost a square root each and are
+        // computed once.
         if self.known.is_none_or(|known| turning != known.turning()) {
             for i in 0..LANES {
                 self.turns.set(i, &turning.to((north.0[i], east.0[i])));
@@ -67,14 +66,14 @@ impl<'a> Distances<'a> {
     }
 }
 
-/// Within what distances contacts come in cells side by side: what was worked out last is known.
+/// Bounds of contact distances over a group of cells; caches the last result.
 pub(super) struct Bounded<'a> {
     known: Option<&'a Ready>,
     first: Turns,
     last: Turns,
     off: Lanes<f32>,
     off_s: Lanes<f32>,
-    /// m
+    /// Lower bounds of the distances, m.
     pub(super) least: Lanes<f32>,
     pub(super) most: Lanes<f32>,
 }
@@ -87,7 +86,7 @@ impl<'a> Bounded<'a> {
         Bounded { known: None, first, last, off: zeros, off_s: zeros, least: zeros, most: zeros }
     }
 
-    /// Both bounds.
+    /// Computes both bounds.
     #[inline(always)]
     pub(super) fn measure(&mut self, ready: &'a Ready, cells: (&CourseSpans, &SpeedSpans)) {
         if self.turn(ready, cells) {
@@ -98,7 +97,7 @@ impl<'a> Bounded<'a> {
         }
     }
 
-    /// That at which nothing is worth more.
+    /// Computes the bound with the greatest utility.
     #[inline(always)]
     pub(super) fn measure_best(&mut self, ready: &'a Ready, cells: (&CourseSpans, &SpeedSpans)) {
         if !self.turn(ready, cells) {
@@ -115,7 +114,7 @@ impl<'a> Bounded<'a> {
         }
     }
 
-    /// Works out the turns if they are not known; says whether there is anything to measure.
+    /// Computes the turns unless cached. Returns whether there is anything to measure.
     #[inline(always)]
     fn turn(&mut self, ready: &'a Ready, cells: (&CourseSpans, &SpeedSpans)) -> bool {
         if self.known.is_some_and(|known| ready.group == known.group) {

@@ -1,25 +1,28 @@
-//! Interval programming: which course and speed serve the objective functions of all behaviours best.
+//! Interval programming: selects the course and speed that best serve all behaviours' objective
+//! functions.
 //!
-//! Every behaviour of a helm states what it would like as an *objective function*: a utility of 0 to 100
-//! for each candidate course and speed, and a priority weight. The helm takes the candidate with the largest
-//! weighted sum,
+//! Every behaviour of a helm expresses its preferences as an *objective function*: a utility of 0
+//! to 100 for each candidate course and speed, and a priority weight. The helm takes the candidate
+//! with the largest weighted sum,
 //!
 //! ```text
 //! x* = arg max  sum_i  w_i f_i(x)        over x on the decision grid.
 //!         x
 //! ```
 //!
-//! This is the method of Benjamin ("Interval Programming: A Multi-Objective Optimization Model for Autonomous Vehicle
-//! Control", Brown University 2002) and of Benjamin et al. ("An Overview of MOOS-IvP and a Users Guide to the IvP
-//! Helm", MIT CSAIL 2009). They tile the decision space with boxes, put a linear function on each, and search the
-//! tiles by branch and bound: exact for the tiles, approximate for the functions. Over course and speed alone the
-//! functions themselves are cheap to evaluate, so [`Problem`] evaluates them, and its answer is exact on the grid:
+//! This is the method of Benjamin ("Interval Programming: A Multi-Objective Optimization Model for
+//! Autonomous Vehicle Control", Brown University 2002) and of Benjamin et al. ("An Overview of
+//! MOOS-IvP and a Users Guide to the IvP Helm", MIT CSAIL 2009). They tile the decision space with
+//! boxes, put a linear function on each, and search the tiles by branch and bound: exact for the
+//! tiles, approximate for the functions. Over course and speed alone the functions themselves are
+//! cheap to evaluate, so [`Problem`] evaluates them, and its answer is exact on the grid:
 //!
-//! - functions of course only, of speed only, or of one plus the other, are added up in two lists;
-//! - the others are evaluated for four courses by four speeds at a time, side by side, and those of which a bound does not
-//!   reach the best found so far are passed over, many such together where a bound for all of them does not;
-//! - weight times utility is rounded to [`QUANTUM`] before it is added, so sums are of integers: the order of functions
-//!   cannot matter, and two candidates are equal or they are not.
+//! - functions of course only, of speed only, or sums of both, are added up in two lists;
+//! - the others are evaluated for tiles of four courses by four speeds at a time. Tiles whose bound
+//!   is below the best value found so far are skipped, many at once where a bound for all of them
+//!   is;
+//! - weight times utility is rounded to [`QUANTUM`] before it is added, so sums are of integers:
+//!   the order of functions does not matter, and ties are exact.
 //!
 //! Open [`Objective`] first, then [`Problem`].
 

@@ -1,4 +1,4 @@
-//! An objective function: what one behaviour would like of course and speed.
+//! An objective function: one behaviour's preference for course and speed.
 
 use super::closest::{self, Closest};
 use super::closing::{self, Closing};
@@ -10,35 +10,35 @@ use super::table::Table;
 
 /// A utility of 0 to 100 for each course and speed.
 ///
-/// Non-finite numbers count as no utility at all (a debug build stops at them). `Course`, `Speed`, `Coupled` and `Limit`
-/// cost next to nothing; the others are evaluated point by point.
+/// Non-finite numbers count as no utility at all (a debug build panics). `Course`, `Speed`,
+/// `Coupled` and `Limit` are almost free; the others are evaluated point by point.
 #[derive(Clone, Copy, Debug)]
 pub enum Objective<'a> {
-    /// Of course alone.
+    /// Course only.
     Course(Peak),
-    /// Of speed alone.
+    /// Speed only.
     Speed(Peak),
-    /// Of course and speed, added.
+    /// A sum of course and speed.
     Coupled {
-        /// What it would like of course.
+        /// Preference for the course.
         course: Peak,
-        /// What it would like of speed.
+        /// Preference for the speed.
         speed: Peak,
-        /// How much of the utility the course makes, 0 to 1; the speed makes the rest.
+        /// The course's share of the utility, 0 to 1; the rest is the speed's.
         course_share: f64,
     },
     /// A speed limit.
     Limit(SpeedLimit),
     /// Distance at the closest point of approach to a contact.
     Closest(Closest),
-    /// Rate of closure.
+    /// Closing speed.
     Closing(Closing),
     /// Utilities in a table.
     Table(&'a Table),
 }
 
 impl Objective<'_> {
-    /// Whether it tells courses from each other.
+    /// Whether it distinguishes courses.
     #[must_use]
     pub fn decides_course(&self) -> bool {
         match self {
@@ -48,7 +48,7 @@ impl Objective<'_> {
         }
     }
 
-    /// Whether it tells speeds from each other.
+    /// Whether it distinguishes speeds.
     #[must_use]
     pub fn decides_speed(&self) -> bool {
         match self {
@@ -58,18 +58,18 @@ impl Objective<'_> {
         }
     }
 
-    /// The utility of course `k` at speed `j`, in the arithmetic of the solver.
+    /// The utility of course `k` at speed `j`, in the solver's arithmetic.
     ///
     /// # Panics
-    /// Beyond the grid, and with a table that is not of its size.
+    /// Beyond the grid, and with a table of another size.
     #[must_use]
     pub fn utility(&self, grid: &Grid, k: usize, j: usize) -> f32 {
         assert!(k < grid.courses() && j < grid.speeds(), "course {k}, speed {j}");
         match self.parts(grid) {
             Parts::Separable => {
                 let (course, speed, share) = (self.of_course(grid, k), self.of_speed(grid, j), self.course_share());
-                // For display: the search adds the two parts as integers, each with its own
-                // weight, as `contribution` does.
+                // For display: the search adds the two parts as integers, each with its own weight,
+                // as `contribution` does.
                 (f64::from(course) * share + f64::from(speed) * (1.0 - share)) as f32
             }
             Parts::Field(field) => {
@@ -81,8 +81,9 @@ impl Objective<'_> {
         }
     }
 
-    /// What it adds to the sum at course `k` and speed `j` with this weight, in steps of [`QUANTUM`](super::QUANTUM): the
-    /// weighted utility, rounded; for `Coupled` the two parts are rounded one by one.
+    /// Its contribution to the sum at course `k` and speed `j` with this weight, in steps of
+    /// [`QUANTUM`](super::QUANTUM): the rounded weighted utility; for `Coupled` the two parts are
+    /// rounded separately.
     #[must_use]
     pub fn contribution(&self, grid: &Grid, weight: f64, k: usize, j: usize) -> i32 {
         let weight = Weight::new(weight);
@@ -95,7 +96,7 @@ impl Objective<'_> {
         }
     }
 
-    /// How much of the utility the course makes, of functions that are a sum of two.
+    /// The course's share of the utility, for functions that are a sum of two.
     fn course_share(&self) -> f64 {
         match self {
             Objective::Course(_) => 1.0,
@@ -110,7 +111,7 @@ impl Objective<'_> {
         (weight.share(share), weight.share(1.0 - share))
     }
 
-    /// Its peak in courses, if it has one.
+    /// Its course peak, if it has one.
     pub(super) fn course_peak(&self) -> Option<&Peak> {
         match self {
             Objective::Course(peak) | Objective::Coupled { course: peak, .. } => Some(peak),
@@ -118,12 +119,12 @@ impl Objective<'_> {
         }
     }
 
-    /// Utility of course alone.
+    /// Utility of the course alone.
     fn of_course(&self, grid: &Grid, k: usize) -> f32 {
         self.course_peak().map_or(0.0, |peak| peak.of_course(grid, k))
     }
 
-    /// Utility of speed alone.
+    /// Utility of the speed alone.
     fn of_speed(&self, grid: &Grid, j: usize) -> f32 {
         match self {
             Objective::Speed(peak) | Objective::Coupled { speed: peak, .. } => peak.of_speed(grid, j),
@@ -132,7 +133,7 @@ impl Objective<'_> {
         }
     }
 
-    /// How the solver goes about it.
+    /// How the solver evaluates it.
     pub(super) fn parts(&self, grid: &Grid) -> Parts<'_> {
         let field = |field: Option<Field>| field.map_or(Parts::Nothing, Parts::Field);
         let fastest_m_s = grid.speed_max_m_s();
@@ -141,7 +142,7 @@ impl Objective<'_> {
             Objective::Closing(closing) => field(closing.ready(fastest_m_s).map(Field::Closing)),
             Objective::Table(table) => {
                 let size = (grid.courses(), grid.speeds());
-                // A mistake of the caller, not of a file: a table of another grid would be read
+                // A bug of the caller, not a fault of a file: a table of another grid would be read
                 // beyond its end.
                 assert!(table.size() == size, "a table of {:?} courses and speeds, not {size:?}", table.size());
                 Parts::Table(table)
@@ -153,13 +154,13 @@ impl Objective<'_> {
 
 /// How a function is evaluated.
 pub(super) enum Parts<'a> {
-    /// A function of course plus one of speed.
+    /// A function of course plus a function of speed.
     Separable,
-    /// A formula in both.
+    /// A formula of both.
     Field(Field),
-    /// Numbers for both.
+    /// A table over both.
     Table(&'a Table),
-    /// It has a number that is not finite.
+    /// A function with a non-finite number.
     Nothing,
 }
 
@@ -171,7 +172,7 @@ pub(super) enum Field {
 }
 
 impl Field {
-    /// Utility of a course, a unit vector, at a speed.
+    /// Utility of a course, a unit vector, at a speed, m/s.
     pub(super) fn utility(&self, north: f32, east: f32, speed: f32) -> f32 {
         match self {
             Field::Closest(ready) => ready.utility(north, east, speed),

@@ -3,7 +3,8 @@
 use super::fixed;
 use super::grid::Grid;
 
-/// One peak: highest at the summit, sloping gently to the edge of the peak proper and from there to nothing.
+/// One peak: highest at the summit, sloping gently to the edges of the peak, and from there to
+/// zero.
 ///
 /// ```text
 /// height ............ /\
@@ -14,16 +15,18 @@ use super::grid::Grid;
 ///               base peak^ summit
 /// ```
 ///
-/// This is the shape that MOOS-IvP calls `ZAIC_PEAK`. Lengths along the axis are in rad for courses and in m/s for speeds.
+/// This shape is MOOS-IvP's `ZAIC_PEAK`. Lengths along the axis are in rad for courses and in m/s
+/// for speeds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Peak {
-    /// Where it is highest, rad or m/s.
+    /// Position of the summit, rad or m/s.
     pub summit: f64,
-    /// From the summit to the edge of the peak proper, on either side, rad or m/s.
+    /// From the summit to the edge of the peak, on either side, rad or m/s.
     pub peak_width: f64,
-    /// From there to where nothing is left, rad or m/s.
+    /// From there to zero utility, rad or m/s.
     pub base_width: f64,
-    /// How much lower the edge of the peak proper is than the summit, of 100. With no peak width it has no effect.
+    /// Utility drop from the summit to the edge of the peak, on a scale of 100. Without a peak
+    /// width it has no effect.
     pub summit_delta: f64,
     /// Utility at the summit, 0 to 100.
     pub height: f64,
@@ -42,28 +45,27 @@ impl Peak {
         self.at(grid.speed_m_s(j) - self.summit)
     }
 
-    /// Utility of course `k`; angles go round.
+    /// Utility of course `k`; angles wrap.
     #[must_use]
     pub fn of_course(&self, grid: &Grid, k: usize) -> f32 {
         self.on_courses(grid).at(grid, k)
     }
 
-    /// The peak as a function of course, with what is the same for all courses done once.
+    /// The peak as a function of course, with course-independent values precomputed.
     pub(super) fn on_courses(&self, grid: &Grid) -> CoursePeak {
-        // A summit that is not finite must not be taken for one to the north.
-        // In ticks: the angle between a summit and a course is then an integer, the same in a
-        // scene that is turned or mirrored.
+        // Ticks make the angle between a summit and a course an integer, the same in a turned or
+        // mirrored scene. A non-finite summit must not count as north.
         let summit = if self.summit.is_finite() { grid.ticks_of(self.summit) } else { f64::NAN };
         CoursePeak { peak: *self, summit, tick_rad: grid.tick_rad() }
     }
 
-    /// Utility so far away from the summit; 0 for a distance that is not finite.
+    /// Utility at this distance from the summit; 0 for a non-finite distance.
     #[inline(always)]
     pub(super) fn at(&self, distance: f64) -> f32 {
         let distance = distance.abs();
         let has_width = self.peak_width > 0.0;
         let delta = if has_width { self.summit_delta } else { 0.0 };
-        // All of it, whichever is meant: so it can be done for many distances side by side.
+        // All cases are computed without branches, so that this vectorises.
         let within = if has_width { 100.0 - delta * (distance / self.peak_width) } else { 100.0 };
         let beside = (100.0 - delta) * (1.0 - (distance - self.peak_width) / self.base_width);
         let outside = if distance < self.peak_width + self.base_width { beside } else { 0.0 };
@@ -76,7 +78,7 @@ impl Peak {
 /// A peak as a function of course.
 pub(super) struct CoursePeak {
     peak: Peak,
-    /// In ticks.
+    /// Summit, ticks.
     summit: f64,
     tick_rad: f64,
 }

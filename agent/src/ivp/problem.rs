@@ -11,13 +11,13 @@ use primitives::instructions::Instructions;
 /// A point of the grid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Decision {
-    /// Number of the course.
+    /// Index of the course.
     pub course: u16,
-    /// Number of the speed.
+    /// Index of the speed.
     pub speed: u16,
 }
 
-/// What decides between candidates that are equally good.
+/// Tie-breaker between equally good candidates.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Preference {
     /// Present course of the own ship, rad.
@@ -26,18 +26,18 @@ pub struct Preference {
     pub speed_m_s: f64,
 }
 
-/// What was decided.
+/// The result of a decision.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Choice {
     /// The chosen point.
     pub decision: Decision,
     /// Its weighted sum: the largest on the grid.
     pub value: f64,
-    /// How many points were evaluated, some twice; the others could not win.
+    /// Number of evaluated points, some counted twice; the others could not win.
     pub evaluated: usize,
 }
 
-/// The functions of one decision, ready to be added up; its lists are used again for the next one.
+/// The functions of one decision, prepared for summation; its lists are reused for the next one.
 #[derive(Clone, Debug)]
 pub struct Problem {
     grid: Grid,
@@ -48,7 +48,7 @@ pub struct Problem {
     functions: usize,
     decides_course: bool,
     decides_speed: bool,
-    /// What was found last: as things go on it is nearly as good again.
+    /// The last result: usually nearly as good at the next decision.
     found: Option<Decision>,
 }
 
@@ -59,8 +59,8 @@ impl Problem {
         Problem::with_instructions(grid, Instructions::best())
     }
 
-    /// A problem on this grid, without functions, that is solved with these instructions: which ones changes nothing but how
-    /// long it takes.
+    /// A problem on this grid, without functions, for this instruction set, which affects only
+    /// speed, not results.
     #[must_use]
     pub fn with_instructions(grid: Grid, instructions: Instructions) -> Problem {
         let cells = Cells::new(&grid);
@@ -83,7 +83,7 @@ impl Problem {
         &self.grid
     }
 
-    /// Forgets all functions.
+    /// Removes all functions.
     pub fn clear(&mut self) {
         self.sums.clear(&self.grid);
         self.functions = 0;
@@ -94,13 +94,13 @@ impl Problem {
     /// Adds a function with its priority weight, 0 to [`WEIGHT_MAX`](super::WEIGHT_MAX).
     ///
     /// # Panics
-    /// Beyond [`FUNCTIONS_MAX`] functions, and with a table that is not of the grid's size.
+    /// Beyond [`FUNCTIONS_MAX`] functions, and with a table of another size than the grid.
     pub fn add(&mut self, weight: f64, objective: &Objective) {
         assert!(self.functions < FUNCTIONS_MAX, "more than {FUNCTIONS_MAX} functions");
         let weight = Weight::new(weight);
         self.functions += 1;
-        // Counted all the same: whether a helm has asked for anything does not depend on
-        // weights that are nothing just now.
+        // Counted all the same: whether a helm has a preference does not depend on weights that
+        // happen to be zero.
         if weight.is_zero() {
             return;
         }
@@ -109,25 +109,25 @@ impl Problem {
         self.sums.add(&self.grid, self.instructions, weight, objective);
     }
 
-    /// How many functions were added.
+    /// The number of added functions.
     #[must_use]
     pub fn len(&self) -> usize {
         self.functions
     }
 
-    /// Whether none was added.
+    /// Whether no function was added.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.functions == 0
     }
 
-    /// Whether a function tells courses from each other.
+    /// Whether a function distinguishes courses.
     #[must_use]
     pub fn decides_course(&self) -> bool {
         self.decides_course
     }
 
-    /// Whether a function tells speeds from each other.
+    /// Whether a function distinguishes speeds.
     #[must_use]
     pub fn decides_speed(&self) -> bool {
         self.decides_speed
@@ -144,8 +144,8 @@ impl Problem {
 
     /// The best decision: exactly the largest weighted sum on the grid.
     ///
-    /// Of equal ones it is the course with the smallest angle from the present one, of two such the one to starboard; on
-    /// that course the speed nearest to the present one, of two such the lower.
+    /// Ties go to the course with the smallest angle from the present one, then to starboard; on
+    /// that course to the speed nearest to the present one, then to the lower.
     pub fn solve(&mut self, preference: Preference) -> Choice {
         let search = Search {
             grid: &self.grid,
@@ -153,8 +153,8 @@ impl Problem {
             sums: &self.sums,
             bounds: &mut self.bounds,
             present: Present { course: self.grid.ticks_of(preference.course_rad), speed_m_s: preference.speed_m_s },
-            // A good first guess lets most cells be passed over at once. It changes how many
-            // points are looked at, never which is found.
+            // A good first guess lets most cells be skipped at once. It changes how many points are
+            // evaluated, never the result.
             guess: self.found.map(|found| (found.course.into(), found.speed.into())),
         };
         let (best, evaluated) = self.instructions.run(search);

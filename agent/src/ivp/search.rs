@@ -1,4 +1,5 @@
-//! The search for the largest sum: sectors whose bound reaches the best point found, their tiles, and the points of those.
+//! The search for the largest sum: sectors whose bound reaches the best point found, then their
+//! tiles and points.
 
 use super::cell::{Cells, CourseSpans, SpeedSpans, cell};
 use super::fixed::{FUNCTIONS_MAX, Weight};
@@ -11,7 +12,7 @@ use super::{closest, closing};
 use primitives::instructions::Kernel;
 use std::cmp::Ordering;
 
-/// A sector, tile or point that is done, or that is not on the grid.
+/// Marks a sector, tile or point that is finished or outside the grid.
 const DONE: i32 = i32::MIN;
 
 /// The best point found so far.
@@ -22,22 +23,23 @@ pub(super) struct Best {
     pub(super) speed: usize,
 }
 
-/// What the own ship is doing.
+/// The own ship's present motion.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Present {
-    /// Its course, in ticks.
+    /// Its course, ticks.
     pub(super) course: f64,
     pub(super) speed_m_s: f64,
 }
 
-/// What is known of each cell during a search; used again for the next one.
+/// Bounds of all cells during a search; reused for the next one.
 #[derive(Clone, Debug)]
 pub(super) struct Bounds {
-    /// By sector: what lists and tables come to at most in each of its tiles, in quanta.
+    /// By sector: the upper bound of lists and tables in each of its tiles, in quanta.
     lists: Vec<Lanes<i32>>,
-    /// What no point of a sector exceeds, in quanta, by sector.
+    /// The upper bound of each sector, in quanta.
     sectors: Vec<Lanes<i32>>,
-    /// By sectors side by side and by formula: which of them the formula is clear of, a bit for each.
+    /// By group of sectors and by formula: a bit for each sector in which the formula has full
+    /// utility.
     clear: Vec<u16>,
 }
 
@@ -60,20 +62,19 @@ pub(super) struct Search<'a> {
     pub(super) sums: &'a Sums,
     pub(super) bounds: &'a mut Bounds,
     pub(super) present: Present,
-    /// A point that may be good: what it reaches rules out most others at once.
+    /// A probably good point: its value excludes most others at once.
     pub(super) guess: Option<(usize, usize)>,
 }
 
 impl Kernel for Search<'_> {
-    /// The best point, and how many were evaluated.
+    /// The best point, and the number of evaluated points.
     type Output = (Best, usize);
 
     #[inline(always)]
     fn run(mut self) -> (Best, usize) {
         self.bound_lists();
         self.bound_sectors();
-        // Above what is marked as done, so that no such place is ever taken, and below every
-        // sum.
+        // Above the mark of finished places, so that none of them is taken, and below every sum.
         let mut best = Best { value: DONE + 1, course: 0, speed: 0 };
         let mut evaluated = 0;
         if let Some((k, j)) = self.guess {
@@ -93,7 +94,7 @@ impl Kernel for Search<'_> {
     }
 }
 
-/// The place of the largest number that reaches `least`, and strikes it out.
+/// Removes and returns the place of the largest number that reaches `least`.
 #[inline(always)]
 fn take_most(list: &mut [Lanes<i32>], least: i32) -> Option<usize> {
     let mut side_by_side = list[0];
@@ -103,8 +104,8 @@ fn take_most(list: &mut [Lanes<i32>], least: i32) -> Option<usize> {
         }
     }
     let most = side_by_side.most();
-    // Not where it is equal: a cell with an equal sum may hold the point that is nearer to how
-    // the boat goes now.
+    // Cells with an equal sum stay: one may hold the point that is nearer to the boat's present
+    // motion.
     if most < least {
         return None;
     }
@@ -119,7 +120,7 @@ fn take_most(list: &mut [Lanes<i32>], least: i32) -> Option<usize> {
 }
 
 impl Search<'_> {
-    /// Fills in what lists and tables come to at most.
+    /// Computes the upper bounds of lists and tables.
     #[inline(always)]
     fn bound_lists(&mut self) {
         let courses = self.sums.courses.len();
@@ -130,7 +131,7 @@ impl Search<'_> {
         }
     }
 
-    /// Fills in what no point of a sector exceeds, and which formulas are clear of it.
+    /// Computes the upper bounds of sectors, and the formulas with full utility in them.
     #[inline(always)]
     fn bound_sectors(&mut self) {
         let Bounds { lists, sectors, clear } = &mut *self.bounds;
@@ -146,7 +147,7 @@ impl Search<'_> {
         }
     }
 
-    /// Which formulas are clear of a sector.
+    /// The formulas with full utility in a sector.
     #[inline(always)]
     fn clear(&self, sector: usize) -> Clear<'_> {
         let formulas = self.sums.fields.len();
@@ -156,7 +157,7 @@ impl Search<'_> {
         }
     }
 
-    /// What no point of each tile of a sector exceeds.
+    /// The upper bounds of a sector's tiles.
     #[inline(always)]
     fn tiles(&self, sector: usize) -> Lanes<i32> {
         let courses = &self.cells.tile_courses[sector % self.cells.sector_courses];
@@ -164,20 +165,20 @@ impl Search<'_> {
         self.sums.add_bounds(self.bounds.lists[sector], (courses, speeds), self.clear(sector))
     }
 
-    /// Evaluates a tile, and takes its best point if that is better than what was found.
+    /// Evaluates a tile, and keeps its best point if that beats the best so far.
     #[inline(always)]
     fn evaluate(&self, (course_tile, speed_tile): (usize, usize), best: &mut Best) {
         let sector = speed_tile / SIDE * self.cells.sector_courses + course_tile / SIDE;
         let sums = self.sums.tile(self.cells, (course_tile, speed_tile), self.clear(sector));
         let value = sums.most();
-        // Most tiles end here, by one comparison; only equal or better ones are looked at point
-        // by point.
+        // Most tiles end here, after one comparison; only equal or better ones are checked point by
+        // point.
         if value >= best.value {
             self.keep_best(&sums, value, (SIDE * course_tile, SIDE * speed_tile), best);
         }
     }
 
-    /// Takes the best of points that are as good as what was found or better.
+    /// Keeps the best of the points that equal or beat the best so far.
     #[inline(never)]
     fn keep_best(&self, sums: &Lanes<i32>, value: i32, (course, speed): (usize, usize), best: &mut Best) {
         for (lane, &sum) in sums.0.iter().enumerate() {
@@ -188,11 +189,11 @@ impl Search<'_> {
         }
     }
 
-    /// Whether of two equal points the first is to be taken.
+    /// Whether the first of two equal points wins.
     fn is_nearer(&self, point: &Best, other: &Best) -> bool {
         let turn = |k: usize| {
             let ticks = self.grid.ticks_between(self.present.course, k) as i64;
-            // Some rule there must be, or the choice would hang on the order of the search.
+            // A fixed tie-break: otherwise the choice would depend on the search order.
             (ticks.abs(), ticks < 0)
         };
         let away_m_s = |j: usize| (self.grid.speed_m_s(j) - self.present.speed_m_s).abs();
@@ -206,7 +207,7 @@ impl Search<'_> {
 }
 
 impl Sums {
-    /// What lists and tables come to at most in each tile of a sector.
+    /// The upper bounds of lists and tables in each tile of a sector.
     #[inline(always)]
     fn most_in_lists(&self, across: usize, along: usize) -> Lanes<i32> {
         let (of_courses, of_speeds) = (&self.courses[across], &self.speeds[along]);
@@ -216,7 +217,7 @@ impl Sums {
             tiles.0[i] = most_courses[i % SIDE] + most_speeds[i / SIDE];
         }
         if let Some(rows) = self.rows(across, along) {
-            // One by one: a loop over them would be done side by side in the wrong direction.
+            // Unrolled: a loop over them would be vectorised in the wrong direction.
             let (a, b) = (most_of_rows(rows, of_courses, of_speeds, 0), most_of_rows(rows, of_courses, of_speeds, 1));
             let (c, d) = (most_of_rows(rows, of_courses, of_speeds, 2), most_of_rows(rows, of_courses, of_speeds, 3));
             for i in 0..LANES {
@@ -227,15 +228,14 @@ impl Sums {
         }
         for i in 0..LANES {
             let is_there = most_courses[i % SIDE] >= 0 && most_speeds[i / SIDE] >= 0;
-            // Places beyond the grid have sums far below zero, but the bounds of functions
-            // could lift them: they are marked again at the end.
+            // Lanes beyond the grid have sums far below zero, but the functions' bounds could lift
+            // them: they are marked again at the end.
             tiles.0[i] = if is_there { tiles.0[i] } else { DONE };
         }
         tiles
     }
 
-    /// What comes to so much at most in each of these tiles without formulas, with them. Of those that `clear` names nothing is
-    /// below the most that they can be.
+    /// Adds the formulas' bounds to the tiles' sums. Formulas in `clear` add their full utility.
     #[inline(always)]
     fn add_bounds(&self, mut sums: Lanes<i32>, cells: (&CourseSpans, &SpeedSpans), clear: Clear<'_>) -> Lanes<i32> {
         let mut bounded = Bounded::new();
@@ -252,12 +252,13 @@ impl Sums {
         sums
     }
 
-    /// The same of sectors; fills in which of them each formula is clear of, a bit for each.
+    /// The same for sectors; also sets a bit in `clear` for each sector in which a formula has full
+    /// utility.
     #[inline(always)]
     fn bound_sectors(&self, mut sums: Lanes<i32>, cells: (&CourseSpans, &SpeedSpans), clear: &mut [u16]) -> Lanes<i32> {
         let mut bounded = Bounded::new();
-        // A contact that cannot come near in a whole sector adds its full weight there: most
-        // contacts do, and their points need no distance.
+        // A contact that stays far away in a whole sector adds its full weight there: most contacts
+        // do, and their points need no distance.
         for ((weight, field), clear) in self.fields.iter().zip(clear) {
             *clear = 0;
             match field {
@@ -316,12 +317,13 @@ impl Sums {
     }
 }
 
-/// Which formulas are worth everything in all of a sector: those that keep away from what comes near on no way in it.
+/// Formulas with full utility throughout a sector: those that avoid a contact that comes near on no
+/// way in it.
 #[derive(Clone, Copy)]
 struct Clear<'a> {
-    /// By formula, a bit for each sector side by side.
+    /// By formula, a bit for each sector of the group.
     of_formulas: &'a [u16],
-    /// The bits of the sectors that are meant.
+    /// The bits of the current sectors.
     sectors: u16,
 }
 
@@ -332,7 +334,7 @@ impl Clear<'_> {
     }
 }
 
-/// Adds what distances are worth.
+/// Adds the utilities of distances.
 #[inline(always)]
 fn add_worth(sums: &mut Lanes<i32>, weight: Weight, ready: &closest::Ready, distances: &Lanes<f32>) {
     if ready.seeks() {
@@ -346,7 +348,7 @@ fn add_worth(sums: &mut Lanes<i32>, weight: Weight, ready: &closest::Ready, dist
     }
 }
 
-/// Adds what no rate of closure in cells side by side exceeds.
+/// Adds the upper bounds of closing speeds over a group of cells.
 #[inline(always)]
 fn add_closing_bounds(
     sums: &mut Lanes<i32>,
@@ -359,7 +361,8 @@ fn add_closing_bounds(
     }
 }
 
-/// Which of cells side by side a function is clear of, a bit for each: nothing in them comes nearer than this, m.
+/// A bit for each cell of a group in which no distance falls below the limit, given the least
+/// distances, m.
 #[inline(always)]
 fn clear_bits(ready: &closest::Ready, least: &Lanes<f32>) -> u16 {
     let mut bits = Lanes::splat(0);
@@ -369,7 +372,7 @@ fn clear_bits(ready: &closest::Ready, least: &Lanes<f32>) -> u16 {
     bits.0.iter().fold(0, |all, bit| all | bit) as u16
 }
 
-/// Adds a formula that is worth everything.
+/// Adds a formula at full utility.
 #[inline(always)]
 fn add_full(sums: &mut Lanes<i32>, weight: Weight) {
     let full = weight.quanta(100.0);
@@ -378,7 +381,7 @@ fn add_full(sums: &mut Lanes<i32>, weight: Weight) {
     }
 }
 
-/// What lists and a table come to at most on the courses of one tile, and the speeds of each.
+/// The upper bounds of lists and a table on the courses of one tile, for the speeds of each tile.
 #[inline(always)]
 fn most_of_rows(rows: &[Lanes<i32>], of_courses: &Lanes<i32>, of_speeds: &Lanes<i32>, tile: usize) -> Lanes<i32> {
     let (k, mut most, mut pairs) = (SIDE * tile, Lanes::splat(DONE), Lanes::splat(DONE));
@@ -389,7 +392,7 @@ fn most_of_rows(rows: &[Lanes<i32>], of_courses: &Lanes<i32>, of_speeds: &Lanes<
         let last = larger(c[i] + of[k + 2], d[i] + of[k + 3]);
         most.0[i] = larger(first, last) + of_speeds.0[i];
     }
-    // Of pairs, then of pairs of these.
+    // Of pairs, then of pairs of pairs.
     for i in 0..LANES {
         pairs.0[i] = larger(most.0[i], most.0[i ^ 1]);
     }

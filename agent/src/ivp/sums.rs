@@ -1,4 +1,4 @@
-//! The functions of a decision added up: lists by course and by speed, formulas, and a table.
+//! The functions of a decision in summed form: lists by course and by speed, formulas, and a table.
 
 use super::fixed::{self, FUNCTIONS_MAX, NOWHERE, Weight};
 use super::grid::Grid;
@@ -9,36 +9,38 @@ use super::peak::{CoursePeak, Peak};
 use super::table::Table;
 use primitives::instructions::{Instructions, Kernel};
 
-/// Weighted utilities, added up as far as they can be before a point is known. Its lists are used again for the next decision.
+/// Weighted utilities, added up as far as possible before a point is known. Its lists are reused
+/// for the next decision.
 #[derive(Clone, Debug)]
 pub(super) struct Sums {
-    /// What functions of course alone come to, in quanta by course; beyond the last course, [`NOWHERE`].
+    /// The sums of course-only functions, in quanta by course; beyond the last course, [`NOWHERE`].
     pub(super) courses: Vec<Lanes<i32>>,
-    /// What functions of speed alone come to, in quanta by speed; beyond the last speed, [`NOWHERE`].
+    /// The sums of speed-only functions, in quanta by speed; beyond the last speed, [`NOWHERE`].
     pub(super) speeds: Vec<Lanes<i32>>,
-    /// Formulas in both.
+    /// Formulas of both.
     pub(super) fields: Vec<(Weight, Field)>,
-    /// Weighted tables in both, in quanta: rows of as many speeds as stand side by side, one for each place of `courses`, and
-    /// so on for the next speeds. Of courses side by side that no table lowers it has anything.
+    /// The sum of weighted tables, in quanta: for each group of speeds, a row of speeds per lane of
+    /// `courses`. Undefined for groups of courses that no table lowers.
     table: Vec<Lanes<i32>>,
-    /// By courses side by side: whether a table lowers any.
+    /// By group of courses: whether a table lowers any of them.
     lowered: Vec<bool>,
 }
 
 impl Sums {
-    /// Of no functions.
+    /// A sum of no functions.
     pub(super) fn new(grid: &Grid) -> Sums {
         let lists = |count: usize| vec![Lanes::splat(0); count.div_ceil(LANES)];
         let (courses, speeds) = (lists(grid.courses()), lists(grid.speeds()));
         let lowered = vec![false; courses.len()];
-        // Programs have up to one table for each obstacle and a formula for each contact: no list grows later.
+        // Programs have up to one table per obstacle and one formula per contact: no list grows
+        // later.
         let mut sums =
             Sums { courses, speeds, fields: Vec::with_capacity(FUNCTIONS_MAX / 8), table: Vec::new(), lowered };
         sums.clear(grid);
         sums
     }
 
-    /// Forgets all functions.
+    /// Removes all functions.
     pub(super) fn clear(&mut self, grid: &Grid) {
         clear_lanes(&mut self.courses, grid.courses());
         clear_lanes(&mut self.speeds, grid.speeds());
@@ -52,7 +54,7 @@ impl Sums {
             Parts::Separable => instructions.run(AddSeparable { sums: self, grid, weight, objective }),
             Parts::Field(field) => self.add_field(weight, field),
             Parts::Table(table) => {
-                // The first table makes room for all; later decisions allocate nothing.
+                // The first table allocates for all; later decisions allocate nothing.
                 self.table.resize(self.speeds.len() * LANES * self.courses.len(), Lanes::splat(0));
                 instructions.run(AddTable { sums: self, grid, weight, table });
             }
@@ -60,7 +62,7 @@ impl Sums {
         }
     }
 
-    /// Adds a formula: behind one of the same distances if there is one, since these are then known.
+    /// Adds a formula after one with the same distances, if any, so that it reuses them.
     fn add_field(&mut self, weight: Weight, mut field: Field) {
         let mut place = self.fields.len();
         if let Field::Closest(ready) = &mut field {
@@ -69,7 +71,7 @@ impl Sums {
                 if let Field::Closest(other) = other
                     && ready.has_distances_of(other)
                 {
-                    // Beside those of the same distances: sums are of integers, so their order
+                    // Next to those with the same distances: sums are of integers, so their order
                     // is free.
                     (place, ready.group) = (i + 1, other.group);
                 }
@@ -78,7 +80,8 @@ impl Sums {
         self.fields.insert(place, (weight, field));
     }
 
-    /// The rows of a table for courses side by side with speeds side by side, if any lowers one of these courses.
+    /// The rows of the table for a group of courses and a group of speeds, if any of these courses
+    /// is lowered.
     #[inline(always)]
     pub(super) fn rows(&self, across: usize, along: usize) -> Option<&[Lanes<i32>]> {
         let first = LANES * (along * self.courses.len() + across);
@@ -95,7 +98,7 @@ impl Sums {
     }
 }
 
-/// Adds a function of course and one of speed.
+/// Adds a function of course and a function of speed.
 struct AddSeparable<'a> {
     sums: &'a mut Sums,
     grid: &'a Grid,
@@ -134,7 +137,7 @@ impl Kernel for AddSeparable<'_> {
     }
 }
 
-/// Adds a peak with its weight on courses side by side, from the first on.
+/// Adds a weighted peak to a group of courses, beginning at `first`.
 #[inline(always)]
 fn add_peak(sums: &mut Lanes<i32>, first: usize, weight: Weight, peak: &CoursePeak, grid: &Grid) {
     for i in 0..LANES {
@@ -143,7 +146,7 @@ fn add_peak(sums: &mut Lanes<i32>, first: usize, weight: Weight, peak: &CoursePe
     }
 }
 
-/// A peak with its weight, by speed, m/s.
+/// A weighted peak, by speed, m/s.
 #[inline(always)]
 fn of_peak(weight: Weight, peak: &Peak, speed_m_s: &Lanes<f64>) -> Lanes<i32> {
     let mut quanta = Lanes::splat(0);
@@ -153,7 +156,7 @@ fn of_peak(weight: Weight, peak: &Peak, speed_m_s: &Lanes<f64>) -> Lanes<i32> {
     quanta
 }
 
-/// A limit with its weight, by speed, m/s.
+/// A weighted limit, by speed, m/s.
 #[inline(always)]
 fn of_limit(weight: Weight, limit: &SpeedLimit, speed_m_s: &Lanes<f64>) -> Lanes<i32> {
     let mut quanta = Lanes::splat(0);
@@ -181,13 +184,12 @@ impl Kernel for AddTable<'_> {
             let first = LANES * across;
             let count = (grid.courses() - first).min(LANES);
             for (i, sum) in sums.courses[across].0.iter_mut().enumerate().take(count) {
-                // Courses that nothing lowers are worth 100 at all speeds: most of 360 courses
-                // by 36 speeds need no work. A game of `surveyor_2v2` went from 1,220 to 2,600
-                // times real time when they were left out.
+                // Courses that nothing lowers get 100 at all speeds: most of 360 courses by 36
+                // speeds need no work. Skipping them took a game of `surveyor_2v2` from 1,220 to
+                // 2,600 times real time.
                 *sum += if lowered >> i & 1 == 0 { weight.quanta(100.0) } else { 0 };
             }
-            // Cleared when it is first used in a decision, not before each: most of the table
-            // never is.
+            // Cleared on first use in a decision, not before each: most of the table stays unused.
             if *lowered != 0 && !sums.lowered[across] {
                 sums.lowered[across] = true;
                 for rows in sums.table.chunks_mut(LANES * sums.courses.len()) {
@@ -204,7 +206,7 @@ impl Kernel for AddTable<'_> {
     }
 }
 
-/// Adds utilities with their weight.
+/// Adds weighted utilities.
 #[inline(always)]
 fn add_weighted(sum: &mut Lanes<i32>, weight: Weight, utilities: &Lanes<f32>) {
     for i in 0..LANES {
@@ -212,7 +214,7 @@ fn add_weighted(sum: &mut Lanes<i32>, weight: Weight, utilities: &Lanes<f32>) {
     }
 }
 
-/// Nothing on so many places, side by side, and [`NOWHERE`] beyond them.
+/// Zeros in the first `count` lanes, and [`NOWHERE`] beyond them.
 fn clear_lanes(list: &mut [Lanes<i32>], count: usize) {
     list.fill(Lanes::splat(0));
     if !count.is_multiple_of(LANES) {

@@ -1,22 +1,22 @@
-//! A table: a utility for each course and speed, of functions that have no closed form.
+//! A table: a utility for each course and speed, for functions without a closed form.
 
 use super::grid::Grid;
 use super::lanes::{LANES, Lanes};
 
-/// Utilities by course and speed. At first all of them are 100: courses that stay so at every speed take no work.
+/// Utilities by course and speed, initially 100: courses that stay at 100 cost nothing.
 #[derive(Clone, Debug, Default)]
 pub struct Table {
     courses: usize,
     speeds: usize,
-    /// By course, as many side by side as hold all speeds. What it has of other courses than the lowered ones, and beyond the
-    /// last speed, means nothing.
+    /// By course, as many groups as hold all speeds. Undefined for courses that are not lowered,
+    /// and beyond the last speed.
     rows: Vec<Lanes<f32>>,
-    /// By courses side by side: the lowered ones, a bit for each.
+    /// By group of courses: a bit for each lowered one.
     lowered: Vec<u16>,
 }
 
 impl Table {
-    /// The utilities that a function has.
+    /// A table of a function's utilities.
     pub fn of(grid: &Grid, utility: impl Fn(usize, usize) -> f32) -> Table {
         let mut table = Table::default();
         table.clear(grid);
@@ -30,7 +30,7 @@ impl Table {
         table
     }
 
-    /// Makes everything worth 100 again, on a grid.
+    /// Resets all utilities to 100 on a grid.
     pub fn clear(&mut self, grid: &Grid) {
         (self.courses, self.speeds) = (grid.courses(), grid.speeds());
         self.rows.resize(self.courses * self.lanes(), Lanes::splat(100.0));
@@ -38,30 +38,30 @@ impl Table {
         self.lowered.resize(self.courses.div_ceil(LANES), 0);
     }
 
-    /// The utilities of a course, to be lowered: by speed, side by side.
+    /// The utilities of a course for lowering: by speed, in groups.
     #[inline(always)]
     pub(crate) fn lowered_mut(&mut self, k: usize) -> &mut [Lanes<f32>] {
         let lanes = self.lanes();
         let (row, lowered) = (&mut self.rows[k * lanes..][..lanes], &mut self.lowered[k / LANES]);
         if *lowered >> (k % LANES) & 1 == 0 {
-            // Filled when it is first asked for: so `clear` costs nothing for each course.
+            // Filled on first use: so `clear` costs nothing per course.
             *lowered |= 1 << (k % LANES);
             row.fill(Lanes::splat(100.0));
         }
         row
     }
 
-    /// Courses and speeds.
+    /// The numbers of courses and speeds.
     pub(super) fn size(&self) -> (usize, usize) {
         (self.courses, self.speeds)
     }
 
-    /// Which of courses side by side are lowered, a bit for each.
+    /// By group of courses, a bit for each lowered one.
     pub(super) fn lowered(&self) -> &[u16] {
         &self.lowered
     }
 
-    /// The utilities of a lowered course, by speed, side by side.
+    /// The utilities of a lowered course, by speed, in groups.
     #[inline(always)]
     pub(super) fn row(&self, k: usize) -> &[Lanes<f32>] {
         &self.rows[k * self.lanes()..][..self.lanes()]
@@ -73,7 +73,7 @@ impl Table {
         if self.lowered[k / LANES] >> (k % LANES) & 1 == 0 { 100.0 } else { self.row(k)[j / LANES].0[j % LANES] }
     }
 
-    /// How many side by side hold all speeds.
+    /// The number of groups that hold all speeds.
     fn lanes(&self) -> usize {
         self.speeds.div_ceil(LANES)
     }

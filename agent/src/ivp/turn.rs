@@ -1,14 +1,14 @@
-//! How the own ship comes to go as decided: it goes on as it goes for its reaction time, turns the shorter way along an arc at
-//! its present speed, and then goes straight, at a speed that it gains and loses only so fast.
+//! The own ship's response to a decision: it keeps its motion for its reaction time, turns the
+//! shorter way along an arc at its present speed, then goes straight, with limited acceleration.
 //!
-//! From the heading `h` to the course `d`, unit vectors with the angle `a` between them, a turn at the yaw rate `r` lasts
-//! `a / r`. With the speed `u` it is an arc of the radius `u / r`, the chord of which ends at
+//! From the heading `h` to the course `d`, unit vectors with the angle `a` between them, a turn at
+//! the yaw rate `r` lasts `a / r`. At speed `u` it is an arc of radius `u / r`, whose chord ends at
 //!
 //! ```text
 //! (u / r) |d - h| (h + d) / |h + d|           a = 2 asin(x) = 2 x (1 + x^2 / 6 + 0.36 x^8), within 6 %, x = |d - h| / 2
 //! ```
 //!
-//! To the course that leads straight back both ways round are as short, and the arc ends on either side.
+//! To the course straight back both directions are equally short, and the arc ends on either side.
 
 use super::cell::Cell;
 use super::lanes::{larger, smaller};
@@ -17,29 +17,30 @@ use primitives::Ned;
 /// A vector: north, east.
 pub(super) type Vector = (f32, f32);
 
-/// How slow the own ship is to do as decided.
+/// The own ship's delay in following a decision.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lag {
     /// Present velocity of the own ship, m/s.
     pub velocity: Ned,
     /// Present heading, as a unit vector.
     pub heading: Ned,
-    /// Until a decision shows at all, s.
+    /// Time until a decision takes effect, s.
     pub reaction_s: f64,
-    /// How fast it turns, rad/s.
+    /// Turn rate, rad/s.
     pub turn_rad_s: f64,
-    /// How fast it gains speed, m/s².
+    /// Acceleration, m/s².
     pub acceleration_m_s2: f64,
-    /// How fast it loses speed, m/s².
+    /// Deceleration, m/s².
     pub deceleration_m_s2: f64,
 }
 
-/// The angle of a turn is close to this many times the chord that it spans on a circle of radius 1: between 1 for small turns
-/// and half of pi for half a turn.
+/// Approximate ratio of a turn's angle to its chord on a unit circle: between 1 for small turns and
+/// half of pi for half a turn.
 const ANGLE_OF_CHORD: f64 = 1.15;
 
 impl Lag {
-    /// Until the own ship is on a course, a unit vector, if it goes on as it goes for half of its turn, s.
+    /// Time until the own ship is on a course, a unit vector, if it keeps its motion for half of
+    /// its turn, s.
     #[inline(always)]
     #[must_use]
     pub fn duration_s(&self, course: Ned) -> f64 {
@@ -52,7 +53,7 @@ impl Lag {
         self.velocity.dot(self.heading).max(0.0)
     }
 
-    /// Whether it can be reckoned with.
+    /// Whether all numbers are valid for computing.
     pub(super) fn is_sound(&self) -> bool {
         let rates = [self.turn_rad_s, self.acceleration_m_s2, self.deceleration_m_s2];
         let numbers = [self.velocity.north, self.velocity.east, self.heading.north, self.heading.east, self.reaction_s];
@@ -60,16 +61,16 @@ impl Lag {
         numbers.iter().all(sound) && self.reaction_s >= 0.0 && rates.iter().all(|rate| sound(rate) && *rate > 1e-4)
     }
 
-    /// How long it may take until the own ship is on its course, s.
+    /// The longest time until the own ship is on its course, s.
     pub(super) fn most_s(&self) -> f64 {
         self.reaction_s + std::f64::consts::PI / self.turn_rad_s
     }
 }
 
-/// What an angle may be wrong by in single precision, as its cosine is near 1, rad.
+/// Largest error of an angle in single precision, as its cosine is near 1, rad.
 const ROUNDING_RAD: f32 = 1e-3;
 
-/// How the own ship turns, in single precision: the same for all contacts.
+/// The own ship's turn in single precision: the same for all contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Turning {
     heading: Vector,
@@ -80,9 +81,9 @@ pub(super) struct Turning {
 /// A turn onto a course.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Turn {
-    /// s
+    /// Its duration, s.
     pub(super) duration: f32,
-    /// Where it ends, through the water, m.
+    /// Its end point, through the water, m.
     pub(super) by: Vector,
 }
 
@@ -91,20 +92,20 @@ pub(super) struct Turn {
 pub(super) struct Fan {
     pub(super) first: Turn,
     pub(super) last: Turn,
-    /// How far the end of any of them may be from the straight line between these two, m.
+    /// How far any of their end points may be from the straight line between these two, m.
     pub(super) off: f32,
-    /// And how far its duration from the mean of theirs that goes with it, s.
+    /// How far its duration may be from the corresponding mean of theirs, s.
     pub(super) off_s: f32,
 }
 
 impl Turning {
-    /// Of a ship that does as decided at once.
+    /// For a ship that follows decisions at once.
     const NONE: Turning = Turning { heading: (1.0, 0.0), s_per_rad: 0.0, radius: 0.0 };
 
     pub(super) fn new(lag: Option<&Lag>) -> Turning {
         lag.map_or(Turning::NONE, |lag| Turning {
-            // The arc is worked out from chord and middle of two unit vectors, without an
-            // angle: inverse functions are slow side by side, and differ between machines.
+            // The arc is computed from the chord and the middle of two unit vectors, without an
+            // angle: inverse functions vectorise poorly and differ between machines.
             heading: (lag.heading.north as f32, lag.heading.east as f32),
             s_per_rad: (1.0 / lag.turn_rad_s) as f32,
             radius: (lag.ahead_m_s() / lag.turn_rad_s) as f32,
@@ -120,17 +121,18 @@ impl Turning {
         let arc_of_chord = 1.0 + x2 * (1.0 / 6.0) + 0.36 * x4 * x4;
         let (middle_north, middle_east) = (self.heading.0 + north, self.heading.1 + east);
         let middle = (middle_north * middle_north + middle_east * middle_east).sqrt();
-        // To the course straight back the middle of both headings is nothing, and its direction
-        // open.
+        // To the course straight back the middle of both headings is zero and has no direction.
         let scale = self.radius * chord / larger(middle, 1e-3);
         Turn { duration: chord * arc_of_chord * self.s_per_rad, by: (scale * middle_north, scale * middle_east) }
     }
 
     /// Turns onto the courses of a cell.
     ///
-    /// With the course their ends move at the rate of the radius, which itself turns as the course does, and their durations at
-    /// a rate that changes by less than 2.4: what is between two of them is off the straight line by no more than half of
-    /// that times the square of half the cell's angle. At the bow both rates change their sign, and opposite to it the ends jump.
+    /// With the course, their end points move at the rate of the radius, in a direction that
+    /// rotates with the course. Their durations change at a rate that varies by less than 2.4. A
+    /// value between two of them is off the straight line by at most half of that times the square
+    /// of half the cell's angle. At the bow both rates change sign, and opposite to it the end
+    /// points jump.
     #[inline(always)]
     pub(super) fn fan(&self, cell: &Cell) -> Fan {
         let (first, last) = (self.to(cell.first), self.to(cell.last));
@@ -139,8 +141,8 @@ impl Turning {
         let cosine = self.heading.0 * cell.north + self.heading.1 * cell.east;
         let within = 1.0 - larger(cosine, -cosine) < 0.55 * (cell.half + ROUNDING_RAD) * (cell.half + ROUNDING_RAD);
         // Between two courses on either side of the bow the arcs bend to both sides, and near
-        // straight back they end far apart: there the four corners do not enclose them, and the
-        // bound is widened by as much as they can be off.
+        // straight back they end far apart. The four corners do not enclose them there, so the
+        // bound is widened by the largest deviation.
         let (at_bow, at_back) = (within & (cosine > 0.0), within & (cosine <= 0.0));
         off += if at_bow { 1.1 * cell.half } else { 0.0 } + if at_back { 4.0 } else { 0.0 };
         off_s += if at_bow { 1.3 * cell.half } else { 0.0 } + if at_back { 3.2 } else { 0.0 };
@@ -149,24 +151,25 @@ impl Turning {
     }
 }
 
-/// The mean speed of the own ship on its straight run until a contact is met: it gains and loses speed only so fast.
+/// The mean speed of the own ship on its straight run until it meets a contact, with limited
+/// acceleration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct MeanSpeed {
     ahead: f32,
-    /// The most that it gains until then, m/s, and one by that.
+    /// The largest gain until then, m/s, and its reciprocal.
     gain: (f32, f32),
-    /// The same of what it loses.
+    /// The same for the largest loss.
     loss: (f32, f32),
 }
 
 impl MeanSpeed {
-    /// Any speed at once. A power of two: nothing is rounded.
+    /// Any speed at once. A power of two, so that nothing is rounded.
     const NONE: MeanSpeed = {
         let much = (1_u64 << 60) as f32;
         MeanSpeed { ahead: 0.0, gain: (much, 1.0 / much), loss: (much, 1.0 / much) }
     };
 
-    /// Until so many seconds from now.
+    /// The mean speed until `until_s` from now.
     pub(super) fn new(lag: Option<&Lag>, until_s: f64) -> MeanSpeed {
         let change = |m_s2: f64| ((m_s2 * until_s) as f32, (1.0 / (m_s2 * until_s)) as f32);
         lag.map_or(MeanSpeed::NONE, |lag| MeanSpeed {
@@ -176,8 +179,8 @@ impl MeanSpeed {
         })
     }
 
-    /// Of a ship that is to go at a speed. With the share `y` of the time that the change takes, the mean of the change is
-    /// `y - y^2 / 2` of the most that it could be.
+    /// For a ship ordered to a speed. If the change takes the share `y` of the time, the mean
+    /// change is `y - y^2 / 2` of the largest possible.
     #[inline(always)]
     pub(super) fn of(&self, speed: f32) -> f32 {
         let (most, per_most) = if speed > self.ahead { self.gain } else { self.loss };

@@ -1,4 +1,5 @@
-//! The loop of an agent process: pictures come in, its minds decide, messages to mates and orders go out.
+//! The loop of an agent process: receives pictures, lets its minds decide, and sends orders and
+//! messages to mates.
 
 use super::error::NodeError;
 use super::helm_queries::HelmQueries;
@@ -18,34 +19,35 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-/// How often an agent that hears nothing looks whether the sim is still there.
+/// How often an agent without incoming pictures checks that the sim is still alive.
 const LOOK_AGAIN: Duration = Duration::from_millis(100);
-/// In lockstep messages of mates are there before the picture, unless something on the way between several hubs changes
-/// their order, or a link was cut: they are waited for this long, once.
+/// In lockstep, messages of mates arrive before the picture, unless hubs on the way reorder them or
+/// a link was cut. The agent waits this long for them, once.
 const MESSAGES_LATE: Duration = Duration::from_millis(500);
-/// Pictures of a team that are kept while the minds decide.
+/// Maximum number of pictures per team queued while the minds decide.
 const UNREAD_MAX: usize = 64;
-/// Events that are carried over from pictures on which nobody decided.
+/// Maximum number of events carried over from pictures without a decision.
 const EVENTS_MAX: usize = 1024;
 
-/// The minds at work.
+/// The minds and their connections during a game.
 pub(super) struct AgentLoop {
     runner: MindRunner,
     talk: Talk,
     policies: PolicyInbox,
-    /// Opened when it has joined: an agent that waits for a boat must not answer for the one that has it.
+    /// Opened after joining: an agent that waits for a boat must not answer for the agent that has
+    /// it.
     helm_queries: Option<HelmQueries>,
     orders: Publisher,
     subscriptions: Subscriptions,
     ticket: u64,
     /// The newest picture, by team.
     pictures: Vec<Option<Picture>>,
-    /// What was refused of pictures.
+    /// Counts of rejected pictures.
     refusals: Refusals,
 }
 
 impl AgentLoop {
-    /// Makes the minds, subscribes and prepares to publish, before the sim counts on them.
+    /// Creates the minds, subscriptions and publishers before the sim depends on them.
     pub(super) fn open(
         bus: &Bus,
         game: &GameName,
@@ -57,12 +59,11 @@ impl AgentLoop {
             Some(strategy) => mind_by(scenario, vehicle, strategy),
             None => mind_of(scenario, vehicle),
         };
-        // A name that is unknown the sim will refuse.
+        // The sim will reject unknown names.
         let known = settings.vehicles.iter().filter_map(|name| scenario.vehicle_by_name(name));
         let runner = MindRunner::new(known.map(|vehicle| (vehicle, mind(vehicle))));
-        // The sim waits for `patience_s` before it takes an agent for lost: whoever waits for
-        // others uses at most half of it, or a mate that is late would cost this agent the
-        // game.
+        // The sim waits `patience_s` before it drops an agent. Waits for mates use at most half of
+        // it, so that a late mate cannot cost this agent the game.
         let half_patience = Duration::from_secs_f64(0.5 * scenario.patience_s);
         let is_lockstep = info.pace == "lockstep";
         let limit = |wait: Duration| if is_lockstep { wait.min(half_patience) } else { Duration::ZERO };
@@ -81,7 +82,7 @@ impl AgentLoop {
         })
     }
 
-    /// The sim has granted these boats, with this ticket.
+    /// Joins with the boats and the ticket that the sim has granted.
     pub(super) fn join(
         &mut self,
         bus: &Bus,
@@ -89,8 +90,8 @@ impl AgentLoop {
         scenario: &Scenario,
         joined: Joined,
     ) -> Result<(), NodeError> {
-        // Orders are told apart by vehicle: with others than were asked for the minds would
-        // steer boats they know nothing of.
+        // Orders carry the vehicle: with boats other than the requested ones the minds would steer
+        // boats they do not know.
         if !self.runner.minds().map(|(vehicle, _)| vehicle).eq(joined.vehicles) {
             return Err(NodeError::Refused("it granted other boats than those that were asked for".to_owned()));
         }
@@ -99,7 +100,7 @@ impl AgentLoop {
         Ok(())
     }
 
-    /// Everything that was refused so far, and what never came.
+    /// All rejected messages so far, and expected ones that never arrived.
     pub(super) fn refusals(&self) -> Refusals {
         self.refusals + self.talk.refusals() + self.policies.refusals()
     }
@@ -116,12 +117,12 @@ impl AgentLoop {
                     return Ok(());
                 }
                 // The newest picture only: a queue would make a slow agent work on stale ones.
-                // What was skipped gives its events to the next.
+                // Events of skipped pictures carry over to the next.
                 decided |= self.decide()?;
             }
             if let Some(queries) = &mut self.helm_queries {
-                // After the orders are out: whoever looks inside slows a lockstep game down,
-                // but changes none of its decisions.
+                // After the orders are sent: inspection slows a lockstep game down but changes none
+                // of its decisions.
                 queries.answer(&mut self.runner, decided);
             }
             match self.subscriptions.sim.state() {
@@ -133,12 +134,12 @@ impl AgentLoop {
         Ok(())
     }
 
-    /// Takes in a picture.
+    /// Receives a picture.
     fn see(&mut self, cell: usize, bytes: &[u8]) -> Result<(), NodeError> {
         let mut picture: Picture = match codec::decode(bytes) {
             Ok(picture) => picture,
             Err(e @ DecodeError::Version { .. }) => return Err(NodeError::Version { theirs: e.to_string() }),
-            // Damaged on the way; the sim sends it again.
+            // Damaged in transit; the sim sends it again.
             Err(_) => return Ok(()),
         };
         self.refusals.add(Refusal::BadNumber, picture.remove_bad_numbers());
@@ -147,18 +148,18 @@ impl AgentLoop {
         Ok(())
     }
 
-    /// Decides when the pictures of all teams are of one tick; answers a tick that is asked again as before. Gives
-    /// whether the minds have decided.
+    /// Decides when the pictures of all teams have the same tick; answers a repeated tick with the
+    /// same orders. Returns whether the minds have decided.
     fn decide(&mut self) -> Result<bool, NodeError> {
         let stamp_of = |team: &TeamId| self.pictures[team.index()].as_ref().map(|picture| picture.stamp);
         let Some(stamp) = self.subscriptions.teams.first().and_then(stamp_of) else { return Ok(false) };
-        // Boats of several teams decide on one moment: with the pictures of different ones the
-        // result would depend on which came first.
+        // Boats of several teams decide on the same tick: with pictures of different ticks the
+        // result would depend on their order of arrival.
         if self.subscriptions.teams.iter().any(|team| stamp_of(team) != Some(stamp)) {
             return Ok(false);
         }
-        // The sim repeats pictures whose answers it misses, every 250 ms: they are answered
-        // with the same orders, since to decide again would change what minds remember.
+        // The sim repeats unanswered pictures every 250 ms. The agent repeats the same orders,
+        // since deciding again would change the minds' memory.
         let is_new = self.runner.decided() != Some(stamp.seq);
         if is_new {
             self.talk.hear(&mut self.runner, stamp.seq);
@@ -167,7 +168,8 @@ impl AgentLoop {
             self.runner.decide(stamp, |vehicle| pictures.iter().flatten().find(|p| p.own(vehicle).is_some()));
             self.talk.publish_words(self.runner.sent(), stamp);
         }
-        // Messages to mates before orders: the sim goes on when it has the orders, and then the messages are under way.
+        // Messages to mates before orders: the sim advances when it has the orders, and then the
+        // messages are already in transit.
         self.talk.send()?;
         if let Some(orders) = self.runner.answer(self.ticket) {
             self.orders.send(&orders)?;
@@ -176,8 +178,8 @@ impl AgentLoop {
     }
 }
 
-/// A picture with the events of the one before, if nobody decided on that: `decided` is the number of the last decision. An
-/// event is in one picture only.
+/// A picture with the events of the previous one added, if no decision was made on that one;
+/// `decided` is the number of the last decision. Each event is in one picture only.
 fn with_missed_events(mut picture: Picture, before: Option<Picture>, decided: Option<u64>) -> Picture {
     let is_missed =
         |old: &Picture| old.stamp.seq < picture.stamp.seq && decided.is_none_or(|decided| decided < old.stamp.seq);
@@ -189,11 +191,11 @@ fn with_missed_events(mut picture: Picture, before: Option<Picture>, decided: Op
     picture
 }
 
-/// What comes in from the sim: the newest pictures of each team, oldest first, and whether it is alive.
+/// Input from the sim: the newest pictures of each team, oldest first, and its liveliness.
 struct Subscriptions {
     pictures: Arc<Latest<Vec<Vec<u8>>>>,
     sim: SimWatch,
-    /// The teams whose pictures come.
+    /// The teams of this agent's boats, whose pictures it receives.
     teams: Vec<TeamId>,
     _declarations: Vec<Declaration>,
 }

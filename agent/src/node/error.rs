@@ -1,32 +1,32 @@
-//! Why an agent could not play to the end.
+//! Errors that end an agent's game early.
 
 use bus::BusError;
 use bus::game_search::{NotFound, Refusal};
 use std::time::Duration;
 use thiserror::Error;
 
-/// Why an agent could not play to the end.
+/// An error that ends an agent's game early.
 #[derive(Debug, Error)]
 pub enum NodeError {
     /// The network failed.
     #[error(transparent)]
     Bus(#[from] BusError),
-    /// No sim within the time allowed.
+    /// No sim found within the allowed time.
     #[error("no game to join after {0:.0?}: {1}")]
     NoGame(Duration, String),
-    /// The sim said no.
+    /// The sim rejected the request.
     #[error("the sim refuses: {0}")]
     Refused(String),
-    /// The sim speaks another version.
+    /// The sim uses another version.
     #[error("agent and sim are not of one version: the agent is {ours}, {theirs}", ours = primitives::VERSION)]
     Version {
-        /// What is known of the sim's.
+        /// The sim's version, as far as known.
         theirs: String,
     },
-    /// The sim fell silent.
+    /// No picture from the sim for this long.
     #[error("the sim is gone: no picture for {0:.1?}")]
     SimGone(Duration),
-    /// Another sim serves a game of the same name, and knows nothing of us.
+    /// Another sim now serves a game of the same name and does not know this agent.
     #[error("the sim is gone, and another one serves the game: join again")]
     SimReplaced,
 }

@@ -1,4 +1,4 @@
-//! Helm queries: a boat's helm report, answered between decisions.
+//! Helm queries: requests for a boat's helm report, answered between decisions.
 
 use super::error::NodeError;
 use crate::{Mind, MindRunner};
@@ -9,14 +9,15 @@ use primitives::VehicleId;
 use scenario::Scenario;
 use std::time::{Duration, Instant};
 
-/// Queries that may wait to be read.
+/// Capacity of the query queue.
 const INBOX: usize = 32;
-/// A mind keeps its utilities for this long after the last query that wanted them.
+/// A mind keeps its utilities for this long after the last query that requested them.
 const LOOKED_AT: Duration = Duration::from_secs(5);
-/// A query that came before anything was kept waits this long for the next decision. In a game that is paused there is
-/// none, and the page waits no longer than a second.
+/// A query before the first kept decision waits this long for one. A paused game makes no
+/// decisions, and the page waits at most a second.
 const NEXT_DECISION: Duration = Duration::from_millis(500);
-/// Answers between two looks at the pictures: a flood of queries must not keep a boat from deciding.
+/// Maximum number of answers between picture polls: a flood of queries must not keep a boat from
+/// deciding.
 const ANSWERS: usize = 2;
 
 /// A query about one of the boats.
@@ -27,18 +28,18 @@ struct Asked {
     at: Instant,
 }
 
-/// The queries about the helms that are run here.
+/// The queries about the helms of this process.
 pub(super) struct HelmQueries {
     inbox: Inbox<(VehicleId, Query)>,
-    /// Asked before a decision was kept.
+    /// Queries received before a decision was kept.
     waiting: Vec<Asked>,
-    /// The boats whose helms are looked at, and when each was last.
+    /// The inspected boats, each with the time of its last query.
     looked: Vec<(VehicleId, Instant)>,
     _declarations: Vec<Declaration>,
 }
 
 impl HelmQueries {
-    /// Begins to take queries about each helm.
+    /// Opens the query endpoint of each helm.
     pub(super) fn open(
         bus: &Bus,
         game: &GameName,
@@ -55,7 +56,7 @@ impl HelmQueries {
         Ok(HelmQueries { inbox, waiting: Vec::new(), looked: Vec::new(), _declarations: declarations })
     }
 
-    /// Answers what was asked; `decided` says whether the minds have decided since the last time.
+    /// Answers pending queries; `decided` is whether the minds have decided since the last call.
     pub(super) fn answer(&mut self, runner: &mut MindRunner, decided: bool) {
         let waiting = std::mem::take(&mut self.waiting);
         for asked in waiting {
@@ -77,11 +78,11 @@ impl HelmQueries {
     }
 
     fn answer_query(&mut self, runner: &mut MindRunner, vehicle: VehicleId, query: Query) {
-        // A query without a payload wants the short answer.
+        // A query without a payload requests the short answer.
         let wants: HelmQuestion = serde_json::from_slice(query.payload()).unwrap_or_default();
         let asked = Asked { vehicle, wants, query, at: clock::now() };
         if !wants.functions {
-            // Modes and weights are there without anybody looking: a list of boats costs a helm nothing.
+            // Modes and weights need no inspection: a list of boats costs a helm nothing.
             return reply(runner, asked);
         }
         match self.looked.iter_mut().find(|(looked, _)| *looked == vehicle) {
@@ -100,7 +101,7 @@ impl HelmQueries {
     }
 
     fn postpone(&mut self, asked: Asked) {
-        // One more is dropped unanswered: whoever asks asks again.
+        // Excess queries are dropped unanswered; clients retry.
         if self.waiting.len() < INBOX {
             self.waiting.push(asked);
         }

@@ -1,4 +1,5 @@
-//! An agent on the network: finds a game, joins it, and decides for its vehicles until the game is over.
+//! An agent on the network: finds a game, joins it, and decides for its vehicles until the game is
+//! over.
 //!
 //! Everything but the vehicles' names comes from the sim: field, rules, strategies, seed.
 
@@ -20,19 +21,19 @@ use messages::refusal::Refusals;
 
 /// What an agent reports to the program that runs it.
 pub enum News<'a> {
-    /// The sim is not there (yet).
+    /// No sim found (yet).
     Looking {
-        /// What is missing.
+        /// The reason for waiting.
         reason: &'a str,
     },
     /// The agent is in the game.
     Joined {
-        /// Its name.
+        /// The game's name.
         game: &'a str,
     },
-    /// The game is over, or left.
+    /// The game is over, or the agent has left it.
     Left {
-        /// Messages of others that were not used, and what never came.
+        /// Counts of rejected messages and of expected ones that never arrived.
         refused: Refusals,
     },
 }
@@ -40,7 +41,7 @@ pub enum News<'a> {
 /// Joins a game and plays until it is over.
 ///
 /// # Errors
-/// [`NodeError`] says what went wrong; a sim that dies is an error.
+/// [`NodeError`]; the loss of the sim is an error.
 pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), NodeError> {
     let mut search = GameSearch::new(settings.wait, &settings.stop);
     let mut report = |reason: &str| tell(News::Looking { reason });
@@ -53,8 +54,8 @@ pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), 
     tell(News::Joined { game: game.as_str() });
     let played = agent.play(&settings.stop);
     tell(News::Left { refused: agent.refusals() });
-    // A link that is closed tells the sim at once that the agent has left; its boats hold with
-    // the next decision.
+    // Closing the link tells the sim at once that the agent has left; its boats hold from the next
+    // decision on.
     bus.close();
     played
 }

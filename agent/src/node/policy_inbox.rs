@@ -1,4 +1,5 @@
-//! Policy proposals: what programs and people outside propose for the boats that are run here.
+//! Policy proposals: courses and speeds that external programs and people propose for the boats of
+//! this process.
 
 use super::error::NodeError;
 use crate::MindRunner;
@@ -12,33 +13,33 @@ use scenario::strategy::Proposer;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// What was proposed for one boat.
+/// The proposals for one boat.
 #[derive(Clone, Debug)]
 struct Boat {
     vehicle: VehicleId,
-    /// A person is not waited for.
+    /// Whether decisions wait for this boat's proposal; never for a person's.
     is_awaited: bool,
     newest: Option<PolicyProposal>,
 }
 
-/// What was proposed for all of them.
+/// The proposals for all boats.
 #[derive(Clone, Debug, Default)]
 struct Proposals {
     boats: Vec<Boat>,
     refusals: Refusals,
 }
 
-/// The proposals to the boats whose strategy uses them.
+/// The proposals for the boats whose strategy uses them.
 pub(super) struct PolicyInbox {
     proposals: Arc<Watched<Proposals>>,
-    /// How long the proposal for a decision is waited for.
+    /// Maximum wait for the proposal to a decision.
     patience: Duration,
     is_wanted: bool,
     _declarations: Vec<Declaration>,
 }
 
 impl PolicyInbox {
-    /// Subscribes to proposals, where a strategy uses them.
+    /// Subscribes to proposals if a strategy uses them.
     pub(super) fn open(
         bus: &Bus,
         game: &GameName,
@@ -59,14 +60,14 @@ impl PolicyInbox {
         Ok(PolicyInbox { proposals, patience, is_wanted: !boats.is_empty(), _declarations: declarations })
     }
 
-    /// Gives the newest proposals to the minds that decide on the picture with this stamp.
+    /// Passes the newest proposals to the minds that decide on the picture with this stamp.
     pub(super) fn give(&mut self, runner: &mut MindRunner, stamp: Stamp) {
         if !self.is_wanted {
             return;
         }
         let is_complete =
-            // In real time nobody waits for a policy. In lockstep not to wait would make the
-            // game depend on who is faster.
+            // Real-time games do not wait for policies. In lockstep, not waiting would make the
+            // game depend on process speed.
             self.patience.is_zero() || self.proposals.wait(self.patience, |proposals| proposals.is_for(stamp.seq));
         self.proposals.visit(|proposals| {
             proposals.refusals.add(Refusal::ProposalMissing, u64::from(!is_complete));
@@ -83,8 +84,7 @@ impl PolicyInbox {
 impl Proposals {
     fn receive(&mut self, i: usize, bytes: &[u8]) {
         let Some(proposal) = self.refusals.decode::<PolicyProposal>(bytes) else { return };
-        // Access control goes by the key, so the key counts, and a message that says otherwise
-        // is refused.
+        // Access control is by key, so a message whose vehicle contradicts its key is rejected.
         if proposal.vehicle != self.boats[i].vehicle {
             self.refusals.count(Refusal::NotYours);
         } else if !is_sound(&proposal) {
@@ -94,14 +94,14 @@ impl Proposals {
         }
     }
 
-    /// Whether the proposals for decision `seq` are there that are waited for.
+    /// Whether all awaited proposals for decision `seq` have arrived.
     fn is_for(&self, seq: u64) -> bool {
         let is_for = |proposal: &PolicyProposal| proposal.stamp.seq >= seq;
         self.boats.iter().all(|boat| !boat.is_awaited || boat.newest.as_ref().is_some_and(is_for))
     }
 }
 
-/// Whether its numbers are numbers, and it is of a time in the game.
+/// Whether its values are finite and its time is within the game.
 fn is_sound(proposal: &PolicyProposal) -> bool {
     proposal.course_rad.is_finite() && proposal.speed_m_s.is_finite() && proposal.stamp.valid_ns >= SimTime::ZERO
 }

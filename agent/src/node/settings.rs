@@ -7,22 +7,22 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-/// What an agent node needs to know.
+/// Settings of an agent node.
 pub struct Settings {
-    /// The game to join; without a name, the only one there is.
+    /// The game to join; if none, the only one available.
     pub game: Option<GameName>,
-    /// Where the sim is.
+    /// The address of the sim.
     pub place: Place,
-    /// The vehicles to decide for, by name.
+    /// Names of the vehicles to decide for.
     pub vehicles: Vec<String>,
-    /// How long to look for the sim and to wait until the vehicles are free.
+    /// Maximum time to search for the sim and to wait for free vehicles.
     pub wait: Duration,
-    /// After this long without a picture the sim counts as dead.
+    /// Without a picture for this long, the sim counts as dead.
     pub silence: Duration,
-    /// How to play, in place of what the scenario says.
+    /// Overrides the scenario's strategy.
     pub strategy: Option<Strategy>,
-    /// In lockstep: how long the proposal of a policy is waited for at every decision, where a strategy uses one. No
-    /// longer than half of the scenario's patience, though.
+    /// In lockstep: maximum wait for a policy's proposal at every decision, where a strategy uses
+    /// one. Limited to half of the scenario's patience.
     pub policy_wait: Duration,
     /// Set from outside to leave the game.
     pub stop: Arc<AtomicBool>,

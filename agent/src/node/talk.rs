@@ -1,4 +1,4 @@
-//! Team messages over the network: what the minds here publish to their mates elsewhere, and receive from them.
+//! Team messages over the network: published to and received from mates in other processes.
 
 use super::error::NodeError;
 use super::team_inbox::TeamInbox;
@@ -16,23 +16,23 @@ use std::time::Duration;
 struct Outgoing {
     team: TeamId,
     publisher: Publisher,
-    /// Sent last, to be sent again when orders are sent again.
+    /// The last message, kept for repeating together with repeated orders.
     last: Option<Say>,
 }
 
-/// The team messages of the teams whose minds here talk.
+/// The messages of all teams with a talking mind here.
 pub(super) struct Talk {
     outgoing: Vec<Outgoing>,
     team_inbox: Arc<Watched<TeamInbox>>,
     teams: Vec<TeamId>,
-    /// How long messages that should be there may take.
+    /// Maximum wait for expected messages.
     patience: Duration,
     words: Vec<Word>,
     _declarations: Vec<Declaration>,
 }
 
 impl Talk {
-    /// Prepares to publish to each team of which a mind here talks, and subscribes to what its mates publish.
+    /// Prepares publishers for each team with a talking mind here, and subscribes to its mates.
     pub(super) fn open(
         bus: &Bus,
         game: &GameName,
@@ -46,8 +46,8 @@ impl Talk {
         talking.sort_unstable();
         talking.dedup();
         let own: Vec<VehicleId> = runner.minds().map(|(vehicle, _)| vehicle).collect();
-        // By the scenario's strategies: a mate that was given another one with `--strategy` may
-        // be waited for once, and then no more.
+        // By the scenario's strategies: a mate with another one from `--strategy` may be waited for
+        // once at most.
         let talks = |vehicle| roles::role_of(scenario, vehicle).variables.iter().any(|variable| variable.shared);
         let boats =
             teams.iter().enumerate().map(|(i, team)| (*team, talking.contains(team) && talks(VehicleId::at(i))));
@@ -56,9 +56,9 @@ impl Talk {
         for team in talking {
             let inbox = Arc::clone(&team_inbox);
             let take = move |bytes: &[u8]| inbox.visit(|team_inbox| team_inbox.receive(team, bytes));
-            // From agent to agent, past the sim's loop: it neither needs nor checks them, as
-            // part of orders they would make lockstep slower for everybody, and on the water
-            // there is no sim to pass them on.
+            // From agent to agent, past the sim's loop: the sim neither needs nor checks these
+            // messages. As part of orders they would slow lockstep for all, and on the water no sim
+            // can relay them.
             declarations.push(bus.subscribe_remote(topic::say(game, scenario, team), take)?);
             let publisher = bus.publisher(topic::say(game, scenario, team), Priority::Normal)?;
             outgoing.push(Outgoing { team, publisher, last: None });
@@ -66,12 +66,12 @@ impl Talk {
         Ok(Talk { outgoing, team_inbox, teams, patience, words: Vec::new(), _declarations: declarations })
     }
 
-    /// Gives the minds what mates elsewhere sent after the decision before.
+    /// Passes to the minds what mates elsewhere sent after the previous decision.
     pub(super) fn hear(&mut self, runner: &mut MindRunner, seq: u64) {
         if self.outgoing.is_empty() {
             return;
         }
-        // In real time nobody waits, and nobody counts either: mates decide when they do.
+        // Real-time games neither wait nor count: mates decide at their own times.
         let waits = !self.patience.is_zero();
         if waits {
             self.team_inbox.wait(self.patience, |team_inbox| team_inbox.is_complete(seq));
@@ -84,19 +84,19 @@ impl Talk {
         runner.receive(&self.words);
     }
 
-    /// Takes what the minds here tell their teams after deciding, to be sent to mates elsewhere.
+    /// Takes the minds' messages after a decision, for sending to mates elsewhere.
     pub(super) fn publish_words(&mut self, said: &[Word], stamp: Stamp) {
         for to in &mut self.outgoing {
             let ours = |word: &&Word| self.teams.get(word.vehicle.index()) == Some(&to.team);
             let words: Vec<Word> = said.iter().filter(ours).copied().collect();
-            // Kept, since a repeated picture is answered with the same messages: whatever was
-            // lost is said again.
+            // Kept, since a repeated picture is answered with the same messages: lost ones are sent
+            // again.
             to.last = (!words.is_empty()).then_some(Say { stamp: Stamp { version: Say::VERSION, ..stamp }, words });
         }
     }
 
-    /// Sends it, or sends it again: it may have been lost with the orders that are asked for again. It must be sent before
-    /// the orders are: then it is on its way before the next picture.
+    /// Sends or repeats the messages: they may have been lost along with the orders. They must be
+    /// sent before the orders, so that they are in transit before the next picture.
     pub(super) fn send(&self) -> Result<(), NodeError> {
         for to in &self.outgoing {
             if let Some(last) = &to.last {

@@ -1,47 +1,49 @@
 //! Messages of mates in other processes, kept until the decision at which they are delivered.
 //!
-//! No network and no clock in here. What a mate sends after decision `k` is delivered at decision `k + 1`, not earlier: a
-//! faster mate may have sent its message of `k + 1` already, so the two that came last are kept.
+//! No network and no clock in here. Messages that a mate sends after decision `k` are delivered at
+//! decision `k + 1`, not earlier. A faster mate may have sent its messages of `k + 1` already, so
+//! the last two are kept.
 
 use messages::refusal::{Refusal, Refusals};
 use messages::{Say, Word};
 use primitives::{TeamId, VehicleId};
 use scenario::strategy::SHARED_MAX;
 
-/// What one boat sent after one decision.
+/// The messages of one boat after one decision.
 #[derive(Clone, Debug, PartialEq)]
 struct Sent {
     seq: u64,
     words: Vec<Word>,
 }
 
-/// A boat that may send, and what came of it.
+/// A boat that may send, and its pending messages.
 #[derive(Clone, Debug)]
 struct Sender {
     team: TeamId,
-    /// Whether it is run by another process.
+    /// Whether another process runs it.
     is_mate: bool,
-    /// Whether it will send at all, as far as its strategy says.
+    /// Whether its strategy sends messages at all.
     talks: bool,
     newest: Option<Sent>,
     before: Option<Sent>,
-    /// The decision at which something of it is to be delivered next, if anything is.
+    /// The decision that its next message is due at, if any.
     awaited_at: Option<u64>,
 }
 
-/// The messages that are under way to a decision.
+/// Messages in transit to a decision.
 #[derive(Clone, Debug)]
 pub struct TeamInbox {
-    /// By vehicle.
+    /// By vehicle index.
     senders: Vec<Sender>,
-    /// Whether anything was delivered, be it nothing.
+    /// Whether a delivery has taken place, even an empty one.
     has_begun: bool,
-    /// What was not taken in.
+    /// Counts of rejected messages.
     pub refusals: Refusals,
 }
 
 impl TeamInbox {
-    /// For boats of these teams, by vehicle, and whether each talks; `own` are those run here.
+    /// An inbox for boats by vehicle index, each with its team and whether it talks; `own` lists
+    /// the boats of this process.
     pub fn new(boats: impl Iterator<Item = (TeamId, bool)>, own: &[VehicleId]) -> TeamInbox {
         let sender = |(i, (team, talks))| {
             let is_mate = !own.contains(&VehicleId::at(i));
@@ -51,12 +53,12 @@ impl TeamInbox {
         TeamInbox { senders, has_begun: false, refusals: Refusals::default() }
     }
 
-    /// Takes in what came on a team's topic.
+    /// Receives a message on a team's topic.
     pub fn receive(&mut self, team: TeamId, bytes: &[u8]) {
         let Some(say) = self.refusals.decode::<Say>(bytes) else { return };
         for word in say.words {
-            // Messages are about boats, not from processes: a boat that another process takes
-            // over keeps its name.
+            // Messages identify boats, not processes: the name stays when another process takes a
+            // boat over.
             let sender = self.senders.get_mut(word.vehicle.index());
             let Some(sender) = sender.filter(|sender| sender.is_mate && sender.team == team) else {
                 self.refusals.count(Refusal::NotYours);
@@ -70,14 +72,15 @@ impl TeamInbox {
         }
     }
 
-    /// Whether everything is there that is to be delivered at decision `seq`: who sent after the decision before the last
-    /// one is expected to have sent after the last one too, and who talks, after the first.
+    /// Whether all messages due at decision `seq` have arrived. Mates that sent after the decision
+    /// before the last are expected to send after the last one too; talking mates are expected to
+    /// send after the first.
     pub fn is_complete(&self, seq: u64) -> bool {
         !self.senders.iter().any(|sender| sender.is_awaited(seq) && !sender.is_past(seq))
     }
 
-    /// Adds what is to be delivered at decision `seq`: the newest message of each boat that was sent after an earlier one.
-    /// Gives of how many boats that were expected to send there is nothing.
+    /// Adds the messages due at decision `seq`: each boat's newest message from an earlier
+    /// decision. Returns the number of boats whose expected message is missing.
     pub fn deliver(&mut self, seq: u64, words: &mut Vec<Word>) -> u64 {
         let mut missed = 0;
         for sender in &mut self.senders {
@@ -90,7 +93,8 @@ impl TeamInbox {
                 None => sender.before.take_if(|sent| sent.seq < seq),
             };
             let on_time = sent.as_ref().is_some_and(|sent| sent.seq + 1 == seq);
-            // Counted, and the values of before stay: a boat goes on with what it last heard.
+            // Counted, and the previous values stay: a boat continues with the last ones it
+            // received.
             missed += u64::from(awaited && !on_time);
             if !self.has_begun && sender.talks {
                 sender.awaited_at = Some(seq.saturating_add(1));
@@ -106,10 +110,10 @@ impl TeamInbox {
 }
 
 impl Sender {
-    /// Keeps a word sent after decision `seq`, if there is room for it.
+    /// Stores a word sent after decision `seq`, if there is room.
     fn note(&mut self, seq: u64, word: Word) -> bool {
         let Some(newest) = self.newest.as_mut().filter(|newest| newest.seq == seq) else {
-            // By arrival, not by stamp: a wrong stamp displaces one message, no more.
+            // By arrival, not by stamp: a wrong stamp displaces one message at most.
             self.before = self.newest.replace(Sent { seq, words: vec![word] });
             return true;
         };
@@ -122,12 +126,12 @@ impl Sender {
         true
     }
 
-    /// Whether something of it is to be delivered at decision `seq`.
+    /// Whether a message from it is due at decision `seq`.
     fn is_awaited(&self, seq: u64) -> bool {
         self.awaited_at == Some(seq)
     }
 
-    /// Whether what it sent after the decision before `seq` is there, or can no longer come.
+    /// Whether its message for decision `seq` has arrived or can no longer arrive.
     fn is_past(&self, seq: u64) -> bool {
         [&self.newest, &self.before].into_iter().flatten().any(|sent| sent.seq >= seq.saturating_sub(1))
     }
@@ -141,7 +145,7 @@ mod tests {
 
     const BLUE: TeamId = TeamId(0);
 
-    /// Two teams of two, of whom nobody knows whether they talk; the first boat is run here.
+    /// Two teams of two boats that may or may not talk; the first boat belongs to this process.
     fn team_inbox() -> TeamInbox {
         TeamInbox::new([0, 0, 1, 1].into_iter().map(|team| (TeamId(team), false)), &[VehicleId(0)])
     }
@@ -189,7 +193,7 @@ mod tests {
         receive(&mut inbox, &say(4, &[(1, 1.0)]));
         assert!(inbox.is_complete(5));
         delivered(&mut inbox, 5);
-        // What comes after it shows that it can no longer come itself.
+        // A later message proves that it can no longer arrive.
         receive(&mut inbox, &say(6, &[(1, 1.0)]));
         assert!(inbox.is_complete(6));
     }
@@ -246,7 +250,7 @@ mod tests {
         receive(&mut inbox, &Say { words: (0..300).map(key).collect(), ..say(0, &[]) });
         assert_eq!(inbox.refusals.of(Refusal::Surplus), 300 - SHARED_MAX as u64);
         assert_eq!(delivered(&mut inbox, 1).len(), SHARED_MAX);
-        // A number of a decision that never comes hides what was said once, and not for long.
+        // The number of a decision that never comes hides earlier messages, but not for long.
         receive(&mut inbox, &say(u64::MAX, &[(1, 1.0)]));
         assert!(inbox.is_complete(u64::MAX));
         assert!(inbox.is_complete(3), "it is past what is waited for");

@@ -1,7 +1,8 @@
-//! Observations: what a boat knows at a decision, as the numbers that a policy is given.
+//! Observations: a boat's knowledge at a decision, encoded as a policy's input.
 //!
-//! The same code writes them in training and on the boat. Everything in them comes from the pictures that the boat's agent
-//! receives: its own sensors, its team's radio, the referee's messages. Nothing is the simulator's truth.
+//! The same code writes them in training and on the boat. Everything in them comes from the
+//! pictures that the boat's agent receives: its own sensors, its team's radio, the referee's
+//! messages. Nothing comes from the simulator's truth.
 
 mod numbers;
 mod pyquaticus;
@@ -15,7 +16,7 @@ use scenario::observation::ObservationSpace;
 #[derive(Clone, Debug)]
 pub(crate) struct Observer {
     space: ObservationSpace,
-    /// The numbers of the last decisions, the newest first.
+    /// The values of the last decisions, newest first.
     frames: Vec<f32>,
     begun: bool,
 }
@@ -37,7 +38,7 @@ impl Observer {
                 let (newest, older) = self.frames.split_at_mut(size);
                 squall::write(situation, (usize::from(mates), usize::from(enemies)), &mut Numbers::new(newest));
                 if !self.begun {
-                    // Before the first decision everything was as it is then.
+                    // At the first decision all older frames repeat the current one.
                     older.chunks_exact_mut(size).for_each(|frame| frame.copy_from_slice(newest));
                 }
             }

@@ -1,6 +1,6 @@
-//! Numbers written one after the other.
+//! A writer of consecutive numbers.
 
-/// A slice that is filled from the front.
+/// A slice filled from the front.
 pub(super) struct Numbers<'a> {
     left: &'a mut [f32],
 }
@@ -10,21 +10,21 @@ impl<'a> Numbers<'a> {
         Numbers { left: all }
     }
 
-    /// Writes the next one.
+    /// Writes the next number.
     pub(super) fn push(&mut self, number: f64) {
-        // Spaces tell trainers their size before anything is written: a writer that disagrees
-        // is a mistake of ours.
+        // Spaces report their size to trainers before anything is written: a mismatch is a bug in
+        // Squall.
         let (next, left) = std::mem::take(&mut self.left).split_first_mut().expect("there is room for every number");
         *next = number as f32;
         self.left = left;
     }
 
-    /// Writes the next ones.
+    /// Writes several numbers.
     pub(super) fn extend(&mut self, numbers: impl IntoIterator<Item = f64>) {
         numbers.into_iter().for_each(|number| self.push(number));
     }
 
-    /// Writes 1 or 0.
+    /// Writes 1 for true, 0 for false.
     pub(super) fn flag(&mut self, is: bool) {
         self.push(f64::from(u8::from(is)));
     }

@@ -1,13 +1,15 @@
-//! The observation space of Pyquaticus (`state_to_obs` of its main branch, 2025): bearings relative to the heading in half turns
-//! clockwise, distances in field diagonals, everything brought to -1 to 1, truths as -1 and 1.
+//! The observation space of Pyquaticus (`state_to_obs` of its main branch, 2025): bearings relative
+//! to the heading in half turns clockwise, distances in field diagonals, everything scaled to -1 to
+//! 1, booleans as -1 and 1.
 //!
-//! Of the own boat: the enemies' flag, the own flag, the walls to starboard, behind, to port and ahead as the team looks at the
-//! enemies' end, the scrimmage line, speed, carrying, own side, time since its last tag, tagged, both scores. Then of each other boat,
-//! mates first: bearing, distance, heading relative to the line to the own boat, speed, carrying, own side, time since its last
-//! tag, tagged.
+//! For the own boat: the enemies' flag, the own flag, the walls to starboard, behind, to port and
+//! ahead as the team faces the enemies' end, the scrimmage line, speed, carrying, own side, time
+//! since its last tag, tagged, both scores. Then for each other boat, mates first: bearing,
+//! distance, heading relative to the line to the own boat, speed, carrying, own side, time since
+//! its last tag, tagged.
 //!
-//! Pyquaticus shows the truth. Here it is what the boat knows: a boat that is not known lies nowhere, all its numbers are 0; when an
-//! enemy tagged last is known if it tagged one of the team.
+//! Pyquaticus provides the truth; this space provides the boat's knowledge. All values of an
+//! unknown boat are 0. An enemy's last tag time is known if it tagged one of the team.
 
 use super::numbers::Numbers;
 use crate::situation::{OtherBoat, Situation};
@@ -18,14 +20,15 @@ use scenario::observation::pyquaticus::OTHER;
 use scenario::strategy::{Fact, Mark, Place, Values};
 use std::f64::consts::PI;
 
-/// Writes all numbers.
+/// Writes all values.
 pub(super) fn write(situation: &Situation, out: &mut Numbers<'_>) {
     let model = &situation.model;
     for mark in [Mark::EnemyFlag, Mark::OwnFlag] {
         let place = situation.locate(&Place::Mark(mark)).map_or(situation.at, |point| point.at);
         toward(situation, place, out);
     }
-    // Corner 0 is to starboard of the first team's end, and corners go on clockwise: the walls from 3 to 0, 0 to 1, 1 to 2, 2 to 3.
+    // Corner 0 is to starboard of the first team's end, and corners continue clockwise: the walls
+    // are 3 to 0, 0 to 1, 1 to 2, 2 to 3.
     let corners = &model.field.corners;
     for i in [3, 0, 1, 2].map(|i| i + 2 * model.team.index()) {
         let wall = (corners[i % 4], corners[(i + 1) % 4]);
@@ -70,34 +73,34 @@ fn toward(situation: &Situation, place: Ned, out: &mut Numbers<'_>) {
     out.push(unit(situation.at.distance(place), diagonal_m));
 }
 
-/// Whether a place is on a team's side of the scrimmage line, on the field or not: unlike `Field::is_own_side`, and as Pyquaticus
-/// judges it.
+/// Whether a place is on a team's side of the scrimmage line, on the field or not: as in
+/// Pyquaticus, and unlike `Field::is_own_side`.
 fn is_own_side(situation: &Situation, at: Ned, team: usize) -> bool {
     let field = &situation.model.field;
     let beyond_m = (at - field.middle()).dot(field.along);
-    // On the line a boat is on its own side for both.
+    // A boat on the line counts as on its own side for both teams.
     if team == 0 { beyond_m <= 0.0 } else { beyond_m >= 0.0 }
 }
 
-/// The point of a straight line between two points that is nearest to a place.
+/// The point of a line segment that is nearest to a place.
 fn nearest_of((a, b): (Ned, Ned), at: Ned) -> Ned {
     let line = b - a;
     a + line.scaled(((at - a).dot(line) / line.dot(line)).clamp(0.0, 1.0))
 }
 
-/// The time since the last tag, no more than the cooldown.
+/// The time since the last tag, s, limited to the cooldown.
 fn since_tag(situation: &Situation, ready: SimTime) -> f64 {
     let cooldown_s = situation.model.rules.tag_cooldown.as_s();
     let wait_s = tag_wait_s(ready, situation.now).min(cooldown_s);
     unit(cooldown_s - wait_s, cooldown_s)
 }
 
-/// The top speed of the fastest boat of the game, m/s.
+/// The top speed of the game's fastest boat, m/s.
 fn fastest_m_s(situation: &Situation) -> f64 {
     situation.model.boat_speeds_m_s.iter().copied().fold(0.0, f64::max)
 }
 
-/// From 0 to the most as from -1 to 1.
+/// Maps 0 to `most` onto -1 to 1.
 fn unit(number: f64, most: f64) -> f64 {
     if most > 0.0 { (2.0 * number / most - 1.0).clamp(-1.0, 1.0) } else { 1.0 }
 }

@@ -1,8 +1,10 @@
-//! The observation space `squall`: what the own sensors and the radio tell, in a frame that is the same for both teams.
+//! The observation space `squall`: the own sensors' and the radio's data in a frame that is the
+//! same for both teams.
 //!
-//! Places on the field are told ahead of the team, as it looks at the enemies' end, and to its port, from the middle of the field.
-//! Other boats and goals are told along the own boat's axes. Lengths are in hundreds of metres, with how near they are besides: 10 m
-//! by 10 m more than the distance; speeds are in units of 3 m/s; truths are 0 or 1.
+//! Places on the field are relative to its middle: ahead of the team as it faces the enemies' end,
+//! and to its port. Other boats and goals are along the own boat's axes. Lengths are in hundreds of
+//! metres, each with its nearness: 10 m divided by 10 m plus the distance. Speeds are in units of 3
+//! m/s; booleans are 0 or 1.
 
 use super::numbers::Numbers;
 use crate::situation::{OtherBoat, Situation};
@@ -12,24 +14,24 @@ use rules::Ability;
 use scenario::observation::squall::OTHER;
 use scenario::strategy::{Fact, Mark, Place, Values};
 
-/// What lengths are divided by, m.
+/// Unit of lengths, m.
 const LENGTH_M: f64 = 100.0;
-/// No length counts more than this many times that.
+/// Lengths are clamped to this many units.
 const LENGTHS_MAX: f64 = 3.0;
-/// Half near, m: the tag radius of the Aquaticus rules.
+/// Distance of nearness 0.5, m: the tag radius of the Aquaticus rules.
 const NEAR_M: f64 = 10.0;
-/// What speeds are divided by, m/s: a Surveyor's top speed.
+/// Unit of speeds, m/s: a Surveyor's top speed.
 const SPEED_M_S: f64 = 3.0;
-/// What yaw rates are divided by, rad/s.
+/// Unit of yaw rates, rad/s.
 const YAW_RATE_RAD_S: f64 = 0.5;
-/// What ages are divided by, s.
+/// Unit of ages, s.
 const AGE_S: f64 = 10.0;
-/// The least distance of an edge or an obstacle that makes no difference, m.
+/// Edges and obstacles beyond this distance make no difference, m.
 const FAR_M: f64 = 20.0;
-/// What points are divided by.
+/// Unit of points.
 const POINTS: f64 = 10.0;
 
-/// Writes all numbers.
+/// Writes all values.
 pub(super) fn write(situation: &Situation, (mates, enemies): (usize, usize), out: &mut Numbers<'_>) {
     own_boat(situation, out);
     edges(situation, out);
@@ -39,20 +41,20 @@ pub(super) fn write(situation: &Situation, (mates, enemies): (usize, usize), out
     slots(situation, others(false), mates, out);
     let mut nearest: Vec<&OtherBoat> = others(true).collect();
     let distance = |other: &OtherBoat| situation.at.distance_squared(other.at);
-    // Enemies by distance: which of them is which means nothing to a policy, and fewer slots
-    // than enemies show those that matter. Mates stay in their places.
+    // Enemies by distance: their order has no meaning for a policy, and with fewer slots than
+    // enemies the relevant ones are kept. Mates keep their places.
     nearest.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
     slots(situation, nearest.into_iter(), enemies, out);
 }
 
-/// Ahead of the team, and to its port.
+/// Unit vectors ahead of the team and to its port.
 fn team_axes(situation: &Situation) -> (Ned, Ned) {
     let field = &situation.model.field;
     let sign = if situation.model.team.index() == 0 { 1.0 } else { -1.0 };
     (field.along.scaled(sign), field.across.scaled(sign))
 }
 
-/// 15 numbers: position, heading and motion, what state it is in.
+/// 15 values: position, heading, motion and state.
 fn own_boat(situation: &Situation, out: &mut Numbers<'_>) {
     let (forward, port) = team_axes(situation);
     let field = &situation.model.field;
@@ -72,7 +74,7 @@ fn own_boat(situation: &Situation, out: &mut Numbers<'_>) {
     out.flag(Ability::from(&situation.own).may_tag(situation.now));
 }
 
-/// 6 numbers: how near the four edges are, and the nearest obstacle's direction.
+/// 6 values: nearness of the four edges, direction of the nearest obstacle.
 fn edges(situation: &Situation, out: &mut Numbers<'_>) {
     let (forward, port) = team_axes(situation);
     let plan = &situation.model.field.plan;
@@ -87,7 +89,8 @@ fn edges(situation: &Situation, out: &mut Numbers<'_>) {
     out.push((situation.own.nav.speed_m_s() / situation.model.speed_max_m_s.max(0.1)).min(2.0));
 }
 
-/// 16 numbers: where the enemies' flag is, the own one, the place to bring a flag or to be untagged, and which of them to go to now.
+/// 16 values: the enemies' flag, the own flag, the place for capturing or untagging, and the
+/// current goal among them.
 fn goals(situation: &Situation, out: &mut Numbers<'_>) {
     let at = |mark| situation.locate(&Place::Mark(mark)).map_or(situation.at, |point| point.at);
     let (enemy_flag, own_flag) = (at(Mark::EnemyFlag), at(Mark::OwnFlag));
@@ -105,7 +108,7 @@ fn goals(situation: &Situation, out: &mut Numbers<'_>) {
     }
 }
 
-/// 7 numbers: flags, points, time, and which of its team the boat is.
+/// 7 values: flags, points, time, and the boat's index in its team.
 fn game(situation: &Situation, out: &mut Numbers<'_>) {
     for fact in [Fact::OwnSide, Fact::FlagTaken, Fact::EnemyFlagTaken, Fact::MateHasFlag] {
         out.push(situation.fact(fact));
@@ -117,7 +120,7 @@ fn game(situation: &Situation, out: &mut Numbers<'_>) {
     out.push(situation.model.rank as f64 / (situation.model.mates.len() + 1) as f64);
 }
 
-/// As many others as there are slots; the rest is zeros.
+/// One entry per slot; unused slots are zeros.
 fn slots<'a>(situation: &Situation, others: impl Iterator<Item = &'a OtherBoat>, count: usize, out: &mut Numbers<'_>) {
     let mut empty = count;
     for other in others.take(count) {
@@ -127,7 +130,7 @@ fn slots<'a>(situation: &Situation, others: impl Iterator<Item = &'a OtherBoat>,
     out.skip(empty * OTHER);
 }
 
-/// 16 numbers.
+/// 16 values.
 fn other_boat(situation: &Situation, other: &OtherBoat, out: &mut Numbers<'_>) {
     out.flag(true);
     toward(situation, other.at, out);
@@ -144,22 +147,22 @@ fn other_boat(situation: &Situation, other: &OtherBoat, out: &mut Numbers<'_>) {
     out.push(NEAR_M / (NEAR_M + other.at.distance(home)));
 }
 
-/// 4 numbers: the direction of a place along the own axes, how far and how near it is.
+/// 4 values: the direction of a place along the own axes, its distance and nearness.
 fn toward(situation: &Situation, place: Ned, out: &mut Numbers<'_>) {
     let line = place - situation.at;
     let [ahead_m, starboard_m] = along_axes(situation, line);
     let distance_m = math::length(ahead_m, starboard_m);
-    // A direction as two parts, not as an angle, which jumps from half a turn to minus half a
+    // A direction as two components, not as an angle, which jumps from half a turn to minus half a
     // turn astern.
     let per_m = if distance_m > 1e-6 { 1.0 / distance_m } else { 0.0 };
     out.extend([ahead_m * per_m, starboard_m * per_m]);
     out.push((distance_m / LENGTH_M).min(LENGTHS_MAX));
-    // Beside the distance in hundreds of metres: the last ten metres, in which boats tag and
-    // touch, would be a tenth of a number.
+    // In addition to the distance in hundreds of metres: the last ten metres, in which boats tag
+    // and touch, would be a tenth of a unit.
     out.push(NEAR_M / (NEAR_M + distance_m));
 }
 
-/// A vector ahead of the own boat and to its starboard.
+/// A vector's components ahead of the own boat and to its starboard.
 fn along_axes(situation: &Situation, vector: Ned) -> [f64; 2] {
     let ahead = situation.ahead;
     [vector.dot(ahead), vector.east * ahead.north - vector.north * ahead.east]

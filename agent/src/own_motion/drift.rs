@@ -1,52 +1,57 @@
-//! The drift of a boat: what wind, waves and current add to its way through the water, and how much that varies.
+//! The drift of a boat: the velocity that wind, waves and current add to its way through the water,
+//! and how much that varies.
 //!
-//! A boat is pushed along its heading by its thrusters and nothing pushes it across, so that its velocity across the
-//! heading is the drift's part there. A Kalman filter gathers these parts from all headings into a vector over the ground.
-//! The drift d is a random walk, and a decision measures it along the starboard unit vector h:
+//! Thrusters push a boat along its heading and nothing pushes it across, so its velocity across the
+//! heading is the drift's component there. A Kalman filter combines these components from all
+//! headings into a vector over the ground. The drift d is a random walk, and a decision measures it
+//! along the starboard unit vector h:
 //!
 //! ```text
 //! d' = d + w,  w ~ N(0, q dt I)          z = h.d + e,  e ~ N(0, r / dt)
 //! P' = P + q dt I       k = P h / (h.P h + r / dt)       d += k (z - h.d)       P -= k (h.P)
 //! ```
 //!
-//! Along one axis the Riccati equation settles at the gain sqrt(q / r) a second (Kalman and Bucy 1961): the quieter the
-//! water, the faster the filter. What waves do is no white noise: with the variance s² and the correlation time T it has
-//! the density r = 2 s² T at frequencies far below those of the waves. s² is the mean square of what was not expected.
+//! Along one axis the Riccati equation settles at the gain sqrt(q / r) per second (Kalman and Bucy
+//! 1961): the quieter the water, the faster the filter. Wave disturbance is not white noise: with
+//! the variance s² and the correlation time T it has the density r = 2 s² T at frequencies far
+//! below those of the waves. s² is the mean square of the innovation.
 //!
-//! A turn slides a boat outwards, which is no drift: by Y = -(m + A11) u r against the resistance in sway, with what the
-//! boat's file says of them (Fossen 2021, ch. 6). A part of that is taken for noise.
+//! A turn makes a boat slide outwards, which is separate from drift: by Y = -(m + A11) u r against
+//! the resistance in sway, with the values of the boat's file (Fossen 2021, ch. 6). A part of that
+//! counts as noise.
 //!
-//! The part along a heading that the boat has not left yet is not seen. It makes no difference to a boat that steers by
-//! speed over the ground, and is known from the first turn on.
+//! The component along a constant heading is unobservable. A boat that steers by speed over the
+//! ground does not need it, and it becomes known from the first turn on.
 
 use super::handling::Handling;
 use messages::picture::Nav;
 use primitives::{Ned, math};
 
-/// Variance of the change of a drift in a second, m²/s³: a gust or a turn beam-on changes it by 0.2 m/s in four seconds.
+/// Variance of the drift's change in a second, m²/s³: a gust or a turn beam-on changes it by 0.2
+/// m/s in four seconds.
 const WALK_M2_S3: f64 = 0.01;
-/// Variance of a drift of which nothing is known, m²/s²; it never grows beyond.
+/// Variance of an unknown drift, m²/s²; its upper bound.
 const UNKNOWN_M2_S2: f64 = 1.0;
-/// How long what waves do to a boat is alike, s.
+/// Correlation time of the wave disturbance, s.
 const WAVE_TIME_S: f64 = 0.5;
 /// Least standard deviation of the velocity across, m/s: a satellite receiver's.
 const NOISE_M_S: f64 = 0.05;
-/// Memory of the mean square, s.
+/// Time constant of the mean square, s.
 const SPREAD_TIME_S: f64 = 20.0;
-/// What the boat's file says of a slide may be wrong by this share of it.
+/// Relative error of the slide computed from the boat's file.
 const SLIDE_ERROR: f64 = 0.5;
-/// How long it is wrong the same way, s: a turn.
+/// Correlation time of that error, s: a turn.
 const SLIDE_TIME_S: f64 = 4.0;
 
-/// The estimate. The default is that of a boat of which nothing is known.
+/// The estimate. The default is that of an unknown boat.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DriftEstimate {
     drift: Ned,
     /// Variances towards north and east, and their covariance, m²/s².
     variance: (f64, f64, f64),
-    /// Mean square of what was not expected, m²/s².
+    /// Mean square of the innovation, m²/s².
     square_m2_s2: f64,
-    /// How the boat slides in its turn, m/s to starboard.
+    /// The boat's slide in its turn, m/s to starboard.
     slide_m_s: f64,
 }
 
@@ -62,13 +67,13 @@ impl Default for DriftEstimate {
 }
 
 impl DriftEstimate {
-    /// Takes in navigation that is `step_s` newer than the last.
+    /// Processes navigation that is `step_s` newer than the last.
     pub(crate) fn observe(&mut self, nav: &Nav, handling: &Handling, step_s: f64) {
         if step_s <= 0.0 || !(nav.sway_m_s.is_finite() && nav.psi_rad.is_finite()) {
             return;
         }
         let (north, east, both) = self.variance;
-        // Bounded, so that a heading not sailed for an hour is not learned from a single wave.
+        // Bounded, so that a single wave does not set the drift on a heading unused for an hour.
         let grown = |variance: f64| (variance + WALK_M2_S3 * step_s).min(UNKNOWN_M2_S2);
         let (north, east) = (grown(north), grown(east));
         let (sin, cos) = math::sin_cos(nav.psi_rad);
@@ -90,7 +95,7 @@ impl DriftEstimate {
             east - gain.east * of_starboard.east,
             both - gain.north * of_starboard.east,
         );
-        // In a turn it is the slide that surprises.
+        // In a turn the slide causes the innovation.
         let own_m2_s2 = (surprise_m_s * surprise_m_s - error_m_s * error_m_s).max(NOISE_M_S * NOISE_M_S);
         self.square_m2_s2 += (step_s / SPREAD_TIME_S).min(1.0) * (own_m2_s2 - self.square_m2_s2);
     }
@@ -100,7 +105,8 @@ impl DriftEstimate {
         self.drift
     }
 
-    /// Standard deviation of the velocity about the drift, m/s: waves and gusts, without the receiver's noise.
+    /// Standard deviation of the velocity about the drift, m/s: waves and gusts, without the
+    /// receiver's noise.
     pub(crate) fn spread_m_s(&self) -> f64 {
         (self.square_m2_s2 - NOISE_M_S * NOISE_M_S).max(0.0).sqrt()
     }

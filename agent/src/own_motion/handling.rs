@@ -1,22 +1,23 @@
-//! Handling: how soon, how fast and how hard a boat turns and brakes, by its file and then as it is seen to do.
+//! Handling: how soon, how fast and how hard a boat turns and brakes, from its file and then from
+//! observation.
 
 use scenario::boat::{Autopilot, Boat, Drive, Hull, Kinematic, ThrustCurve, Thruster};
 
-/// Share of the steady yaw rate at full rudder that a turn has in the mean.
+/// Mean yaw rate of a turn as a share of the steady yaw rate at full rudder.
 const MEAN_OF_STEADY: f64 = 0.7;
-/// Until a decision shows at all, beside lag and latency of the thrusters, s.
+/// Delay until a decision takes effect, besides lag and latency of the thrusters, s.
 const DECISION_S: f64 = 0.45;
-/// A turn has in the mean this share of the yaw rate that it begins with, as the error becomes less.
+/// Mean yaw rate of a turn as a share of its initial rate, since the error decreases.
 const MEAN_OF_FIRST: f64 = 0.6;
-/// No turn is slower than this share of the fastest: the helm asks for more as it goes on.
+/// Least turn rate as a share of the greatest: the helm keeps asking for more during a turn.
 const LEAST_OF_MOST: f64 = 0.3;
-/// Memory of how the boat turns, s of turning.
+/// Time constant of the observed turn rate, s of turning.
 const MEMORY_S: f64 = 8.0;
-/// How long a turn must go against the file until it counts as much as that, s.
+/// Turning time after which observation counts as much as the file, s.
 const TRUST_S: f64 = 3.0;
-/// A smaller heading error tells nothing of how the boat turns, rad.
+/// A smaller heading error says nothing about how the boat turns, rad.
 const ERROR_MIN_RAD: f64 = 0.35;
-/// The least and the most of what the file says that is believed.
+/// Accepted range of the observed turn rate as a share of the file's.
 const SHARE: (f64, f64) = (0.25, 1.5);
 
 /// The acceleration of a boat without a limit, m/s².
@@ -25,22 +26,22 @@ const AT_ONCE_M_S2: f64 = 1e3;
 /// How a boat handles.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Handling {
-    /// Until a decision shows, s.
+    /// Delay until a decision takes effect, s.
     pub(crate) reaction_s: f64,
     /// The largest mean yaw rate of a turn, rad/s.
     pub(crate) turn_rad_s: f64,
-    /// Yaw rate for each radian of heading error, 1/s.
+    /// Yaw rate per radian of heading error, 1/s.
     turn_per_rad_s: f64,
-    /// How fast it gains speed and loses it, m/s².
+    /// Acceleration and deceleration, m/s².
     pub(crate) acceleration_m_s2: f64,
     pub(crate) deceleration_m_s2: f64,
-    /// Velocity outwards for each m/s and rad/s of a turn, s, and how soon it dies out, s.
+    /// Outward velocity per m/s and rad/s of a turn, s, and its decay time, s.
     pub(crate) slide_s: f64,
     pub(crate) slide_decay_s: f64,
 }
 
 impl Handling {
-    /// What a boat file says.
+    /// The handling that a boat file defines.
     pub(crate) fn of(boat: &Boat) -> Handling {
         match &boat.drive {
             Drive::Thrusters { thruster, autopilot } => of_thrusters(&boat.hull, thruster, autopilot),
@@ -62,12 +63,12 @@ impl Handling {
         }
     }
 
-    /// The same, turning at this share of its yaw rates.
+    /// The same handling at this share of its yaw rates.
     pub(crate) fn turning(self, share: f64) -> Handling {
         Handling { turn_rad_s: share * self.turn_rad_s, turn_per_rad_s: share * self.turn_per_rad_s, ..self }
     }
 
-    /// The yaw rate that a heading error begins with, rad/s.
+    /// The initial yaw rate at a heading error, rad/s.
     pub(crate) fn yaw_rate_rad_s(&self, error_rad: f64) -> f64 {
         (self.turn_per_rad_s * error_rad).clamp(-self.turn_rad_s, self.turn_rad_s)
     }
@@ -82,8 +83,9 @@ impl Handling {
     }
 }
 
-/// The steady yaw rate at half speed solves N = (N_r + N_ur u) r + N_rr r² for the largest moment N of both thrusters; the
-/// loop of natural frequency w and damping ratio z begins to turn as one of first order with w / (2 z).
+/// The steady yaw rate at half speed solves N = (N_r + N_ur u) r + N_rr r² for the largest moment N
+/// of both thrusters; the loop of natural frequency w and damping ratio z starts to turn like a
+/// first-order one with w / (2 z).
 fn of_thrusters(hull: &Hull, thruster: &Thruster, autopilot: &Autopilot) -> Handling {
     let (ahead_newton, astern_newton) = match &thruster.curve {
         ThrustCurve::Propeller(p) => {
@@ -94,11 +96,10 @@ fn of_thrusters(hull: &Hull, thruster: &Thruster, autopilot: &Autopilot) -> Hand
             (newton(points.last()), newton(points.first()))
         }
     };
-    // Full ahead on one side and full astern on the other, as a front seat steers that has two
+    // Full ahead on one side and full astern on the other, as a front seat steers with two
     // thrusters and no rudder.
     let moment_newton_m = thruster.arm_m * (ahead_newton + astern_newton);
-    // At half of the top speed: a hull under way resists turning more, and boats turn on the
-    // way, not at rest.
+    // At half of the top speed: a moving hull resists turning more, and boats turn while moving.
     let linear = hull.yaw_linear_kg_m2_s + 0.5 * hull.yaw_lift_kg_m * autopilot.speed_max_m_s;
     let quadratic = hull.yaw_quadratic_kg_m2;
     let steady_rad_s = if quadratic > 0.0 {
@@ -112,7 +113,7 @@ fn of_thrusters(hull: &Hull, thruster: &Thruster, autopilot: &Autopilot) -> Hand
         reaction_s: DECISION_S + thruster.lag_s + thruster.flaws.latency_s,
         turn_rad_s: MEAN_OF_STEADY * steady_rad_s,
         turn_per_rad_s: 0.5 * autopilot.heading_bandwidth_rad_s / autopilot.heading_damping,
-        // Half of what the thrusters can: setting them takes time.
+        // Half of the thrusters' capability: changing thrust takes time.
         acceleration_m_s2: ahead_newton / mass_kg,
         deceleration_m_s2: astern_newton / mass_kg,
         slide_s: mass_kg / sway_kg_s,
@@ -120,8 +121,9 @@ fn of_thrusters(hull: &Hull, thruster: &Thruster, autopilot: &Autopilot) -> Hand
     }
 }
 
-/// The point boat's law (see `sim::kinematic`): the heading loop sets the rudder, per cent for each degree, and the yaw rate
-/// is in proportion to rudder and thrust. It does half of the limits of acceleration.
+/// The point boat's law (see `sim::kinematic`): the heading loop sets the rudder, per cent per
+/// degree, and the yaw rate is proportional to rudder and thrust. It reaches half of the
+/// acceleration limits.
 fn of_kinematic(kinematic: &Kinematic) -> Handling {
     let per_rudder_rad_s = kinematic.turn_rate.to_radians() / 100.0 * (kinematic.thrust_max / 50.0);
     let rudder_per_rad = kinematic.heading_pid.p.abs().to_degrees();
@@ -137,19 +139,20 @@ fn of_kinematic(kinematic: &Kinematic) -> Handling {
     }
 }
 
-/// How much of what its file says a boat is seen to turn: the least-squares ratio of the yaw rates seen to those expected, with
-/// the file's own 1 as so many seconds of turning, and old turns forgotten.
+/// The boat's observed turn rate relative to its file: the least-squares ratio of observed to
+/// expected yaw rates, with a prior of 1 weighted as [`TRUST_S`] of turning, and exponential
+/// forgetting.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SeenTurn {
-    /// Sums over what was expected, rad²/s: times what was seen, and times itself.
+    /// Sums of the expected rate times the observed one and times itself, rad²/s.
     seen: f64,
     expected: f64,
-    /// The yaw rate that is expected now, rad/s: it builds up in the reaction time.
+    /// The expected yaw rate now, rad/s: it builds up over the reaction time.
     rate_rad_s: f64,
 }
 
 impl SeenTurn {
-    /// Takes in the yaw rate after `step_s` with this heading error.
+    /// Processes the yaw rate after `step_s` with this heading error.
     pub(crate) fn observe(&mut self, error_rad: f64, yaw_rate_rad_s: f64, handling: &Handling, step_s: f64) {
         let wanted_rad_s = handling.yaw_rate_rad_s(error_rad);
         self.rate_rad_s += (step_s / (handling.reaction_s + step_s)) * (wanted_rad_s - self.rate_rad_s);
@@ -161,7 +164,7 @@ impl SeenTurn {
         self.expected = kept * self.expected + self.rate_rad_s * self.rate_rad_s * step_s;
     }
 
-    /// How much of what the file says the boat turns.
+    /// The turn rate as a share of the file's.
     pub(crate) fn share(&self, handling: &Handling) -> f64 {
         let file = TRUST_S * handling.turn_rad_s * handling.turn_rad_s;
         ((file + self.seen) / (file + self.expected)).clamp(SHARE.0, SHARE.1)

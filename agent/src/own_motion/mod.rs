@@ -1,7 +1,8 @@
-//! How the own boat moves when it is given an order: its drift, by how much it lies beside its heading, how it turns.
+//! The own boat's response to orders: its drift, its heading offset and its handling.
 //!
-//! Everything is known from the boat's file, its own navigation and its own orders, so that it works on a real boat as in
-//! simulation. Decisions are heading and speed through the water: over the ground a boat makes that plus its drift.
+//! Everything derives from the boat's file, its own navigation and its own orders, so that it works
+//! on a real boat as in simulation. Decisions are heading and speed through the water: the velocity
+//! over the ground is that plus the drift.
 
 mod drift;
 mod handling;
@@ -19,49 +20,51 @@ use primitives::{Ned, SimTime, math};
 use scenario::boat::{Boat, Drive};
 use std::f64::consts::PI;
 
-/// No larger turn is ordered at once, rad: a front seat turns the shorter way, and of half a turn there is none.
+/// Upper bound of a turn in one order, rad: a front seat turns the shorter way, which is ambiguous
+/// for half a turn.
 const TURN_MAX_RAD: f64 = 2.6;
-/// A point boat whose thrust follows the order brakes as hard as it can when that is what it loses in so long, s.
+/// A point boat whose thrust follows the order brakes at full deceleration if it must lose that
+/// speed within this time, s.
 const BRAKES_S: f64 = 1.0;
-/// A turn that is as large goes on to the side on which it began, rad.
+/// A turn at least this large keeps its initial side, rad.
 const LARGE_TURN_RAD: f64 = 2.2;
 
-/// What a front seat takes speed for.
+/// The speed reference of a front seat.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum SpeedReference {
     /// Ahead over the ground.
     Ground,
-    /// Through the water: point boats'.
+    /// Through the water, as for point boats.
     Water,
 }
 
-/// How the own boat moves.
+/// The own boat's motion model.
 #[derive(Clone, Debug)]
 pub(crate) struct OwnMotion {
     file: Handling,
     reference: SpeedReference,
     speed_max_m_s: f64,
-    /// Of a boat that turns by its thrust, and whose thrust is that of the speed ordered: it brakes as hard as it can when it is told to go
-    /// slower than it does by this much, m/s.
+    /// For a boat that turns by its thrust, with thrust proportional to the ordered speed: it
+    /// brakes at full deceleration when ordered to go slower by this much, m/s.
     brakes_by_m_s: Option<f64>,
-    /// Whether drift and offset are made up for.
+    /// Whether orders compensate for drift and offset.
     compensates: bool,
     drift: DriftEstimate,
     offset: HeadingOffset,
     turn: SeenTurn,
-    /// The heading that was wanted and the one that was ordered for it, rad; none after another order.
+    /// The desired heading and the one ordered for it, rad; none after another order.
     ordered: Option<(f64, f64)>,
     fix_at: SimTime,
     psi_rad: f64,
     surge_m_s: f64,
-    /// The side of a large turn that was ordered last, 1 to starboard and -1 to port; else 0.
+    /// The side of the last large turn ordered, 1 starboard, -1 port; otherwise 0.
     side: f64,
 }
 
 impl OwnMotion {
     pub(crate) fn new(boat: &Boat, speed_max_m_s: f64, compensates: bool) -> OwnMotion {
         // Front seats steer by speed over the ground, from a satellite receiver; point boats by
-        // speed through the water, as MOOS has them.
+        // speed through the water, as in MOOS.
         let reference = match boat.drive {
             Drive::Thrusters { .. } => SpeedReference::Ground,
             Drive::Kinematic(_) => SpeedReference::Water,
@@ -89,17 +92,16 @@ impl OwnMotion {
         }
     }
 
-    /// Takes in what the boat knows of itself `step_s` after the last time. `obeys` is whether the rules let it do as it was
-    /// ordered.
+    /// Processes the boat's own state `step_s` after the last call. `obeys` is whether the rules
+    /// let it follow its orders.
     pub(crate) fn observe(&mut self, own: &OwnBoat, step_s: f64, obeys: bool) {
         (self.psi_rad, self.surge_m_s) = (own.nav.psi_rad, own.nav.surge_m_s);
         if !self.compensates || step_s <= 0.0 {
             return;
         }
-        // A velocity that has been seen already tells nothing new.
+        // A repeated velocity carries no new information.
         if own.fix_ns > self.fix_at {
-            // At most a second: after a gap in navigation one velocity must not count like
-            // many.
+            // At most a second: after a gap in navigation one velocity must not count as many.
             self.drift.observe(&own.nav, &self.file, (own.fix_ns - self.fix_at).as_s().min(1.0));
             self.fix_at = own.fix_ns;
         }
@@ -118,8 +120,8 @@ impl OwnMotion {
         if self.compensates { self.drift.drift() } else { Ned::default() }
     }
 
-    /// What is added to the way that a decision is thought to make, m/s: the drift; where that is not looked for, what the boat
-    /// moves sideways now.
+    /// The velocity to add to a decision's way, m/s: the estimated drift, or the boat's present
+    /// sway where drift is not estimated.
     pub(crate) fn drift_now(&self, nav: &Nav) -> Ned {
         if self.compensates { self.drift.drift() } else { nav.pose().rotation().starboard().scaled(nav.sway_m_s) }
     }
@@ -129,19 +131,19 @@ impl OwnMotion {
         if self.compensates { self.drift.spread_m_s() } else { 0.0 }
     }
 
-    /// By how much it lies beside the heading that it is told, rad clockwise.
+    /// The heading's offset from the ordered one, rad clockwise.
     pub(crate) fn heading_offset_rad(&self) -> f64 {
         if self.compensates { self.offset.offset_rad() } else { 0.0 }
     }
 
-    /// How it handles, as it is seen to.
+    /// The observed handling.
     pub(crate) fn handling(&self) -> Handling {
         self.file.turning(self.turn.share(&self.file))
     }
 
-    /// Heading, rad, and speed through the water that make a course, rad, at a speed over the ground: |U c - d|, no more
-    /// than the boat can. One that cannot make the speed keeps the course; one that cannot keep the course either points as
-    /// far up as it can.
+    /// Heading, rad, and speed through the water for a course, rad, at a speed over the ground: |U
+    /// c - d|, limited to the boat's top speed. A boat that cannot reach the speed keeps the
+    /// course. If it cannot keep the course either, it points as close to it as it can.
     pub(crate) fn steer(&self, course_rad: f64, speed_m_s: f64) -> (f64, f64) {
         let drift = self.drift();
         if drift == Ned::default() {
@@ -151,12 +153,12 @@ impl OwnMotion {
         let course = Ned { north, east };
         let along_m_s = drift.dot(course);
         let across = drift - course.scaled(along_m_s);
-        // The triangle of velocities: the drift across the course takes some of the boat's
-        // speed, and what is left goes along it.
+        // The triangle of velocities: compensating the drift across the course uses some of the
+        // boat's speed, and the rest goes along it.
         let room = self.speed_max_m_s * self.speed_max_m_s - across.dot(across);
-        // A grid of courses over the ground would need the heading of each point for its turn,
-        // and would take a boat that is told to stand still for one that does. So a behaviour
-        // that asks for a course gets its crab angle here, once.
+        // A grid of courses over the ground would need the heading of each point for its turn, and
+        // would treat an order to stand still as no motion through the water. So a behaviour that
+        // wants a course gets its crab angle here, once.
         let fastest_m_s = along_m_s + room.max(0.0).sqrt();
         let way = course.scaled(speed_m_s.min(fastest_m_s)) - drift;
         let through_m_s = way.length();
@@ -182,14 +184,14 @@ impl OwnMotion {
                 let (east, north) = math::sin_cos(heading_rad);
                 (speed_m_s + self.drift().dot(Ned { north, east })).clamp(0.0, self.speed_max_m_s)
             }
-            // It could not steer while it brakes if it were told at once to go as slowly as it is to.
+            // Ordered to its final low speed at once, it could not steer while it brakes.
             SpeedReference::Water => self.brakes_by_m_s.map_or(speed_m_s, |by| speed_m_s.max(self.surge_m_s - by)),
         };
         Order::Steer { heading_rad: ordered_rad, speed_m_s: ahead_m_s }
     }
 
-    /// The heading to order for a heading: itself, or of a turn of nearly half a turn a part, always to the same side. Otherwise
-    /// the least yaw would turn the boat now one way, now the other.
+    /// The heading to order: the desired one or, for nearly half a turn, an intermediate one,
+    /// always on the same side. Otherwise the slightest yaw would reverse the turn.
     fn turn_toward(&mut self, heading_rad: f64) -> f64 {
         let turn_rad = wrap_pi(heading_rad - self.psi_rad);
         if turn_rad.abs() < LARGE_TURN_RAD {
@@ -203,7 +205,7 @@ impl OwnMotion {
         self.psi_rad + self.side * to_side_rad.min(TURN_MAX_RAD)
     }
 
-    /// Another order was given than to steer.
+    /// Called when an order other than steering is given.
     pub(crate) fn hold(&mut self) {
         (self.ordered, self.side) = (None, 0.0);
     }
@@ -222,7 +224,7 @@ mod tests {
         OwnMotion::new(&boat, boat.speed_max_m_s(), true)
     }
 
-    /// Shows navigation ten times a second for so long, from `after_s` on.
+    /// Feeds navigation ten times a second for `for_s`, from `after_s` on.
     fn show(motion: &mut OwnMotion, after_s: f64, for_s: f64, nav: impl Fn(f64) -> Nav) {
         for i in 0..(10.0 * for_s) as u32 {
             let at_s = 0.1 * f64::from(i);
@@ -235,14 +237,14 @@ mod tests {
     #[test]
     fn a_course_over_the_ground_is_kept_with_a_crab_angle() {
         let mut motion = motion("surveyor_m1_8");
-        // Northward with half a metre a second to the east.
+        // Northward with an eastward drift of 0.5 m/s.
         show(&mut motion, 0.0, 60.0, |_| Nav { surge_m_s: 2.0, sway_m_s: 0.5, ..Nav::default() });
         assert!(motion.drift().distance(Ned { north: 0.0, east: 0.5 }) < 0.01, "{:?}", motion.drift());
         let drift_m_s = motion.drift().length();
         let (heading_rad, speed_m_s) = motion.steer(0.0, 1.5);
         assert!((heading_rad + libm::asin(drift_m_s / speed_m_s)).abs() < 0.01, "sin of the crab angle is d / V");
         assert!((speed_m_s - math::length(1.5, drift_m_s)).abs() < 0.01);
-        // More than the boat can over the ground is the most that it can on that course.
+        // A speed beyond the boat's capability becomes its maximum on that course.
         let (heading_rad, speed_m_s) = motion.steer(0.0, 5.0);
         assert!((speed_m_s - 3.0).abs() < 1e-9 && (heading_rad + libm::asin(drift_m_s / 3.0)).abs() < 0.01);
         // To stand still it points against the drift.
@@ -255,7 +257,7 @@ mod tests {
         let mut motion = motion("surveyor_m1_8");
         let mut ordered_rad = 0.0;
         for i in 0..600 {
-            // A lasting moment turns it 0.3 rad to starboard of its order.
+            // A lasting moment holds it 0.3 rad to starboard of its order.
             show(&mut motion, 0.1 * f64::from(i), 0.1, |_| Nav { psi_rad: ordered_rad + 0.3, ..Nav::default() });
             if let Order::Steer { heading_rad, .. } = motion.order(1.0, 2.0) {
                 ordered_rad = heading_rad;
@@ -280,7 +282,7 @@ mod tests {
     fn half_a_turn_goes_on_to_the_side_on_which_it_began() {
         let mut motion = motion("surveyor_m1_8");
         let mut sides = vec![];
-        // The heading wavers about the opposite of the one wanted.
+        // The heading wavers about the opposite of the desired one.
         for (i, psi_rad) in [0.1, -0.1, 0.2, -0.3, 0.1].into_iter().enumerate() {
             show(&mut motion, i as f64, 0.1, |_| Nav { psi_rad, ..Nav::default() });
             if let Order::Steer { heading_rad, .. } = motion.order(PI, 2.0) {
@@ -292,13 +294,16 @@ mod tests {
 
     #[test]
     fn a_boat_is_known_by_its_file_and_then_by_how_it_turns() {
-        // Reaction, s, and yaw rate, rad/s: what was once taken for all boats, for the one that it was taken of.
+        // Reaction, s, and yaw rate, rad/s: constants once used for all boats, measured on this
+        // one.
         let surveyor = motion("surveyor_m1_8").handling();
         assert!((surveyor.reaction_s - 0.7).abs() < 0.1 && (surveyor.turn_rad_s - 0.35).abs() < 0.05, "{surveyor:?}");
-        // The point boat does half of the 0.5 m/s² in its file: from 12 m/s it takes 48 s to stop.
+        // The point boat reaches half of the 0.5 m/s² in its file: from 12 m/s it takes 48 s to
+        // stop.
         let large = motion("large_usv_kinematic").handling();
         assert!((large.deceleration_m_s2 - 0.25).abs() < 1e-9, "{large:?}");
-        // Half a radian of error sets a rudder of 0.35 % a degree, which at 70 % thrust turns it by 0.12 rad/s.
+        // An error of half a radian sets a rudder of 0.35 % per degree, which at 70 % thrust turns
+        // it at 0.12 rad/s.
         assert!((large.yaw_rate_rad_s(0.5) - 0.1225).abs() < 0.001, "{large:?}");
         let mut motion = motion("surveyor_m1_8");
         let before_rad_s = motion.handling().turn_rad_s;

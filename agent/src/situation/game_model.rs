@@ -1,4 +1,4 @@
-//! The game as one boat sees it: everything that does not change while it is played.
+//! The game as one boat sees it: everything constant during a game.
 
 use primitives::{FlagId, Ned, TeamId, VehicleId};
 use rules::{Field, Rules};
@@ -9,14 +9,14 @@ use scenario::strategy::Program;
 const PYQUATICUS_SCORE_MAX: f64 = 20.0;
 const HAS_ALL: &str = "a checked field has flags and corners for every team";
 
-/// What a helm knows before the game begins.
+/// A helm's knowledge before the game begins.
 #[derive(Clone, Debug)]
 pub(crate) struct GameModel {
     pub(crate) me: VehicleId,
     pub(crate) team: TeamId,
     pub(crate) field: Field,
     pub(crate) rules: Rules,
-    /// The own boat's place in its team.
+    /// The own boat's index in its team.
     pub(crate) rank: usize,
     /// The enemies, in the scenario's order.
     pub(crate) enemies: Vec<VehicleId>,
@@ -26,9 +26,9 @@ pub(crate) struct GameModel {
     pub(crate) targets: Vec<(FlagId, Ned)>,
     /// The flags to defend.
     pub(crate) own_flags: Vec<(FlagId, Ned)>,
-    /// The score that ends the game, or that of Pyquaticus' own games.
+    /// The score that ends the game, or Pyquaticus' default.
     pub(crate) score_max: f64,
-    /// The top speed of every boat of the game, m/s, by vehicle.
+    /// The top speed of every boat of the game, m/s, by vehicle index.
     pub(crate) boat_speeds_m_s: Vec<f64>,
     /// The highest speed of the helm's decisions, m/s.
     pub(crate) speed_max_m_s: f64,
@@ -50,8 +50,7 @@ impl GameModel {
         };
         let mut points: Vec<(String, Ned)> =
             Field::point_names().into_iter().filter_map(|name| field.point(team, &name).map(|at| (name, at))).collect();
-        // Sorted once and searched by halves: expressions ask for points by name at every
-        // decision.
+        // Sorted once for binary search: expressions look points up by name at every decision.
         points.sort_by(|a, b| a.0.cmp(&b.0));
         let speed_m_s = |i: usize| scenario.boat_of(VehicleId::at(i)).speed_max_m_s();
         let boat_speeds_m_s: Vec<f64> = (0..scenario.vehicles.len()).map(speed_m_s).collect();
@@ -84,24 +83,24 @@ impl GameModel {
         found.ok().map(|i| self.points[i].1)
     }
 
-    /// Where a flag must be brought, from here.
+    /// The place to bring a flag to, from here.
     pub(crate) fn capture_place(&self, at: Ned) -> Ned {
         self.rules.capture_place(&self.field, self.team, at).expect(HAS_ALL)
     }
 
-    /// Where a tagged boat steers to be freed, from here.
+    /// The place to steer a tagged boat to, from here.
     pub(crate) fn untag_place(&self, at: Ned) -> Ned {
         self.rules.untag_place(&self.field, self.team, at).expect(HAS_ALL)
     }
 
-    /// The middle of the circle in which a tagged boat is freed, from here.
+    /// The centre of the untagging circle, from here.
     pub(crate) fn untag_centre(&self, at: Ned) -> Ned {
         self.rules.untag_centre(&self.field, self.team, at).expect(HAS_ALL)
     }
 
     /// Whether `at` is on the own team's side.
     pub(crate) fn is_own_side(&self, at: Ned) -> bool {
-        // A point inside of both edges, not the corner itself, which lies on the boundary.
+        // A point inside both edges, not the corner itself, which lies on the boundary.
         self.field.is_own_side(self.team, at)
     }
 }

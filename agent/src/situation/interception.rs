@@ -1,14 +1,15 @@
-//! Interception: which boat of the own team meets which intruder.
+//! Interception: assigns boats of the own team to intruders.
 //!
-//! Everybody works it out from what the whole team sees, and so comes to the same result without a word.
+//! Every boat computes it from the whole team's knowledge, so all get the same result without
+//! communication.
 
 use primitives::{Ned, VehicleId};
 
-/// A pair that was assigned before is thought to meet by this much sooner, s: what is seen is noisy, and two boats that change
-/// intruders with every picture meet neither.
+/// Bonus for the previous assignment, as an earlier meeting time, s. Observations are noisy, and
+/// two boats that swap intruders at every picture meet neither.
 const KEPT_S: f64 = 3.0;
 
-/// What rounding may add to a bound, with room to spare.
+/// Largest relative rounding error of a bound, with a margin.
 const ROUNDING: f64 = 1.001;
 
 /// A boat that can be sent to meet an intruder.
@@ -18,11 +19,11 @@ pub(super) struct Interceptor {
     pub(super) at: Ned,
     /// Its top speed, m/s.
     pub(super) speed_m_s: f64,
-    /// For how long it cannot tag yet, s.
+    /// Time until it can tag, s.
     pub(super) unready_s: f64,
 }
 
-/// An enemy that is to be met.
+/// An enemy to be met.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Intruder {
     pub(super) vehicle: VehicleId,
@@ -31,17 +32,18 @@ pub(super) struct Intruder {
     pub(super) velocity: Ned,
 }
 
-/// Who meets whom.
+/// An interceptor and its intruder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Pair {
     pub(super) interceptor: VehicleId,
     pub(super) intruder: VehicleId,
 }
 
-/// Gives each intruder, in their order, the boat that is left and meets it soonest; of equally quick ones the first.
+/// Assigns each intruder, in order, the remaining boat that meets it soonest; ties go to the first
+/// boat.
 pub(super) fn assign(interceptors: &[Interceptor], intruders: &[Intruder], before: &[Pair]) -> Vec<Pair> {
-    // One after the other, not the best sum over all pairs: the intruder that is nearest to the
-    // flag is what matters, and the result does not change for a boat far off.
+    // Greedy, not the best sum over all pairs: the intruder nearest to the flag matters most, and a
+    // distant boat does not change the result.
     let mut left: Vec<&Interceptor> = interceptors.iter().collect();
     let mut pairs = Vec::with_capacity(intruders.len().min(left.len()));
     for intruder in intruders {
@@ -53,9 +55,8 @@ pub(super) fn assign(interceptors: &[Interceptor], intruders: &[Intruder], befor
         let intruder_m_s = intruder.velocity.length();
         let (mut soonest_s, mut soonest) = (f64::INFINITY, None);
         for (i, interceptor) in left.iter().enumerate() {
-            // With many boats most are too far off to be sooner, even straight towards each other.
-            // The time to meet of every boat with every intruder took a quarter of a game of
-            // 100 against 100.
+            // With many boats most are too far away to be sooner, even head-on. Computing the
+            // meeting time of every pair took a quarter of a game of 100 against 100.
             let reach_m = (interceptor.speed_m_s + intruder_m_s) * (soonest_s + KEPT_S) * ROUNDING;
             if interceptor.at.distance_squared(intruder.at) > reach_m * reach_m {
                 continue;
@@ -71,15 +72,16 @@ pub(super) fn assign(interceptors: &[Interceptor], intruders: &[Intruder], befor
     pairs
 }
 
-/// How long until the two can be at the same place, s: until the boat is where the intruder is now if that outruns it.
+/// Time until both can be at the same place, s; if the intruder outruns the boat, until the boat
+/// reaches the intruder's present position.
 fn time_to_meet_s(interceptor: &Interceptor, intruder: &Intruder) -> f64 {
     let line = intruder.at - interceptor.at;
     meeting_time_s(line, intruder.velocity, interceptor.speed_m_s)
         .unwrap_or_else(|| 2.0 * line.length() / interceptor.speed_m_s)
 }
 
-/// When a boat that goes straight at this speed soonest meets one that is `line` away and keeps its velocity, s; none if it never
-/// does.
+/// The earliest meeting time of a boat going straight at this speed with a contact at `line` of
+/// constant velocity, s; none if they never meet.
 ///
 /// The time is the smallest positive root of |line + velocity t| = speed t.
 pub(crate) fn meeting_time_s(line: Ned, velocity: Ned, speed_m_s: f64) -> Option<f64> {
@@ -139,7 +141,8 @@ mod tests {
     fn noise_does_not_change_who_meets_whom_and_what_is_better_does() {
         let before = [Pair { interceptor: VehicleId(0), intruder: VehicleId(7) }];
         for (east, want) in [(10.0, 0), (12.0, 0), (15.9, 0), (16.1, 1)] {
-            // The other one lies 10 m off on the other side: every metre more is half a second.
+            // The other boat is 10 m away on the other side: each further metre takes half a
+            // second.
             let boats = [interceptor(0, east), interceptor(1, -10.0)];
             let got = numbers(&assign(&boats, &[intruder(7, 0.0)], &before));
             assert_eq!(got, [(want, 7)], "{east} m");

@@ -1,4 +1,4 @@
-//! The situation: what a helm knows at this decision, in the terms of strategies.
+//! The situation: a helm's knowledge at this decision, in the terms of strategies.
 
 mod game_model;
 mod interception;
@@ -24,15 +24,16 @@ use scenario::strategy::{Boat, Expression, Fact, Mark, Measure, Place, Program, 
 use std::cell::OnceCell;
 use turn_estimate::{TurnEstimate, turning_on};
 
-/// A contact is assumed to go on as it was seen for this long, s; then to slow down ...
+/// A contact is assumed to keep its velocity for this long, s; then to slow down ...
 const KEEPS_ON_S: f64 = 15.0;
 /// ... and to lie still after this long, s.
 const STILL_AFTER_S: f64 = 30.0;
-/// The distance of what is not there, m.
+/// Distance of an unknown thing, m.
 const NOWHERE_M: f64 = 1e9;
-/// A boat this far within its untagging place, as a share of the radius, was tagged there and must leave it.
+/// A boat this far inside its untagging place was tagged there and must leave it, as a share of the
+/// radius.
 const WELL_INSIDE: f64 = 0.5;
-/// It has left it at this share of the radius.
+/// It counts as having left beyond this share of the radius.
 const WELL_OUTSIDE: f64 = 1.2;
 
 /// Another boat.
@@ -47,15 +48,17 @@ pub(crate) struct OtherBoat {
     yaw_rate_rad_s: f64,
     pub(crate) tagged: bool,
     pub(crate) carrying: Option<FlagId>,
-    /// From when on it can tag again: as mates tell, and of enemies as far as one of the team was tagged by them.
+    /// The earliest time of its next tag: from a mate's own messages; for enemies only if they
+    /// tagged one of the team.
     pub(crate) tag_ready: SimTime,
-    /// How long ago it was seen, s; mates tell of themselves at every picture.
+    /// Age of the last observation, s; mates report themselves in every picture.
     pub(crate) age_s: f64,
     /// Whether it is an enemy on the own team's side.
     pub(crate) intrudes: bool,
 }
 
-/// A velocity over the ground as it is told, m/s: of a large team hardly any is asked for, so nobody turns them all.
+/// A velocity over the ground as received, m/s. It is rotated on demand, since few boats of a large
+/// team need it.
 #[derive(Clone, Copy, Debug)]
 enum Velocity {
     Ned(Ned),
@@ -72,13 +75,13 @@ impl OtherBoat {
         }
     }
 
-    /// As it moves when it has turned on for a moment.
+    /// Its position and velocity extrapolated through a brief continued turn.
     pub(crate) fn turning_on(&self) -> MovingPoint {
         turning_on(MovingPoint { at: self.at, velocity: self.velocity() }, self.yaw_rate_rad_s)
     }
 }
 
-/// What the helm knows now.
+/// The helm's current knowledge.
 #[derive(Clone, Debug)]
 pub(crate) struct Situation {
     pub(crate) model: GameModel,
@@ -86,36 +89,36 @@ pub(crate) struct Situation {
     pub(crate) step_s: f64,
     /// Whether it has taken in a picture.
     begun: bool,
-    /// Of a picture that was taken in before it is decided on: whether the own boat was in it.
+    /// For a previewed picture: whether the own boat was in it.
     is_seen: Option<bool>,
     pub(crate) mode_since: SimTime,
     pub(crate) own: OwnBoat,
     pub(crate) at: Ned,
-    /// The unit vector ahead.
+    /// The unit vector along the bow.
     pub(crate) ahead: Ned,
     /// The own velocity over the ground, m/s.
     pub(crate) velocity: Ned,
-    /// How the own boat moves when it is given an order.
+    /// The own boat's response to orders.
     pub(crate) motion: OwnMotion,
     /// All other boats that are known: mates first, then enemies, each in the scenario's order.
     pub(crate) others: Vec<OtherBoat>,
-    /// How contacts turn, by vehicle.
+    /// Turn estimates of contacts, by vehicle index.
     turns: Vec<Option<TurnEstimate>>,
-    /// From when on those that tagged one of the team can tag again, by vehicle.
+    /// The earliest time of the next tag of enemies that tagged one of the team, by vehicle index.
     tag_ready: Vec<SimTime>,
     pub(crate) variables: Vec<f64>,
     pub(crate) team_messages: TeamMessages,
-    /// What a policy proposed last.
+    /// A policy's last proposal.
     pub(crate) proposed: Option<Proposal>,
-    /// Who carries each flag, if anybody.
+    /// The carrier of each flag, if any.
     carriers: Vec<Option<VehicleId>>,
     score: f64,
     enemy_score: f64,
-    /// Who meets which intruder, from when it is first asked for at a decision.
+    /// The interception pairs, computed on first use in a decision.
     interception: OnceCell<Vec<Pair>>,
-    /// The same as it was last asked for.
+    /// The previous interception pairs.
     interception_before: Vec<Pair>,
-    /// Tagged inside of its untagging place: it must leave before it can come home.
+    /// Tagged inside its untagging place: it must leave before it can come home.
     leaving: bool,
 }
 
@@ -153,12 +156,12 @@ impl Situation {
         }
     }
 
-    /// Takes in the picture that is decided on next, before it is.
+    /// Takes in the picture for the next decision in advance.
     pub(crate) fn preview(&mut self, picture: &Picture) {
         self.is_seen = Some(self.apply_picture(picture));
     }
 
-    /// Takes the newest picture in, if that was not done before; `false` if the own boat is not in it.
+    /// Takes the newest picture in unless a preview has; `false` if the own boat is not in it.
     pub(crate) fn update(&mut self, picture: &Picture) -> bool {
         self.is_seen.take().unwrap_or_else(|| self.apply_picture(picture))
     }
@@ -166,8 +169,8 @@ impl Situation {
     fn apply_picture(&mut self, picture: &Picture) -> bool {
         let Some(own) = picture.own(self.model.me) else { return false };
         let now = picture.stamp.valid_ns;
-        // By the pictures' own time, so that a lost one is a longer step and a repeated one
-        // none.
+        // By the pictures' own time, so that a lost one means a longer step and a repeated one a
+        // step of zero.
         self.step_s = if self.begun { (now - self.now).as_s().max(0.0) } else { 0.0 };
         (self.now, self.begun) = (now, true);
         self.own = *own;
@@ -187,8 +190,8 @@ impl Situation {
                 vehicle: mate.vehicle,
                 is_enemy: false,
                 at,
-                // In games of 20 against 20 and more, turning all of them into the field's
-                // frame showed in the time of a decision, and hardly any is asked for.
+                // In games of 20 against 20 and more, rotating all of them to the field's frame
+                // measurably slowed decisions, and few are needed.
                 velocity: Velocity::Body(Body { ahead: mate.nav.surge_m_s, starboard: mate.nav.sway_m_s }),
                 psi_rad: mate.nav.psi_rad,
                 yaw_rate_rad_s: mate.nav.yaw_rate_rad_s,
@@ -228,7 +231,7 @@ impl Situation {
         let ours = picture.score.get(self.model.team.index()).copied();
         self.score = f64::from(ours.unwrap_or(0));
         self.enemy_score = picture.score.iter().copied().map(f64::from).sum::<f64>() - self.score;
-        // With two limits: at one alone noise of the position would turn the boat to and fro.
+        // With hysteresis: at a single limit, position noise would toggle the state.
         let from_home = self.at.distance(self.model.untag_centre(self.at)) / self.model.rules.untag_radius_m;
         self.leaving = own.tagged && (from_home < WELL_INSIDE || self.leaving && from_home <= WELL_OUTSIDE);
         true
@@ -250,7 +253,7 @@ impl Situation {
         self.velocity - self.motion.drift()
     }
 
-    /// The own boat as it moves when it has turned on for a moment.
+    /// The own boat extrapolated through a brief continued turn.
     pub(crate) fn turning_on(&self) -> MovingPoint {
         turning_on(MovingPoint { at: self.at, velocity: self.velocity }, self.own.nav.yaw_rate_rad_s)
     }
@@ -270,7 +273,7 @@ impl Situation {
         self.others.iter().filter(|other| !other.is_enemy)
     }
 
-    /// The boat that `boat` is just now.
+    /// The boat that `boat` currently refers to.
     pub(crate) fn boat(&self, boat: Boat) -> Option<&OtherBoat> {
         let of_ours = |other: &&OtherBoat| other.carrying.is_some_and(|flag| self.is_own_flag(flag));
         match boat {
@@ -302,12 +305,13 @@ impl Situation {
         self.model.own_flag_near(at).distance_squared(at)
     }
 
-    /// Who meets which intruder.
+    /// Computes the interception pairs.
     fn intercepted(&self) -> Vec<Pair> {
         let mut intruders: Vec<Intruder> = self.intruders().map(Intruder::from).collect();
-        // By the flag that each is nearest to, and not the one nearest to this boat: all boats of the team find the same order.
-        // By how near they are to the flag, from what the whole team sees: so that every mate
-        // comes to the same pairs.
+        // By the flag nearest to each intruder, not the one nearest to this boat, so that all boats
+        // of the team find the same order.
+        // By their distance to the flag in the whole team's knowledge, so that every mate computes
+        // the same pairs.
         intruders.sort_by(|a, b| self.flag_distance_squared(a.at).total_cmp(&self.flag_distance_squared(b.at)));
         let boat = |vehicle: VehicleId, at: Ned, tag_ready: SimTime| Interceptor {
             vehicle,
@@ -323,12 +327,12 @@ impl Situation {
         interception::assign(&interceptors, &intruders, &self.interception_before)
     }
 
-    /// The mates that play and carry no flag.
+    /// The untagged mates without a flag.
     fn free_mates(&self) -> impl Iterator<Item = &OtherBoat> {
         self.mates().filter(|mate| !mate.tagged && mate.carrying.is_none())
     }
 
-    /// Where a place is now.
+    /// The present position and velocity of a place.
     pub(crate) fn locate(&self, place: &Place) -> Option<MovingPoint> {
         let still = |at: Ned| Some(MovingPoint { at, velocity: Ned::default() });
         match place {
@@ -364,7 +368,7 @@ impl Situation {
         self.model.own_flags.iter().any(|(own, _)| *own == flag)
     }
 
-    /// Who carries a flag.
+    /// The carrier of a flag.
     fn carried(&self, flag: FlagId) -> Option<VehicleId> {
         self.carriers.get(flag.index()).copied().flatten()
     }
@@ -446,19 +450,18 @@ impl From<&OtherBoat> for Intruder {
     }
 }
 
-/// What is asked of two places, if both are there.
+/// A measure between two places, or its default if one is unknown.
 fn between(measure: Measure, from: Option<MovingPoint>, to: Option<MovingPoint>) -> f64 {
     let points = from.zip(to);
     match measure {
-        // Far away, not infinite: expressions may subtract, and infinity less infinity is no
-        // number.
+        // Far away, not infinite: expressions may subtract, and infinity minus infinity is NaN.
         Measure::Distance => points.map_or(NOWHERE_M, |(from, to)| from.at.distance(to.at)),
         Measure::Closing => points.map_or(0.0, |(from, to)| closing_m_s(from, to)),
         _ => 0.0,
     }
 }
 
-/// How fast the distance between two points shrinks, m/s.
+/// The closing speed of two points, m/s.
 fn closing_m_s(from: MovingPoint, to: MovingPoint) -> f64 {
     let line = to.at - from.at;
     let distance_m = line.length();
@@ -468,19 +471,20 @@ fn closing_m_s(from: MovingPoint, to: MovingPoint) -> f64 {
     (from.velocity - to.velocity).dot(line) / distance_m
 }
 
-/// The estimated position and velocity of a contact now: it goes on as seen, then slows down and lies still.
+/// The estimated position and velocity of a contact now: constant velocity, then slowing down, then
+/// still.
 fn dead_reckoned(contact: &Contact, now: SimTime) -> (Ned, Ned) {
     let seen = Ned { north: contact.north_m, east: contact.east_m };
     let velocity = Ned { north: contact.velocity_north_m_s, east: contact.velocity_east_m_s };
     let age_s = (now - contact.seen_ns).as_s().max(0.0);
     let slowing_s = (age_s - KEEPS_ON_S).clamp(0.0, STILL_AFTER_S - KEEPS_ON_S);
     let left = 1.0 - slowing_s / (STILL_AFTER_S - KEEPS_ON_S);
-    // The integral of a speed that is full up to the first time and falls in proportion from there.
+    // The integral of a speed that is constant up to the first time and then falls linearly.
     let gone_s = age_s.min(KEEPS_ON_S) + slowing_s * 0.5 * (1.0 + left);
     (seen + velocity.scaled(gone_s), velocity.scaled(left))
 }
 
-/// The one nearest to `at`; of two equally near the first.
+/// The one nearest to `at`; ties go to the first.
 fn nearest<'a>(at: Ned, others: impl Iterator<Item = &'a OtherBoat>) -> Option<&'a OtherBoat> {
     others.min_by(|a, b| at.distance_squared(a.at).total_cmp(&at.distance_squared(b.at)))
 }

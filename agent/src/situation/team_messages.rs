@@ -5,18 +5,18 @@ use primitives::VehicleId;
 use scenario::strategy::{Expression, Kind, Program, Values, Variable};
 use xxhash_rust::xxh3::xxh3_64;
 
-/// What one mate sent last.
+/// The last values received from one mate.
 #[derive(Clone, Debug)]
 struct MateVariables {
     mate: VehicleId,
-    /// By variable of the own program: its value at the mate, if it was ever received.
+    /// By variable of the own program: its value at the mate, if ever received.
     values: Vec<Option<f64>>,
 }
 
 /// The messages received from all mates.
 #[derive(Clone, Debug)]
 pub(crate) struct TeamMessages {
-    /// By variable: under which key it is sent, if it is shared.
+    /// By variable: the key that it is sent under, if it is shared.
     keys: Vec<Option<u64>>,
     mates: Vec<MateVariables>,
 }
@@ -34,7 +34,7 @@ impl TeamMessages {
         self.keys.iter().any(Option::is_some)
     }
 
-    /// Takes in what mates sent; words of others and about unknown variables are ignored.
+    /// Receives messages of mates; ignores words of other boats and about unknown variables.
     pub(crate) fn receive(&mut self, messages: &[Word]) {
         for word in messages.iter().filter(|word| word.value.is_finite()) {
             let variable = self.keys.iter().position(|key| *key == Some(word.key));
@@ -52,7 +52,8 @@ impl TeamMessages {
         messages.extend(shared.map(|(key, value)| Word { vehicle: me, key, value }));
     }
 
-    /// How many mates there are for which `condition` holds; one that has not sent all that it asks for does not count.
+    /// The number of mates for which `condition` holds; a mate without all values that it needs
+    /// does not count.
     pub(crate) fn count(&self, condition: &Expression) -> f64 {
         let holds = |from: &&MateVariables| {
             let mut complete = true;
@@ -66,19 +67,19 @@ impl TeamMessages {
     }
 }
 
-/// A shared variable is the same to two programs if its name and everything that it can be are the same.
+/// Two programs share a variable if its name and its possible values are the same.
 fn key_of(variable: &Variable) -> u64 {
     let kind = match &variable.kind {
         Kind::Truth => "truth".to_owned(),
         Kind::Number => "number".to_owned(),
         Kind::Text(values) => values.join(","),
     };
-    // A hash in place of the name: two strategies of one team need not list the same variables,
-    // and a word on the wire has a fixed size.
+    // A hash of the name and kind: two strategies of one team need not list the same variables, and
+    // words have a fixed size on the wire.
     xxh3_64(format!("{} {kind}", variable.name).as_bytes())
 }
 
-/// Of mates nothing is known but their shared variables.
+/// Only the shared variables of mates are known.
 impl Values for MateVariables {
     fn variable(&self, index: u16) -> f64 {
         self.values.get(usize::from(index)).copied().flatten().unwrap_or(0.0)

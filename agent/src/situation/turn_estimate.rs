@@ -1,4 +1,4 @@
-//! How boats turn, and where that takes them.
+//! Turn estimates: the yaw rates of boats and their extrapolated motion.
 
 use super::moving_point::MovingPoint;
 use messages::picture::Contact;
@@ -6,14 +6,14 @@ use primitives::SimTime;
 use primitives::angle::wrap_pi;
 use primitives::frame::{Body, Rotation, ned_from_body};
 
-/// A boat is taken to turn on for this long, s.
+/// A boat is assumed to keep turning for this long, s.
 const TURNS_ON_S: f64 = 2.0;
-/// It is taken to turn by no more than this, rad.
+/// Upper bound of the assumed turn, rad.
 const TURN_MAX_RAD: f64 = 1.5;
-/// Over so long the yaw rate of a contact is smoothed, s.
+/// Time constant for smoothing a contact's yaw rate, s.
 const SMOOTHED_S: f64 = 0.5;
 
-/// How a contact turns, from the headings that it was seen with.
+/// A contact's yaw rate, estimated from its observed headings.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TurnEstimate {
     seen: SimTime,
@@ -22,12 +22,12 @@ pub(super) struct TurnEstimate {
 }
 
 impl TurnEstimate {
-    /// With what was seen of a contact now.
+    /// The estimate updated with the contact's present state.
     pub(super) fn seen(before: Option<TurnEstimate>, contact: &Contact) -> TurnEstimate {
         let (seen, psi_rad) = (contact.seen_ns, contact.psi_rad);
         let Some(before) = before else { return TurnEstimate { seen, psi_rad, yaw_rate_rad_s: 0.0 } };
-        // A contact that is shown again unchanged was not seen again: it would look as if it
-        // had stopped turning.
+        // A contact shown again unchanged was not observed again: it would appear to have stopped
+        // turning.
         if seen <= before.seen {
             return before;
         }
@@ -41,20 +41,21 @@ impl TurnEstimate {
         }
     }
 
-    /// The yaw rate, rad/s clockwise: none if the contact has not been seen for longer than it is taken to turn on.
+    /// The yaw rate, rad/s clockwise; none if the contact has not been seen for longer than the
+    /// assumed turn.
     pub(super) fn yaw_rate_rad_s(&self, now: SimTime) -> f64 {
         if (now - self.seen).as_s() > TURNS_ON_S { 0.0 } else { self.yaw_rate_rad_s }
     }
 }
 
-/// A boat that turns at this yaw rate, rad/s, as one that goes straight: where it will be, and goes then, if it turns on for a
-/// moment.
+/// A boat with this yaw rate, rad/s, as one that goes straight: its position and velocity after a
+/// brief continued turn.
 pub(super) fn turning_on(boat: MovingPoint, yaw_rate_rad_s: f64) -> MovingPoint {
     let turn_rad = (yaw_rate_rad_s * TURNS_ON_S).clamp(-TURN_MAX_RAD, TURN_MAX_RAD);
     let half_rad = 0.5 * turn_rad;
     let half = Rotation::from_heading(half_rad);
-    // The chord of an arc by its length: the sine of half the angle by half the angle, which is
-    // 1 where it is straight.
+    // The ratio of an arc's chord to its length: the sine of half the angle over half the angle,
+    // which is 1 for a straight line.
     let chord = if half_rad.abs() > 1e-6 { half.ahead().east / half_rad } else { 1.0 };
     let clockwise = |by| ned_from_body(by, Body { ahead: boat.velocity.north, starboard: boat.velocity.east });
     let velocity = clockwise(Rotation::from_heading(turn_rad));
@@ -70,7 +71,7 @@ mod tests {
 
     #[test]
     fn a_boat_on_a_circle_is_where_the_circle_leads() {
-        // 2 m/s north and 0.4 rad/s: a circle of 5 m around (0, 5) east of it.
+        // 2 m/s north at 0.4 rad/s: a circle of radius 5 m around a point 5 m to the east.
         let boat = MovingPoint { at: Ned { north: 10.0, east: 20.0 }, velocity: Ned { north: 2.0, east: 0.0 } };
         for yaw_rate_rad_s in [0.4, -0.4] {
             let turned = turning_on(boat, yaw_rate_rad_s);
@@ -101,7 +102,7 @@ mod tests {
             carrying: -1,
         };
         let mut turn = TurnEstimate::seen(None, &contact(0, 3.0));
-        // Through south, where headings wrap, and twice each.
+        // Through south, where headings wrap, each shown twice.
         for ms in (100..5_000).step_by(100) {
             let psi_rad = primitives::angle::wrap_pi(3.0 + 0.3 * 0.001 * ms as f64);
             for _ in 0..2 {

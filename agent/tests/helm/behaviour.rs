@@ -1,4 +1,4 @@
-//! Each behaviour, alone: what it makes of a scene.
+//! Each behaviour alone: its decisions in given scenes.
 
 use crate::scene::{Boat, alone, decided, helm, only, picture, scenario, without_safety};
 use agent::Mind;
@@ -6,7 +6,7 @@ use messages::helm::{HelmReport, RunState};
 use messages::picture::Picture;
 use primitives::SimTime;
 
-/// What boat 0 decides by this behaviour alone in this scene.
+/// Boat 0's decision by this behaviour alone in this scene.
 fn alone_decides(behaviour: &str, picture: &Picture) -> HelmReport {
     decided(&mut helm(&only(behaviour)), picture)
 }
@@ -15,12 +15,12 @@ fn is_active(report: &HelmReport) -> bool {
     report.behaviours.iter().any(|b| b.name == "it" && b.run_state == RunState::Active)
 }
 
-/// From the middle of the field.
+/// In the middle of the field.
 fn here() -> Picture {
     alone(0.0, Boat::at(0.0, 0.0).going(0.0, 1.0))
 }
 
-/// With a contact; everybody else is far away.
+/// With one contact; all others are far away.
 fn with_contact(own: Boat, contact: Boat) -> Picture {
     picture(0.0, [own, Boat::at(-70.0, -30.0)], [contact, Boat::at(75.0, -35.0)])
 }
@@ -35,7 +35,7 @@ fn boat(text: &str) -> Boat {
     }
 }
 
-/// Whether a decision is the course and the speed that are wanted, or none.
+/// Whether a decision matches the wanted course and speed, or none.
 fn is_wanted(report: &HelmReport, want: &str) -> bool {
     match report.course_deg.zip(report.speed_m_s).filter(|_| is_active(report)) {
         None => want == "nothing",
@@ -77,7 +77,8 @@ fn every_behaviour_alone_decides_as_the_cases_say() {
     assert!(decided >= 30, "only {decided} cases");
 }
 
-/// A boat that turns at this rate at most, rad/s, and takes a second to change its speed, from here for a minute.
+/// A boat with this maximum turn rate, rad/s, that takes a second to change its speed, simulated
+/// for a minute.
 fn driven(behaviour: &str, from: Boat, turn_rad_s: f64, contact: Boat) -> Vec<Boat> {
     let (mut helm, mut own, mut track) = (helm(&only(behaviour)), from, vec![]);
     for step in 0..600 {
@@ -137,7 +138,7 @@ fn a_loiter_goes_all_the_way_round() {
         turned_deg += (bearing_deg - last + 540.0).rem_euclid(360.0) - 180.0;
         last = bearing_deg;
     }
-    // 145 m round: 300 m are two rounds.
+    // The perimeter is 145 m: 300 m are two rounds.
     assert!((650.0..850.0).contains(&turned_deg), "{turned_deg} degrees round");
 }
 
@@ -146,7 +147,7 @@ fn weights_of_avoidance_grow_to_what_is_configured_and_no_further() {
     let weight = |distance_m: f64, grade: &str| {
         let behaviour =
             format!("kind = 'avoid_collision'\nweight = 300\ninner_m = 10\nouter_m = 20\ngrade = '{grade}'");
-        // Beyond the own side, where nobody is to be tagged.
+        // Beyond the own side, where nobody can be tagged.
         let report = alone_decides(&behaviour, &with_contact(Boat::at(10.0, 0.0), Boat::at(10.0, distance_m)));
         report.functions.iter().find(|f| f.behaviour == "it").map_or(0.0, |f| f.weight)
     };
@@ -172,7 +173,7 @@ fn a_boat_in_the_way_is_passed_and_one_astern_changes_nothing() {
     let scenario = without_safety(behaviours);
     let ahead = decided(&mut helm(&scenario), &scene(13.0));
     let course_rad = ahead.course_deg.expect("a course").to_radians();
-    // It goes on for a moment before it turns.
+    // It keeps its motion for a moment before it turns.
     let miss_m = ((13.0 - 2.0 * 0.7) * libm::cos(course_rad)).abs();
     assert!(miss_m > 5.5, "course {course_rad} rad passes at {miss_m} m");
     assert!((decided(&mut helm(&scenario), &scene(-9.0)).course_deg.expect("a course") - 90.0).abs() < 0.51);
@@ -215,7 +216,8 @@ fn the_operation_region_turns_a_boat_back_and_recovers_it_slowly() {
 
 #[test]
 fn a_point_within_the_turning_circle_does_not_hold_a_boat_in_an_orbit() {
-    // The boat turns by 0.3 rad/s at most: at 1.5 m/s on a circle of 5 m, about the first point when it begins.
+    // The boat turns at 0.3 rad/s at most: at 1.5 m/s on a circle of radius 5 m, around the first
+    // point initially.
     let points =
         "kind = 'waypoint'\npoints = [[0, 0], [60, 0]]\nspeed_m_s = 1.5\ncapture_radius_m = 1\nslip_radius_m = 2";
     let (mut helm, mut at, mut heading_rad) = (helm(&only(points)), (-5.0_f64, 0.0_f64), 0.0_f64);
@@ -280,7 +282,8 @@ fn safety_arbitrates_what_a_policy_proposes() {
     assert!(speed_m_s * libm::sin(course_rad) < 0.1, "not out of the field: {course_rad} rad, {speed_m_s} m/s");
     let ahead = with_contact(Boat::at(0.0, 0.0).going(90.0, 2.0), Boat::at(14.0, 0.0));
     let (course_rad, speed_m_s) = advised(&ahead, east);
-    // It goes on for a moment, then as decided for the eight seconds that it looks ahead.
+    // It keeps its motion for a moment, then follows the decision for the eight seconds of the
+    // look-ahead.
     let places = (0..=80).map(|i| 0.1 * f64::from(i) * speed_m_s);
     let from_m = |run_m: f64| (run_m * libm::cos(course_rad), 14.0 - 2.0 * 0.7 - run_m * libm::sin(course_rad));
     let miss_m =
@@ -319,7 +322,7 @@ fn a_boat_that_came_too_near_halts_until_it_is_released() {
         (7.0, 4.0, false),
         (8.0, 2.0, true),
         (37.9, 2.0, true),
-        // Released by time: it does not halt again before it has been clear.
+        // Released by time: it does not halt again until it has been clear.
         (38.0, 2.0, false),
         (39.0, 1.0, false),
         (40.0, 11.0, false),

@@ -1,10 +1,10 @@
-//! What a boat knows of a scene, in the terms of strategies.
+//! A boat's knowledge of a scene, in the terms of strategies.
 
 use crate::scene::{Boat, decided, helm, picture, without_safety};
 use agent::HelmMind;
 use messages::picture::{OwnBoat, Picture};
 
-/// A helm that works an expression out at every decision.
+/// A helm that evaluates an expression at every decision.
 fn asking(expression: &str) -> HelmMind {
     helm(&without_safety(&format!(
         "[variables]\nanswer = 0\n[[rule]]\nwhen = \"true\"\nset = {{ answer = \"{expression}\" }}\n\
@@ -12,7 +12,7 @@ fn asking(expression: &str) -> HelmMind {
     )))
 }
 
-/// What it is in this scene.
+/// The value of the expression in this scene.
 fn answer(helm: &mut HelmMind, picture: &Picture) -> f64 {
     decided(helm, picture).variables[0].value.parse().expect("a number")
 }
@@ -52,7 +52,7 @@ fn measures_are_of_one_place_or_between_two() {
         change(&mut other.own[1]);
         assert_eq!(answer(&mut asking("mates_nearer(own_flag)"), &other), 0.0);
     }
-    // A tagged enemy comes home to play again: it defends too.
+    // A tagged enemy returns home to play again, so it counts as a defender too.
     scene.contacts[1].east_m = 50.0;
     assert_eq!(answer(&mut asking("is_tagged(nearest_defender) ? 1 : 0"), &scene), 1.0);
 }
@@ -64,10 +64,10 @@ fn an_intruder_is_assigned_to_one_boat_and_to_the_same_by_everybody() {
     let intruders = |x: f64| [Boat::at(x, 0.0), Boat::at(50.0, 0.0)];
     assert_eq!(answer(&mut mine, &picture(0.0, own_x(-20.0), intruders(10.0))), -1.0, "nobody intrudes");
     assert_eq!(answer(&mut mine, &picture(0.1, own_x(-20.0), intruders(-10.0))), 10.0);
-    // The mate is nearer by a little, which may be noise; then by much.
+    // The mate is nearer by a little, which may be noise; then by a lot.
     assert_eq!(answer(&mut mine, &picture(0.2, own_x(-20.0), intruders(-46.0))), 26.0);
     assert_eq!(answer(&mut mine, &picture(0.3, own_x(-20.0), intruders(-60.0))), -1.0);
-    // The mate has no time: it has just tagged, is tagged, or carries a flag.
+    // The mate is busy: it has just tagged, is tagged, or carries a flag.
     let busy: [fn(&mut Picture); 3] = [
         |scene| scene.own[1].tag_ready_ns = primitives::SimTime::from_s(60.0),
         |scene| scene.own[1].tagged = true,
@@ -79,7 +79,8 @@ fn an_intruder_is_assigned_to_one_boat_and_to_the_same_by_everybody() {
         let expression = "known(assigned_intruder) ? distance(assigned_intruder) : -1";
         assert_eq!(answer(&mut asking(expression), &scene), 40.0);
     }
-    // Of two intruders the one that is nearer to the flag has the boat that is nearer to it; the other one is left to this boat.
+    // Of two intruders, the one nearer to the flag gets the boat nearer to it; the other is left to
+    // this boat.
     let both = [Boat::at(-66.0, 0.0), Boat::at(-64.0, 0.0)];
     assert_eq!(answer(&mut mine, &picture(0.5, own_x(-20.0), both)), 46.0);
 }
@@ -91,7 +92,7 @@ fn a_boat_may_keep_out_of_the_reach_of_its_own_opponent_alone() {
             "[behaviour.avoid]\nkind = \"avoid_collision\"\ncontacts = \"{contacts}\"\n\
              [behaviour.go]\nkind = \"waypoint\"\npoints = [[60, 0]]\n"
         );
-        // Boat 2 is the opponent, boat 3 the mate's: both are near, and could tag the boat.
+        // Boat 2 is the opponent, boat 3 its mate: both are near, and could tag the boat.
         let enemies = [own, own].map(|own| Boat { y: own.y + 5.0, ..own });
         let report =
             decided(&mut helm(&without_safety(&program)), &picture(0.0, [own, Boat::at(-75.0, -35.0)], enemies));

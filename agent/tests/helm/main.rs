@@ -1,4 +1,4 @@
-//! Helms at the wheel: what programs make of pictures.
+//! Helm decisions: programs applied to pictures.
 
 mod behaviour;
 mod knowledge;

@@ -1,4 +1,4 @@
-//! Modes, rules, variables, and the lives of behaviours.
+//! Modes, rules, variables, and the life cycle of behaviours.
 
 use crate::scene::{Boat, alone, decided, helm, picture, without_safety};
 use agent::{HelmMind, Mind};
@@ -55,7 +55,7 @@ fn behaviours_live_and_post() {
     // Its duration is over.
     assert_eq!(run_state(&at(&mut helm, 0.9, -30.0), "rest"), RunState::Active);
     assert_eq!(run_state(&at(&mut helm, 1.0, -30.0), "rest"), RunState::Complete);
-    // Each point that is reached counts; after the last the list begins anew.
+    // Each reached point counts; after the last the list restarts.
     for (at_s, x, laps) in [(2.0, -1.0, "1"), (3.0, 9.0, "2"), (4.0, 9.0, "2"), (5.0, 1.0, "3")] {
         assert_eq!(variable(&at(&mut helm, at_s, x), "laps"), laps, "{at_s} s");
     }
@@ -90,7 +90,7 @@ fn mates_count_when_they_have_sent_everything_that_is_asked() {
         mine.receive(received);
         assert_eq!(weight(&mut mine), want, "{received:?}");
     }
-    // Words of nobody's mate, and of what nobody knows.
+    // Words from a boat that is not a mate, and about an unknown variable.
     mine.receive(&[Word { vehicle: VehicleId(2), ..sent(5.0, 1.0)[0] }, Word { key: 7, ..sent(5.0, 1.0)[0] }]);
     assert_eq!(weight(&mut mine), 1.0);
 }
@@ -135,7 +135,7 @@ fn time_is_counted_from_the_first_picture() {
     }
 }
 
-/// North or south: on the own side the one is worth a little more, beyond it the other.
+/// North or south: on the own side the one has a slightly higher utility, beyond it the other.
 const TWO_WAYS: &str = "[behaviour.speed]\nkind = \"constant_speed\"\nspeed_m_s = 2\nweight = 10\n\
     [behaviour.north]\nkind = \"constant_heading\"\nheading_deg = 0\nbase_width_deg = 60\nweight = \"own_side ? 50 : 49\"\n\
     [behaviour.south]\nkind = \"constant_heading\"\nheading_deg = 180\nbase_width_deg = 60\nweight = \"own_side ? 49 : 50\"\n";

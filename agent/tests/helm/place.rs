@@ -1,4 +1,5 @@
-//! Where boats steer to capture a flag and to be freed: places that the referee takes for valid, and the nearest of them.
+//! Where boats steer to capture a flag and to be freed: the nearest places that the referee
+//! accepts.
 
 use crate::scene::helm;
 use agent::Mind;
@@ -9,10 +10,10 @@ use scenario::Scenario;
 use std::path::Path;
 
 const BLUE: TeamId = TeamId(0);
-/// Rounding in the text of a variable, m.
+/// Rounding error of a variable's text, m.
 const ROUNDING_M: f64 = 1e-3;
 
-/// A shipped game in which all boats work out how far these places are.
+/// A shipped game in which all boats compute their distance to these places.
 fn scenario(game: &str) -> Scenario {
     let folder = tempfile::tempdir().expect("a folder for files");
     let games = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games");

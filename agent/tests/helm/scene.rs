@@ -1,4 +1,4 @@
-//! Scenes: a program, the picture that a boat has, and what it decides.
+//! Scenes: a program, a boat's picture, and the decision.
 
 use agent::{HelmMind, Mind};
 use messages::Order;
@@ -8,7 +8,8 @@ use primitives::{Ned, SimTime, TeamId, VehicleId};
 use scenario::Scenario;
 use std::path::Path;
 
-/// The scenario in which all boats follow the program `strategy`: two against two on the tests' field.
+/// The scenario in which all boats follow the program `strategy`: two against two on the test
+/// field.
 pub(crate) fn scenario(strategy: &str) -> Scenario {
     let folder = tempfile::tempdir().expect("a folder for files");
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios");
@@ -25,7 +26,7 @@ pub(crate) fn without_safety(program: &str) -> Scenario {
     scenario(&format!("unsafe_i_know = true\nunsafe_because = \"what is tested is alone\"\n{program}"))
 }
 
-/// A program with one behaviour, and hardly any preference besides.
+/// A program with one behaviour and negligible other preferences.
 pub(crate) fn only(behaviour: &str) -> Scenario {
     without_safety(&format!(
         "[behaviour.it]\n{behaviour}\n\
@@ -34,7 +35,7 @@ pub(crate) fn only(behaviour: &str) -> Scenario {
     ))
 }
 
-/// Places and motion in files' terms: x east, y north, compass degrees, m/s.
+/// Positions and motion in the units of files: x east, y north, compass degrees, m/s.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Boat {
     pub(crate) x: f64,
@@ -114,7 +115,7 @@ pub(crate) fn decided(helm: &mut HelmMind, picture: &Picture) -> HelmReport {
     match (order, report.course_deg.zip(report.speed_m_s)) {
         (Order::Steer { heading_rad, speed_m_s }, Some((course_deg, reported_m_s))) => {
             let off_deg = wrap_180(heading_rad.to_degrees() + report.heading_offset_deg - course_deg);
-            // Of nearly half a turn a part is ordered.
+            // For nearly half a turn an intermediate heading is ordered.
             let psi_deg = picture.own[0].nav.psi_rad.to_degrees();
             let is_large = wrap_180(course_deg - psi_deg).abs() > 120.0;
             assert!(is_large || off_deg.abs() < 1e-6 && speed_m_s == reported_m_s, "{order:?}, {report:?}");

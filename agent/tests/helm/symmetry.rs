@@ -1,4 +1,4 @@
-//! A game turned by half a turn, or with teams exchanged, gives decisions turned by half a turn.
+//! A game rotated by half a turn, or with teams exchanged, gives decisions rotated by half a turn.
 
 use crate::scene::{Boat, picture};
 use agent::{HelmMind, Mind, roles};
@@ -8,8 +8,8 @@ use primitives::{TeamId, VehicleId};
 use scenario::Scenario;
 use std::path::Path;
 
-/// The scene as the other team has it that stands where this one stood: turned by half a turn about the datum, which is
-/// the middle of the field.
+/// The same scene for the other team in this one's place: rotated by half a turn about the datum,
+/// which is the middle of the field.
 fn turned(picture: &Picture) -> Picture {
     let mut other = picture.clone();
     other.team = 1 - picture.team;
@@ -36,7 +36,7 @@ fn turned(picture: &Picture) -> Picture {
     other
 }
 
-/// A scene anywhere on the field, with a boat tagged or carrying now and then.
+/// A random scene on the field, sometimes with a boat tagged or carrying.
 fn random(stream: &mut Stream) -> Picture {
     let mut boat = || {
         let place = Boat::at(stream.between(-79.0, 79.0), stream.between(-39.0, 39.0));

@@ -1,4 +1,4 @@
-//! The solver against the whole grid.
+//! The solver compared with the whole grid.
 
 use crate::scene::{self, Table, decision, points, solved};
 use agent::ivp::{Approach, Choice, Closest, Closing, Decision, FUNCTIONS_MAX, Grid, Objective, Peak};
@@ -13,7 +13,7 @@ fn sums(grid: &Grid, functions: &[(f64, Objective)]) -> Vec<i64> {
     points(grid).map(at).collect()
 }
 
-/// The best decision, the slow way: every point, and the tie-break as documented.
+/// The best decision by exhaustive search, with the documented tie-break.
 fn searched(grid: &Grid, sums: &[i64], preference: Preference) -> (Decision, f64) {
     let largest = sums.iter().copied().max().expect("a grid has points");
     let key = |(k, j): (usize, usize)| {
@@ -99,7 +99,7 @@ fn a_problem_that_was_cleared_is_as_new() {
         assert_eq!(old.len(), functions.len());
         let got: Choice = old.solve(preference);
         let want = solved(&grid, &functions, preference);
-        // It begins with what it found last: how many points are evaluated depends on that.
+        // The solver starts from its last result, so the number of evaluated points varies.
         assert_eq!(got, Choice { evaluated: got.evaluated, ..want }, "seed {seed}");
         let Decision { course, speed } = got.decision;
         assert_eq!(old.collective(course.into(), speed.into()), got.value, "seed {seed}");
@@ -147,7 +147,7 @@ fn as_many_functions_as_there_may_be_do_not_overflow() {
     assert_eq!((got.decision, got.value), (decision(8, 8), FUNCTIONS_MAX as f64 * WEIGHT_MAX * 100.0));
 }
 
-/// A waypoint ahead to starboard, and three contacts that cross.
+/// A waypoint ahead to starboard, and three crossing contacts.
 #[test]
 fn a_scene_is_pinned_so_that_every_machine_decides_alike() {
     let grid = Grid::new(360, 21, 4.0);

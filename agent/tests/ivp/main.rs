@@ -1,4 +1,4 @@
-//! The helm's solver: whether it finds the best decision there is.
+//! The helm's solver: it must find the best decision.
 
 mod exact;
 mod scene;

@@ -1,4 +1,4 @@
-//! Random decisions, with functions of every kind and plenty of equal values.
+//! Random decisions, with functions of every kind and many ties.
 
 use agent::ivp::{Approach, Choice, Closest, Closing, Decision, Grid, Lag, Objective, Peak};
 use agent::ivp::{Preference, Problem, Side, SpeedLimit};
@@ -11,7 +11,7 @@ pub(crate) struct Table(agent::ivp::Table);
 
 impl Table {
     pub(crate) fn random(stream: &mut Stream, grid: &Grid) -> Table {
-        // Whole tens, so that there are ties, and every second course worth everything, or hardly any.
+        // Multiples of ten, for ties; every second course with full utility, or almost none.
         let most = [2, 20][stream.below(2) as usize];
         let is_full: Vec<bool> = (0..grid.courses()).map(|_| stream.below(most) == 0).collect();
         let tens: Vec<u64> = (0..grid.courses() * grid.speeds()).map(|_| stream.below(11)).collect();
@@ -24,7 +24,7 @@ impl Table {
         Table(agent::ivp::Table::of(grid, |k, j| self.0.utility(from(k), j)))
     }
 
-    /// The same function, with its table from here.
+    /// The same function, with its table replaced by this one.
     pub(crate) fn of<'a>(&'a self, objective: &Objective) -> Objective<'a> {
         match *objective {
             Objective::Course(peak) => Objective::Course(peak),
@@ -139,17 +139,17 @@ fn closing(stream: &mut Stream) -> Closing {
     Closing { offset: within(stream, 300.0), velocity: within(stream, 3.0) }
 }
 
-/// A vector with parts of no more than `most`.
+/// A vector with components up to `most`.
 pub(crate) fn within(stream: &mut Stream, most: f64) -> Ned {
     Ned { north: stream.between(-most, most), east: stream.between(-most, most) }
 }
 
-/// What the own ship is doing.
+/// The own ship's present motion.
 pub(crate) fn preference(stream: &mut Stream, grid: &Grid) -> Preference {
     Preference { course_rad: stream.between(-7.0, 7.0), speed_m_s: stream.between(-0.1, 1.1) * grid.speed_max_m_s() }
 }
 
-/// The solver's choice: with all instructions that this machine has the same.
+/// The solver's choice: identical with all instruction sets of this machine.
 pub(crate) fn solved(grid: &Grid, functions: &[(f64, Objective)], preference: Preference) -> Choice {
     let with = |instructions| {
         let mut problem = Problem::with_instructions(grid.clone(), instructions);

@@ -1,11 +1,11 @@
-//! The functions themselves, at points that were worked out by hand or by another way.
+//! The functions themselves, at points computed by hand or by another method.
 
 use crate::scene::within;
 use agent::ivp::{Approach, Closest, Closing, Grid, Lag, Objective, Peak, Side, SpeedLimit};
 use primitives::Ned;
 use primitives::stream::Stream;
 
-/// Single precision over some hundred metres, in points of utility.
+/// Single-precision error over some hundred metres, in points of utility.
 const TOLERANCE: f64 = 0.01;
 
 fn near(got: f32, want: f64, what: &str) {
@@ -46,12 +46,12 @@ fn a_limit_is_flat_within_and_falls_beyond() {
     }
 }
 
-/// The distance at the closest point of approach, by looking at many times.
+/// The distance at the closest point of approach, by sampling many times.
 fn searched_m(closest: &Closest, grid: &Grid, k: usize, j: usize) -> f64 {
     const TIMES: usize = 40_000;
     let (sin, cos) = primitives::math::sin_cos(grid.course_rad(k));
     let course = Ned { north: cos, east: sin };
-    // From a place, with a velocity, for a time.
+    // From a position, with a velocity, for a duration.
     let least = |from: Ned, velocity: Ned, time_s: f64| {
         let times = (0..=TIMES).map(|i| time_s * i as f64 / TIMES as f64);
         times.map(|t| (from + velocity.scaled(t)).length()).fold(f64::INFINITY, f64::min)
@@ -68,7 +68,7 @@ fn searched_m(closest: &Closest, grid: &Grid, k: usize, j: usize) -> f64 {
     let middle = course + lag.heading;
     let chord_m = ahead_m_s / lag.turn_rad_s * 2.0 * x;
     let then = start + closest.velocity.scaled(turn_s) - middle.scaled(chord_m / middle.length().max(1e-3));
-    // The mean speed until the contact would be met if all went on.
+    // The mean speed until the boats would meet at constant velocities.
     let rate_m2_s = present.dot(present);
     let meeting_s = (-closest.offset.dot(present) / rate_m2_s).clamp(0.0, closest.horizon_s).max(1.0);
     let change_m_s2 = if speed_m_s > ahead_m_s { lag.acceleration_m_s2 } else { lag.deceleration_m_s2 };
@@ -132,7 +132,7 @@ fn a_contact_on_the_other_side_counts_a_fifth() {
             lag: None,
         })
     };
-    // It lies 40 m ahead: 20 degrees to starboard leave it to port.
+    // It is 40 m ahead: a course 20 degrees to starboard leaves it to port.
     let passes_m = 40.0 * primitives::math::sin_cos(20_f64.to_radians()).0;
     for (course, to_port, to_starboard) in [(2, passes_m, 0.2 * passes_m), (34, 0.2 * passes_m, passes_m)] {
         let utility = |leave_to| closest(40.0, leave_to).utility(&grid, course, 7);

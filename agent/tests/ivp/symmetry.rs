@@ -1,4 +1,4 @@
-//! The same scene turned or mirrored must give the same decision turned or mirrored.
+//! A rotated or mirrored scene must give the rotated or mirrored decision.
 
 use crate::scene::{self, Table, solved};
 use agent::ivp::{Approach, Closest, Closing, Grid, Lag, Objective, Peak, Preference, Side};
@@ -6,7 +6,7 @@ use primitives::Ned;
 use primitives::stream::Stream;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// A motion of the plane that leaves the own ship where it is.
+/// An isometry of the plane that fixes the own ship.
 #[derive(Clone, Copy, Debug)]
 enum Motion {
     HalfTurn,
@@ -44,7 +44,7 @@ impl Motion {
         }
     }
 
-    /// Where course `k` of `n` comes to lie.
+    /// The index of course `k` of `n` after the motion.
     fn course(self, k: usize, n: usize) -> usize {
         match self {
             Motion::HalfTurn => (k + n / 2) % n,
@@ -53,7 +53,7 @@ impl Motion {
         }
     }
 
-    /// Which course of `n` comes to lie at `k`.
+    /// The index of the course of `n` that the motion maps to `k`.
     fn back(self, k: usize, n: usize) -> usize {
         match self {
             Motion::QuarterTurn => (k + n - n / 4) % n,
@@ -96,7 +96,7 @@ fn holds_under(motion: Motion, grid: &Grid, seed: u64) {
     let mut want = solved(grid, &functions, preference);
     let got = solved(grid, &moved, Preference { course_rad: motion.angle(preference.course_rad), ..preference });
     want.decision.course = motion.course(want.decision.course.into(), grid.courses()) as u16;
-    // How many points had to be evaluated depends on where the search began.
+    // The number of evaluated points depends on the starting point of the search.
     want.evaluated = got.evaluated;
     assert_eq!(got, want, "seed {seed}, {motion:?}: {functions:?}");
 }

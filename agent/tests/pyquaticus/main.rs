@@ -1,5 +1,6 @@
-//! Observations of Pyquaticus against those that the program itself gave: states of its own games of two Surveyors and of six,
-//! among them boats that carry, are tagged, or have tagged lately. Commit and names of the numbers are in the files.
+//! Observations compared with those of Pyquaticus itself: states of its own games of two and of six
+//! Surveyors, including boats that carry, are tagged, or have recently tagged. The files state the
+//! commit and the names of the values.
 
 use agent::{ActionSpace, ObservationSpace, Pilot, Spaces};
 use messages::Picture;
@@ -11,11 +12,11 @@ use scenario::Scenario;
 use serde::Deserialize;
 use std::path::Path;
 
-/// Its numbers are in single precision, and six digits of them are kept.
+/// Its values are in single precision with six digits.
 const TOLERANCE: f32 = 3e-6;
-/// After a tag, s.
+/// Cooldown after a tag, s.
 const COOLDOWN_S: f64 = 60.0;
-/// Of every picture, s.
+/// The time of every picture, s.
 const NOW_S: f64 = 1000.0;
 
 #[derive(Deserialize)]
@@ -64,7 +65,7 @@ fn scenario(team_size: usize) -> Scenario {
     scenario::load(&path).unwrap_or_else(|problems| panic!("{problems}"))
 }
 
-/// What the team of a boat knows in a state.
+/// The knowledge of a boat's team in a state.
 fn picture(state: &State, team: usize) -> Picture {
     let team_size = state.boats.len() / 2;
     let now = SimTime::from_s(NOW_S);
@@ -129,7 +130,7 @@ fn observations_are_those_of_the_program() {
     }
 }
 
-/// How far a number is off; half a turn to either side is the same bearing.
+/// The absolute error of a value; half a turn to either side is the same bearing.
 fn off(name: &str, got: f32, want: f32) -> f32 {
     let off = (got - want).abs();
     if name.ends_with("bearing") || name.ends_with("heading") { off.min((2.0 - off).abs()) } else { off }

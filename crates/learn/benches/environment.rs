@@ -1,5 +1,5 @@
-//! Steps of the games of an environment on one core, with random actions; agent steps a second are four times as many, or twice where
-//! helms play the other team. And a new game within a batch.
+//! Steps of an environment's games on one core, with random actions; agent steps per second are
+//! four times as many, or twice where helms play the other team. Also a new game within a batch.
 
 use agent::{Action, ActionSpace, ObservationSpace, Spaces};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
@@ -9,11 +9,10 @@ use learn::training::CriticInput;
 use primitives::stream::Stream;
 use std::path::Path;
 
-// On one core, all four boats shown at every decision: 192,000 decisions of games a second in
+// On one core, with all four boats observed at every decision: 192,000 game decisions per second in
 // calm water, 75,000 with sea and sensors, 26,000 of these against strategy 4. A new game takes
-// 0.03 ms in calm water and 0.41 ms with a sea, a step of it included: more than half of that
-// are the sea's tables for each boat, a quarter is checking the scenario files again for the
-// numbers drawn.
+// 0.03 ms in calm water and 0.41 ms with a sea, including one step: more than half of that is the
+// sea's tables for each boat, a quarter is checking the scenario files again for the drawn numbers.
 const GAMES: usize = 64;
 
 fn setup(game: &str, opponent: Player) -> Setup {

@@ -1,8 +1,10 @@
-//! What the policies that each do one thing do: episodes of their trainings with each and, for comparison, with boats that stop and with
-//! boats that do something else every half second.
+//! Measures the primitive policies, each of which has a single task: episodes of their trainings
+//! with each and, for comparison, with boats that stop and with boats that take a random action
+//! every half second.
 //!
-//! `cargo run --release -p squall-learn --example primitives -- [EPISODES] [FOLDER] [NAME…]`, by default 128 episodes of each of the
-//! shipped policies, `scenarios/policies/primitive_NAME.onnx`. The same numbers are the same games.
+//! `cargo run --release -p squall-learn --example primitives -- [EPISODES] [FOLDER] [NAME…]`; by
+//! default 128 episodes of each of the shipped policies, `scenarios/policies/primitive_NAME.onnx`.
+//! The same arguments give the same games.
 
 use agent::{Action, ActionSpace};
 use learn::rewards::{BoatProgress, Placed, progress};
@@ -15,14 +17,14 @@ use primitives::{Ned, VehicleId};
 use sim::Contest;
 use std::path::{Path, PathBuf};
 
-/// Games are played from this seed on, which no training reaches.
+/// First seed of the games, beyond any training seed.
 const SEED: u64 = 1 << 61;
-/// All of them.
+/// All primitive policies.
 const NAMES: [&str; 6] = ["pick_up", "guard", "tag", "avoid", "retreat", "shield"];
-/// Who is nearer to home than this is at home, in widths of the field: 20 m of 160 m.
+/// A boat nearer to home than this is at home, in field widths: 20 m of 160 m.
 const HOME: f64 = 0.125;
 
-/// Who acts.
+/// The source of actions.
 enum Actor {
     Policy(Box<Network>),
     Stops,
@@ -30,7 +32,7 @@ enum Actor {
 }
 
 impl Actor {
-    /// What a boat does that is shown this.
+    /// The action for this observation.
     fn act(&mut self, observation: &[f32]) -> Action {
         let count = ActionSpace::Pyquaticus.count().unwrap_or(1);
         match self {
@@ -44,20 +46,21 @@ impl Actor {
     }
 }
 
-/// What came of episodes.
+/// The results of episodes.
 #[derive(Default)]
 struct Played {
-    /// Of a boat in an episode.
+    /// Sum of rewards per boat and episode.
     reward: f64,
-    /// In all, s.
+    /// Total time, s.
     time_s: f64,
-    /// What both teams did.
+    /// Event counts of both teams.
     counts: [Counts; 2],
-    /// Looks at a boat of the policy.
+    /// Number of observations of the policy's boats.
     looks: f64,
-    /// The shares of looks at which it was at home and untagged.
+    /// The share of observations of a boat at home and untagged.
     at_home: f64,
-    /// The means of what it was among the others: on guard, at the place to shield a mate from, clear of enemies.
+    /// The means of its position among the others: on guard, at the place that shields a mate,
+    /// clear of enemies.
     among: [f64; 3],
 }
 
@@ -77,7 +80,7 @@ impl Played {
     }
 }
 
-/// How the boats of a game are.
+/// The progress of a game's boats.
 fn looked_at(contest: &Contest) -> Vec<BoatProgress> {
     let scenario = contest.scenario();
     let placed = |team| Placed { at: Ned::default(), team, tagged: false, carrying: false };
@@ -91,7 +94,7 @@ fn looked_at(contest: &Contest) -> Vec<BoatProgress> {
     out
 }
 
-/// Plays so many episodes.
+/// Plays this many episodes.
 fn played(mut setup: Setup, actor: &mut Actor, episodes: usize) -> Played {
     setup.opponents.iter_mut().for_each(|(weight, _)| *weight = 1.0);
     let step_s = setup.scenario.decision().as_s() * f64::from(setup.decisions_per_step);

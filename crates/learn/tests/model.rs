@@ -1,4 +1,4 @@
-//! A trained policy in a strategy is the one that was trained.
+//! A trained policy in a strategy acts as it was trained.
 
 use agent::{Action, ActionSpace, HelmMind, Mind, ObservationSpace, Pilot, Spaces};
 use learn::nn::Perceptron;
@@ -21,7 +21,7 @@ fn file(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(path)
 }
 
-/// A policy with random weights, large enough that it does not always do the same.
+/// A policy with random weights, large enough for varying actions.
 fn model(spec: PolicySpec) -> PolicyModel {
     let mut stream = primitives::stream::Stream::new(8, "test/model");
     let (inputs, outputs) = (spec.observation.size(1, 2), spec.action.outputs());
@@ -48,7 +48,7 @@ fn program(scenario: &Scenario, strategy: &Strategy, vehicle: VehicleId) -> Prog
     agent::roles::role_in(scenario, vehicle, strategy).clone()
 }
 
-/// A mind that a trainer would drive with the same network.
+/// A mind controlled by a trainer with the same network.
 struct Driven {
     pilot: Pilot,
     network: Network,
@@ -57,7 +57,7 @@ struct Driven {
 
 impl Mind for Driven {
     fn decide(&mut self, picture: &Picture) -> Order {
-        // Each 0.7 s.
+        // Every 0.7 s.
         if self.decisions.is_multiple_of(7) {
             self.network.evaluate(self.pilot.observe(picture));
             self.pilot.act(Action::likeliest(self.network.output(0)));
@@ -92,7 +92,7 @@ fn a_model_in_a_strategy_plays_the_game_that_it_was_trained_in() {
     assert_ne!(held.digest, boat.digest);
 }
 
-/// A network that gives what is no number: its weights add up beyond single precision.
+/// A network with non-finite outputs: its weights add up beyond single precision.
 fn model_of_nan() -> PolicyModel {
     let mut stream = primitives::stream::Stream::new(8, "test/model");
     let mut network = Perceptron::new(&[SPEC.observation.size(1, 2), 4, 17], 1.0, &mut stream);

@@ -1,4 +1,5 @@
-//! Networks and their training: gradients against differences, the same bits on any number of threads, and that something is learnt.
+//! Networks and their training: gradients compared with finite differences, the same bits for any
+//! number of threads, and learning success.
 
 use learn::nn::{Adam, AdamSettings, Perceptron, Trace};
 use learn::ppo::{ActorCritic, Batch, Lesson, choice};
@@ -8,7 +9,7 @@ use primitives::stream::Stream;
 #[test]
 fn gradients_are_the_slopes_of_the_output() {
     const STEP: f32 = 1e-2;
-    // Of numbers of about 1, from differences over such a step in single precision.
+    // For numbers of about 1, from finite differences in single precision.
     const TOLERANCE: f32 = 5e-3;
     let mut stream = Stream::new(3, "gradient");
     let mut network = Perceptron::new(&[5, 7, 6, 3], 1.0, &mut stream);
@@ -60,7 +61,7 @@ fn first_weights_are_orthogonal_with_their_gain() {
 
 #[test]
 fn adam_goes_as_its_authors_say() {
-    // The first step goes as far as the learning rate against the sign, the second as worked out by hand.
+    // The first step is the learning rate against the sign, the second as computed by hand.
     let settings = AdamSettings { epsilon: 0.0, norm_max: None, ..AdamSettings::default() };
     let (mut adam, mut parameters) = (Adam::new(2, settings), [1.0_f32, -1.0]);
     let norm = adam.step(&mut parameters, &[3.0, -4.0], 0.1);
@@ -70,12 +71,13 @@ fn adam_goes_as_its_authors_say() {
     let want = 0.9 - 0.1 * (0.27 / 0.19) / libm::sqrtf(0.008_991 / 0.001_999);
     assert!((parameters[0] - want).abs() < 1e-4, "{parameters:?}, not {want}");
     assert!((parameters[1] + 0.8).abs() < 1e-6, "{parameters:?}");
-    // A gradient that is too long is cut to its length; nothing of the first step changes by that but the norm.
+    // A gradient that is too long is scaled to the limit; the first step changes only in its
+    // reported norm.
     let (mut adam, mut parameters) = (Adam::new(1, AdamSettings::default()), [0.0_f32]);
     assert!((adam.step(&mut parameters, &[1e6], 0.1) - 1e6).abs() < 1.0 && (parameters[0] + 0.1).abs() < 1e-4);
 }
 
-/// Samples of a game of one step: of eight pictures each has an action that is worth 1.
+/// Samples of a game of one step: in each of eight pictures one action has a reward of 1.
 fn sampled(learner: &ActorCritic, stream: &mut Stream, count: usize) -> (Vec<f32>, Vec<u16>, Vec<f32>, Vec<f32>) {
     let (mut observations, mut actions, mut logs, mut rewards) = (vec![], vec![], vec![], vec![]);
     let (mut trace, mut all) = (Trace::default(), [0.0; 4]);
@@ -97,7 +99,7 @@ fn trained(updates: usize, threads: usize, learner: ActorCritic) -> ActorCritic 
     taught(Lesson::Reinforcement, updates, threads, learner)
 }
 
-/// The same, or with a teacher who does what is worth nothing.
+/// The same, or with a teacher that takes an action without reward.
 fn taught(lesson: Lesson, updates: usize, threads: usize, mut learner: ActorCritic) -> ActorCritic {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
     let settings = Ppo { learning_rate: 3e-3, minibatch: 600, divergence_max: 1e9, ..Ppo::default() };
@@ -133,7 +135,7 @@ fn a_policy_learns_which_action_is_worth_most() {
         let observation = [0, 1, 2].map(|bit| if picture >> bit & 1 == 1 { 1.0 } else { -1.0 });
         learner.actor.forward(&observation, &mut trace);
         assert_eq!(choice::likeliest(trace.output()), picture * 3 % 4, "picture {picture}: {:?}", trace.output());
-        // It expects what it gets, nearly always 1.
+        // It expects its actual reward, nearly always 1.
         learner.critic.forward(&observation, &mut value);
         let expected = value.output()[0] * learner.scale.deviation();
         assert!((expected - 1.0).abs() < 0.2, "picture {picture}: {expected}");

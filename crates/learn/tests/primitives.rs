@@ -1,4 +1,5 @@
-//! Policies that each do one thing: what places are worth to them, and what those that are shipped do.
+//! Primitive policies, each with a single task: the worth of places, and the actions of the shipped
+//! ones.
 
 use agent::{Action, ActionSpace};
 use learn::environment::{Player, Setup, VectorEnvironment};
@@ -23,7 +24,7 @@ fn setup(name: &str) -> Setup {
     Setup::of_stage(&training, &training.stage[0]).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// How all boats of a game are.
+/// The progress of all boats of a game.
 fn looked_at(contest: &Contest) -> Vec<BoatProgress> {
     let scenario = contest.scenario();
     let placed = |team| Placed { at: Ned::default(), team, tagged: false, carrying: false };
@@ -93,7 +94,7 @@ fn the_options_of_the_chooser_are_the_shipped_policies() {
     assert_eq!(trained, wanted);
 }
 
-/// The share of time in an episode that boats are at home, untagged, with what `act` does.
+/// The share of an episode's time with boats at home and untagged, with actions from `act`.
 fn at_home(mut act: impl FnMut(&[f32]) -> Action) -> f64 {
     let mut setup = setup("retreat");
     setup.opponents.retain(|(_, player)| matches!(player, Player::Strategy(strategy) if strategy.name == "pav01"));

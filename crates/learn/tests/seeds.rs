@@ -1,4 +1,4 @@
-//! Environments begun again: games of seeds, one boat of a team, a setup as a person gives it.
+//! Restarted environments: games of given seeds, one boat of a team, a setup as users give it.
 
 use agent::{Action, ActionSpace};
 use learn::environment::{CriticInput, Games, RawObservation, RawSetup, Rows, SetupError};
@@ -45,7 +45,7 @@ fn step(games: &mut Games, action: usize) {
     games.step(&vec![Action::Discrete(action); rows], rows_shown).expect("games go on");
 }
 
-/// The observations as they stand, where only games that were not shown yet are written.
+/// The observations, where only games without a written row are updated.
 fn shown(games: &mut Games) -> Vec<f32> {
     let (rows, numbers) = (games.rows().0, games.rows().0 * games.setup().observation_size());
     let (mut observations, mut rewards, mut counts) = (vec![9.0; numbers], vec![0.0; rows], vec![false; rows]);

@@ -1,4 +1,4 @@
-//! The policy that is shipped plays, and plays well.
+//! The shipped policy plays, and plays well.
 
 use primitives::{TeamId, VehicleId};
 use scenario::strategy::{Strategy, Task};

@@ -1,4 +1,4 @@
-//! Training: something is learnt in a few seconds, and the same by everybody.
+//! Training: learns within a few seconds, and reproducibly on any machine.
 
 use learn::environment::{Moment, Watch};
 use learn::train::{Progress, StateError, Trainer};
@@ -33,7 +33,7 @@ fn a_policy_learns_to_beat_an_idle_team_and_to_score_against_pav01() {
     assert!(idle >= 0.9, "won {idle} of the games against an idle team");
 }
 
-/// Two short stages with everything in them: a helm, a strategy, past policies.
+/// Two short stages with all features: a helm, a strategy, past policies.
 fn short() -> Training {
     let stage = |name: &str, game: &str, helm: Option<&str>| Stage {
         name: name.to_owned(),
@@ -89,7 +89,7 @@ fn the_same_file_trains_the_same_weights_on_any_number_of_threads_and_resumed() 
     assert!(opponents.iter().any(|name| name.starts_with("after ")), "{opponents:?}");
     assert!(run(3) == (state.clone(), progress.clone()));
 
-    // Taken up again wherever that can be.
+    // Resumed at every possible point.
     let mut trainer = Trainer::new(short(), 2).unwrap_or_else(|error| panic!("{error}"));
     let mut taken_up = 0;
     while !trainer.is_over() {
@@ -129,7 +129,7 @@ fn episodes_that_are_seen_have_the_numbers_that_are_told_and_change_nothing() {
     assert_eq!(told, *ended.lock().expect("nobody panics"));
 }
 
-/// Learns what strategy 2 is at, as options of another strategy.
+/// Imitates strategy 2 through the options of another strategy.
 fn imitation(options: &[(&str, &str)]) -> Training {
     let options = options.iter().map(|(mode, option)| ((*mode).to_owned(), (*option).to_owned())).collect();
     let teacher = Some(Teacher { strategy: file("strategies/strategy_5.toml"), options });
@@ -158,7 +158,7 @@ fn a_policy_learns_to_choose_what_its_teacher_is_at() {
         losses.extend(progress.learnt.policy_loss);
         assert_eq!(progress.learnt.clipped, Some(0.0));
     }
-    // Ten options to choose from at first.
+    // Initially with ten options.
     let (first, last) = (losses[0], losses[losses.len() - 1]);
     assert!(first > 1.5 && last < 0.7, "cross-entropy, nats: {losses:?}");
 }

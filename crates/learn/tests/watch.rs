@@ -1,4 +1,4 @@
-//! Games that are seen as they are played: from what they were given they can be played again, to the last bit.
+//! Watched games: their inputs suffice to replay them to the last bit.
 
 use agent::{Action, ActionSpace};
 use learn::environment::{CriticInput, Games, Moment, RawObservation, RawSetup, Rows, Watch};
@@ -10,7 +10,7 @@ use sim::Contest;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
-/// A game as it was seen: every frame, with what the game was given before it.
+/// A watched game: every frame, with the game's inputs before it.
 #[derive(Default)]
 struct Seen {
     number: u64,
@@ -32,7 +32,7 @@ impl Seen {
         }
     }
 
-    /// Plays it again, and compares.
+    /// Replays and compares it.
     fn check(&self) {
         let scenario = self.scenario.as_ref().expect("it has begun");
         let seed = scenario.seed;
@@ -48,7 +48,8 @@ impl Seen {
     }
 }
 
-/// Plays so many steps of games of 2 s in wind and waves, and gives the chosen ones as they were seen.
+/// Plays this many steps of games of 2 s in wind and waves, and returns the selected ones as
+/// watched.
 fn seen(starts: Option<u32>, steps: usize, every: u64, play: impl Fn(&mut Games, usize)) -> Vec<Arc<Mutex<Seen>>> {
     let scenario = |file: &str| -> PathBuf { Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(file) };
     let raw = RawSetup {

@@ -1,4 +1,4 @@
-//! What one row of a policy costs, for the sizes that policies have.
+//! The cost of one row of a policy, for typical sizes.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use onnx::{Activation, Head, Layer, Network, Perceptron};
@@ -9,7 +9,7 @@ use std::hint::black_box;
 
 const INPUTS: usize = 45;
 const ACTIONS: usize = 17;
-/// Rows that are taken in turn, so that no branch is learnt by heart.
+/// Rows evaluated in rotation, so that the branch predictor learns none of them.
 const ROWS: usize = 64;
 
 /// A number from `least` to `most`.
@@ -18,7 +18,7 @@ fn between(random: &mut ChaCha8Rng, least: f32, most: f32) -> f32 {
 }
 
 fn layer(random: &mut ChaCha8Rng, inputs: usize, outputs: usize) -> Layer {
-    // Sums of about one: an activation is then neither at its end nor at its middle.
+    // Sums of about one, where activations are neither saturated nor linear.
     let most = (3.0 / inputs as f32).sqrt();
     let weights = (0..inputs * outputs).map(|_| between(random, -most, most)).collect();
     Layer { inputs, outputs, weights, biases: vec![0.1; outputs] }

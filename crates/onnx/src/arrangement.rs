@@ -1,6 +1,6 @@
-//! Operators that arrange numbers: in another shape, in a row with others, or a part of them.
+//! Operators that rearrange numbers: reshape, concatenate, slice.
 //!
-//! Another shape costs nothing, since the numbers lie in the same order: the output lies where the input does.
+//! Reshaping is free: the numbers keep their order, so the output shares the input's place.
 
 use super::NetworkError;
 use super::error::{shape_text, shown};
@@ -108,7 +108,7 @@ pub(super) fn reshape(planner: &mut Planner, node: &Node) -> Result<Value, Netwo
     reshaped(node, value, shape)
 }
 
-/// Plans `Squeeze`: dimensions of 1 are left out.
+/// Plans `Squeeze`, which removes dimensions of 1.
 pub(super) fn squeeze(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
     let value = planner.value(node, 0)?;
     let shape = shape_of(&value);
@@ -129,7 +129,7 @@ pub(super) fn squeeze(planner: &mut Planner, node: &Node) -> Result<Value, Netwo
     reshaped(node, value, shape)
 }
 
-/// Plans `Unsqueeze`: dimensions of 1 are put in.
+/// Plans `Unsqueeze`, which inserts dimensions of 1.
 pub(super) fn unsqueeze(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
     let value = planner.value(node, 0)?;
     let Some(axes) = axes(planner, node)? else { return Err(node.wrong("no axes", "axes")) };
@@ -177,7 +177,7 @@ pub(super) fn concat(planner: &mut Planner, node: &Node) -> Result<Value, Networ
     Ok(Value::Computed(output))
 }
 
-/// Plans `Slice`, whose bounds are attributes in old files: one axis after the other.
+/// Plans `Slice`, whose bounds are attributes in old files, one axis after the other.
 pub(super) fn slice(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
     let mut row = planner.row(node, 0)?;
     let attribute = |name: &str| node.integers(name).map(|integers| integers.map(<[i64]>::to_vec));
@@ -199,7 +199,7 @@ pub(super) fn slice(planner: &mut Planner, node: &Node) -> Result<Value, Network
     Ok(Value::Computed(row))
 }
 
-/// Numbers `start` to `end` of an axis, every `step`-th.
+/// Selects elements `start` to `end` of an axis, every `step`-th.
 fn slice_axis(
     planner: &mut Planner,
     node: &Node,
@@ -259,7 +259,7 @@ fn shape_of(value: &Value) -> &[usize] {
     }
 }
 
-/// The same numbers in another shape of as many.
+/// The same numbers in another shape of equal size.
 fn reshaped(node: &Node, value: Value, shape: Vec<usize>) -> Result<Value, NetworkError> {
     if shape.len() > RANK_MAX {
         let (output, found) = (node.proto.output.first(), format!("{} dimensions", shape.len()));

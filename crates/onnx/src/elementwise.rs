@@ -1,4 +1,4 @@
-//! Operators that work on each number by itself, and on pairs of numbers.
+//! Elementwise operators on one or two inputs.
 
 use super::NetworkError;
 use super::activation;
@@ -66,7 +66,7 @@ impl Operation {
 }
 
 fn pairs(left: &[f32], right: &[f32], output: &mut [f32], operation: impl Fn(f32, f32) -> f32) {
-    // Without the modulo of `cycle` where nothing is repeated, so that it vectorises.
+    // Without the modulo of `cycle` where neither operand is repeated, so that it vectorises.
     if left.len() == right.len() {
         for ((to, a), b) in output.iter_mut().zip(left).zip(right) {
             *to = operation(*a, *b);
@@ -114,7 +114,7 @@ pub(super) fn binary(planner: &mut Planner, node: &Node, operation: Operation) -
     Ok(Value::Computed(output))
 }
 
-/// Whether a row that is repeated has this shape: its own, without the ones it begins with, is the end of it.
+/// Whether a repeated row has this shape: its own, without leading ones, is a suffix of it.
 fn repeats(row: &Row, shape: &[usize]) -> bool {
     let ones = row.shape.iter().take_while(|dim| **dim == 1).count();
     shape.ends_with(&row.shape[ones..])

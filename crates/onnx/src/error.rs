@@ -1,33 +1,33 @@
-//! Why a file cannot be read as a network, or a network not be written.
+//! Errors of reading and writing networks.
 
 use thiserror::Error;
 
-/// Of a name in a message, as many characters: files may have names of any length.
+/// Longest name in a message, characters: files may have names of any length.
 const NAME_MAX: usize = 80;
 
-/// Why a file cannot be read as a network, or a network not be written. Each text says where, what was found there, and
-/// what is allowed.
+/// Why a file cannot be read as a network, or a network cannot be written. Each message gives the
+/// place, the value found and the allowed values.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum NetworkError {
-    /// There is more of something than the limits allow.
+    /// A quantity exceeds its limit.
     #[error("{what}: found {found}, allowed are at most {max}")]
     TooLarge {
-        /// Of what there is too much.
+        /// The quantity.
         what: String,
-        /// How much of it there is.
+        /// Its value.
         found: usize,
-        /// How much there may be.
+        /// Its limit.
         max: usize,
     },
-    /// The bytes are no ONNX file, or are cut or damaged.
+    /// The bytes are not an ONNX file, or are truncated or damaged.
     #[error("not an ONNX file, or a damaged one: byte {byte}: {found}")]
     NotOnnx {
-        /// Where it was noticed, counted from 0.
+        /// Offset of the fault, from 0.
         byte: usize,
-        /// What is wrong there.
+        /// The fault.
         found: String,
     },
-    /// The model as a whole is not one that can be evaluated.
+    /// The model as a whole cannot be evaluated.
     #[error("the model: found {found}, expected {expected}")]
     Model {
         /// What was found.
@@ -54,17 +54,17 @@ pub enum NetworkError {
         /// Its name.
         tensor: String,
     },
-    /// An operator that is not evaluated here.
+    /// An unsupported operator.
     #[error("node `{node}`: found the operator {operator}, expected one of {allowed}")]
     Operator {
         /// The node's name.
         node: String,
         /// Its operator.
         operator: String,
-        /// The operators that there are.
+        /// The supported operators.
         allowed: String,
     },
-    /// An operator that is evaluated here, but not in this way.
+    /// A supported operator in an unsupported form.
     #[error("node `{node}` ({operator}): found {found}, expected {expected}")]
     Node {
         /// The node's name.
@@ -88,13 +88,13 @@ impl NetworkError {
     }
 }
 
-/// A name from a file, as a message may show it.
+/// A name from a file, shortened for a message.
 pub(super) fn shown(name: &str) -> String {
     let head: String = name.chars().take(NAME_MAX).collect();
     head.escape_debug().to_string() + if head.len() < name.len() { "…" } else { "" }
 }
 
-/// A shape, as a message shows it: `1 x 45`.
+/// A shape for a message: `1 x 45`.
 pub(super) fn shape_text(shape: &[usize]) -> String {
     if shape.is_empty() {
         return "a single number".to_owned();

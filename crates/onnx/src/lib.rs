@@ -1,9 +1,11 @@
-//! A trained policy: a network of an ONNX file, evaluated one row at a time with the same bits on every machine.
+//! A trained policy: a network from an ONNX file, evaluated one row at a time with the same bits on
+//! every machine.
 //!
-//! A general runtime chooses the order of its sums by the processor and by the size of the batch, and a game must not
-//! depend on either. Here the operations and their order are fixed when the file is read, shapes are checked then, and
-//! [`Network::evaluate`] neither fails nor allocates. `operator.rs` lists the operators. Files come from PyTorch
-//! (`torch.onnx.export(…, external_data=False)`, of the part of a policy that makes logits) or from [`Perceptron`].
+//! A general runtime chooses the order of its sums by processor and batch size, and a game must
+//! depend on neither. Here the operations and their order are fixed when the file is read. Shapes
+//! are checked then, and [`Network::evaluate`] neither fails nor allocates. `operator.rs` lists the
+//! operators. Files come from PyTorch (`torch.onnx.export(…, external_data=False)`, of the part of
+//! a policy that outputs logits) or from [`Perceptron`].
 
 mod activation;
 mod arrangement;
@@ -37,7 +39,7 @@ use std::sync::Arc;
 pub struct Port {
     /// Its name in the file.
     pub name: String,
-    /// How many numbers a row of it has.
+    /// The number of values in a row.
     pub size: usize,
 }
 
@@ -45,22 +47,23 @@ pub struct Port {
 #[derive(Clone)]
 pub struct Network {
     plan: Arc<Plan>,
-    /// Inputs, constants and everything that is worked out, in this order of evaluation.
+    /// Inputs, constants and all computed values, in order of evaluation.
     values: Vec<f32>,
 }
 
 impl Network {
-    /// Reads an ONNX file. A first dimension of 1 or without a number is that of a batch, and taken as one row.
+    /// Reads an ONNX file. A first dimension of 1 or without a size is the batch dimension,
+    /// evaluated as one row.
     ///
     /// # Errors
-    /// If the bytes are no ONNX file, ask for too much memory or time, have weights that are not finite or not in the
-    /// file, or a shape or an operator that cannot be evaluated here.
+    /// If the bytes are not an ONNX file, need too much memory or time, have weights that are not
+    /// finite or not in the file, or have a shape or an operator that is not supported.
     pub fn read(bytes: &[u8]) -> Result<Network, NetworkError> {
         let (plan, values) = reader::read(bytes)?;
         Ok(Network { plan: Arc::new(plan), values })
     }
 
-    /// The inputs, in the order in which [`Network::evaluate`] takes them.
+    /// The inputs, in the argument order of [`Network::evaluate`].
     #[must_use]
     pub fn inputs(&self) -> &[Port] {
         &self.plan.inputs
@@ -72,28 +75,28 @@ impl Network {
         &self.plan.outputs
     }
 
-    /// What the file says about itself, in words of its author: `metadata_props`.
+    /// The file's metadata, written by its author: `metadata_props`.
     #[must_use]
     pub fn metadata(&self) -> &BTreeMap<String, String> {
         &self.plan.metadata
     }
 
-    /// XXH3, 128 bits, of the file's bytes.
+    /// XXH3 digest, 128 bits, of the file's bytes.
     #[must_use]
     pub fn digest(&self) -> u128 {
         self.plan.digest
     }
 
-    /// How many numbers [`Network::evaluate`] takes: those of all inputs.
+    /// The number of values that [`Network::evaluate`] takes for all inputs together.
     #[must_use]
     pub fn input_size(&self) -> usize {
         self.plan.input_size
     }
 
-    /// Works out all outputs for one row of each input, one input after the other.
+    /// Computes all outputs for one row of each input, the inputs concatenated.
     ///
     /// # Panics
-    /// If there are not [`Network::input_size`] numbers.
+    /// If the number of values is not [`Network::input_size`].
     pub fn evaluate(&mut self, input: &[f32]) {
         assert_eq!(input.len(), self.plan.input_size, "numbers of the network's input");
         self.values[..input.len()].copy_from_slice(input);
@@ -105,13 +108,13 @@ impl Network {
     /// Output number `index` of the last evaluation.
     ///
     /// # Panics
-    /// If there is no such output.
+    /// If `index` is out of range.
     #[must_use]
     pub fn output(&self, index: usize) -> &[f32] {
         &self.values[self.plan.places[index].clone()]
     }
 
-    /// The output of this name of the last evaluation, if there is one.
+    /// The output with this name in the last evaluation, if it exists.
     #[must_use]
     pub fn output_named(&self, name: &str) -> Option<&[f32]> {
         let index = self.plan.outputs.iter().position(|port| port.name == name)?;

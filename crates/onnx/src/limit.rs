@@ -1,23 +1,25 @@
-//! What a file may ask of memory and time, checked before anything is made of it.
+//! Limits on the memory and time that a file may need, checked before parsing.
 //!
-//! The parser makes a struct of some hundred bytes out of two bytes of a file, so its fields are counted first.
+//! The parser can turn two bytes of a file into a struct of some hundred bytes, so fields are
+//! counted first.
 
 use super::NetworkError;
 
-/// The largest file, bytes.
+/// Largest file, bytes.
 pub(super) const FILE_BYTES_MAX: usize = 64 << 20;
-/// The most fields in a file, numbers of shapes and attributes among them, weights not.
+/// Maximum number of fields in a file, including the elements of shapes and attributes but not
+/// weights.
 pub(super) const FIELDS_MAX: usize = 100_000;
-/// The most weights, as they are laid out for evaluation.
+/// Maximum number of weights as laid out for evaluation.
 pub(super) const PARAMETERS_MAX: usize = 10_000_000;
-/// The most numbers that are worked out in an evaluation.
+/// Maximum number of values computed in an evaluation.
 pub(super) const VALUES_MAX: usize = 1_000_000;
-/// The most multiplications of weights in an evaluation.
+/// Maximum number of multiplications by weights in an evaluation.
 pub(super) const PRODUCTS_MAX: usize = 100_000_000;
-/// The most dimensions of a tensor.
+/// Maximum number of dimensions of a tensor.
 pub(super) const RANK_MAX: usize = 8;
 
-/// `found`, unless it is more than `max`.
+/// Returns `found`, unless it is more than `max`.
 pub(super) fn at_most(what: &str, found: Option<usize>, max: usize) -> Result<usize, NetworkError> {
     let found = found.unwrap_or(usize::MAX);
     if found > max {
@@ -26,7 +28,7 @@ pub(super) fn at_most(what: &str, found: Option<usize>, max: usize) -> Result<us
     Ok(found)
 }
 
-/// The messages in which fields are repeated.
+/// The messages with repeated fields.
 #[derive(Clone, Copy)]
 enum Kind {
     Model,
@@ -40,17 +42,17 @@ enum Kind {
     Shape,
 }
 
-/// What the bytes of a field are.
+/// The content of a field's bytes.
 enum Content {
     /// A message with fields of its own.
     Message(Kind),
-    /// Numbers one after the other, each of at least a byte.
+    /// Consecutive numbers of at least a byte each.
     Integers,
-    /// Anything that takes hardly more memory than in the file.
+    /// Content that takes about the same memory as in the file.
     Plain,
 }
 
-/// What field `number` of a message holds, as in `proto.rs`.
+/// The content of field `number` of a message, as in `proto.rs`.
 fn content(kind: Kind, number: u64) -> Content {
     match (kind, number) {
         (Kind::Model, 7) => Content::Message(Kind::Graph),
@@ -66,14 +68,14 @@ fn content(kind: Kind, number: u64) -> Content {
     }
 }
 
-/// Refuses a file that is too long, whose fields are too many, or do not lie inside of one another.
+/// Rejects a file that is too long, has too many fields, or whose fields are not properly nested.
 pub(super) fn check(file: &[u8]) -> Result<(), NetworkError> {
     at_most("bytes of the file", Some(file.len()), FILE_BYTES_MAX)?;
     let mut fields = Fields { file, at: 0, count: 0 };
     fields.walk(Kind::Model, file.len())
 }
 
-/// Fields that are walked through, one after the other.
+/// The state of walking through fields.
 struct Fields<'a> {
     file: &'a [u8],
     at: usize,
@@ -81,7 +83,8 @@ struct Fields<'a> {
 }
 
 impl Fields<'_> {
-    /// Walks through a message that ends at `end`. The tree of messages is a few levels deep, and so is this.
+    /// Walks through a message that ends at `end`. The message tree, and so the recursion, is a few
+    /// levels deep.
     fn walk(&mut self, kind: Kind, end: usize) -> Result<(), NetworkError> {
         while self.at < end {
             let begin = self.at;
@@ -117,7 +120,7 @@ impl Fields<'_> {
         Ok(())
     }
 
-    /// The end of a field of so many bytes.
+    /// The end of a field of this length.
     fn end_of(&self, length: u64, end: usize) -> Result<usize, NetworkError> {
         let left = end - self.at;
         match usize::try_from(length) {
@@ -126,7 +129,7 @@ impl Fields<'_> {
         }
     }
 
-    /// A number of 7 bits a byte, the lowest first, whose last byte has its highest bit unset.
+    /// A varint: 7 bits per byte, lowest first, ending with a byte whose highest bit is clear.
     fn varint(&mut self, end: usize) -> Result<u64, NetworkError> {
         let mut number = 0;
         for (i, byte) in self.file[self.at..end].iter().take(10).enumerate() {

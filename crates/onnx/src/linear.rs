@@ -6,19 +6,20 @@ use super::node::Node;
 use super::plan::{Planner, Row, Value, floats};
 use super::step::Step;
 
-/// As many outputs are summed up side by side: their sums stay in registers.
+/// Number of outputs summed in parallel: their sums stay in registers.
 const LANES: usize = 16;
 
 /// A matrix of weights and a bias, laid out for evaluation.
 ///
-/// Each output is `bias + x[0] w[0] + x[1] w[1] + …`, one product added after the other in this order, each rounded
-/// twice. Only outputs are worked on side by side, so the width of a processor's registers does not show.
+/// Each output is `bias + x[0] w[0] + x[1] w[1] + …`, one product added after the other in this
+/// order, each rounded twice. Only different outputs are computed in parallel, so the register
+/// width does not affect the result.
 pub(super) struct Linear {
     inputs: usize,
     outputs: usize,
-    /// For each group of outputs, for each input, the weights of that group.
+    /// By group of outputs and by input, the weights of the group.
     weights: Vec<[f32; LANES]>,
-    /// For each group of outputs.
+    /// By group of outputs.
     biases: Vec<[f32; LANES]>,
 }
 
@@ -40,7 +41,7 @@ impl Linear {
         }
     }
 
-    /// Works out each row of the output from the same row of the input.
+    /// Computes each row of the output from the same row of the input.
     pub(super) fn apply(&self, input: &[f32], output: &mut [f32]) {
         for (from, to) in input.chunks_exact(self.inputs).zip(output.chunks_exact_mut(self.outputs)) {
             let groups = self.weights.chunks_exact(self.inputs).zip(&self.biases);
@@ -119,7 +120,7 @@ fn matrix(node: &Node, shape: &[usize]) -> Result<(usize, usize), NetworkError> 
     }
 }
 
-/// Refuses an input whose rows do not have as many numbers as the weights.
+/// Rejects an input whose row size differs from that of the weights.
 fn check_rows(node: &Node, input: &Row, (inputs, outputs): (usize, usize)) -> Result<(), NetworkError> {
     if input.shape.last() == Some(&inputs) {
         return Ok(());
@@ -128,7 +129,8 @@ fn check_rows(node: &Node, input: &Row, (inputs, outputs): (usize, usize)) -> Re
     Err(node.wrong(found, format!("rows of {inputs} numbers")))
 }
 
-/// Adds a layer of `inputs` by `outputs` weights to the plan; the rows of its input have `inputs` numbers.
+/// Adds a layer of `inputs` by `outputs` weights to the plan; the rows of its input have `inputs`
+/// values.
 fn add(
     planner: &mut Planner,
     input: Row,

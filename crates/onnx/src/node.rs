@@ -1,10 +1,10 @@
-//! A node of a graph with its attributes, and what messages say about it.
+//! A node of a graph with its attributes and its error messages.
 
 use super::NetworkError;
 use super::error::shown;
 use super::proto::{AttributeProto, NodeProto};
 
-/// The codes of `AttributeProto.AttributeType` that are read.
+/// The supported codes of `AttributeProto.AttributeType`.
 const FLOAT: i32 = 1;
 const INT: i32 = 2;
 const TENSOR: i32 = 4;
@@ -14,14 +14,14 @@ const INTS: i32 = 7;
 /// A node of a graph.
 pub(super) struct Node<'a> {
     pub(super) proto: &'a NodeProto,
-    /// The operator's name, as the table of operators has it.
+    /// The operator's name in the operator table.
     pub(super) operator: &'static str,
-    /// The version of the operator set by which it is meant.
+    /// The version of the operator set that defines its meaning.
     pub(super) version: i64,
 }
 
 impl<'a> Node<'a> {
-    /// What is wrong with the node.
+    /// An error about this node.
     pub(super) fn wrong(&self, found: impl Into<String>, expected: impl Into<String>) -> NetworkError {
         let (found, expected) = (found.into(), expected.into());
         NetworkError::Node { node: name(self.proto), operator: self.operator, found, expected }
@@ -32,7 +32,7 @@ impl<'a> Node<'a> {
         self.proto.input.get(index).map(String::as_str).filter(|name| !name.is_empty())
     }
 
-    /// Refuses attributes that would not be heeded.
+    /// Rejects attributes that would be ignored.
     pub(super) fn check_attributes(&self, known: &[&str]) -> Result<(), NetworkError> {
         let unknown = self.proto.attribute.iter().find(|attribute| !known.contains(&attribute.name.as_str()));
         let Some(unknown) = unknown else { return Ok(()) };
@@ -81,7 +81,7 @@ impl<'a> Node<'a> {
         }
     }
 
-    /// An axis of a tensor with `rank` dimensions; counted from the end if it is negative.
+    /// An axis of a tensor with `rank` dimensions; negative values count from the end.
     pub(super) fn axis(&self, axis: i64, rank: usize) -> Result<usize, NetworkError> {
         let from_start = if axis < 0 { axis.saturating_add_unsigned(rank as u64) } else { axis };
         match usize::try_from(from_start) {
@@ -91,7 +91,7 @@ impl<'a> Node<'a> {
     }
 }
 
-/// A node's name, or that of its output where it has none.
+/// A node's name, or its output's if it has none.
 pub(super) fn name(proto: &NodeProto) -> String {
     let names = [Some(&proto.name), proto.output.first()];
     shown(names.into_iter().flatten().find(|name| !name.is_empty()).map_or("unnamed", String::as_str))

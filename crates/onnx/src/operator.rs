@@ -1,4 +1,4 @@
-//! The operators of ONNX that are evaluated, and what plans each.
+//! The supported ONNX operators, with the function that plans each.
 
 use super::NetworkError;
 use super::arrangement;
@@ -12,15 +12,15 @@ use std::ops::RangeInclusive;
 /// An operator of ONNX.
 pub(super) struct Operator {
     pub(super) name: &'static str,
-    /// The attributes that are heeded, or say nothing here.
+    /// The attributes that are supported, or have no effect here.
     pub(super) attributes: &'static [&'static str],
-    /// How many inputs it may have.
+    /// The allowed number of inputs.
     pub(super) inputs: RangeInclusive<usize>,
-    /// Plans a node of it.
+    /// Plans a node with this operator.
     pub(super) plan: fn(&mut Planner, &Node) -> Result<Value, NetworkError>,
 }
 
-/// All operators, by name. <https://onnx.ai/onnx/operators/> says what each means.
+/// All operators, by name. <https://onnx.ai/onnx/operators/> defines each.
 pub(super) const OPERATORS: [Operator; 25] = [
     operator("Add", &[], 2..=2, |planner, node| elementwise::binary(planner, node, Operation::Add)),
     operator("ArgMax", &["axis", "keepdims", "select_last_index"], 1..=1, row::arg_max),

@@ -1,4 +1,4 @@
-//! A multilayer perceptron, as a trainer makes it, written as an ONNX file.
+//! A multilayer perceptron from a trainer, written as an ONNX file.
 
 use super::proto::{
     AttributeProto, DimensionProto, FLOAT, GraphProto, ModelProto, NodeProto, OperatorSetIdProto,
@@ -8,8 +8,8 @@ use super::{Network, NetworkError};
 use prost::Message;
 use std::collections::BTreeMap;
 
-/// The version of the format, and of the operators, that files are written in: those of ONNX 1.12, which all runtimes
-/// read.
+/// The versions of the format and of the operators in written files: those of ONNX 1.12, which all
+/// runtimes read.
 const IR_VERSION: i64 = 8;
 const OPERATORS_VERSION: i64 = 17;
 
@@ -18,39 +18,39 @@ const OPERATORS_VERSION: i64 = 17;
 pub struct Perceptron {
     /// The input's name.
     pub input: String,
-    /// What is done with the input first.
+    /// Normalisation of the input before the first layer, if any.
     pub normalisation: Option<Normalisation>,
     /// The hidden layers, each followed by the activation.
     pub hidden: Vec<Layer>,
-    /// What follows each hidden layer.
+    /// The activation after each hidden layer.
     pub activation: Activation,
     /// The outputs, each a layer after the last hidden one.
     pub heads: Vec<Head>,
-    /// What follows each output; none: nothing.
+    /// The activation after each output, if any.
     pub end: Option<Activation>,
-    /// What the file says about itself.
+    /// The file's metadata.
     pub metadata: BTreeMap<String, String>,
 }
 
-/// Each number of the input less its mean, times its scale.
+/// Subtracts a mean from each input value and multiplies by a scale.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Normalisation {
-    /// What is taken off, for each number of the input.
+    /// The means, one for each input value.
     pub mean: Vec<f32>,
-    /// What the rest is multiplied with: one over the standard deviation.
+    /// The scales: reciprocal standard deviations.
     pub scale: Vec<f32>,
 }
 
-/// A dense layer: each output is its bias plus the sum of all inputs by their weights.
+/// A dense layer: each output is its bias plus the weighted sum of all inputs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layer {
-    /// How many inputs.
+    /// The number of inputs.
     pub inputs: usize,
-    /// How many outputs.
+    /// The number of outputs.
     pub outputs: usize,
-    /// `outputs` rows of `inputs` weights, as PyTorch has them.
+    /// `outputs` rows of `inputs` weights, as in PyTorch.
     pub weights: Vec<f32>,
-    /// One for each output.
+    /// One bias for each output.
     pub biases: Vec<f32>,
 }
 
@@ -63,12 +63,12 @@ pub struct Head {
     pub layer: Layer,
 }
 
-/// What follows a layer.
+/// The activation after a layer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Activation {
     /// The hyperbolic tangent.
     Tanh,
-    /// What is above zero, or else zero.
+    /// The maximum of the value and zero.
     Relu,
 }
 
@@ -82,11 +82,11 @@ impl Activation {
 }
 
 impl Perceptron {
-    /// The bytes of an ONNX file. The same perceptron gives the same bytes.
+    /// The bytes of an ONNX file. The same perceptron always gives the same bytes.
     ///
     /// # Errors
-    /// If sizes do not fit each other, a number is not finite, or [`Network::read`] would refuse the file for anything
-    /// else.
+    /// If sizes do not match, a number is not finite, or [`Network::read`] would reject the file
+    /// for another reason.
     pub fn onnx(&self) -> Result<Vec<u8>, NetworkError> {
         let first = self.hidden.first().or_else(|| self.heads.first().map(|head| &head.layer));
         let inputs = first.map_or(0, |layer| layer.inputs);
@@ -122,7 +122,7 @@ impl Perceptron {
             metadata_props: self.metadata.iter().map(entry).collect(),
         };
         let bytes = model.encode_to_vec();
-        // All that can be wrong with a file is checked in one place.
+        // All faults of a file are checked in one place.
         Network::read(&bytes)?;
         Ok(bytes)
     }
@@ -158,7 +158,7 @@ fn tensor(name: &str, shape: &[usize], numbers: &[f32]) -> TensorProto {
     }
 }
 
-/// An input or output with a row for each of a batch.
+/// An input or output with a batch dimension.
 fn port(name: &str, size: usize) -> ValueInfoProto {
     let batch = DimensionProto { dim_param: Some("batch".to_owned()), ..DimensionProto::default() };
     let row = DimensionProto { dim_value: Some(size as i64), ..DimensionProto::default() };

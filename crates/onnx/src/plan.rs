@@ -1,4 +1,4 @@
-//! The plan of a network: where each number lies, and the steps that work them out.
+//! The plan of a network: the place of each number, and the steps that compute them.
 
 use super::NetworkError;
 use super::Port;
@@ -10,27 +10,27 @@ use super::tensor::{Numbers, Tensor, product};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// What is constant about a network.
+/// The constant parts of a network.
 pub(super) struct Plan {
     pub(super) inputs: Vec<Port>,
     pub(super) outputs: Vec<Port>,
     pub(super) input_size: usize,
-    /// Where the outputs lie.
+    /// The places of the outputs.
     pub(super) places: Vec<Range<usize>>,
     pub(super) steps: Vec<Step>,
     pub(super) metadata: BTreeMap<String, String>,
     pub(super) digest: u128,
 }
 
-/// What a number stands for.
+/// The type of a value's numbers.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Element {
     Float,
-    /// An integer, of up to 24 bits, as a float: indices.
+    /// An integer of up to 24 bits, stored as a float: indices.
     Integer,
 }
 
-/// Numbers that are worked out, and where they lie.
+/// Computed numbers and their place.
 #[derive(Clone)]
 pub(super) struct Row {
     pub(super) place: Range<usize>,
@@ -38,18 +38,18 @@ pub(super) struct Row {
     pub(super) element: Element,
 }
 
-/// What a name in the graph stands for.
+/// The value of a name in the graph.
 #[derive(Clone)]
 pub(super) enum Value {
     Constant(Tensor),
     Computed(Row),
 }
 
-/// A plan that is being made, node by node.
+/// A plan under construction, node by node.
 #[derive(Default)]
 pub(super) struct Planner {
     known: BTreeMap<String, Value>,
-    /// Where constants lie that steps read as they read computed numbers.
+    /// The places of constants that steps read like computed numbers.
     placed: BTreeMap<String, Range<usize>>,
     pub(super) values: Vec<f32>,
     pub(super) steps: Vec<Step>,
@@ -58,7 +58,7 @@ pub(super) struct Planner {
 }
 
 impl Planner {
-    /// Gives a name its value. Each name has one.
+    /// Assigns a name its value. Each name has one.
     pub(super) fn define(&mut self, name: &str, value: Value) -> Result<(), NetworkError> {
         if self.known.contains_key(name) {
             return Err(NetworkError::tensor(name, "a second definition", "each name defined once"));
@@ -73,7 +73,8 @@ impl Planner {
             return Err(node.wrong(format!("no input {index}"), "one"));
         };
         let value = self.known.get(name).cloned();
-        // Nodes of a valid file come after those whose outputs they use, so this refuses cycles, too.
+        // In a valid file, nodes come after those whose outputs they use, so this also rejects
+        // cycles.
         let expected = "an input of the graph, an initializer, or the output of an earlier node";
         value.ok_or_else(|| node.wrong(format!("the input `{}`, which is none of these", shown(name)), expected))
     }
@@ -91,7 +92,7 @@ impl Planner {
         Ok(Row { place, shape: tensor.shape, element: Element::Float })
     }
 
-    /// Where the constant of this name lies among the values.
+    /// The place of the constant with this name among the values.
     pub(super) fn place(&mut self, name: &str, floats: &[f32]) -> Result<Range<usize>, NetworkError> {
         if let Some(place) = self.placed.get(name) {
             return Ok(place.clone());
@@ -102,7 +103,7 @@ impl Planner {
         Ok(place)
     }
 
-    /// Input `index` of a node, which has to be constant: weights.
+    /// Input `index` of a node, which must be constant: weights.
     pub(super) fn constant(&self, node: &Node, index: usize) -> Result<Tensor, NetworkError> {
         match self.value(node, index)? {
             Value::Constant(tensor) => Ok(tensor),
@@ -139,7 +140,7 @@ impl Planner {
         }
     }
 
-    /// Room for what a node works out.
+    /// Reserves a place for a node's output.
     pub(super) fn new_row(&mut self, shape: Vec<usize>) -> Result<Row, NetworkError> {
         let place = self.room(product(&shape))?;
         Ok(Row { place, shape, element: Element::Float })
@@ -153,7 +154,7 @@ impl Planner {
         Ok(start..end)
     }
 
-    /// Notes so many weights, each of which is multiplied with so many numbers.
+    /// Counts weights, each of which is multiplied by `rows` numbers.
     pub(super) fn count_weights(&mut self, weights: Option<usize>, rows: usize) -> Result<(), NetworkError> {
         let parameters = weights.and_then(|weights| weights.checked_add(self.parameters));
         self.parameters = at_most("weights", parameters, PARAMETERS_MAX)?;
@@ -162,7 +163,7 @@ impl Planner {
         Ok(())
     }
 
-    /// What a name of an output stands for, as numbers that can be read.
+    /// The value of an output's name, as readable numbers.
     pub(super) fn output(&mut self, name: &str) -> Result<Row, NetworkError> {
         match self.known.get(name).cloned() {
             Some(Value::Computed(row)) => Ok(row),
@@ -175,7 +176,7 @@ impl Planner {
     }
 }
 
-/// A constant of a node as floats, of which there is at least one.
+/// A constant of a node as a non-empty list of floats.
 pub(super) fn floats<'a>(node: &Node, index: usize, tensor: &'a Tensor) -> Result<&'a [f32], NetworkError> {
     match &*tensor.numbers {
         Numbers::Floats(floats) if !floats.is_empty() => Ok(floats),

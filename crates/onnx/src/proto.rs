@@ -1,11 +1,11 @@
-//! The messages of an ONNX file, as far as a network is made of them.
+//! The messages of an ONNX file, as far as a network needs them.
 //!
-//! Names and numbers of fields are those of `onnx.proto` (ONNX 1.16; they never change). Fields that are left out are
-//! skipped in reading. `limit.rs` knows the same tree.
+//! Names and numbers of fields are those of `onnx.proto` (ONNX 1.16; they never change). Undeclared
+//! fields are skipped when reading. `limit.rs` has the same tree.
 
 use prost::Message;
 
-/// The element type of numbers that are evaluated: `TensorProto.DataType.FLOAT`.
+/// The element type of evaluated numbers: `TensorProto.DataType.FLOAT`.
 pub(super) const FLOAT: i32 = 1;
 /// `TensorProto.DataType.INT32`.
 pub(super) const INT32: i32 = 6;
@@ -123,7 +123,7 @@ pub(super) struct AttributeProto {
 
 #[derive(Clone, PartialEq, Message)]
 pub(super) struct TensorProto {
-    // The specification does not pack these.
+    // Not packed, according to the specification.
     #[prost(int64, repeated, packed = "false", tag = "1")]
     pub(super) dims: Vec<i64>,
     #[prost(int32, tag = "2")]

@@ -1,4 +1,4 @@
-//! From the bytes of an ONNX file to the plan of a network.
+//! Converts the bytes of an ONNX file to the plan of a network.
 
 use super::error::{shape_text, shown};
 use super::limit::{self, PARAMETERS_MAX, RANK_MAX, at_most};
@@ -13,14 +13,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::{Range, RangeInclusive};
 use xxhash_rust::xxh3::xxh3_128;
 
-/// The versions of the operator set in which the operators mean what they mean here. Before 7, shapes were broadcast by
-/// attributes. The last is that of ONNX 1.23; what later ones change is not known here.
+/// The operator set versions with the semantics implemented here. Before 7, attributes controlled
+/// broadcasting. The last is that of ONNX 1.23; later ones are unknown.
 const VERSIONS: RangeInclusive<i64> = 7..=28;
 
-/// The types that outputs may declare. Indices come out as floats all the same.
+/// The types that outputs may declare. Indices are output as floats regardless.
 const OUTPUT_TYPES: [i32; 3] = [proto::FLOAT, proto::INT32, proto::INT64];
 
-/// Reads a file: its plan, and the values before the first evaluation.
+/// Reads a file. Returns its plan, and the values before the first evaluation.
 pub(super) fn read(file: &[u8]) -> Result<(Plan, Vec<f32>), NetworkError> {
     limit::check(file)?;
     let model = ModelProto::decode(file).map_err(|_| NetworkError::NotOnnx {
@@ -55,7 +55,7 @@ fn version(model: &ModelProto) -> Result<i64, NetworkError> {
     }
 }
 
-/// Whether a domain of operators is that of ONNX itself.
+/// Whether an operator domain is ONNX's own.
 fn is_own(domain: &str) -> bool {
     matches!(domain, "" | "ai.onnx")
 }
@@ -71,7 +71,7 @@ fn metadata(model: &ModelProto) -> Result<BTreeMap<String, String>, NetworkError
     Ok(metadata)
 }
 
-/// Lays out the inputs of the graph. Files of the first versions list initializers among them.
+/// Lays out the inputs of the graph. Files of the first versions also list initializers there.
 fn inputs(planner: &mut Planner, graph: &GraphProto) -> Result<Vec<Port>, NetworkError> {
     let constants: BTreeSet<&str> = graph.initializer.iter().map(|tensor| tensor.name.as_str()).collect();
     let mut ports = vec![];
@@ -97,7 +97,7 @@ fn inputs(planner: &mut Planner, graph: &GraphProto) -> Result<Vec<Port>, Networ
     Ok(ports)
 }
 
-/// The dimensions that a file declares, if it does; of the first one it may leave out the number.
+/// The dimensions that a file declares, if any; the first one may lack a size.
 fn shape(info: &ValueInfoProto, allowed: &[i32]) -> Result<Option<Vec<Option<usize>>>, NetworkError> {
     let wrong = |found: String, expected: &str| Err(NetworkError::tensor(&info.name, found, expected));
     let Some(tensor) = info.r#type.as_ref().and_then(|r#type| r#type.tensor_type.as_ref()) else {
@@ -138,7 +138,7 @@ fn constants(planner: &mut Planner, graph: &GraphProto) -> Result<(), NetworkErr
     Ok(())
 }
 
-/// Adds what a node does.
+/// Adds a node to the plan.
 fn add(planner: &mut Planner, proto: &NodeProto, version: i64) -> Result<(), NetworkError> {
     let known = OPERATORS.iter().find(|operator| operator.name == proto.op_type && is_own(&proto.domain));
     let Some(operator) = known else {
@@ -163,7 +163,7 @@ fn add(planner: &mut Planner, proto: &NodeProto, version: i64) -> Result<(), Net
     planner.define(output, value)
 }
 
-/// The outputs of the graph, and where they lie.
+/// The outputs of the graph and their places.
 fn outputs(planner: &mut Planner, graph: &GraphProto) -> Result<Vec<(Port, Range<usize>)>, NetworkError> {
     let mut names = BTreeSet::new();
     let mut outputs = vec![];

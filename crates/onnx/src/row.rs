@@ -1,4 +1,4 @@
-//! Operators over the numbers of the last dimension: Softmax, LogSoftmax and ArgMax.
+//! Operators along the last dimension: Softmax, LogSoftmax and ArgMax.
 
 use super::NetworkError;
 use super::activation::{exp, ln};
@@ -8,14 +8,14 @@ use super::plan::{Element, Planner, Value};
 use super::step::Step;
 use super::tensor::product;
 
-/// In what form probabilities are given.
+/// The form of probabilities.
 #[derive(Clone, Copy)]
 pub(super) enum Scale {
     Linear,
     Logarithmic,
 }
 
-/// Of several greatest numbers, the one whose index counts.
+/// Which of several equal maxima counts.
 #[derive(Clone, Copy)]
 pub(super) enum Tie {
     First,
@@ -25,7 +25,7 @@ pub(super) enum Tie {
 /// Plans `Softmax` and `LogSoftmax`.
 pub(super) fn softmax(planner: &mut Planner, node: &Node, scale: Scale) -> Result<Value, NetworkError> {
     let input = planner.row(node, 0)?;
-    // Before version 13 the dimensions from the axis on are one.
+    // Before version 13 the dimensions from the axis on are merged into one.
     let (default, is_flattened) = if node.version < 13 { (1, true) } else { (-1, false) };
     let axis = node.axis(node.integer("axis", default)?, input.shape.len())?;
     if !is_flattened {
@@ -55,7 +55,7 @@ pub(super) fn arg_max(planner: &mut Planner, node: &Node) -> Result<Value, Netwo
     Ok(Value::Computed(super::plan::Row { element: Element::Integer, ..output }))
 }
 
-/// Refuses an axis with other numbers between its own.
+/// Rejects an axis whose elements are not adjacent.
 fn check_is_last(node: &Node, shape: &[usize], axis: usize) -> Result<(), NetworkError> {
     if product(&shape[axis + 1..]) == Some(1) {
         return Ok(());
@@ -64,7 +64,7 @@ fn check_is_last(node: &Node, shape: &[usize], axis: usize) -> Result<(), Networ
 }
 
 impl Scale {
-    /// Probabilities of each row's numbers as logits. The greatest is taken off first, so that nothing overflows.
+    /// Softmax of each row's logits. The maximum is subtracted first, to prevent overflow.
     pub(super) fn apply(self, row_size: usize, input: &[f32], output: &mut [f32]) {
         for (to, from) in output.chunks_exact_mut(row_size).zip(input.chunks_exact(row_size)) {
             let greatest = from.iter().fold(f32::NEG_INFINITY, |greatest, x| if *x > greatest { *x } else { greatest });
@@ -85,7 +85,7 @@ impl Scale {
 }
 
 impl Tie {
-    /// The index of the greatest number of each row, as a float. NaN is never the greatest.
+    /// The index of the maximum of each row, as a float. NaN is never the maximum.
     pub(super) fn apply(self, row_size: usize, input: &[f32], output: &mut [f32]) {
         for (to, from) in output.iter_mut().zip(input.chunks_exact(row_size)) {
             let mut best = (f32::NEG_INFINITY, 0);

@@ -5,7 +5,7 @@ use super::linear::Linear;
 use super::row::{Scale, Tie};
 use std::ops::Range;
 
-/// A step. What it writes lies after all that it reads.
+/// A step. Its output comes after all its inputs.
 pub(super) enum Step {
     Function { function: Function, input: Range<usize>, output: Range<usize> },
     Binary { operation: Operation, left: Range<usize>, right: Range<usize>, output: Range<usize> },
@@ -15,13 +15,13 @@ pub(super) enum Step {
     Copy { blocks: Blocks, input: Range<usize>, output: Range<usize> },
 }
 
-/// Blocks of numbers at regular distances.
+/// Blocks of numbers at regular intervals.
 pub(super) struct Blocks {
-    /// How many.
+    /// The number of blocks.
     pub(super) count: usize,
-    /// Numbers in each.
+    /// Numbers per block.
     pub(super) size: usize,
-    /// Where the first begins, and how far apart they begin, in the input.
+    /// Offset of the first block and distance between blocks, in the input.
     pub(super) from: (usize, usize),
     /// The same in the output.
     pub(super) to: (usize, usize),
@@ -58,7 +58,7 @@ impl Step {
     }
 }
 
-/// What a step may read, and what it writes.
+/// Splits the values into those that a step may read and its output.
 fn split<'a>(values: &'a mut [f32], output: &Range<usize>) -> (&'a [f32], &'a mut [f32]) {
     let (before, after) = values.split_at_mut(output.start);
     (before, &mut after[..output.len()])

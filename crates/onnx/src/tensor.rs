@@ -1,4 +1,4 @@
-//! A constant of a network: weights, or the integers that say how to shape something.
+//! A constant of a network: weights, or integers such as shapes.
 
 use super::error::shape_text;
 use super::limit::{PARAMETERS_MAX, RANK_MAX, at_most};
@@ -6,17 +6,17 @@ use super::proto::{DOUBLE, EXTERNAL, FLOAT, INT32, INT64, TensorProto, data_type
 use super::{NetworkError, error};
 use std::rc::Rc;
 
-/// Numbers in a shape, the last dimension varying fastest.
+/// Numbers with a shape, the last dimension varying fastest.
 #[derive(Clone)]
 pub(super) struct Tensor {
     pub(super) shape: Vec<usize>,
-    /// Shared by those that are the same numbers in another shape.
+    /// Shared between tensors with the same numbers in different shapes.
     pub(super) numbers: Rc<Numbers>,
 }
 
 /// The numbers of a tensor.
 pub(super) enum Numbers {
-    /// Finite ones.
+    /// Finite floats.
     Floats(Vec<f32>),
     Integers(Vec<i64>),
 }
@@ -26,7 +26,7 @@ impl Tensor {
         Tensor { shape, numbers: Rc::new(numbers) }
     }
 
-    /// The tensor of a file, which messages call `name`.
+    /// Reads a tensor of a file; messages use `name`.
     pub(super) fn read(proto: &TensorProto, name: &str) -> Result<Tensor, NetworkError> {
         if proto.data_location == EXTERNAL || !proto.external_data.is_empty() {
             return Err(NetworkError::ExternalData { tensor: error::shown(name) });
@@ -79,19 +79,19 @@ impl Tensor {
         }
     }
 
-    /// The same numbers in another shape of as many.
+    /// The same numbers in another shape of equal size.
     pub(super) fn reshaped(&self, shape: Vec<usize>) -> Tensor {
         Tensor { shape, numbers: Rc::clone(&self.numbers) }
     }
 }
 
-/// How many numbers a shape holds, if that can be counted.
+/// The number of elements of a shape, if it does not overflow.
 pub(super) fn product(shape: &[usize]) -> Option<usize> {
-    // A zero anywhere makes it zero, however large the others are.
+    // A zero dimension makes the product zero, however large the others are.
     if shape.contains(&0) { Some(0) } else { shape.iter().try_fold(1_usize, |all, dim| all.checked_mul(*dim)) }
 }
 
-/// The numbers of a tensor, which stand in the raw data or else in the field of their type.
+/// The numbers of a tensor, from the raw data or else from the field of their type.
 fn listed<T: Copy, const SIZE: usize>(proto: &TensorProto, field: &[T], read: fn([u8; SIZE]) -> T) -> Vec<T> {
     match &proto.raw_data {
         Some(raw) => raw.as_chunks().0.iter().map(|bytes| read(*bytes)).collect(),
@@ -99,7 +99,7 @@ fn listed<T: Copy, const SIZE: usize>(proto: &TensorProto, field: &[T], read: fn
     }
 }
 
-/// Whether the raw data ends with a whole number.
+/// Whether the raw data is a whole number of elements.
 fn whole(proto: &TensorProto) -> bool {
     let size = if matches!(proto.data_type, DOUBLE | INT64) { 8 } else { 4 };
     proto.raw_data.as_ref().is_none_or(|raw| raw.len() % size == 0)

@@ -1,4 +1,4 @@
-//! Files that are refused, each with its reason.
+//! Rejected files, each with its reason.
 
 use super::Network;
 use super::proto::{
@@ -27,7 +27,7 @@ fn integer(name: &str, i: i64) -> AttributeProto {
     AttributeProto { name: name.to_owned(), i: Some(i), r#type: OF_INTEGER, ..AttributeProto::default() }
 }
 
-/// An input or output; a dimension of 0 is one without a number.
+/// An input or output; a dimension of 0 has no size.
 fn port(name: &str, dims: &[i64]) -> ValueInfoProto {
     let dim = |dim: &i64| DimensionProto { dim_value: Some(*dim).filter(|dim| *dim != 0), dim_param: None };
     let shape = Some(TensorShapeProto { dim: dims.iter().map(dim).collect() });
@@ -60,7 +60,7 @@ fn sound() -> ModelProto {
     }
 }
 
-/// Puts a node between the first layer and the output.
+/// Inserts a node between the first layer and the output.
 fn with_node(model: &mut ModelProto, node: NodeProto) {
     let graph = graph(model);
     graph.node[1].input[0].clone_from(&node.output[0]);
@@ -264,7 +264,7 @@ fn arrangements_that_do_not_fit_are_refused() {
     ]);
 }
 
-/// Ten names for the same weights are ten times the work.
+/// Ten names for the same weights take ten times the work.
 #[test]
 fn weights_are_counted_wherever_they_are_used() {
     let mut model = sound();

@@ -1,4 +1,4 @@
-//! Actions: what a policy may ask of its boat at a decision.
+//! Actions: a policy's choices for its boat at a decision.
 
 use primitives::angle::wrap_pi;
 use primitives::math;
@@ -19,17 +19,17 @@ pub enum ActionSpace {
     Options,
 }
 
-/// What a policy chose.
+/// A policy's choice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Action {
-    /// One of so many.
+    /// The index of one of several actions.
     Discrete(usize),
-    /// Numbers from -1 to 1; what is beyond counts as the limit.
+    /// Numbers from -1 to 1; values beyond are clamped.
     Continuous([f32; 2]),
 }
 
 impl Action {
-    /// The discrete action with the largest logit, the first of equals.
+    /// The discrete action with the largest logit; ties go to the first.
     #[must_use]
     pub fn likeliest(logits: &[f32]) -> Action {
         Action::Discrete((1..logits.len()).fold(0, |best, i| if logits[i] > logits[best] { i } else { best }))
@@ -37,7 +37,7 @@ impl Action {
 }
 
 impl ActionSpace {
-    /// What a discrete action asks of a boat: "50 % speed, 45° to port".
+    /// A discrete action in words: "50 % speed, 45° to port".
     #[must_use]
     pub fn words(self, action: usize) -> String {
         if self == ActionSpace::Options {
@@ -58,7 +58,7 @@ impl ActionSpace {
     }
 }
 
-/// The probabilities of the actions with these logits.
+/// The probabilities of actions with these logits.
 #[must_use]
 pub fn probabilities(logits: &[f32]) -> Vec<f32> {
     let most = logits.iter().copied().fold(f32::NEG_INFINITY, f32::max);
@@ -76,13 +76,14 @@ pub struct SetPoint {
     pub speed_m_s: f64,
 }
 
-/// How many turns there are at each speed, from half a turn to starboard to nearly half a turn to port.
+/// The number of turns at each speed, from half a turn to starboard to nearly half a turn to port.
 const TURNS: usize = 8;
-/// The speeds of the discrete actions, as shares of the fastest.
+/// The speeds of the discrete actions, as shares of the top speed.
 const SPEEDS: [f64; 2] = [1.0, 0.5];
 
 impl ActionSpace {
-    /// How many discrete actions there are, if the space says it: not for continuous ones, nor for options, which are a strategy's.
+    /// The number of discrete actions, if the space determines it: not for continuous ones, nor for
+    /// options, which depend on a strategy.
     #[must_use]
     pub fn count(self) -> Option<usize> {
         match self {
@@ -91,7 +92,8 @@ impl ActionSpace {
         }
     }
 
-    /// How many outputs a policy has: a logit for each discrete action, or a number for each dimension. Options are at least so many.
+    /// The number of a policy's outputs: a logit for each discrete action, or a number for each
+    /// dimension; for options a minimum.
     #[must_use]
     pub fn outputs(self) -> usize {
         self.count().unwrap_or(2)
@@ -103,7 +105,8 @@ impl ActionSpace {
         self != ActionSpace::Continuous
     }
 
-    /// The action that asks most nearly for this course and speed, the other way round from [`ActionSpace::set_point`]; none for options.
+    /// The action nearest to this course and speed, the inverse of [`ActionSpace::set_point`]; none
+    /// for options.
     #[must_use]
     pub fn nearest(self, asked: SetPoint, heading_rad: f64, speed_max_m_s: f64) -> Option<Action> {
         let turn_rad = wrap_pi(asked.course_rad - heading_rad);
@@ -111,7 +114,7 @@ impl ActionSpace {
         if self == ActionSpace::Continuous {
             return Some(Action::Continuous([turn_rad / PI, 2.0 * share - 1.0].map(|number| number as f32)));
         }
-        // A turn by a radian is as far off as all the speed; a stop has no turn.
+        // A turn of one radian counts as much as the whole speed range; a stop has no turn.
         let off = |action: usize| {
             let SetPoint { course_rad, speed_m_s } = self.set_point(Action::Discrete(action), 0.0, 1.0);
             let by_turn = if speed_m_s == 0.0 { 0.0 } else { wrap_pi(course_rad - turn_rad) };
@@ -121,8 +124,8 @@ impl ActionSpace {
         (0..self.count()?).min_by(|a, b| off(*a).total_cmp(&off(*b))).map(Action::Discrete)
     }
 
-    /// The course and the speed that an action asks of a boat with this heading and top speed. An action of another space, or
-    /// one with numbers that are none, is a stop, and so is an option.
+    /// The course and speed of an action for a boat with this heading and top speed. Actions of
+    /// another space, non-finite ones and options are a stop.
     #[must_use]
     pub fn set_point(self, action: Action, heading_rad: f64, speed_max_m_s: f64) -> SetPoint {
         let (turn_rad, share) = match (self, action) {
@@ -171,7 +174,7 @@ mod tests {
             panic!("no continuous action")
         };
         assert!((turn + 0.25).abs() < 1e-6 && (speed - 0.5).abs() < 1e-6, "{turn} {speed}");
-        // Slowly, 10 degrees to starboard; and next to nothing, anywhere.
+        // Slowly, 10 degrees to starboard; and almost stopped, in any direction.
         let slow = |turn_deg: f64, speed_m_s| SetPoint { course_rad: heading_rad + turn_deg.to_radians(), speed_m_s };
         assert_eq!(space.nearest(slow(10.0, 1.4), heading_rad, fastest_m_s), Some(Action::Discrete(12)));
         assert_eq!(space.nearest(slow(70.0, 0.1), heading_rad, fastest_m_s), Some(Action::Discrete(16)));

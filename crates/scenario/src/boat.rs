@@ -1,10 +1,10 @@
 //! A kind of boat: its hull, thrusters and front seat.
 //!
-//! Everything is SI, in the boat's own frame with its origin midships (CO): x ahead, y to starboard,
-//! yaw clockwise. The equation that these numbers enter stands in `sim::hull`.
+//! Everything is SI, in the boat's own frame with its origin midships (CO): x ahead, y to
+//! starboard, yaw clockwise. `sim::hull` contains the equation with these numbers.
 //!
-//! These types also declare the keys of boat files. Where a key is in another unit, `rename` names the key, its
-//! description gives that unit, and `x-field` names the field.
+//! These types also declare the keys of boat files. For a key in another unit, `rename` sets the
+//! key's name, its description gives that unit, and `x-field` names the field.
 
 use crate::sensor::Sensors;
 use primitives::omitted::number_or_nan;
@@ -20,18 +20,18 @@ pub struct Boat {
     pub length_m: f64,
     /// Beam, m.
     pub beam_m: f64,
-    /// Draught, m: the depth over which waves push and beyond which they do not.
+    /// Draught, m: the depth down to which waves act on the boat.
     pub draught_m: f64,
     /// Inertia and resistance.
     pub hull: Hull,
-    /// What the wind gets hold of.
+    /// Areas and coefficients of the wind force.
     pub windage: Windage,
-    /// What drives it.
+    /// The propulsion model.
     pub drive: Drive,
-    /// What it does when it holds. Older recordings are without it.
+    /// Behaviour during a hold. Older recordings lack it.
     #[serde(default)]
     pub hold: Hold,
-    /// What it knows of itself.
+    /// Sensors of its own state.
     pub sensors: Sensors,
 }
 
@@ -46,18 +46,18 @@ pub enum Hold {
     KeepsStation,
 }
 
-/// What drives a boat.
+/// A boat's propulsion model.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Drive {
-    /// Two thrusters on a hull that floats, steered by the front seat: the model we stand for.
+    /// Two thrusters on a floating hull, steered by the front seat: Squall's own model.
     Thrusters {
         /// The two thrusters.
         thruster: Thruster,
         /// The front seat's heading and speed loops.
         autopilot: Autopilot,
     },
-    /// The point boat of MOOS (uSimMarine under pMarinePID), for parity with what others train on. The sea carries it
-    /// along and does nothing else to it.
+    /// The point boat of MOOS (uSimMarine under pMarinePID), for parity with other training
+    /// environments. The sea's only effect on it is the current.
     Kinematic(Kinematic),
 }
 
@@ -239,15 +239,15 @@ pub struct Hull {
 pub struct Thruster {
     /// Distance of each thruster from the centre line, m.
     pub arm_m: f64,
-    /// What a setting gives in thrust.
+    /// Thrust as a function of the setting.
     pub curve: ThrustCurve,
-    /// Time constant with which a setting is taken up, s; 0 is at once.
+    /// Time constant of the response to a setting, s; 0 is immediate.
     pub lag_s: f64,
-    /// The fastest change of the commanded setting, in shares of full ahead a second.
+    /// The fastest change of the commanded setting, in shares of full ahead per second.
     pub slew_per_s: f64,
-    /// Commands smaller than this share of full ahead give nothing.
+    /// Commands below this share of full ahead have no effect.
     pub deadband: f64,
-    /// In what it falls short of that.
+    /// Deviations from the ideal thruster.
     pub flaws: Flaws,
 }
 

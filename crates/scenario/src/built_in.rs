@@ -1,21 +1,21 @@
-//! The scenario files that a program has inside of itself: they stand in for those that are not on the disk.
+//! Built-in scenario files, used in place of files missing on disk.
 
 use std::path::Path;
 use std::sync::OnceLock;
 
-/// What a file inside of the program says, by its folder and name, as in `seas/gale.toml`.
+/// Returns the content of a built-in file by folder and name, as in `seas/gale.toml`.
 pub type BuiltIn = fn(&str) -> Option<&'static [u8]>;
 
 static BUILT_IN: OnceLock<BuiltIn> = OnceLock::new();
 
-/// Gives this process the files of a program. The first ones stay.
+/// Sets the built-in files of this process. Later calls have no effect.
 pub fn set_built_in(files: BuiltIn) {
-    // Who came first has the same ones: there is one program in a process.
+    // A later caller has the same files: a process has one program.
     let _ = BUILT_IN.set(files);
 }
 
-/// What the program has in the place of a file that is not on the disk: only of one in a folder of a folder `scenarios`, as in
-/// `scenarios/seas/gale.toml`.
+/// The built-in replacement for a file missing on disk: only for a file in a folder of a folder
+/// `scenarios`, as in `scenarios/seas/gale.toml`.
 #[must_use]
 pub fn built_in(path: &Path) -> Option<&'static [u8]> {
     let mut parts = path.components().rev().map(|part| part.as_os_str().to_str());

@@ -1,4 +1,4 @@
-//! Chance: whether anything in a game depends on its seed.
+//! Chance: whether a game depends on its seed.
 
 use super::{Scenario, StartPosition};
 use crate::link::Link;
@@ -9,7 +9,7 @@ use primitives::time::SimTime;
 use rules::Sharing;
 
 impl Scenario {
-    /// Whether anything in it is drawn by its seed. Where nothing is, every seed gives the same game.
+    /// Whether any value depends on the seed. Otherwise every seed gives the same game.
     #[must_use]
     pub fn is_random(&self) -> bool {
         let starts = |start: &StartPosition| matches!(start, StartPosition::Somewhere { .. });
@@ -46,7 +46,7 @@ fn is_random_sea(sea: &Sea) -> bool {
 }
 
 fn is_random_link(link: &Link) -> bool {
-    // With 0 s of good link it is always good.
+    // With a good-link time of 0 s the link never turns bad.
     let turns_bad = link.loss.good_time_s > 0.0 && link.loss.bad > 0.0;
     link.jitter_s > 0.0 || is_chance(link.loss.good) || turns_bad
 }

@@ -1,4 +1,4 @@
-//! The list of problems found so far, and the checks of single values that add to it.
+//! The list of problems found so far, and checks of single values that add to it.
 
 use super::draw::{Drawing, Drawn};
 use super::files::Files;
@@ -12,30 +12,30 @@ use crate::policy::PolicyModel;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// What was read, and what is wrong with it.
+/// The sources read and the problems found in them.
 #[derive(Debug)]
 pub struct Diagnostics {
     pub(super) sources: Sources,
-    /// Which numbers are taken where a distribution is given.
+    /// How numbers are drawn from distributions.
     pub(super) drawing: Drawing,
-    /// Those that were taken.
+    /// The drawn numbers.
     pub(super) drawn: Vec<Drawn>,
-    /// Where files are read.
+    /// The files to read from.
     pub(super) files: Arc<Files>,
-    /// Texts in place of all others.
+    /// The only texts to read from, if any.
     pub(super) texts: Option<Vec<(PathBuf, String)>>,
-    /// Models that were read before.
+    /// Models already read.
     pub(super) models: Vec<PolicyModel>,
-    /// What was made of files before.
+    /// Results of files already read.
     pub(super) kept: Arc<Kept>,
-    /// The files that take the place of the game's own.
+    /// The overrides of the game's own files.
     pub(super) overrides: Overrides,
     problems: Vec<Problem>,
     faults: usize,
 }
 
 impl Diagnostics {
-    /// An empty diagnostics.
+    /// Empty diagnostics.
     pub(super) fn new(drawing: Drawing) -> Diagnostics {
         Diagnostics {
             sources: Sources::default(),
@@ -51,14 +51,14 @@ impl Diagnostics {
         }
     }
 
-    /// Goes on from what was made of files before, if anything was; it says which.
+    /// Continues from the results of an earlier reading, if any. Returns whether there were any.
     pub(super) fn resume(&mut self, reading: &Reading) -> bool {
         let Some(known) = &reading.0 else { return false };
         (self.sources, self.kept) = (**known).clone();
         true
     }
 
-    /// Notes that the value at `at` is wrong. A line whose syntax is wrong has had its say already.
+    /// Reports a fault of the value at `at`. Lines with a syntax error are not reported again.
     pub fn note(&mut self, at: usize, message: impl Into<String>) {
         self.faults += 1;
         if !self.sources.is_broken_line(at) {
@@ -66,7 +66,7 @@ impl Diagnostics {
         }
     }
 
-    /// The path of the file that `reference`, standing at `at`, names.
+    /// The path of the file that `reference`, at `at`, refers to.
     #[must_use]
     pub fn resolve(&self, at: usize, reference: impl AsRef<Path>) -> PathBuf {
         self.sources.resolve(at, reference)
@@ -95,7 +95,7 @@ impl Diagnostics {
         F::check(self, &document)
     }
 
-    /// Notes what may follow from broken syntax elsewhere in the file, unless there is some.
+    /// Reports a problem that broken syntax in the file may have caused, unless there is some.
     pub(super) fn note_if_intact(&mut self, at: usize, message: impl Into<String>) {
         self.faults += 1;
         if !self.sources.is_broken_file(at) {
@@ -103,19 +103,19 @@ impl Diagnostics {
         }
     }
 
-    /// Notes that `key` is missing from the table at `at`.
+    /// Reports that `key` is missing from the table at `at`.
     pub(super) fn note_missing(&mut self, at: usize, key: &str, expected: &str) {
         self.note_if_intact(at, format!("{key} is missing, expected {expected}"));
     }
 
-    /// Notes that the syntax at `at` is wrong.
+    /// Reports a syntax error at `at`.
     pub(super) fn note_syntax(&mut self, at: usize, message: &str) {
         self.faults += 1;
         self.sources.mark_broken(at);
         self.push(at, message.into());
     }
 
-    /// Notes a problem with a whole file that could not be read.
+    /// Reports a problem with a whole file that could not be read.
     pub(super) fn note_file(&mut self, path: PathBuf, message: impl Into<String>) {
         self.faults += 1;
         self.problems.push(Problem::of_file(path, message.into()));
@@ -125,12 +125,12 @@ impl Diagnostics {
         self.problems.push(self.sources.problem(at, message));
     }
 
-    /// How much is wrong so far: checks that combine values run only if it has not grown.
+    /// The number of faults so far: checks that combine values run only if it has not grown.
     pub(super) fn faults(&self) -> usize {
         self.faults
     }
 
-    /// The value, if nothing was wrong.
+    /// The value, if there were no faults.
     pub(super) fn close<T>(&mut self, value: Option<T>) -> Result<T, Problems> {
         match value {
             Some(value) if self.problems.is_empty() => Ok(value),
@@ -143,7 +143,7 @@ impl Diagnostics {
         }
     }
 
-    /// Whether `name` is fit to be one: `a` to `z`, `0` to `9` and `_`, at most 40 of them.
+    /// Whether `name` is valid: at most 40 of `a` to `z`, `0` to `9` and `_`.
     pub(super) fn is_name(&mut self, at: usize, key: &str, name: &str) -> bool {
         let is_fit = is_name(name);
         if !is_fit {
@@ -153,12 +153,12 @@ impl Diagnostics {
     }
 }
 
-/// What a name is, in a schema.
+/// The pattern of names, in a schema.
 pub(super) const NAME_PATTERN: &str = "^[a-z0-9_]{1,40}$";
-/// The same in words.
+/// The same pattern in words.
 pub(super) const NAME_EXPECTED: &str = "1 to 40 of a-z, 0-9 and _";
 
-/// Whether a vehicle, a team or a rival can be called this.
+/// Whether this is a valid name of a vehicle, a team or a rival.
 pub(super) fn is_name(name: &str) -> bool {
     let fits = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
     !name.is_empty() && name.len() <= 40 && name.chars().all(fits)

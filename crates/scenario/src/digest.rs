@@ -1,10 +1,10 @@
-//! Digests that identify games wherever their files lie.
+//! Digests that identify games independently of the location of their files.
 
 use super::Scenario;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Identifies a plan by what its file means and what the files of its games say: hex.
+/// Identifies a plan by its file's meaning and the content of its games' files: hex.
 #[must_use]
 pub fn digest_of(meaning: &str, files: &[(PathBuf, Arc<[u8]>)]) -> String {
     let contents: Vec<u128> = files.iter().map(|(_, bytes)| xxhash_rust::xxh3::xxh3_128(bytes)).collect();
@@ -13,10 +13,11 @@ pub fn digest_of(meaning: &str, files: &[(PathBuf, Arc<[u8]>)]) -> String {
 }
 
 impl Scenario {
-    /// Identifies the games of all seeds that can be played of it with this version of Squall, wherever its files lie: hex.
+    /// Identifies the games of all seeds of this scenario with this version of Squall,
+    /// independently of file locations: hex.
     ///
     /// # Panics
-    /// If it is no JSON: its maps have keys that are no texts.
+    /// If it cannot be serialised as JSON: maps with keys that are not strings.
     #[must_use]
     pub fn digest(&self) -> String {
         let texts: Vec<(PathBuf, Arc<[u8]>)> = match &self.recipe {

@@ -1,8 +1,8 @@
-//! Numbers that are drawn anew for every game: where a file gives a distribution instead of a number.
+//! Randomised numbers, drawn anew for every game: distributions in place of numbers in a file.
 //!
-//! A distribution is replaced by a number as the file is read, so that all the rest of a scenario knows numbers
-//! only. Files with distributions are checked at both ends of them as well: what passes there will not be refused in
-//! the middle of a campaign.
+//! Reading a file replaces each distribution with a number, so that the rest of a scenario contains
+//! only numbers. Files with distributions are checked at both ends of them as well, so that no game
+//! fails in the middle of a campaign.
 
 use super::diagnostics::Diagnostics;
 use super::kept::Reading;
@@ -12,60 +12,61 @@ use primitives::stream::Stream;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-/// Normal and log-normal numbers lie within this many standard deviations: they are drawn until they do.
+/// Normal and log-normal numbers are redrawn until they lie within this many standard deviations.
 const WITHIN_SIGMA: f64 = 3.0;
 
-/// A number that was drawn for a game.
+/// A number drawn for a game.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Drawn {
-    /// Whose and which: the vehicle, `sea`, `link` or `sharing`, and the key, as in `blue_one/hull.mass_kg`.
+    /// Owner and key: the vehicle, `sea`, `link` or `sharing`, and the key, as in
+    /// `blue_one/hull.mass_kg`.
     pub parameter: String,
     /// The number, in the file's unit.
     pub value: f64,
 }
 
-/// All that is needed to draw a game again under another seed.
+/// The data for drawing a game again with another seed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Recipe {
     /// The game file.
     pub(super) game: PathBuf,
-    /// The files that take the place of the game's own.
+    /// The overrides of the game's own files.
     pub(super) overrides: Overrides,
     /// Every file, as read.
     pub(super) files: Vec<(PathBuf, String)>,
-    /// What was made of them.
+    /// The results of reading them.
     #[serde(skip)]
     pub(super) reading: Reading,
-    /// The seed that the numbers at hand were drawn with.
+    /// The seed of the present numbers.
     pub(super) seed: Option<u64>,
 }
 
-/// Which numbers are taken.
+/// The method of drawing numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Drawing {
-    /// The least of each distribution.
+    /// The minimum of each distribution.
     Least,
-    /// The greatest of each.
+    /// The maximum of each distribution.
     Greatest,
-    /// Those of the game with this seed.
+    /// Random numbers for the game with this seed.
     Seed(u64),
 }
 
-/// Who draws numbers.
+/// The owner of drawn numbers.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Owner<'a> {
-    /// The vehicle, `sea`, or the table that all share.
+    /// The vehicle, `sea`, or the shared table.
     pub(super) name: &'a str,
-    /// Where the owner's part of a path begins.
+    /// The offset of the owner's part of a path.
     pub(super) path_from: usize,
 }
 
-/// The kind of distribution that a table means to be, if it does.
+/// The kind of distribution that a table is meant to be, if any.
 pub(super) fn distribution_kind(table: &Table) -> Option<&'static str> {
     ["uniform", "normal", "log_normal", "choice"].into_iter().find(|kind| table.contains_key(*kind))
 }
 
-/// The number that is taken from the distribution at `path`; a bad one is noted.
+/// The number drawn from the distribution at `path`; reports an invalid one.
 pub(super) fn draw(
     diagnostics: &mut Diagnostics,
     node: &Node,
@@ -85,12 +86,12 @@ pub(super) fn draw(
         return None;
     };
     diagnostics.drawn.push(Drawn { parameter: format!("{}/{path}", owner.name), value });
-    // Whole numbers up to 1e15 are exact, and are what some keys take only.
+    // Whole numbers up to 1e15 are exact, and some keys accept only whole numbers.
     let is_whole = value.fract() == 0.0 && value.abs() < 1e15;
     Some(if is_whole { Value::Whole(value as i64) } else { Value::Number(value) })
 }
 
-/// The number that is taken from a distribution, by the stream of this name; none if it is a bad one.
+/// The number drawn from a distribution with the stream of this name; none if it is invalid.
 fn number(table: &Table, drawing: Drawing, stream: &str) -> Option<f64> {
     let kind = distribution_kind(table)?;
     let finite = |node: &Node| node.as_number().filter(|number| number.is_finite());
@@ -131,7 +132,7 @@ fn number(table: &Table, drawing: Drawing, stream: &str) -> Option<f64> {
     }
 }
 
-/// A normal number of mean 0 and variance 1, drawn until it is within bounds.
+/// A standard normal number, redrawn until it is within bounds.
 fn within(stream: &mut Stream) -> f64 {
     loop {
         let number = stream.normal();

@@ -1,7 +1,8 @@
-//! Faults that befall boats in the midst of a game, at a time or again and again.
+//! Faults of boats during a game, at a fixed time or repeatedly.
 //!
-//! They belong to the game and are seeded like everything in it. What fails of itself now and then, a receiver that freezes or a link
-//! that loses messages in bursts, stands with the sensor or the link.
+//! They belong to the game and are seeded like everything in it. Spontaneous failures, such as a
+//! receiver that freezes or a link that loses messages in bursts, are defined with the sensor or
+//! the link.
 
 use primitives::id::VehicleId;
 use primitives::reseed::Seeds;
@@ -71,25 +72,25 @@ pub struct Fault {
     pub vehicles: Vec<VehicleId>,
 }
 
-/// A fault of one boat at one time.
+/// A fault of one boat during one period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FaultSpan {
     /// What fails.
     pub kind: FaultKind,
-    /// When it begins.
+    /// Its beginning.
     pub from: SimTime,
-    /// When it is over.
+    /// Its end.
     pub to: SimTime,
-    /// How far fixes are off, m.
+    /// The offset of fixes, m.
     pub offset_m: f64,
-    /// In which direction, rad.
+    /// The direction of the offset, rad.
     pub direction_rad: f64,
-    /// How far the compass is off, rad.
+    /// The compass error, rad.
     pub offset_rad: f64,
 }
 
 impl FaultSpan {
-    /// Whether it is going on.
+    /// Whether it is in force at this time.
     #[inline]
     #[must_use]
     pub fn is_on(&self, now: SimTime) -> bool {
@@ -97,7 +98,8 @@ impl FaultSpan {
     }
 }
 
-/// The faults that befall a vehicle of this name in the game that `seeds` choose, which lasts at most until `end`; by beginning.
+/// The faults of a vehicle with this name in the game of `seeds`, which lasts at most until `end`;
+/// by beginning.
 #[must_use]
 pub fn fault_spans(
     faults: &[Fault],
@@ -112,14 +114,15 @@ pub fn fault_spans(
         let lasts = fault.for_s.map_or(end, SimTime::from_s);
         let wait = |stream: &mut Stream| {
             let mean_s = fault.every_s?;
-            // A unit of 0 would never come to an end.
+            // With a unit of 0 the wait would be infinite.
             Some(SimTime::from_s((-mean_s * libm::log1p(-stream.unit())).min(1e7)))
         };
         let (mut next, mut over) = (fault.at_s.map(SimTime::from_s).or_else(|| wait(&mut drawn)), SimTime::ZERO);
         while let Some(mut from) = next.filter(|from| *from < end) {
             while let Some((after, seed)) = later.next_if(|(after, _)| *after < from) {
                 drawn = stream(*seed);
-                // Exponential waits have no memory: what is left of one is as long as a new one.
+                // Exponential waits have no memory: the rest of a wait is distributed like a new
+                // one.
                 from = wait(&mut drawn).map_or(from, |wait| over.max(*after) + wait);
             }
             if from >= end {
@@ -134,7 +137,7 @@ pub fn fault_spans(
                 direction_rad: std::f64::consts::TAU * drawn.unit(),
                 offset_rad: fault.offset_deg.unwrap_or(0.0).to_radians(),
             });
-            // Even faults that last for no time come to the end of the game.
+            // A minimum wait, so that even faults of zero duration reach the end of the game.
             next = wait(&mut drawn).map(|wait| over + wait.max(SimTime(1_000_000)));
         }
     }
@@ -182,7 +185,7 @@ mod tests {
             fault_spans(std::slice::from_ref(&drawn), (VehicleId(vehicle), name), &seed.into(), HOUR)
         };
         let count: usize = (0..100).map(|seed| of(0, "a", seed).len()).sum();
-        // 3600 s with one each 60 s, over 100 games: 6000, with a standard deviation of about 65.
+        // 3600 s with one every 60 s, over 100 games: 6000, with a standard deviation of about 65.
         assert!((5700..6300).contains(&count), "{count}");
         assert_ne!(of(0, "a", 1)[0].from, of(1, "b", 1)[0].from);
         assert_ne!(of(0, "a", 1)[0].from, of(0, "a", 2)[0].from);
@@ -205,15 +208,17 @@ mod tests {
             counts[0] += within(1800.0, 1860.0);
             counts[1] += within(2800.0, 2860.0);
         }
-        // One each 60 s, 200 times, with a standard deviation of about 8 where nothing links the games.
+        // One every 60 s, 200 times, with a standard deviation of about 8 if the games are
+        // independent.
         assert!((160..240).contains(&counts[1]), "{counts:?}");
-        // All share the past of `first`, whose last span is over before.
+        // All share the past of `first`, whose last span ends earlier.
         assert!(first[until_last(&first, half)].to < half, "the seed of this test leaves no span open");
-        // From a time at which none is going on, a minute has 60/50 waits, less what the spans take: 1.03 in the mean.
+        // Starting without a fault, a minute has 60/50 waits, less the duration of the spans: 1.03
+        // on average.
         assert!((165..245).contains(&counts[0]), "{counts:?}");
     }
 
-    /// The last span that begins by then.
+    /// The last span that begins by this time.
     fn until_last(spans: &[FaultSpan], at: SimTime) -> usize {
         spans.iter().rposition(|span| span.from <= at).expect("there is one")
     }

@@ -1,18 +1,19 @@
-//! From the keys of files and their units to the fields of types, in SI.
+//! Converts keys of files and their units to fields of types, in SI.
 //!
-//! A key of which `x-field` tells another field than its own name goes there: `"gain.0"` is the first entry of the list
-//! `gain`. On the way its unit changes, where the key's name and the field's differ in it, and `[x, y]` becomes a position.
+//! A key with an `x-field` is stored in another field than its own name: `"gain.0"` is the first
+//! entry of the list `gain`. Units are converted where the names of key and field have different
+//! ones, and `[x, y]` becomes a position.
 
 use primitives::frame::Ned;
 use primitives::time::SimTime;
 use serde_json::{Map, Value, json};
 
-/// The mark of a key that has another name or another unit than its field.
+/// The mark of a key whose field has another name or unit.
 const FIELD: &str = "x-field";
-/// The mark of a number that is estimated where a file leaves it out.
+/// The mark of a number that is estimated if a file omits it.
 const ESTIMATED: &str = "x-estimated";
 
-/// A table's values by its fields, from its values by their keys.
+/// Converts a table's values by key to values by field.
 pub(super) fn by_fields(mut values: Map<String, Value>, properties: &Value) -> Value {
     let keys = || properties.as_object().into_iter().flatten();
     for (key, _) in keys().filter(|(_, about)| about.get(ESTIMATED).is_some()) {
@@ -24,7 +25,7 @@ pub(super) fn by_fields(mut values: Map<String, Value>, properties: &Value) -> V
     for (key, field, value) in moved {
         match field.split_once('.') {
             None => table[field] = of_field(key, field, &value),
-            // The schema has its keys in order, and with them those of a list.
+            // The schema's keys are sorted, and so are those of a list.
             Some((list, _)) => match &mut table[list] {
                 Value::Array(items) => items.push(of_field(key, field, &value)),
                 first => *first = json!([of_field(key, field, &value)]),
@@ -34,7 +35,7 @@ pub(super) fn by_fields(mut values: Map<String, Value>, properties: &Value) -> V
     table
 }
 
-/// What a field has where its key has `value`.
+/// The field's value for a key's `value`.
 fn of_field(key: &str, field: &str, value: &Value) -> Value {
     if let Some([x, y]) = value.as_array().map(Vec::as_slice) {
         return json!(Ned::from_xy(x.as_f64().unwrap_or_default(), y.as_f64().unwrap_or_default()));

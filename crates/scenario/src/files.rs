@@ -1,4 +1,4 @@
-//! The files that scenarios are read from: the disk's, each read once, or those that were kept of it.
+//! The files that scenarios are read from: those on disk, each read once, or stored copies.
 
 use super::built_in::built_in;
 use primitives::input_file;
@@ -7,20 +7,21 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The files that scenarios are read from; those that a program has inside of itself stand in for missing ones. What was read once is not read again: all that is read from these files is of one moment.
+/// The files that scenarios are read from, with built-in files in place of missing ones. Each file
+/// is read only once, so that its content is consistent.
 #[derive(Debug, Default)]
 pub struct Files {
     read: Mutex<Read>,
-    /// Whether no other files are read.
+    /// Whether all files are stored, so that none is read from disk.
     is_complete: bool,
 }
 
-/// What was read.
+/// The files read so far.
 #[derive(Debug, Default)]
 struct Read {
-    /// In the order in which they were asked for.
+    /// In order of first request.
     files: Vec<(PathBuf, Arc<[u8]>)>,
-    /// Where each of them is among these.
+    /// Index of each file in `files`.
     places: BTreeMap<PathBuf, usize>,
 }
 
@@ -32,7 +33,7 @@ impl Read {
 }
 
 impl Files {
-    /// These files alone, in place of the disk's.
+    /// These files only, without access to the disk.
     #[must_use]
     pub fn kept(files: Vec<(PathBuf, Vec<u8>)>) -> Files {
         let mut read = Read::default();
@@ -40,13 +41,13 @@ impl Files {
         Files { read: Mutex::new(read), is_complete: true }
     }
 
-    /// Those that were read, in the order in which they were asked for.
+    /// The files read so far, in order of first request.
     #[must_use]
     pub fn list(&self) -> Vec<(PathBuf, Arc<[u8]>)> {
         self.read.lock().unwrap_or_else(PoisonError::into_inner).files.clone()
     }
 
-    /// Reads one of at most so many bytes.
+    /// Reads a file of at most `bytes_max` bytes.
     pub(super) fn read(&self, path: &Path, bytes_max: u64) -> Result<Arc<[u8]>, String> {
         let mut read = self.read.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(&place) = read.places.get(path) {
@@ -57,8 +58,8 @@ impl Files {
         }
         let bytes: Arc<[u8]> = match (input_file::read(path, bytes_max), built_in(path)) {
             (Ok(bytes), _) => bytes.into(),
-            // A file on the disk always wins, and names work in any folder. Unpacking the
-            // program's files into a folder of the user would have left old copies behind.
+            // A file on disk always wins, and names work in any folder. Unpacking the built-in
+            // files into a user's folder would have left outdated copies behind.
             (Err(error), Some(bytes)) if error.kind() == ErrorKind::NotFound => bytes.into(),
             (Err(error), _) => return Err(error.to_string()),
         };

@@ -1,13 +1,14 @@
-//! What somebody meant who wrote a name that nobody knows.
+//! Suggestions for unknown names.
 
-/// The one of `choices` that `name` was probably meant to be: at most two letters away.
+/// The most similar of `choices`, at most two letters away from `name`.
 pub(super) fn nearest<'a>(name: &str, choices: &[&'a str]) -> Option<&'a str> {
     let far = name.len().min(5) / 2;
     let distances = choices.iter().map(|choice| (strsim::levenshtein(name, choice), *choice));
     distances.filter(|(distance, _)| *distance <= far).min().map(|(_, choice)| choice)
 }
 
-/// The one of `choices` that `name` was probably meant to be, as the end of a message: ` (did you mean seed?)`; or nothing.
+/// The suggestion from `choices` as the end of a message: ` (did you mean seed?)`; or an empty
+/// text.
 #[must_use]
 pub fn did_you_mean(name: &str, choices: &[&str]) -> String {
     nearest(name, choices).map(|guess| format!(" (did you mean {guess}?)")).unwrap_or_default()

@@ -1,4 +1,4 @@
-//! What was made of files before: a game is drawn again without reading them again.
+//! Cached results of files: a game is drawn again without reading its files again.
 
 use super::diagnostics::Diagnostics;
 use super::kind::Kind;
@@ -10,21 +10,21 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// By kind and path, and for whom: of strategies a team that has values of its own in it.
+/// Kind, path, and owner: for strategies, a team with its own values in it.
 type Key = (Kind, PathBuf, String);
 
-/// What was made of files in which nothing was wrong.
+/// The results of files without faults.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Kept {
     documents: BTreeMap<Key, KeptDocument>,
     strategies: BTreeMap<Key, Strategy>,
 }
 
-/// A file, laid over its bases.
+/// A file merged with its bases.
 #[derive(Clone, Debug)]
 pub(super) struct KeptDocument {
     pub(super) tree: Arc<Node>,
-    /// Its values by fields; none where numbers of it are drawn.
+    /// Its values by field; none if it has numbers to draw.
     pub(super) value: Option<Json>,
 }
 
@@ -50,7 +50,8 @@ impl Kept {
     }
 }
 
-/// What a game was made of, with the texts that its places are in. It follows from the texts, so it is in no comparison and no recording.
+/// The basis of a game, with the texts that its places refer to. It follows from the texts, so
+/// comparisons and recordings exclude it.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Reading(pub(super) Option<Arc<(Sources, Arc<Kept>)>>);
 
@@ -59,7 +60,7 @@ impl Reading {
         Reading(Some(Arc::new((diagnostics.sources, diagnostics.kept))))
     }
 
-    /// The files in which no single value takes the place of what they say.
+    /// The files whose values no setting overrides.
     pub(super) fn of_unchanged(mut diagnostics: Diagnostics) -> Reading {
         let kept = Arc::make_mut(&mut diagnostics.kept);
         let is_unchanged = |(kind, ..): &Key| !diagnostics.overrides.has_settings(*kind);

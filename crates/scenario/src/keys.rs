@@ -1,3 +1,3 @@
-//! Types of keys that several kinds of files have.
+//! Key types shared by several kinds of files.
 
 pub use crate::raw::{FilePath, Name};

@@ -1,4 +1,4 @@
-//! What makes a kind of scenario file: its keys, its folder, and how it is checked.
+//! A kind of scenario file: its keys, its folder, and its check.
 
 use super::diagnostics::Diagnostics;
 use super::problem::Problems;
@@ -18,32 +18,33 @@ use std::collections::BTreeSet;
 use std::fmt;
 use std::path::Path;
 
-/// What a kind of scenario file is read as. The crate that uses the file implements this; the kinds that make up a game do so here.
+/// The checked form of a kind of scenario file, implemented by the crate that uses the file; this
+/// crate implements it for the files of a game.
 pub trait ScenarioFile: Sized + 'static {
-    /// The file key by key; `schema.rs` says how keys are declared.
+    /// The file key by key; `schema.rs` describes the declaration of keys.
     type Keys: DeserializeOwned + JsonSchema;
-    /// The name of the kind, which is also that of its schema file.
+    /// The name of the kind, also that of its schema file.
     const NAME: &'static str;
-    /// The folder its files lie in.
+    /// The folder of its files.
     const FOLDER: &'static str;
 
-    /// Makes the value of a file that fits its schema. `None` if anything is wrong, which has been noted.
+    /// Converts a file that satisfies its schema. `None` if there are faults, which are reported.
     fn check(diagnostics: &mut Diagnostics, document: &Document<Self::Keys>) -> Option<Self>;
 
-    /// Reads and checks the file at `path`, its bases and the files it names. Where it gives distributions, the numbers are
-    /// those of seed 1.
+    /// Reads and checks the file at `path`, its bases and the files it refers to. Distributions are
+    /// drawn with seed 1.
     ///
     /// # Errors
-    /// Everything that is wrong in any of them, by file, line and column.
+    /// All faults of any of them, by file, line and column.
     fn load(path: &Path) -> Result<Self, Problems> {
         let (value, _) = load::of_seed::<Self>(path, 1)?;
         value.check_games().map(|()| value)
     }
 
-    /// Checks the games that a file stands for, once nothing is wrong with the file itself.
+    /// Checks the games that a file defines, once the file itself has no faults.
     ///
     /// # Errors
-    /// Everything that is wrong in any of them.
+    /// All faults of any of them.
     fn check_games(&self) -> Result<(), Problems> {
         Ok(())
     }
@@ -71,19 +72,19 @@ impl Kind {
     pub const SEA: Kind = Kind::of::<Sea>();
     /// A strategy.
     pub const STRATEGY: Kind = Kind::of::<Strategy>();
-    /// The kind of the files that are read as `F`.
+    /// The kind of files read as `F`.
     #[must_use]
     pub const fn of<F: ScenarioFile>() -> Kind {
         Kind { name: F::NAME, folder: F::FOLDER, keys: generated::<F::Keys>, check: check_as::<F> }
     }
 
-    /// Its name, which is also that of its schema file.
+    /// Its name, also that of its schema file.
     #[must_use]
     pub fn name(self) -> &'static str {
         self.name
     }
 
-    /// The folder its files lie in.
+    /// The folder of its files.
     #[must_use]
     pub fn folder(self) -> &'static str {
         self.folder
@@ -92,32 +93,33 @@ impl Kind {
     /// Reads and checks a file of this kind.
     ///
     /// # Errors
-    /// Everything that is wrong in it, its bases and the files it names.
+    /// All faults of the file, its bases and the files it refers to.
     pub fn check(self, path: &Path) -> Result<(), Problems> {
         (self.check)(path)
     }
 
-    /// Which of `kinds` the folder of `path` says, if it says one.
+    /// The one of `kinds` with the folder of `path`, if any.
     #[must_use]
     pub fn by_folder(kinds: &[Kind], path: &Path) -> Option<Kind> {
         let folder = path.parent()?.file_name()?;
         kinds.iter().copied().find(|kind| folder == kind.folder)
     }
 
-    /// Which of `kinds` knows most of these top-level keys; the first where several do.
+    /// The one of `kinds` with the most of these top-level keys; ties go to the first.
     #[must_use]
     pub fn by_keys(kinds: &[Kind], keys: &BTreeSet<String>) -> Kind {
-        // Of equals `max_by_key` takes the last.
+        // `max_by_key` returns the last of equal elements.
         kinds.iter().copied().rev().max_by_key(|kind| kind.known(keys)).unwrap_or(Kind::GAME)
     }
 
-    /// Which of `kinds` a file with these top-level keys is, if clearly another than this: it knows at least two more of them.
+    /// The one of `kinds` that a file with these top-level keys belongs to, if clearly not this
+    /// one: with at least two more of them.
     #[must_use]
     pub fn other_by_keys(self, kinds: &[Kind], keys: &BTreeSet<String>) -> Option<Kind> {
         Some(Kind::by_keys(kinds, keys)).filter(|other| other.known(keys) >= self.known(keys) + 2)
     }
 
-    /// How many of these top-level keys it knows.
+    /// The number of these top-level keys that the kind has.
     fn known(self, keys: &BTreeSet<String>) -> usize {
         let known = &declared(self)["properties"];
         keys.iter().filter(|key| known.get(key.as_str()).is_some()).count()
@@ -128,7 +130,7 @@ fn check_as<F: ScenarioFile>(path: &Path) -> Result<(), Problems> {
     F::load(path).map(drop)
 }
 
-// Two kinds of one name would be two owners of one folder: the name alone counts.
+// By name only: two kinds with the same name would have the same folder.
 impl PartialEq for Kind {
     fn eq(&self, other: &Kind) -> bool {
         self.name == other.name

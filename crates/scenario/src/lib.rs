@@ -1,9 +1,10 @@
-//! What makes a game: read from TOML files, checked once, believed ever after.
+//! The definition of a game: read from TOML files, and checked once.
 //!
-//! [`Scenario`] is the checked form, SI and radians, and travels to every process that joins the game.
-//! [`load`] makes one. Its types and those in `raw` declare the keys of files, `schema` makes the JSON Schemas of them.
-//! `read` finds the files and lays them over their bases, `validate` reads them by their schema, `check` makes of them
-//! what the program believes, and `diagnostics` collects every [`Problem`] on the way.
+//! [`Scenario`] is the checked form, in SI and radians, and is sent to every process that joins the
+//! game. [`load`] creates it. Its types and those in `raw` declare the keys of files, and `schema`
+//! generates their JSON Schemas. `read` finds the files and merges them with their bases,
+//! `validate` reads them by their schema, `check` converts them to the checked types, and
+//! `diagnostics` collects every [`Problem`].
 
 pub mod action;
 pub mod boat;
@@ -83,41 +84,41 @@ use thiserror::Error;
 pub struct Scenario {
     /// The game file's stem.
     pub name: String,
-    /// Chooses the game; `--seed` replaces it.
+    /// The seed, which selects the game; `--seed` overrides it.
     pub seed: u64,
-    /// What takes its place in the midst of the game, by rising times.
+    /// Later seeds that replace it during the game, by rising times.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub reseed: Vec<Reseed>,
     /// Physics tick.
     pub tick: SimTime,
-    /// Physics ticks between two decisions of a mind.
+    /// Physics ticks per decision of a mind.
     pub ticks_per_decision: u32,
-    /// In lockstep, how long (wall clock) the sim waits for a mind before it is lost, s.
+    /// In lockstep, wall-clock time that the sim waits for a mind before it counts as lost, s.
     pub patience_s: f64,
-    /// In real time, how old (simulated time) an order may grow before the boat holds, s.
+    /// In real time, maximum age (simulated time) of an order before the boat holds, s.
     pub order_ttl_s: f64,
-    /// Where.
+    /// The field of play.
     pub field: Field,
-    /// By which rules.
+    /// The rules of the game.
     pub rules: Rules,
-    /// On what water.
+    /// The water and the air above it.
     pub sea: Sea,
-    /// Over which radio links minds and boats talk; `None` is at once and without loss.
+    /// The radio links between minds and boats; `None`: without delay and loss.
     pub link: Option<Link>,
-    /// What fails in the midst of it.
+    /// Faults during the game.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Fault>,
-    /// Who against whom.
+    /// The opposing teams.
     pub teams: Vec<Team>,
-    /// The kinds of boat that occur.
+    /// The kinds of boat in the game.
     pub boats: Vec<Boat>,
-    /// The strategies that occur.
+    /// The strategies in the game.
     pub strategies: Vec<Strategy>,
-    /// Who plays, in the order in which everything is resolved.
+    /// The vehicles, in order of processing.
     pub vehicles: Vec<Vehicle>,
-    /// Numbers that were drawn for this game.
+    /// Numbers drawn for this game.
     pub drawn: Vec<Drawn>,
-    /// How to draw others, where there are any.
+    /// The data for drawing other numbers, if there are any to draw.
     pub recipe: Option<Recipe>,
 }
 
@@ -128,10 +129,10 @@ impl Scenario {
         self.vehicles.iter().position(|vehicle| vehicle.name == name).map(VehicleId::at)
     }
 
-    /// The vehicle with this name, where a person has said it.
+    /// The vehicle with this name from a user.
     ///
     /// # Errors
-    /// [`UnknownVehicle`] names those there are.
+    /// [`UnknownVehicle`] with the existing names.
     pub fn vehicle_named(&self, name: &str) -> Result<VehicleId, UnknownVehicle> {
         self.vehicle_by_name(name).ok_or_else(|| {
             let known = self.vehicles.iter().map(|vehicle| vehicle.name.clone()).collect();
@@ -139,11 +140,11 @@ impl Scenario {
         })
     }
 
-    /// Whether everything in it refers to something that is there, and names are names: what was loaded from files is so,
-    /// what others made of it need not be.
+    /// Checks that all references are valid and all names are well-formed. Scenarios loaded from
+    /// files satisfy this; those from other sources may not.
     ///
     /// # Errors
-    /// Says what is not.
+    /// The first violation, as text.
     pub fn check_references(&self) -> Result<(), String> {
         let within = |what: &str, index: usize, count: usize| {
             if index < count { Ok(()) } else { Err(format!("{what} is {index}, expected less than {count}")) }
@@ -162,7 +163,7 @@ impl Scenario {
         flags.try_for_each(|(i, flag)| within(&format!("the team of flag {i}"), flag.team.index(), self.teams.len()))
     }
 
-    /// Whether everything that an event names is in the game: whoever sends it is not therefore right.
+    /// Whether everything that an event refers to exists in the game: the sender may be wrong.
     #[must_use]
     pub fn has(&self, event: Event) -> bool {
         let (flag, team) = (event.flag(), if let Event::Ended { winner } = event { winner } else { None });
@@ -177,7 +178,7 @@ impl Scenario {
         self.tick * i64::from(self.ticks_per_decision)
     }
 
-    /// What the randomness in the midst of this game is drawn by.
+    /// The seeds of randomness during this game.
     #[must_use]
     pub fn seeds(&self) -> Seeds {
         Seeds::new(self.seed, &self.reseed)
@@ -189,7 +190,7 @@ impl Scenario {
         self.vehicles[vehicle.index()].team
     }
 
-    /// How many mates and enemies a vehicle has.
+    /// The numbers of mates and enemies of a vehicle.
     #[must_use]
     pub fn sides_of(&self, vehicle: VehicleId) -> (usize, usize) {
         let team = self.team_of(vehicle);
@@ -197,7 +198,7 @@ impl Scenario {
         (mates, self.vehicles.len() - 1 - mates)
     }
 
-    /// The boat that a vehicle is.
+    /// The boat of a vehicle.
     #[must_use]
     pub fn boat_of(&self, vehicle: VehicleId) -> &Boat {
         &self.boats[self.vehicles[vehicle.index()].boat]
@@ -216,7 +217,7 @@ impl Scenario {
 pub struct UnknownVehicle {
     /// The name.
     pub name: String,
-    /// Those there are.
+    /// The existing names.
     pub known: Vec<String>,
 }
 
@@ -227,7 +228,7 @@ pub struct Team {
     pub name: String,
 }
 
-/// A boat that plays.
+/// A boat that takes part.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Vehicle {
     /// Its name, unique in the game.
@@ -238,10 +239,10 @@ pub struct Vehicle {
     pub boat: usize,
     /// Index into [`Scenario::strategies`].
     pub strategy: usize,
-    /// Where it starts. Older recordings have it under its former name.
+    /// Its start position. Older recordings use the field's former name.
     #[serde(alias = "berth")]
     pub start_position: StartPosition,
-    /// Where its motion comes from.
+    /// The source of its motion.
     pub source: Source,
 }
 
@@ -258,10 +259,10 @@ pub enum Source {
     External,
 }
 
-/// Where a vehicle starts.
+/// A start position.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum StartPosition {
-    /// Just here.
+    /// A fixed pose.
     At(Pose),
     /// Somewhere in a rectangle of the field, drawn from the game's `spawn` stream, pointing at the
     /// opponent's end.

@@ -1,7 +1,8 @@
-//! What stands between a mind and its boat, and between a boat and what it sees of others: radio links and
-//! contact reports with their delays and losses.
+//! The links between a mind and its boat, and between a boat and its observations of others: radio
+//! links and contact reports with their delays and losses.
 //!
-//! These belong to the game and are seeded like everything in it. Faults of the real network are another matter.
+//! These belong to the game and are seeded like everything in it. Faults of the real network are
+//! separate.
 
 use primitives::frame::Ned;
 use schemars::JsonSchema;

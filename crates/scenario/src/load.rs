@@ -1,4 +1,4 @@
-//! The ways in: a path, and out comes what the file says, or everything that is wrong with it.
+//! Entry points: load a file by path, or return all of its faults.
 
 use super::diagnostics::Diagnostics;
 use super::draw::{Drawing, Drawn, Recipe};
@@ -18,19 +18,20 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Reads and checks the game file at `path` and every file it names. Where files give distributions, the numbers
-/// are those of the game's own seed; [`Scenario::of_seed`] draws others.
+/// Reads and checks the game file at `path` and every file it refers to. Distributions are drawn
+/// with the game's own seed; [`Scenario::of_seed`] draws others.
 ///
 /// # Errors
-/// Everything that is wrong in any of them, by file, line and column.
+/// All faults of all files, by file, line and column.
 pub fn load(path: &Path) -> Result<Scenario, Problems> {
     load_with(path, &Overrides::default())
 }
 
-/// Reads and checks a game, with other files in place of its own.
+/// Reads and checks a game with overrides.
 ///
 /// # Errors
-/// Everything that is wrong in any file, by file, line and column; also a strategy for a team that is not in the game.
+/// All faults of all files, by file, line and column; also a strategy for a team that is not in the
+/// game.
 pub fn load_with(path: &Path, overrides: &Overrides) -> Result<Scenario, Problems> {
     load_with_files(path, overrides, &Arc::default())
 }
@@ -38,12 +39,12 @@ pub fn load_with(path: &Path, overrides: &Overrides) -> Result<Scenario, Problem
 /// The same, read from these files.
 ///
 /// # Errors
-/// Everything that is wrong in any file, as above.
+/// All faults of all files, as above.
 pub fn load_with_files(path: &Path, overrides: &Overrides, files: &Arc<Files>) -> Result<Scenario, Problems> {
     load_knowing(&Reading::default(), path, overrides, files)
 }
 
-/// The same, where some files have been read before, and with the same values in place of what they say.
+/// The same, with some files already read, and with the same settings.
 fn load_knowing(known: &Reading, path: &Path, overrides: &Overrides, files: &Arc<Files>) -> Result<Scenario, Problems> {
     let read = |drawing: Drawing| {
         let mut diagnostics = Diagnostics::new(drawing);
@@ -56,10 +57,10 @@ fn load_knowing(known: &Reading, path: &Path, overrides: &Overrides, files: &Arc
     if least.drawn.is_empty() {
         return Ok(least);
     }
-    // Both ends of every distribution, so that most mistakes are found before any game. What
-    // numbers are together is checked again for each seed, a tenth of a millisecond. To draw on
-    // the checked types would be faster, and leave what is estimated from a number at its
-    // nominal value.
+    // At both ends of every distribution, so that most mistakes are found before any game. The
+    // combination of numbers is checked again for each seed, which takes a tenth of a millisecond.
+    // Drawing on the checked types would be faster, but would leave estimates from a drawn number
+    // at their nominal values.
     read(Drawing::Greatest)?;
     let files = diagnostics.sources.texts();
     let reading = Reading::of(diagnostics);
@@ -76,10 +77,10 @@ fn game_of(diagnostics: &mut Diagnostics, path: &Path) -> Result<Scenario, Probl
 }
 
 impl Scenario {
-    /// The game of this scenario that `seed` chooses: where files give distributions, their numbers are drawn.
+    /// This scenario's game with `seed`: distributions are drawn again.
     ///
     /// # Errors
-    /// What is wrong with the numbers together, though each alone may be drawn.
+    /// Faults of the combination of numbers, though each alone is valid.
     pub fn of_seed(&self, seed: u64) -> Result<Scenario, Problems> {
         let Some(recipe) = self.recipe.as_ref().filter(|recipe| recipe.seed != Some(seed)) else {
             return Ok(Scenario { seed, ..self.clone() });
@@ -98,18 +99,19 @@ impl Scenario {
     }
 }
 
-/// Reads and checks the file at `path` as one of its kind: for types that implement [`ScenarioFile`].
+/// Reads and checks the file at `path` as one of its kind: for types that implement
+/// [`ScenarioFile`].
 ///
 /// # Errors
-/// Everything that is wrong in it, its bases and the files it names, by file, line and column.
+/// All faults of it, its bases and the files it refers to, by file, line and column.
 pub fn load_file<F: ScenarioFile>(path: &Path) -> Result<F, Problems> {
     F::load(path)
 }
 
-/// Reads and checks the strategy file at `path` and the files of the roles that it deals.
+/// Reads and checks the strategy file at `path` and the files of its roles.
 ///
 /// # Errors
-/// Everything that is wrong in any of them and their bases.
+/// All faults of any of them and their bases.
 pub fn load_strategy(path: &Path) -> Result<Strategy, Problems> {
     Strategy::load(path)
 }
@@ -117,15 +119,15 @@ pub fn load_strategy(path: &Path) -> Result<Strategy, Problems> {
 /// Reads and checks the field file at `path`.
 ///
 /// # Errors
-/// Everything that is wrong in it and its bases.
+/// All faults of it and its bases.
 pub fn load_field(path: &Path) -> Result<Field, Problems> {
     Field::load(path)
 }
 
-/// Reads and checks the boat file at `path`. Where it gives distributions, the numbers are those of seed 1.
+/// Reads and checks the boat file at `path`. Distributions are drawn with seed 1.
 ///
 /// # Errors
-/// Everything that is wrong in it and its bases.
+/// All faults of it and its bases.
 pub fn load_boat(path: &Path) -> Result<Boat, Problems> {
     Boat::load(path)
 }
@@ -133,20 +135,22 @@ pub fn load_boat(path: &Path) -> Result<Boat, Problems> {
 /// Reads and checks the boat file at `path`, and draws its numbers with this seed.
 ///
 /// # Errors
-/// Everything that is wrong in it and its bases.
+/// All faults of it and its bases.
 pub fn draw_boat(path: &Path, seed: u64) -> Result<(Boat, Vec<Drawn>), Problems> {
     of_seed(path, seed)
 }
 
-/// Reads and checks the sea file at `path`, and draws its numbers with this seed: those of a game of that seed.
+/// Reads and checks the sea file at `path`, and draws its numbers with this seed: those of the game
+/// with that seed.
 ///
 /// # Errors
-/// Everything that is wrong in it and its bases.
+/// All faults of it and its bases.
 pub fn draw_sea(path: &Path, seed: u64) -> Result<(Sea, Vec<Drawn>), Problems> {
     of_seed(path, seed)
 }
 
-/// A game that is loaded again and again with other values. The files that no value changes are read once.
+/// A game that is loaded repeatedly with different values. Files without changed values are read
+/// once.
 pub struct GameVariants {
     game: PathBuf,
     known: Reading,
@@ -154,7 +158,8 @@ pub struct GameVariants {
 }
 
 impl GameVariants {
-    /// Reads the game with these values; all others must set the same keys. What is wrong with it says [`GameVariants::load`].
+    /// Reads the game with these values; later ones must set the same keys. Faults are returned by
+    /// [`GameVariants::load`].
     #[must_use]
     pub fn new(game: &Path, overrides: &Overrides) -> GameVariants {
         let mut diagnostics = Diagnostics::new(Drawing::Least);
@@ -167,16 +172,16 @@ impl GameVariants {
     /// The game with these values.
     ///
     /// # Errors
-    /// Everything that is wrong in any of its files.
+    /// All faults of any of its files.
     pub fn load(&self, overrides: &Overrides) -> Result<Scenario, Problems> {
         load_knowing(&self.known, &self.game, overrides, &self.files)
     }
 }
 
-/// What a file of a kind that says nothing is.
+/// The result of an empty file of a kind.
 ///
 /// # Errors
-/// A key has no default.
+/// If a key has no default.
 pub fn default_of<F: ScenarioFile>() -> Result<F, Problems> {
     let path = Path::new("default.toml");
     let mut diagnostics = Diagnostics::new(Drawing::Least);
@@ -186,19 +191,20 @@ pub fn default_of<F: ScenarioFile>() -> Result<F, Problems> {
     diagnostics.close(value)
 }
 
-/// Reads and checks a scenario file of any of these kinds, and says which kind it is.
+/// Reads and checks a scenario file of any of these kinds, and returns its kind.
 ///
-/// The folder it lies in tells. In any other folder it is the kind that knows most of its top-level keys, its bases'
-/// included; where several know as many, the first of `kinds`.
+/// The kind follows from its folder. In any other folder it is the kind with the most of its
+/// top-level keys, including its bases' keys; ties go to the first of `kinds`.
 ///
 /// # Errors
-/// Everything that is wrong in it, its bases and the files it names.
+/// All faults of it, its bases and the files it refers to.
 pub fn check_file(kinds: &[Kind], path: &Path) -> Result<Kind, Problems> {
     let kind = Kind::by_folder(kinds, path).unwrap_or_else(|| Kind::by_keys(kinds, &top_keys(path)));
     kind.check(path).map(|()| kind)
 }
 
-/// Which of `kinds` a file is by its folder or its keys, if it is clearly another than the one that is expected.
+/// The one of `kinds` that a file belongs to by its folder or its keys, if clearly not the expected
+/// one.
 #[must_use]
 pub fn other_kind(kinds: &[Kind], path: &Path, expected: Kind) -> Option<Kind> {
     match Kind::by_folder(kinds, path) {
@@ -207,7 +213,7 @@ pub fn other_kind(kinds: &[Kind], path: &Path, expected: Kind) -> Option<Kind> {
     }
 }
 
-/// A file of one kind, its numbers drawn with this seed, and what was drawn for it.
+/// A file of one kind with its numbers drawn with this seed, and the drawn numbers.
 pub(super) fn of_seed<F: ScenarioFile>(path: &Path, seed: u64) -> Result<(F, Vec<Drawn>), Problems> {
     let read = |drawing: Drawing| {
         let mut diagnostics = Diagnostics::new(drawing);
@@ -223,7 +229,7 @@ pub(super) fn of_seed<F: ScenarioFile>(path: &Path, seed: u64) -> Result<(F, Vec
     read(Drawing::Seed(seed))
 }
 
-/// The top-level keys of a file and its bases; what is wrong with them is found again by the check.
+/// The top-level keys of a file and its bases; the check reports their faults later.
 fn top_keys(path: &Path) -> BTreeSet<String> {
     let tree = read::tree(&mut Diagnostics::new(Drawing::Least), path, None, &[]);
     tree.iter().flat_map(Node::entries).map(|(key, _)| key.clone()).collect()

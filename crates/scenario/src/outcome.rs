@@ -1,4 +1,4 @@
-//! How a game ended: what `--json` writes.
+//! The outcome of a game, as written by `--json`.
 
 use crate::{Scenario, Vehicle};
 use primitives::id::{TeamId, VehicleId};
@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 pub struct Outcome {
     /// The scenario's name.
     pub scenario: String,
-    /// The seed that chose the game.
+    /// The game's seed.
     pub seed: u64,
     /// The version of Squall that played it.
     pub version: String,
@@ -22,52 +22,53 @@ pub struct Outcome {
     pub duration_s: f64,
     /// Physics ticks played.
     pub ticks: u64,
-    /// Numbers that were drawn for this game, under their names, in the units of the files.
+    /// Numbers drawn for this game, by name, in the units of the files.
     #[serde(skip_serializing_if = "BTreeMap::is_empty", default)]
     pub drawn: BTreeMap<String, f64>,
-    /// Whether anything in it depended on the seed.
+    /// Whether the game depends on the seed.
     #[serde(default)]
     pub random: bool,
-    /// Whether wind, waves or current favoured one end of the field: then one game alone does not say who is better.
+    /// Whether wind, waves or current favour one end of the field: a single game then does not show
+    /// the better team.
     #[serde(default)]
     pub ends_differ: bool,
-    /// The winning team's name; none is a draw or a game cut short.
+    /// The winning team's name; none for a draw or a game cut short.
     pub winner: Option<String>,
     /// The team of each boat.
     pub boats: BTreeMap<String, String>,
     /// Points.
     pub score: Standings<u32>,
-    /// What was done, how often.
+    /// Counts of events.
     pub counts: Standings<Counts>,
-    /// Everything that happened, in order.
+    /// All events, in order.
     pub events: Vec<EventOutcome>,
 }
 
-/// Something by team and by boat, under their names.
+/// A value for each team and each boat, by name.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Standings<T> {
-    /// By team.
+    /// By team name.
     pub teams: BTreeMap<String, T>,
-    /// By boat.
+    /// By boat name.
     pub boats: BTreeMap<String, T>,
 }
 
-/// An event with names in place of numbers.
+/// An event with names in place of indices.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EventOutcome {
     /// Physics tick.
     pub tick: u64,
     /// Simulated time, s.
     pub at_s: f64,
-    /// What happened, for example `tagged`.
+    /// The kind of event, for example `tagged`.
     pub event: String,
-    /// The boat it happened to.
+    /// The affected boat.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub vehicle: Option<String>,
     /// The tagger or the other boat.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub other: Option<String>,
-    /// The team whose flag it is about, or that won.
+    /// The team whose flag is involved, or the winner.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub team: Option<String>,
 }
@@ -131,22 +132,22 @@ impl EventOutcome {
     }
 }
 
-/// What a game leaves behind, before names are put to it.
+/// The result of a game before indices are replaced by names.
 pub struct Played<'a> {
-    /// What was played.
+    /// The scenario of the game.
     pub scenario: &'a Scenario,
     /// Digest of the final state and all events.
     pub digest: u128,
     /// Physics ticks played.
     pub ticks: u64,
-    /// Points, by team.
+    /// Points, by team index.
     pub score: &'a [u32],
-    /// Everything that happened.
+    /// All events.
     pub events: &'a [Logged],
 }
 
 impl Outcome {
-    /// The result of a game that was played.
+    /// The outcome of a played game.
     #[must_use]
     pub fn new(played: &Played<'_>) -> Outcome {
         let scenario = played.scenario;

@@ -1,4 +1,4 @@
-//! What takes the place of what a game says: files of those it names, simulated boats of real ones.
+//! Overrides of a game's content: other files, single values, and simulation of real boats.
 
 use super::kind::Kind;
 use super::setting::Setting;
@@ -6,31 +6,32 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// What is put in the place of what a game says. Files that are replaced are not read.
+/// Overrides of a game's content. Overridden files are not read.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Overrides {
     /// The sea file.
     pub sea: Option<PathBuf>,
-    /// Strategy files by team name: all boats of that team follow it, those that name one of their own too.
+    /// Strategy files by team name: all boats of that team follow it, including those with a
+    /// strategy of their own.
     pub strategies: BTreeMap<String, PathBuf>,
-    /// Each of the two teams follows the strategy of the other; the game must give no boat one of its own.
+    /// Exchanges the strategies of the two teams; no boat of the game may have one of its own.
     #[serde(default)]
     pub exchange_strategies: bool,
-    /// A rehearsal: every boat is simulated, whatever the game says of its source.
+    /// A rehearsal: every boat is simulated, whatever its source in the game.
     pub simulate_all: bool,
-    /// Single values in the place of what files say; of several for one key the last counts.
+    /// Overrides of single values; of several for one key the last one counts.
     #[serde(default)]
     pub settings: Vec<Setting>,
 }
 
 impl Overrides {
-    /// Whether a single value takes the place of what files of this kind say.
+    /// Whether a setting overrides a value in files of this kind.
     pub(super) fn has_settings(&self, kind: Kind) -> bool {
         self.settings.iter().any(|setting| setting.target().is_some_and(|(target, _)| target == kind))
     }
 
-    /// The name of this team if a single value takes the place of what its strategy says, or else none: who owns the strategy's file,
-    /// which teams share that change nothing in it.
+    /// The name of this team if a setting overrides a value of its strategy, otherwise an empty
+    /// name: the owner of the strategy's file, which teams share if they do not change it.
     pub(super) fn owner_of_strategy<'a>(&self, team: &'a str) -> &'a str {
         if self.settings.iter().any(|setting| setting.team() == Some(team)) { team } else { "" }
     }

@@ -1,4 +1,4 @@
-//! A trained policy: the network of an ONNX file, and what it is given and chooses.
+//! A trained policy: the network of an ONNX file, with its observation and action spaces.
 
 use crate::action::ActionSpace;
 use crate::observation::ObservationSpace;
@@ -12,43 +12,43 @@ use std::ops::RangeInclusive;
 use std::sync::Arc;
 use thiserror::Error;
 
-/// The largest model file, bytes: it goes to every agent with the scenario.
+/// Maximum size of a model file, bytes: every agent receives it with the scenario.
 pub const BYTES_MAX: u64 = 1 << 20;
-/// How long a decision of a policy may hold, s.
+/// Allowed period of a policy, s.
 pub const PERIODS_S: RangeInclusive<f64> = 0.01..=10.0;
 
-/// The entries of a model's metadata that are read, by [`PolicySpec`]'s fields.
+/// Metadata keys of a model, by [`PolicySpec`]'s fields.
 const OBSERVATION: &str = "squall.observation";
 const OBSERVATION_VERSION: &str = "squall.observation_version";
 const ACTION: &str = "squall.action";
 const PERIOD_S: &str = "squall.period_s";
-/// The entry with the names of options, in order, with a comma between them.
+/// Metadata key of the option names, in order, separated by commas.
 const OPTIONS: &str = "squall.options";
 
-/// What a model is given, what it chooses, and how often.
+/// A model's observations, actions and period.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PolicySpec {
-    /// The numbers that it is given.
+    /// The observation space.
     pub observation: ObservationSpace,
-    /// What it chooses.
+    /// The action space.
     pub action: ActionSpace,
     /// The time from one decision to the next, s.
     pub period_s: f64,
 }
 
-/// The same as far as somebody says it; the rest is in the model's metadata.
+/// A spec with optional fields; the model's metadata supplies the rest.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PartialSpec {
-    /// The numbers that it is given.
+    /// The observation space.
     pub observation: Option<ObservationSpace>,
-    /// What it chooses.
+    /// The action space.
     pub action: Option<ActionSpace>,
     /// The time from one decision to the next, s.
     pub period_s: Option<f64>,
 }
 
 impl PartialSpec {
-    /// Whether a spec says all of this.
+    /// Whether all given fields agree with a spec.
     #[must_use]
     pub fn is_part_of(&self, spec: &PolicySpec) -> bool {
         self.observation.is_none_or(|observation| observation == spec.observation)
@@ -57,76 +57,77 @@ impl PartialSpec {
     }
 }
 
-/// A policy that can be asked. Clones share the network's weights.
+/// A policy ready for evaluation. Clones share the network's weights.
 #[derive(Clone)]
 pub struct PolicyModel {
-    /// Its file, as it was found.
+    /// Its file, as found.
     pub name: String,
-    /// What it is given and chooses.
+    /// Its observations, actions and period.
     pub spec: PolicySpec,
-    /// Which of the network's outputs makes the action.
+    /// Index of the network output with the action.
     output: usize,
     network: Network,
     bytes: Arc<[u8]>,
 }
 
-/// Why a file is no policy. Each text says what was found, and what is allowed.
+/// Why a file is not a valid policy. Each message gives the value found and the allowed values.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum PolicyError {
-    /// It is no network that can be evaluated.
+    /// The network cannot be evaluated.
     #[error(transparent)]
     Network(#[from] NetworkError),
-    /// An entry of its metadata cannot be read.
+    /// A metadata entry is invalid.
     #[error("its metadata has {key} = {found:?}, expected {expected}")]
     Metadata {
-        /// The entry.
+        /// The entry's key.
         key: &'static str,
-        /// What it says.
+        /// Its value.
         found: String,
-        /// What it may say.
+        /// The allowed values.
         expected: String,
     },
-    /// Nobody says what it is given or chooses.
+    /// Neither the metadata nor the user specifies a field.
     #[error("its metadata has no {key}, expected it there or {said_by} here")]
     Unsaid {
-        /// The entry that is missing.
+        /// The key of the missing entry.
         key: &'static str,
-        /// Who might have said it instead.
+        /// The alternative source of the field.
         said_by: &'static str,
     },
-    /// It was made for something else.
+    /// The metadata contradicts the user's specification.
     #[error("its metadata has {key} = {found}, expected {expected}, which is said here")]
     Contradiction {
-        /// The entry.
+        /// The entry's key.
         key: &'static str,
-        /// What it says.
+        /// Its value.
         found: String,
-        /// What is said in the other place.
+        /// The value specified elsewhere.
         expected: String,
     },
-    /// It has more inputs than one, or one of another size.
+    /// It has more than one input, or one of another size.
     #[error("it takes {found}, expected {expected}")]
     Input {
         /// Its inputs.
         found: String,
-        /// What they may be.
+        /// The allowed inputs.
         expected: String,
     },
-    /// None of its outputs makes an action, or several do.
+    /// None of its outputs is suitable for an action, or several are.
     #[error("it gives {found}, expected {expected}")]
     Output {
         /// Its outputs.
         found: String,
-        /// What they may be.
+        /// The allowed outputs.
         expected: String,
     },
 }
 
 impl PolicyModel {
-    /// Reads an ONNX file as a policy. What `said` leaves open, its metadata has to say.
+    /// Reads an ONNX file as a policy. Its metadata must supply the fields missing from `said`.
     ///
     /// # Errors
-    /// [`PolicyError`]: if it is no network, says other than `said`, or nothing, or has other inputs and outputs than it says.
+    /// [`PolicyError`]: if the network is invalid, a field is missing or contradicts `said`, or the
+    /// inputs and outputs do not match.
     pub fn read(name: &str, bytes: &[u8], said: PartialSpec) -> Result<PolicyModel, PolicyError> {
         let network = Network::read(bytes)?;
         let spec = spec_of(&network, said)?;
@@ -135,40 +136,41 @@ impl PolicyModel {
         Ok(PolicyModel { name: name.to_owned(), spec, output, network, bytes: bytes.into() })
     }
 
-    /// A network of its own, to be asked.
+    /// A separate copy of the network for evaluation.
     #[must_use]
     pub fn network(&self) -> Network {
         self.network.clone()
     }
 
-    /// Which of the network's outputs makes the action: a logit for each, the number of the action, or its numbers.
+    /// Index of the network output with the action: logits, the index of the action, or its
+    /// components.
     #[must_use]
     pub fn output(&self) -> usize {
         self.output
     }
 
-    /// How many numbers it is given.
+    /// The number of values that it receives.
     #[must_use]
     pub fn input_size(&self) -> usize {
         self.network.input_size()
     }
 
-    /// How many discrete actions it chooses among; none if its actions are continuous.
+    /// The number of discrete actions; none if its actions are continuous.
     #[must_use]
     pub fn actions(&self) -> Option<usize> {
         let outputs = self.network.outputs()[self.output].size;
-        // One number is that of the action itself.
+        // A single output is the index of the action.
         self.spec.action.is_discrete().then(|| self.spec.action.count().unwrap_or(outputs))
     }
 
-    /// What the options that it chooses among are called, if its metadata says it.
+    /// The names of its options, if its metadata has them.
     #[must_use]
     pub fn options(&self) -> Option<Vec<&str>> {
         let names = self.network.metadata().get(OPTIONS)?;
         (self.spec.action == ActionSpace::Options).then(|| names.split(',').collect())
     }
 
-    /// What a discrete action is: "50 % speed, 45° to port", or the name of the option.
+    /// A discrete action in words: "50 % speed, 45° to port", or the name of the option.
     #[must_use]
     pub fn words(&self, action: usize) -> String {
         let option = self.options().and_then(|names| names.get(action).map(|name| (*name).to_owned()));
@@ -183,7 +185,7 @@ impl PolicyModel {
 }
 
 impl PolicySpec {
-    /// As entries of a model's metadata.
+    /// The spec as metadata entries of a model.
     #[must_use]
     pub fn metadata(&self) -> [(String, String); 4] {
         [
@@ -196,13 +198,13 @@ impl PolicySpec {
     }
 }
 
-/// The names of options as an entry of a model's metadata.
+/// The names of options as a metadata entry of a model.
 #[must_use]
 pub fn options_metadata(names: &[String]) -> (String, String) {
     (OPTIONS.to_owned(), names.join(","))
 }
 
-/// What a network is given and chooses, by what is said of it and by its metadata.
+/// The spec of a network from `said` and its metadata.
 fn spec_of(network: &Network, said: PartialSpec) -> Result<PolicySpec, PolicyError> {
     let entry = |key: &str| network.metadata().get(key);
     let wrong = |key: &'static str, found: &str, expected: String| PolicyError::Metadata {
@@ -232,7 +234,7 @@ fn spec_of(network: &Network, said: PartialSpec) -> Result<PolicySpec, PolicyErr
         let allowed = || format!("{} to {} s", PERIODS_S.start(), PERIODS_S.end());
         number.ok_or_else(|| wrong(PERIOD_S, text, allowed()))
     });
-    // The one thing that a policy bears to be changed.
+    // The only field that may differ from the metadata.
     let period_s = match (said.period_s, period_s.transpose()?) {
         (Some(period_s), _) | (None, Some(period_s)) => period_s,
         (None, None) => return Err(PolicyError::Unsaid { key: PERIOD_S, said_by: "period_s" }),
@@ -240,7 +242,7 @@ fn spec_of(network: &Network, said: PartialSpec) -> Result<PolicySpec, PolicyErr
     Ok(PolicySpec { observation, action, period_s })
 }
 
-/// What the metadata and somebody else say, if one of them does and they do not differ.
+/// The value from the metadata or from `said`, if at least one gives it and they do not differ.
 fn agreed<T: PartialEq + Serialize>(
     key: &'static str,
     said_by: &'static str,
@@ -260,7 +262,7 @@ fn check_input(network: &Network, observation: ObservationSpace) -> Result<(), P
     let wrong = |expected: String| PolicyError::Input { found: listed(network.inputs()), expected };
     let [input] = network.inputs() else { return Err(wrong("one input".to_owned())) };
     match observation {
-        // The numbers of a game of 1 against 1, and of each other boat.
+        // The size for a game of 1 against 1, and the size per other boat.
         ObservationSpace::Pyquaticus => {
             let (least, other) = (observation.size(0, 1), observation.size(1, 1) - observation.size(0, 1));
             if input.size < least || !(input.size - least).is_multiple_of(other) {
@@ -277,8 +279,8 @@ fn check_input(network: &Network, observation: ObservationSpace) -> Result<(), P
     Ok(())
 }
 
-/// The output that makes an action: the only one of the right size, or else the only one with the number of an action. Options are as
-/// many as it has numbers.
+/// The index of the output with the action: the only one of the right size, or else the only one
+/// for an action index. The number of options is the output's size.
 fn output_of(network: &Network, action: ActionSpace) -> Result<usize, PolicyError> {
     let of_size = |size: usize| -> Vec<usize> {
         let outputs = network.outputs().iter().enumerate();
@@ -305,7 +307,7 @@ fn output_of(network: &Network, action: ActionSpace) -> Result<usize, PolicyErro
     }
 }
 
-/// Inputs or outputs, as a message has them.
+/// Inputs or outputs, as text for a message.
 fn listed(ports: &[Port]) -> String {
     let shown = ports.iter().take(8).map(|port| format!("{:?} of {} numbers", port.name, port.size));
     shown.collect::<Vec<_>>().join(", ") + if ports.len() > 8 { ", …" } else { "" }
@@ -331,7 +333,7 @@ impl fmt::Debug for PolicyModel {
     }
 }
 
-/// As it goes to agents and into recordings.
+/// The serialised form for agents and recordings.
 #[derive(Serialize, Deserialize)]
 struct Sent {
     name: String,

@@ -1,32 +1,32 @@
-//! What is wrong with a scenario file, and where.
+//! Problems of scenario files and their places.
 
 use primitives::printable;
 use std::fmt;
 use std::path::PathBuf;
 
-/// One thing that is wrong, at one place.
+/// One problem at one place.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Problem {
-    /// The file, as reached from the file that was asked for.
+    /// The file, relative to the requested file.
     pub path: PathBuf,
     /// Line, from 1.
     pub line: usize,
     /// Column in characters, from 1.
     pub column: usize,
-    /// Which key, what was found, and what is allowed.
+    /// The key, the value found and the allowed values.
     pub message: String,
-    /// The line as it stands there; empty where a whole file is meant.
+    /// The line's text; empty for a problem with a whole file.
     pub source: String,
 }
 
 impl Problem {
-    /// What is wrong with a whole file.
+    /// A problem with a whole file.
     #[must_use]
     pub fn of_file(path: PathBuf, message: String) -> Problem {
         Problem { path, line: 1, column: 1, message, source: String::new() }
     }
 
-    /// Where it is, as in `boats/heron.toml:3:17`.
+    /// Its place, as in `boats/heron.toml:3:17`.
     #[must_use]
     pub fn place(&self) -> String {
         format!("{}:{}:{}", printable::line(&self.path.display().to_string()), self.line, self.column)
@@ -39,7 +39,7 @@ impl fmt::Display for Problem {
     }
 }
 
-/// Everything that is wrong with a file and the files it names, by file, line and column; never empty.
+/// All faults of a file and the files it refers to, by file, line and column; never empty.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}", one_a_line(.0))]
 pub struct Problems(pub Vec<Problem>);

@@ -1,4 +1,4 @@
-//! From a path to what the file says: text, bases, merging, and what its schema makes of it.
+//! Reads a file by path: text, bases, merging, and validation by its schema.
 
 use super::diagnostics::Diagnostics;
 use super::kept::KeptDocument;
@@ -14,33 +14,35 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toml::de::DeTable;
 
-/// A file, laid over its bases and read by its schema.
+/// A file merged with its bases and read by its schema.
 #[derive(Debug)]
 pub struct Document<T> {
     /// Its stem.
     pub name: String,
-    /// What it says; see `validate` for what stands in the place of mistakes.
+    /// Its content; `validate` defines the stand-ins for faulty values.
     pub raw: T,
-    /// How much was wrong before this file was read.
+    /// The number of faults before this file was read.
     faults: usize,
     tree: Arc<Node>,
     wrong: Vec<String>,
 }
 
 impl<T> Document<T> {
-    /// Where the value at `path` stands, for example at `team.1.name`, or else the innermost table that lacks it.
+    /// The offset of the value at `path`, for example at `team.1.name`, or else of the innermost
+    /// table that lacks it.
     #[must_use]
     pub fn at(&self, path: &str) -> usize {
         self.tree.find(path).0.at
     }
 
-    /// Whether the file or a base of it says something there.
+    /// Whether the file or one of its bases has a value there.
     #[must_use]
     pub fn has(&self, path: &str) -> bool {
         self.tree.find(path).1
     }
 
-    /// Whether what stands there, or is left out there, is as the schema wants it: in it, and around it.
+    /// Whether the value there, or its absence, satisfies the schema, including its parts and
+    /// parents.
     #[must_use]
     pub fn is_sound(&self, path: &str) -> bool {
         let is_below = |long: &str, short: &str| {
@@ -49,21 +51,22 @@ impl<T> Document<T> {
         !self.wrong.iter().any(|wrong| is_below(wrong, path) || is_below(path, wrong))
     }
 
-    /// Whether nothing was wrong in it, or in anything that was checked since it was read.
+    /// Whether there were no faults in it, or in anything checked since it was read.
     #[must_use]
     pub fn is_faultless(&self, diagnostics: &Diagnostics) -> bool {
         diagnostics.faults() == self.faults
     }
 }
 
-/// The files are for people to write; one larger than this is something else.
+/// Maximum size of a file: files are written by people, and a larger one is something else.
 const LARGEST_BYTES: u64 = 4 << 20;
-/// Bases of bases of bases.
+/// Maximum number of nested bases.
 const LONGEST_CHAIN: usize = 16;
 /// Keys that count only in a strategy file itself, not in its bases.
 const OWN: &[&str] = &["unsafe_i_know", "unsafe_because"];
 
-/// Reads the file of a kind at `path` with its bases. Problems with finding it stand at `asked_at`, the reference.
+/// Reads the file of a kind at `path` with its bases. If it cannot be read, the problem is at
+/// `asked_at`, the reference.
 pub(super) fn document<T: DeserializeOwned>(
     diagnostics: &mut Diagnostics,
     kind: Kind,
@@ -73,7 +76,7 @@ pub(super) fn document<T: DeserializeOwned>(
     document_of(diagnostics, kind, path, asked_at, kind.name())
 }
 
-/// The same, for an owner who draws numbers of its own.
+/// The same, for an owner that draws its own numbers.
 pub(super) fn document_of<T: DeserializeOwned>(
     diagnostics: &mut Diagnostics,
     kind: Kind,
@@ -93,7 +96,7 @@ pub(super) fn document_of<T: DeserializeOwned>(
     document_of_tree(diagnostics, kind, path, document, (owner, faults))
 }
 
-/// What a file of a kind with this text would say.
+/// The document of a file of a kind with this text.
 pub(super) fn document_of_text<T: DeserializeOwned>(
     diagnostics: &mut Diagnostics,
     kind: Kind,
@@ -108,7 +111,8 @@ pub(super) fn document_of_text<T: DeserializeOwned>(
     document_of_tree(diagnostics, kind, path, document, (kind.name(), faults))
 }
 
-/// A tree, read by the schema of its kind, if that was not done before; `faults` is how much was wrong before it.
+/// A tree read by the schema of its kind, unless cached; `faults` is the number of faults before
+/// it.
 fn document_of_tree<T: DeserializeOwned>(
     diagnostics: &mut Diagnostics,
     kind: Kind,
@@ -142,7 +146,7 @@ fn document_of_tree<T: DeserializeOwned>(
     }
 }
 
-/// Puts the single values that take the place of what a file of this kind says into its tree: in a strategy those of its team.
+/// Inserts the settings for a file of this kind into its tree; for a strategy, those of its team.
 fn put_settings(diagnostics: &mut Diagnostics, (kind, owner): (Kind, &str), tree: &mut Node) {
     for setting in diagnostics.overrides.settings.clone() {
         let Some((_, key)) = setting.target().filter(|(target, _)| *target == kind) else { continue };
@@ -156,7 +160,8 @@ fn put_settings(diagnostics: &mut Diagnostics, (kind, owner): (Kind, &str), tree
     }
 }
 
-/// Reads a file, lays it over its bases, and notes what is wrong with their syntax; the keys `own` of bases do not count.
+/// Reads a file, merges it with its bases, and reports their syntax errors; the keys `own` of bases
+/// do not count.
 pub(super) fn tree(
     diagnostics: &mut Diagnostics,
     path: &Path,
@@ -230,7 +235,7 @@ fn bytes_of(diagnostics: &Diagnostics, path: &Path) -> Result<Vec<u8>, String> {
     bytes.map(|bytes| bytes.to_vec()).map_err(|error| format!("cannot be read ({error}), expected a file"))
 }
 
-/// Reads the file of a model, if that was not done before.
+/// Reads the file of a model, unless cached.
 pub(super) fn model(diagnostics: &Diagnostics, path: &Path, said: PartialSpec) -> Result<PolicyModel, String> {
     let name = path.display().to_string();
     let kept = diagnostics.models.iter().find(|model| model.name == name && said.is_part_of(&model.spec));
@@ -242,7 +247,7 @@ pub(super) fn model(diagnostics: &Diagnostics, path: &Path, said: PartialSpec) -
     PolicyModel::read(&name, &bytes, said).map_err(|error| error.to_string())
 }
 
-/// The tree of a text that begins at `start`, as far as its syntax is good; what is not is noted.
+/// The tree of a text that begins at `start`, as far as its syntax is valid; reports syntax errors.
 fn parsed(diagnostics: &mut Diagnostics, start: usize, text: &str) -> Node {
     let (table, errors) = DeTable::parse_recoverable(text);
     for error in &errors {

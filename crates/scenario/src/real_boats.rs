@@ -1,10 +1,10 @@
-//! The real boats of a game, which are played in real time only.
+//! The real boats of a game, which require real time.
 
 use super::{Scenario, Source, Vehicle};
 use primitives::id::VehicleId;
 use thiserror::Error;
 
-/// A game with real boats is to be played where nothing waits for the clock.
+/// A game with real boats cannot run without a clock.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error(
     "{} (source = \"external\") can be played in real time only: run or serve this game with --pace realtime, or with \
@@ -12,7 +12,7 @@ use thiserror::Error;
     .names.join(", ")
 )]
 pub struct RealBoats {
-    /// By name.
+    /// Names of the boats.
     pub names: Vec<String>,
 }
 
@@ -23,10 +23,10 @@ impl Scenario {
         self.vehicles.iter().enumerate().filter(is_external).map(|(i, _)| VehicleId::at(i))
     }
 
-    /// Whether the game can be played without a clock: all its boats are simulated.
+    /// Checks that the game can run without a clock: all its boats are simulated.
     ///
     /// # Errors
-    /// [`RealBoats`] names those that are not.
+    /// [`RealBoats`] with the names of the others.
     pub fn has_no_real_boats(&self) -> Result<(), RealBoats> {
         let names: Vec<String> = self.externals().map(|v| self.vehicles[v.index()].name.clone()).collect();
         if names.is_empty() { Ok(()) } else { Err(RealBoats { names }) }

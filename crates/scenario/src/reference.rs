@@ -1,4 +1,5 @@
-//! The reference pages: every key of every kind of file, and every name in strategies, made from the types that declare them.
+//! The reference pages: every key of every kind of file, and every name in strategies, generated
+//! from the types that declare them.
 
 use super::kind::Kind;
 use super::schema::{TABLE, declared, may_be_empty};
@@ -6,16 +7,16 @@ use crate::strategy::{Boat, Fact, Mark, Measure, Named, What, Who};
 use serde_json::Value;
 use std::fmt::Write;
 
-/// What stands before the tables of all files but strategies.
+/// Introduction to the tables of all files but strategies.
 const FILES: &str = include_str!("reference/files.md");
 
-/// What stands before the tables of strategies.
+/// Introduction to the tables of strategies.
 const OPENING: &str = include_str!("reference/strategies.md");
 
-/// How expressions are written.
+/// The syntax of expressions.
 const EXPRESSIONS: &str = include_str!("reference/expressions.md");
 
-/// The page of these kinds of files but strategies, in Markdown.
+/// The page of these kinds of files except strategies, in Markdown.
 #[must_use]
 pub fn file_reference(kinds: &[Kind]) -> String {
     let mut page = FILES.to_owned();
@@ -26,7 +27,7 @@ pub fn file_reference(kinds: &[Kind]) -> String {
     page
 }
 
-/// The table of what stands at `path`, and those of the tables in it.
+/// The table of the keys at `path`, and those of the tables in it.
 fn tables(page: &mut String, heading: &str, path: &str, about: &Value) {
     table(
         page,
@@ -67,7 +68,7 @@ pub fn reference() -> String {
     page
 }
 
-/// The keys that have a few words to choose from, and what each means.
+/// The keys with a choice of words, and the meaning of each word.
 fn choices(page: &mut String, root: &Value) {
     page.push_str("\n## Choices\n\n| key | choice | meaning |\n|---|---|---|\n");
     for (key, name) in [
@@ -109,7 +110,7 @@ fn names(page: &mut String) {
 }
 
 fn behaviours(page: &mut String, root: &Value) {
-    // A full stop has the keys of all kinds and none of its own.
+    // A full stop has the common keys of all kinds and none of its own.
     let common = &root["definitions"]["FullStop"];
     table(page, "## `[behaviour.NAME]`\n\nWhat every kind has.", common, |_| true);
     for about in root["properties"]["behaviour"]["additionalProperties"]["oneOf"].as_array().into_iter().flatten() {
@@ -122,7 +123,7 @@ fn behaviours(page: &mut String, root: &Value) {
     }
 }
 
-/// A heading and a table of the keys that are `wanted`, first those that are required.
+/// A heading and a table of the keys that are `wanted`, required ones first.
 fn table(page: &mut String, heading: &str, about: &Value, wanted: impl Fn(&str) -> bool) {
     let _ = write!(page, "\n{heading}\n");
     let required: Vec<&str> = about["required"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
@@ -156,7 +157,7 @@ fn in_a_line(text: &Value) -> String {
     text.as_str().unwrap_or_default().replace('\n', " ")
 }
 
-/// From the least to the most that a number may be, or a list long.
+/// The allowed range of a number, or of a list's length.
 fn range(about: &Value) -> String {
     let about = if is_pair(about) { &about["items"] } else { about };
     let bound = |keys: [&str; 2]| {
@@ -177,7 +178,7 @@ fn is_pair(about: &Value) -> bool {
     about["minItems"] == 2 && about["maxItems"] == 2 && about["items"].get("properties").is_none()
 }
 
-/// The type that a schema describes, in words.
+/// The type in a schema, in words.
 fn type_of(about: &Value) -> String {
     match about["title"].as_str() {
         Some("a number or an expression") => return "number or expression".to_owned(),

@@ -1,4 +1,5 @@
-//! The JSON Schema of each kind of scenario file: the single owner of every key's type, range, default and meaning.
+//! The JSON Schema of each kind of scenario file: the single source of every key's type, range,
+//! default and meaning.
 //!
 //! A key is a field of a type, and is declared once, there:
 //!
@@ -8,17 +9,22 @@
 //! pub tag_radius_m: f64,
 //! ```
 //!
-//! * Its doc comment is the description, with the unit; a unit is also the end of its name.
-//! * `range` (of numbers), `length` (of lists) and `inner(range(…))` (of the numbers in a list) say what is allowed.
-//! * `extend("default" = …)` is the value of a key that is left out. Without it the key is required, unless the field
-//!   is an `Option`. A list or a table of which nothing is required may be left out too, and is then empty.
+//! * Its doc comment is the description, with the unit; its name also ends with the unit.
+//! * `range` (of numbers), `length` (of lists) and `inner(range(…))` (of the numbers in a list)
+//!   define the allowed values.
+//! * `extend("default" = …)` is the value of an omitted key. Without it the key is required, unless
+//!   the field is an `Option`. A list or a table without required parts may be omitted too, and is
+//!   then empty.
 //! * Choices are enums with `rename_all = "snake_case"` and a doc comment for each choice.
-//! * `extend("x-expected" = "…")` says in messages what is expected, where the type alone would not.
-//! * `rename` with `extend("x-field" = "…")` gives the key another name, and with it another unit, than the field has.
-//! * `extend("x-estimated" = true)` leaves the value of a number that is left out to the check of the file.
+//! * `extend("x-expected" = "…")` is the expectation in messages, where the type alone is not
+//!   enough.
+//! * `rename` with `extend("x-field" = "…")` gives the key another name, and thereby another unit,
+//!   than the field.
+//! * `extend("x-estimated" = true)` leaves the value of an omitted number to the check of the file.
 //! * `extend("x-drawn" = true)` allows distributions in place of all numbers in a table.
 //!
-//! [`declared`] is the schema in this form, by which files are read (see `validate`); [`schema`] is the one for editors.
+//! [`declared`] is the schema in this form, used for reading files (see `validate`); [`schema`] is
+//! the one for editors.
 
 use super::kind::Kind;
 use schemars::{JsonSchema, generate::SchemaSettings};
@@ -26,17 +32,18 @@ use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
-/// The schema that files of a kind are read by, made once in a process.
+/// The schema for reading files of a kind, created once per process.
 pub(super) fn declared(kind: Kind) -> &'static Value {
     static SCHEMAS: Mutex<BTreeMap<&str, &Value>> = Mutex::new(BTreeMap::new());
     let mut schemas = SCHEMAS.lock().unwrap_or_else(PoisonError::into_inner);
-    // There are as many as there are kinds, and they are needed to the end.
+    // Leaked: there is one per kind, needed until the process ends.
     schemas.entry(kind.name()).or_insert_with(|| Box::leak(Box::new((kind.keys)(kind))))
 }
 
 /// The JSON Schema of a kind of file, for editors.
 ///
-/// It asks for required keys only where no base can give them: at the top of a file without one, and in lists.
+/// Keys are required only where no base can supply them: at the top of a file without one, and in
+/// lists.
 ///
 /// # Panics
 /// Never: the schema of a distribution is JSON.
@@ -58,7 +65,7 @@ pub fn schema(kind: Kind) -> Value {
     schema
 }
 
-/// Whether a list may have no entries, or a table no keys.
+/// Whether a list may be empty, or a table may have no keys.
 pub(super) fn may_be_empty(schema: &Value) -> bool {
     let is_optional = |key: &Value| may_be_empty(&schema["properties"][key.as_str().unwrap_or_default()]);
     match schema["type"].as_str() {
@@ -74,11 +81,12 @@ pub(super) fn may_be_empty(schema: &Value) -> bool {
 const DISTRIBUTION: &str = include_str!("distribution.schema.json");
 /// The mark of tables whose numbers may be distributions.
 pub(super) const DRAWN: &str = "x-drawn";
-/// What a table is, where its key has a description too.
+/// The description of a table whose key also has a description.
 pub(super) const TABLE: &str = "x-table";
 
-/// Makes the schema of a table one for editors: without our own marks, with distributions where they are allowed. Keys are
-/// required in entries of lists only, and not where they may be left out, being then an empty list or a table of defaults.
+/// Converts the schema of a table to one for editors: without Squall's own marks, with
+/// distributions where they are allowed. Keys are required in entries of lists only, except those
+/// that default to an empty list or a table of defaults.
 fn publish(value: &mut Value, is_drawn: bool, is_item: bool) {
     let object = match value {
         Value::Array(items) => return items.iter_mut().for_each(|item| publish(item, is_drawn, is_item)),
@@ -93,7 +101,7 @@ fn publish(value: &mut Value, is_drawn: bool, is_item: bool) {
             required.retain(|key| !may_be_empty(&properties[key.as_str().unwrap_or_default()]));
         }
     }
-    // A file that is laid over a base need not say again which of several tables this is.
+    // A file with a base need not repeat which of several tables this is.
     if object.get("oneOf").is_some_and(|kinds| kinds[0].get("properties").is_some()) {
         let kinds = object.remove("oneOf").unwrap_or_default();
         object.insert("anyOf".into(), kinds);
@@ -107,9 +115,9 @@ fn publish(value: &mut Value, is_drawn: bool, is_item: bool) {
     }
 }
 
-/// The schema that is generated from `T`, with what all files have in common.
+/// The schema generated from `T`, with the common keys of all files.
 pub(super) fn generated<T: JsonSchema>(kind: Kind) -> Value {
-    // Draft 7 is what editors' TOML extensions understand.
+    // Editors' TOML extensions support draft 7.
     let generator = SchemaSettings::draft07().into_generator();
     let mut schema = generator.into_root_schema_for::<T>().to_value();
     let definitions = schema["definitions"].clone();
@@ -120,15 +128,15 @@ pub(super) fn generated<T: JsonSchema>(kind: Kind) -> Value {
     schema
 }
 
-/// Puts definitions in the place of references to them. What has a default is not required, and may not be null, since
-/// TOML has no null.
+/// Replaces references with their definitions. Keys with a default are not required, and may not be
+/// null, since TOML has no null.
 fn tidy(value: &mut Value, definitions: &Value) {
     let is_null = |choice: &Value| *choice == "null" || choice.get("type").is_some_and(|kind| kind == "null");
     if let Value::Array(items) = value {
         items.iter_mut().for_each(|item| tidy(item, definitions));
     }
     let Value::Object(object) = value else { return };
-    // Draft 7 ignores what stands beside a reference, which is then in a list of one.
+    // Draft 7 ignores siblings of a reference, which is therefore in a list of one.
     let reference = object.remove("$ref").or_else(|| object.remove("allOf").map(|mut list| list[0]["$ref"].take()));
     if let Some(name) = reference.as_ref().and_then(|name| name.as_str()?.rsplit('/').next()) {
         object.insert(TABLE.into(), definitions[name]["description"].clone());
@@ -159,7 +167,7 @@ fn tidy(value: &mut Value, definitions: &Value) {
     }
 }
 
-/// Adds what `other` says and `object` does not.
+/// Adds the entries of `other` that `object` lacks.
 fn add(object: &mut Map<String, Value>, other: Value) {
     if let Value::Object(other) = other {
         for (key, value) in other {

@@ -1,7 +1,7 @@
-//! The water and the air above it, as a scenario states them: waves, wind and current.
+//! The water and the air above it in a scenario: waves, wind and current.
 //!
-//! Checked and in SI. What they do to a boat stands in `sim::sea`. Waves and wind are named by where they come
-//! from, the current by where it goes to.
+//! Checked and in SI. `sim::sea` defines their effect on boats. Waves and wind are given by the
+//! direction they come from, the current by the direction it flows to.
 
 use primitives::frame::Ned;
 use schemars::JsonSchema;
@@ -20,7 +20,7 @@ pub struct Sea {
     pub name: String,
     /// Density of the water, kg/m³.
     pub water_density_kg_m3: f64,
-    /// Depth of the water, m; `None` is deeper than any wave feels.
+    /// Depth of the water, m; `None`: too deep to affect waves.
     pub depth_m: Option<f64>,
     /// Waves, if there are any.
     pub waves: Option<Waves>,
@@ -31,7 +31,7 @@ pub struct Sea {
 }
 
 impl Sea {
-    /// Whether nothing moves boats here. Elsewhere one end of a field is better than the other.
+    /// Whether nothing here moves boats. Otherwise one end of a field is better than the other.
     #[must_use]
     pub fn is_at_rest(&self) -> bool {
         let Current { mean_m_s, wander, tide, shear, eddies, random_eddies } = &self.current;
@@ -55,10 +55,10 @@ impl Sea {
     }
 }
 
-/// A wave field: a spectrum, and how it spreads over directions.
+/// A wave field: a spectrum, and its directional spreading.
 ///
-/// The spectrum is JONSWAP's with its peak enhancement γ; γ = 1 is that of Pierson and Moskowitz in the two-parameter
-/// form of Bretschneider.
+/// The spectrum is JONSWAP's with its peak enhancement γ; γ = 1 is that of Pierson and Moskowitz in
+/// the two-parameter form of Bretschneider.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Waves {
     /// Significant wave height, m.
@@ -69,18 +69,18 @@ pub struct Waves {
     pub gamma: f64,
     /// The compass bearing they come from, rad.
     pub from_rad: f64,
-    /// How they spread around it.
+    /// The directional spreading.
     pub spreading: Spreading,
-    /// How many components stand for the spectrum.
+    /// The number of components that represent the spectrum.
     pub components: u32,
     /// Factor on the second-order (drift) force.
     pub drift_factor: f64,
 }
 
-/// How wave energy spreads around the mean direction.
+/// The spreading of wave energy around the mean direction.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Spreading {
-    /// Not at all: long-crested waves.
+    /// None: long-crested waves.
     None,
     /// (2/π) cos² μ within 90° of the mean direction.
     CosineSquared,
@@ -100,39 +100,39 @@ pub struct Wind {
     pub from_rad: f64,
     /// Exponent of the mean profile: U(z) = U10 (z / 10 m)^α.
     pub profile_exponent: f64,
-    /// How it varies about the mean.
+    /// The variation about the mean.
     pub gusts: Gusts,
 }
 
-/// How the wind varies about its mean. Gusts travel with the mean wind, unchanged (Taylor's hypothesis), so boats feel
-/// the same gust one after the other.
+/// The variation of the wind about its mean. Gusts travel with the mean wind, unchanged (Taylor's
+/// hypothesis), so boats feel the same gust one after the other.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Gusts {
-    /// Not at all.
+    /// None.
     None,
     /// As an Ornstein-Uhlenbeck process along the wind, and another across it.
     OrnsteinUhlenbeck {
-        /// Standard deviation along the wind over the mean speed.
+        /// Standard deviation along the wind divided by the mean speed.
         intensity: f64,
-        /// Standard deviation across the wind over that along it.
+        /// Standard deviation across the wind divided by that along it.
         across_ratio: f64,
-        /// Length scale, m: the time constant is this over the mean speed at the boat.
+        /// Length scale, m: the time constant is this divided by the mean speed at the boat.
         length_m: f64,
     },
 }
 
-/// The water's own motion: the sum of what is stated.
+/// The water's own motion: the sum of all given components.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Current {
-    /// The same everywhere and always, m/s.
+    /// Uniform and constant, m/s.
     pub mean_m_s: Ned,
-    /// A wandering speed in the mean direction, the same everywhere.
+    /// A wandering speed in the mean direction, uniform over the field.
     pub wander: Option<Wander>,
     /// A tide.
     pub tide: Option<Tide>,
-    /// A linear change across the stream.
+    /// A linear change across the flow.
     pub shear: Option<Shear>,
-    /// Eddies at stated places.
+    /// Eddies at given places.
     pub eddies: Vec<Eddy>,
     /// Eddies at random places of the field.
     #[serde(alias = "eddies_by_lot")]
@@ -160,24 +160,25 @@ pub struct Wander {
 /// A tidal stream: a sinusoid of time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Tide {
-    /// The stream at its strongest, as it floods, m/s.
+    /// The maximum flood stream, m/s.
     pub flood_m_s: Ned,
     /// Period, s; that of the moon's principal tide is 12.42 h.
     pub period_s: f64,
-    /// Where in its period the game begins: 0 is slack water before the flood, 1 is again.
+    /// Phase at the start of the game, as a share of the period: 0 and 1 are slack water before the
+    /// flood.
     pub phase: f64,
 }
 
 /// A current that grows linearly across: V(p) = `per_m` (p − origin) · `across`, along `toward`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Shear {
-    /// The unit vector of the stream.
+    /// The unit vector of the flow.
     pub toward: Ned,
-    /// The unit vector along which it grows, a quarter turn to starboard of the stream.
+    /// The unit vector along which it grows, a quarter turn to starboard of the flow.
     pub across: Ned,
     /// Growth, 1/s.
     pub per_s: f64,
-    /// Where it is nothing, m from the datum.
+    /// The place with zero current, m from the datum.
     pub origin: Ned,
 }
 

@@ -1,6 +1,6 @@
-//! What a boat knows of itself, and how wrong that is.
+//! A boat's sensors of its own state, and their errors.
 //!
-//! These types also declare the keys of boat files, as those in [`crate::boat`] do.
+//! These types also declare the keys of boat files, like those in [`crate::boat`].
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -1,30 +1,33 @@
-//! A value in the place of what a scenario file says: `--set sea.waves.hs_m=0.3`, or an axis of a sweep.
+//! Settings: overrides of single values in scenario files, as in `--set sea.waves.hs_m=0.3` or an
+//! axis of a sweep.
 
 use super::kind::Kind;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// A value in the place of what all files of a kind say in a game. It is checked as if it stood in the file.
+/// An override of a value in all files of a kind in a game, checked as if it were in the file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Setting {
-    /// The kind of file and the key in it, as in `sea.waves.hs_m`. `link` and `fault` are tables of the game file; after `strategy` comes
-    /// the name of the team whose strategy it is, as in `strategy.blue.behaviour.pursue.weight`.
+    /// The kind of file and the key in it, as in `sea.waves.hs_m`. `link` and `fault` are tables of
+    /// the game file; `strategy` is followed by the name of the team, as in
+    /// `strategy.blue.behaviour.pursue.weight`.
     pub key: String,
     /// The value, as TOML.
     pub value: String,
-    /// The file in which it is given, to which the paths of files are relative; `--set KEY` on the command line.
+    /// The file that contains the setting, to which the paths of files are relative; `--set KEY` on
+    /// the command line.
     pub path: PathBuf,
-    /// The line there, from 1.
+    /// Its line, from 1.
     pub line: usize,
-    /// The column there, from 1.
+    /// Its column, from 1.
     pub column: usize,
 }
 
-/// Why a text is no setting.
+/// Why a text is not a valid setting.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum SettingError {
-    /// There is no key, or no value.
+    /// The key or the value is missing.
     #[error("{0:?} is no setting, expected KEY=VALUE as in sea.waves.hs_m=0.3")]
     Form(String),
     /// The key does not begin with a kind of file.
@@ -32,14 +35,14 @@ pub enum SettingError {
     Kind(String),
 }
 
-/// What a key may begin with.
+/// The allowed first parts of keys.
 const PREFIXES: [&str; 8] = ["sea", "boat", "rules", "field", "game", "link", "fault", "strategy"];
 
 impl Setting {
-    /// A setting from the command line. A value that is no TOML is a text.
+    /// Parses a setting from the command line. A value that is not TOML is a string.
     ///
     /// # Errors
-    /// [`SettingError`]: it is not of the form `KEY=VALUE`, or there is no such kind of file.
+    /// [`SettingError`]: it is not of the form `KEY=VALUE`, or the kind of file is unknown.
     pub fn parse(text: &str) -> Result<Setting, SettingError> {
         let (key, value) = text.split_once('=').ok_or_else(|| SettingError::Form(text.to_owned()))?;
         let (key, value) = (key.trim(), value.trim());
@@ -51,10 +54,10 @@ impl Setting {
         Setting::new(key, value, PathBuf::from(format!("--set {key}")), (1, 1))
     }
 
-    /// A setting that stands at a line and column of a file.
+    /// A setting at a line and column of a file.
     ///
     /// # Errors
-    /// [`SettingError`]: there is no such kind of file.
+    /// [`SettingError`]: the kind of file is unknown.
     pub fn new(
         key: &str,
         value: String,
@@ -87,13 +90,13 @@ impl Setting {
         })
     }
 
-    /// The name of the team whose strategy it changes, if it changes one.
+    /// The name of the team whose strategy it changes, if any.
     pub(super) fn team(&self) -> Option<&str> {
         let (team, _) = self.key.strip_prefix("strategy.")?.split_once('.')?;
         Some(team)
     }
 
-    /// A TOML file that says this alone, at the line and column where it is given.
+    /// A TOML file with this value only, at its original line and column.
     pub(super) fn as_file(&self, key: &str) -> String {
         let lines = self.line.saturating_sub(1);
         let columns = self.column.saturating_sub(1);
@@ -125,7 +128,7 @@ mod tests {
         for text in ["sea.waves.hs_m", "=3", "sea=3", "sea..hs_m=3", "weather.wind=3", "sea.waves=", "strategy.x=1"] {
             assert!(Setting::parse(text).is_err(), "{text}");
         }
-        // A value cannot smuggle in another key.
+        // A value must not smuggle in another key.
         let smuggled = Setting::parse("sea.a=1\nb = 2").expect("a text");
         assert_eq!(smuggled.value.matches('\n').count(), 0, "{}", smuggled.value);
     }

@@ -1,4 +1,5 @@
-//! Every file that was read, laid end to end in one virtual text: one byte offset names file, line and column.
+//! All files read, concatenated in one virtual text: a byte offset identifies file, line and
+//! column.
 
 use super::problem::Problem;
 use std::path::{Component, Path, PathBuf};
@@ -15,16 +16,16 @@ pub(super) struct Sources {
 struct Source {
     path: PathBuf,
     text: Arc<str>,
-    /// Where it begins in the virtual text.
+    /// Its offset in the virtual text.
     start: usize,
     /// Lines with a syntax error, from 1.
     broken_lines: Vec<usize>,
 }
 
 impl Sources {
-    /// Lays a file behind the others; returns where it begins.
+    /// Appends a file; returns its offset.
     pub(super) fn add(&mut self, path: PathBuf, text: Arc<str>) -> usize {
-        // One byte apart, so that the end of a file is not the start of the next.
+        // With a gap of one byte, so that the end of a file is not the start of the next.
         let start = self.files.last().map_or(0, |last| last.start + last.text.len() + 1);
         self.files.push(Source { path, text, start, broken_lines: vec![] });
         start
@@ -41,12 +42,12 @@ impl Sources {
         texts
     }
 
-    /// The index of the file that `offset` lies in.
+    /// The index of the file that contains `offset`.
     pub(super) fn index_at(&self, offset: usize) -> usize {
         self.files.partition_point(|file| file.start <= offset) - 1
     }
 
-    /// A problem at the place that `offset` names; at least one file must have been added.
+    /// A problem at `offset`; at least one file must have been added.
     pub(super) fn problem(&self, offset: usize, message: String) -> Problem {
         let file = &self.files[self.index_at(offset)];
         let mut end = (offset - file.start).min(file.text.len());
@@ -70,31 +71,31 @@ impl Sources {
         file.text.get(offset - file.start..).unwrap_or_default()
     }
 
-    /// The file that the reference `reference`, standing at `offset`, means.
+    /// The path of the file that `reference`, at `offset`, refers to.
     pub(super) fn resolve(&self, offset: usize, reference: impl AsRef<Path>) -> PathBuf {
         let here = &self.files[self.index_at(offset)].path;
         tidied(&here.parent().unwrap_or(Path::new("")).join(reference))
     }
 
-    /// Remembers that the syntax is wrong at `offset`.
+    /// Records a syntax error at `offset`.
     pub(super) fn mark_broken(&mut self, offset: usize) {
         let line = self.line(offset);
         let index = self.index_at(offset);
         self.files[index].broken_lines.push(line);
     }
 
-    /// Whether the syntax is wrong in the line of `offset`.
+    /// Whether the line of `offset` has a syntax error.
     pub(super) fn is_broken_line(&self, offset: usize) -> bool {
         self.files[self.index_at(offset)].broken_lines.contains(&self.line(offset))
     }
 
-    /// Whether the syntax is wrong anywhere in the file of `offset`.
+    /// Whether the file of `offset` has a syntax error.
     pub(super) fn is_broken_file(&self, offset: usize) -> bool {
         !self.files[self.index_at(offset)].broken_lines.is_empty()
     }
 }
 
-/// `path` without `.` and without `name/..`, so that one file has one path.
+/// `path` without `.` and `name/..`, so that each file has a single path.
 #[must_use]
 pub fn tidied(path: &Path) -> PathBuf {
     let mut tidy = PathBuf::new();

@@ -1,11 +1,12 @@
-//! What is wrong with the syntax of a file: one message for each mistake, though a parser stumbles on over what follows from it.
+//! Syntax errors of a file: one message for each mistake, without the parser's errors that follow
+//! from it.
 
 use toml::de::DeTable;
 
-/// Mistakes that are told; there are not more in a file that somebody means to be one.
+/// Maximum number of reported mistakes; a file with more is not a scenario file.
 const MOST: usize = 20;
 
-/// Each mistake with its place in the text, in bytes.
+/// Each mistake with its byte offset in the text.
 pub(super) fn mistakes(text: &str) -> Vec<(usize, String)> {
     let mut text = text.to_owned();
     let mut mistakes = vec![];
@@ -18,14 +19,15 @@ pub(super) fn mistakes(text: &str) -> Vec<(usize, String)> {
         };
         let (start, end) = line_of(&text, span.start);
         mistakes.push(in_words(&text[start..end], start).unwrap_or_else(|| (span.start, first.message().to_owned())));
-        // Without this line: what is still wrong then is another mistake.
+        // Without this line: a remaining error is a separate mistake.
         text.replace_range(start..end, &" ".repeat(end - start));
     }
     mistakes.sort();
     mistakes
 }
 
-/// Where the line that a place is in begins and ends; of a place at the end of the text the last line with something in it.
+/// The beginning and end of the line that contains `at`; at the end of the text, of the last line
+/// with content.
 fn line_of(text: &str, at: usize) -> (usize, usize) {
     let mut at = at.min(text.len());
     while !text.is_char_boundary(at) {
@@ -42,7 +44,7 @@ fn line_of(text: &str, at: usize) -> (usize, usize) {
     }
 }
 
-/// The usual mistakes of people: a value without quotes, or none.
+/// Common mistakes: a value without quotes, or a missing one.
 fn in_words(line: &str, start: usize) -> Option<(usize, String)> {
     let (key, value) = line.split_once('=')?;
     let at = start + line.len() - value.trim_start().len();

@@ -1,4 +1,4 @@
-//! A scenario file as typed: a tree of values, each with the place where it stands.
+//! A scenario file as typed: a tree of values, each with its place.
 
 use super::draw::distribution_kind;
 use std::collections::BTreeMap;
@@ -6,18 +6,18 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// A value, and where it stands in the virtual text of all files.
+/// A value and its place in the virtual text of all files.
 #[derive(Clone, Debug)]
 pub(super) struct Node {
-    /// Where it begins.
+    /// Its offset.
     pub(super) at: usize,
-    /// Where its key begins; of an element of a list, where it begins itself.
+    /// The offset of its key; for an element of a list, its own.
     pub(super) key_at: usize,
-    /// What it is.
+    /// The value itself.
     pub(super) value: Value,
 }
 
-/// What TOML knows.
+/// The types of TOML.
 #[derive(Clone, Debug)]
 pub(super) enum Value {
     Table(Table),
@@ -38,13 +38,13 @@ impl Node {
         Node { at: start, key_at: start, value: Value::Table(table_from(table, start)) }
     }
 
-    /// The entries of a table; nothing else has any.
+    /// The entries of a table; empty for other values.
     pub(super) fn entries(&self) -> impl Iterator<Item = (&String, &Node)> {
         let table = if let Value::Table(table) = &self.value { Some(table) } else { None };
         table.into_iter().flatten()
     }
 
-    /// The number that it is.
+    /// Its value, if it is a number.
     pub(super) fn as_number(&self) -> Option<f64> {
         match self.value {
             Value::Whole(whole) => Some(whole as f64),
@@ -53,8 +53,8 @@ impl Node {
         }
     }
 
-    /// What stands at `path`, for example `team.1.name`, or else the innermost table or list on the way to it; and
-    /// whether it is there.
+    /// The value at `path`, for example `team.1.name`, or else the innermost table or list on the
+    /// way to it; and whether it was found.
     pub(super) fn find(&self, path: &str) -> (&Node, bool) {
         let mut node = self;
         for part in path.split('.').filter(|part| !part.is_empty()) {
@@ -71,14 +71,14 @@ impl Node {
         (node, true)
     }
 
-    /// Takes keys out of a table.
+    /// Removes keys from a table.
     pub(super) fn remove(&mut self, keys: &[&str]) {
         if let Value::Table(table) = &mut self.value {
             table.retain(|key, _| !keys.contains(&key.as_str()));
         }
     }
 
-    /// Puts what `over` says in the place of what this says.
+    /// Overrides the entries of this with those of `over`.
     pub(super) fn put(&mut self, over: Node) {
         let is_distribution = matches!(&over.value, Value::Table(table) if distribution_kind(table).is_some());
         match (&mut self.value, over.value) {
@@ -94,7 +94,7 @@ impl Node {
         }
     }
 
-    /// Lays this over `base`: tables merge, anything else here replaces what the base says.
+    /// Merges this over `base`: tables merge, anything else here replaces the base's value.
     pub(super) fn lay_over(&mut self, base: Node) {
         let (Value::Table(over), Value::Table(base)) = (&mut self.value, base.value) else { return };
         for (key, value) in base {
@@ -121,7 +121,7 @@ fn node_from(value: Spanned<DeValue<'_>>, start: usize, key_at: Option<usize>) -
         DeValue::Table(table) => Value::Table(table_from(table, start)),
         DeValue::Array(array) => Value::List(array.into_iter().map(|value| node_from(value, start, None)).collect()),
         DeValue::String(text) => Value::Text(text.into_owned()),
-        // Whole numbers that are too large for 64 bits are refused as the numbers they are.
+        // Whole numbers too large for 64 bits are rejected later, as numbers.
         DeValue::Integer(whole) => i64::from_str_radix(whole.as_str(), whole.radix())
             .map_or_else(|_| Value::Number(whole.as_str().parse().unwrap_or(f64::NAN)), Value::Whole),
         DeValue::Float(number) => Value::Number(number.as_str().parse().unwrap_or(f64::NAN)),

@@ -1,8 +1,9 @@
-//! Reads a tree by the schema of its kind: every mistake is noted, distributions are drawn, defaults are filled in.
+//! Reads a tree by the schema of its kind: reports every mistake, draws distributions, fills in
+//! defaults.
 //!
-//! What comes out always fits the schema. A value that is wrong or missing has been noted, and is replaced by its
-//! default, or else by the least that the schema allows, or by an empty text, so that the checks that follow can go on
-//! and find more; `Document::is_sound` tells them what was really there.
+//! The result always satisfies the schema. A faulty or missing value is reported and replaced by
+//! its default, or else by the least allowed value or an empty text, so that later checks can
+//! continue and find more; `Document::is_sound` returns whether the value is original.
 
 use super::diagnostics::{Diagnostics, NAME_EXPECTED, NAME_PATTERN, is_name};
 use super::draw::{Owner, distribution_kind, draw};
@@ -12,7 +13,8 @@ use super::schema::DRAWN;
 use super::tree::{Node, Table, Value};
 use serde_json::{Map, Value as Json};
 
-/// Reads `tree`, whose numbers are drawn for `owner`, by the schema `root`; also returns the paths of what is wrong.
+/// Reads `tree` by the schema `root`, with its numbers drawn for `owner`; also returns the paths of
+/// faults.
 pub(super) fn validated<'a>(
     diagnostics: &'a mut Diagnostics,
     tree: &'a Node,
@@ -27,21 +29,21 @@ pub(super) fn validated<'a>(
 
 struct Validator<'a> {
     diagnostics: &'a mut Diagnostics,
-    /// From the root of the file to the value at hand, as in `team.1.name`.
+    /// Path from the root of the file to the current value, as in `team.1.name`.
     path: String,
-    /// Who draws the numbers at hand; nobody where they may not be drawn.
+    /// The owner for which current numbers are drawn; none where they may not be drawn.
     owner: Option<Owner<'a>>,
-    /// The paths of what was wrong or missing.
+    /// The paths of faulty or missing values.
     wrong: Vec<String>,
 }
 
 impl<'a> Validator<'a> {
-    /// The value of `node`, if it fits the schema.
+    /// The value of `node`, if it satisfies the schema.
     fn value(&mut self, node: &'a Node, schema: &'a Json) -> Option<Json> {
-        // Not by the crate `jsonschema`: it checks JSON values, which have no places and cannot
-        // be NaN, says of a table that fits none of several kinds only that, and brings regular
-        // expressions, host names and big fractions. What our types use of JSON Schema is this
-        // file.
+        // The crate `jsonschema` is not suitable: it checks JSON values, which have no places and
+        // cannot be NaN. If a table fits none of several kinds, it reports only that. It also
+        // brings regular expressions, host names and big fractions. This file covers the part of
+        // JSON Schema that Squall's types use.
         if let Some(branches) = schema.get("anyOf").and_then(Json::as_array) {
             return match branches.iter().find(|branch| self.fits(node, branch)) {
                 Some(branch) => self.value(node, branch),
@@ -63,7 +65,7 @@ impl<'a> Validator<'a> {
         }
     }
 
-    /// Runs `read` one step further down.
+    /// Runs `read` one level deeper.
     fn below<T>(&mut self, part: &str, read: impl FnOnce(&mut Self) -> T) -> T {
         let length = self.path.len();
         if length > 0 {
@@ -103,7 +105,7 @@ impl<'a> Validator<'a> {
     fn text(&mut self, node: &Node, text: &str, schema: &Json) -> Option<Json> {
         let choices = choices(schema);
         let is_allowed = match schema.get("pattern") {
-            // There is no other pattern, and so no need for regular expressions.
+            // The only pattern in use, so that regular expressions are not needed.
             Some(pattern) => pattern == NAME_PATTERN && is_name(text),
             None if choices.is_empty() => schema.get("minLength").is_none() || !text.is_empty(),
             None => choices.contains(&text),
@@ -118,11 +120,11 @@ impl<'a> Validator<'a> {
     fn list(&mut self, node: &Node, items: &'a [Node], schema: &'a Json) -> Option<Json> {
         let about = &schema["items"];
         if !counts(schema).contains(&items.len()) {
-            // Where tables are too many, the first of those is at fault.
+            // With too many tables, the first surplus one is reported.
             let surplus = items.get(*counts(schema).end()).filter(|item| matches!(item.value, Value::Table(_)));
             let message = format!("{} has {} entries, expected {}", self.key(), items.len(), allowed(schema));
             self.diagnostics.note(surplus.unwrap_or(node).at, message);
-            // Its entries may be sound all the same.
+            // Its entries may still be valid.
             self.wrong.push(format!("{}.length", self.path));
             if is_number(about) || about.is_array() {
                 return None;
@@ -130,7 +132,7 @@ impl<'a> Validator<'a> {
         }
         let mut values = vec![];
         for (i, item) in items.iter().enumerate() {
-            // A tuple has a schema for each place.
+            // A tuple has a schema for each position.
             let about = about.get(i).unwrap_or(about);
             let value = self.below(&i.to_string(), |below| below.value(item, about));
             values.push(value.unwrap_or_else(|| self.stand_in(about)));
@@ -138,7 +140,7 @@ impl<'a> Validator<'a> {
         Some(values.into())
     }
 
-    /// A table of one of several kinds, which one of its keys tells.
+    /// A table of one of several kinds, selected by one of its keys.
     fn tagged(&mut self, node: &'a Node, table: &'a Table, schema: &'a Json) -> Option<Json> {
         let kinds = schema["oneOf"].as_array()?;
         let tag_of = |kind: &'a Json| {
@@ -157,7 +159,7 @@ impl<'a> Validator<'a> {
         if let Some(kind) = kinds.iter().find(|kind| text.is_some() && tag_of(kind).map(|(_, name)| name) == text) {
             return Some(self.table(node, table, kind));
         }
-        // Without its kind, at least the keys that every kind has are looked at.
+        // Without its kind, at least the common keys are checked.
         for (key, value) in table.iter().filter(|(other, _)| *other != key) {
             let mut abouts = kinds.iter().map(|kind| kind["properties"].get(key));
             if let Some(about) = abouts.clone().next().flatten().filter(|_| abouts.all(|about| about.is_some())) {
@@ -203,11 +205,11 @@ impl<'a> Validator<'a> {
         by_fields(values, properties)
     }
 
-    /// The value of a key that is there.
+    /// The value of an existing key.
     fn property(&mut self, key: &'a str, node: &'a Node, about: &'a Json) -> Option<Json> {
         let outer = self.owner;
         if about.get(DRAWN).is_some() {
-            // What all share, such as the link of a game, draws for itself.
+            // A shared table, such as the link of a game, draws its own numbers.
             self.owner = Some(Owner { name: key, path_from: self.path.len() + 1 });
         }
         let value = self.value(node, about).or_else(|| about.get("default").cloned());
@@ -215,7 +217,7 @@ impl<'a> Validator<'a> {
         value
     }
 
-    /// The value of a key that the table `owner` lacks.
+    /// The value of a key missing from the table `owner`.
     fn absent(&mut self, owner: &'a Node, schema: &'a Json, is_required: bool) -> Option<Json> {
         if let Some(default) = schema.get("default") {
             return Some(default.clone());
@@ -226,7 +228,7 @@ impl<'a> Validator<'a> {
         if schema.get("properties").is_some() {
             return Some(self.table(owner, const { &Table::new() }, schema));
         }
-        // No entries are as good as an empty list, and wrong in the same way.
+        // A missing list of tables is the same as an empty list, with the same faults.
         let is_list_of_tables = || schema["items"]["type"] == "object";
         if schema["type"] == "array" && (counts(schema).contains(&0) || is_list_of_tables()) {
             return self.list(owner, &[], schema);
@@ -238,7 +240,7 @@ impl<'a> Validator<'a> {
         let properties = schema["properties"].as_object();
         let known: Vec<&str> = properties.into_iter().flatten().map(|(key, _)| key.as_str()).collect();
         let message = format!("{key} is unknown, expected {}{}", one_of(&known), did_you_mean(key, &known));
-        // A table head with broken syntax leaves its keys to the table before.
+        // Keys below a broken table header belong to the previous table.
         self.diagnostics.note_if_intact(node.key_at, message);
     }
 
@@ -265,12 +267,12 @@ impl<'a> Validator<'a> {
         self.wrong.push(self.path.clone());
     }
 
-    /// The key of the value at hand, or of the list that it is in.
+    /// The key of the current value, or of the list that contains it.
     fn key(&self) -> &str {
         self.path.rsplit('.').find(|part| part.parse::<usize>().is_err()).unwrap_or("the file")
     }
 
-    /// Whether a value is of the type that the schema wants.
+    /// Whether a value is of the type in the schema.
     fn fits(&self, node: &Node, schema: &Json) -> bool {
         let any_of = |key: &str| {
             let branches = schema.get(key).and_then(Json::as_array);
@@ -284,13 +286,13 @@ impl<'a> Validator<'a> {
                 Value::Text(_) => takes(schema, "string"),
                 Value::Truth(_) => takes(schema, "boolean"),
                 Value::Whole(_) => is_number(schema),
-                // One that is too large for 64 bits is a whole number too, out of any range.
+                // A whole number too large for 64 bits is still a whole number, out of any range.
                 Value::Number(number) => takes(schema, "number") || takes(schema, "integer") && number.abs() > 9e18,
                 Value::Date(_) => false,
             }
     }
 
-    /// A value that the schema allows, in place of one that is wrong.
+    /// A value allowed by the schema, as a stand-in for a faulty one.
     fn stand_in(&self, schema: &Json) -> Json {
         if let Some(default) = schema.get("default") {
             return default.clone();
@@ -334,13 +336,13 @@ fn is_number(schema: &Json) -> bool {
     takes(schema, "number") || takes(schema, "integer")
 }
 
-/// How many entries a list may have.
+/// The allowed lengths of a list.
 fn counts(schema: &Json) -> std::ops::RangeInclusive<usize> {
     let bound = |key: &str| schema.get(key).and_then(Json::as_u64).map(|bound| bound as usize);
     bound("minItems").unwrap_or(0)..=bound("maxItems").unwrap_or(usize::MAX)
 }
 
-/// The texts that the schema offers, if it does.
+/// The texts that the schema allows, if it lists them.
 fn choices(schema: &Json) -> Vec<&str> {
     let one_of = schema["oneOf"].as_array().into_iter().flatten().filter_map(|choice| choice.get("const"));
     let all = schema["enum"].as_array().into_iter().flatten().chain(schema.get("const")).chain(one_of);
@@ -351,7 +353,7 @@ fn one_of(names: &[&str]) -> String {
     format!("{}{}", if names.len() > 1 { "one of " } else { "" }, names.join(", "))
 }
 
-/// What a value is, in words.
+/// A description of a value found.
 fn found(node: &Node) -> String {
     match &node.value {
         Value::Table(_) => "a table".to_owned(),
@@ -364,7 +366,7 @@ fn found(node: &Node) -> String {
     }
 }
 
-/// What the schema allows, in words.
+/// A description of the values that the schema allows.
 fn allowed(schema: &Json) -> String {
     let (from, to) = match &schema["type"] {
         Json::String(kind) if kind == "array" => ("minItems", "maxItems"),
@@ -381,12 +383,12 @@ fn allowed(schema: &Json) -> String {
     }
 }
 
-/// A bound as people write it: 1000000 rather than 1000000.0.
+/// A bound as users write it: 1000000 rather than 1000000.0.
 fn bound(value: &Json) -> String {
     value.as_i64().map_or_else(|| value.as_f64().unwrap_or(f64::NAN).to_string(), |whole| whole.to_string())
 }
 
-/// What type the schema wants, in words.
+/// A description of the type in the schema.
 fn kind_of(schema: &Json) -> String {
     if let Some(expected) = schema.get("x-expected").and_then(Json::as_str) {
         return expected.to_owned();

@@ -1,4 +1,4 @@
-//! Models of policies: what their metadata says counts, and may not contradict what is said elsewhere.
+//! Models of policies: their metadata counts, and must not contradict other specifications.
 
 use onnx::{Activation, Head, Layer, Perceptron};
 use scenario::action::ActionSpace;
@@ -103,7 +103,8 @@ fn of_several_outputs_the_one_that_fits_makes_the_action() {
     }
 }
 
-/// A policy that Stable-Baselines3 trained on the observations of Pyquaticus, exported by PyTorch: nothing in it is ours.
+/// A policy that Stable-Baselines3 trained on the observations of Pyquaticus, exported by PyTorch:
+/// entirely third-party.
 #[test]
 fn a_model_of_another_trainer_loads() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../onnx/tests/network/sb3_dynamo.onnx");

@@ -1,4 +1,4 @@
-//! Randomised numbers: where distributions stand in place of numbers.
+//! Randomised numbers: distributions in place of numbers.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 use scenario::Scenario;
@@ -8,7 +8,7 @@ fn shipped(file: &str) -> String {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(file).display().to_string()
 }
 
-/// A game of two boats of the file `boat` on the sea `sea`, with `more` at its end.
+/// A game of two boats of the file `boat` on the sea `sea`, with `more` appended.
 fn written(dir: &Path, boat: &str, sea: &str, more: &str) -> PathBuf {
     for folder in ["games", "boats", "seas"] {
         std::fs::create_dir_all(dir.join(folder)).unwrap();
@@ -39,7 +39,7 @@ fn each_vehicle_and_each_seed_draws_its_own_numbers_and_the_model_takes_them() {
     let dir = tempfile::tempdir().unwrap();
     let first =
         scenario::load(&written(dir.path(), BOAT, SEA, "link = { delay_s = { uniform = [0.1, 0.2] } }")).unwrap();
-    // The files are not needed any more.
+    // The files are no longer needed.
     std::fs::remove_dir_all(dir.path()).unwrap();
     let recorded: Scenario = serde_json::from_str(&serde_json::to_string(&first).unwrap()).unwrap();
 
@@ -51,7 +51,7 @@ fn each_vehicle_and_each_seed_draws_its_own_numbers_and_the_model_takes_them() {
         let mass_kg = value(&game, "blue_one/hull.mass_kg");
         assert!((0.9 * 52.3..1.1 * 52.3).contains(&mass_kg), "seed {seed}: {mass_kg}");
         assert_eq!(game.boat_of(game.vehicle_by_name("blue_one").unwrap()).hull.mass_kg, mass_kg);
-        // What the file leaves out follows from what was drawn.
+        // Omitted values follow from the drawn ones.
         let red = game.boat_of(game.vehicle_by_name("red_one").unwrap());
         assert_eq!(red.hull.mass_kg, value(&game, "red_one/hull.mass_kg"));
         assert_ne!(red.hull.mass_kg, mass_kg);
@@ -143,7 +143,7 @@ fn a_distribution_that_reaches_where_a_number_may_not_is_refused_with_its_place(
         let told = problems.to_string();
         assert!(told.contains(want), "{want}\n{told}");
     }
-    // Where everybody must agree there is nothing to draw.
+    // A value that all boats share cannot be drawn.
     let path = written(dir.path(), "", "", "duration_s = { uniform = [100, 200] }");
     assert!(scenario::load(&path).unwrap_err().to_string().contains("duration_s is a table, expected a number"));
 }

@@ -1,10 +1,10 @@
-//! Files in place of those a game names: a sea, and the strategies of teams.
+//! Overrides of a game's files: the sea, and the strategies of teams.
 
 use primitives::id::VehicleId;
 use scenario::{Overrides, Scenario, Setting, load, load_with};
 use std::path::{Path, PathBuf};
 
-/// A strategy file that needs no other.
+/// A strategy file without references.
 const LIES_STILL: &str =
     "unsafe_i_know = true\nunsafe_because = \"it lies still\"\n[behaviour.stop]\nkind = \"full_stop\"\n";
 
@@ -79,7 +79,7 @@ fn a_game_drawn_again_keeps_what_took_the_place_of_its_own() {
     std::fs::write(&strategy, LIES_STILL).unwrap();
     let overrides = Overrides { sea: Some(shipped("seas/gale.toml")), ..instead(&[("red", strategy)]) };
     let scenario = load_with(&game, &overrides).unwrap();
-    // The files are not needed any more.
+    // The files are no longer needed.
     drop(dir);
     let other = scenario.of_seed(7).unwrap();
     assert_ne!(other.drawn, scenario.drawn);
@@ -133,7 +133,7 @@ fn teams_that_exchange_their_strategies_follow_each_others() {
     assert_eq!(followed(&load(&game).unwrap()), ["strategy_4", "strategy_4", "strategy_3", "strategy_3"]);
     let there = exchanged(Overrides::default()).unwrap();
     assert_eq!(followed(&there), ["strategy_3", "strategy_3", "strategy_4", "strategy_4"]);
-    // They are exchanged in games of other seeds too, and so are those that take the place of a team's own.
+    // They are exchanged in games of other seeds too, including those that override a team's own.
     assert_eq!(followed(&there.of_seed(9).unwrap()), followed(&there));
     let idle = instead(&[("blue", shipped("strategies/idle.toml"))]);
     assert_eq!(followed(&exchanged(idle).unwrap()), ["strategy_3", "strategy_3", "idle", "idle"]);
@@ -142,7 +142,7 @@ fn teams_that_exchange_their_strategies_follow_each_others() {
     assert!(refused.contains("strategy is teleop, expected none here: the teams exchange theirs"), "{refused}");
 }
 
-/// The single values in place of what files say.
+/// Overrides of single values.
 fn settings(texts: &[&str]) -> Overrides {
     let settings = texts.iter().map(|text| Setting::parse(text).expect("a setting")).collect();
     Overrides { settings, ..Overrides::default() }
@@ -158,16 +158,16 @@ fn a_single_value_takes_the_place_of_what_a_file_of_its_kind_says() {
     assert_eq!((other.rules.tag_radius_m, own.rules.tag_radius_m), (12.5, 10.0));
     assert_eq!(other.link.as_ref().unwrap().delay_s, 0.5);
     assert!(other.boats.iter().all(|boat| boat.sensors.gps.as_ref().is_some_and(|gps| gps.noise_m == 0.25)));
-    // What is not set stays, and a game drawn again keeps it.
+    // Other values stay, and a game drawn again keeps the setting.
     assert_eq!(other.sea.wind, own.sea.wind);
     assert_eq!(other.of_seed(9).unwrap().rules.tag_radius_m, 12.5);
-    // The last of several counts, and a game without a sea file has one at rest to change.
+    // The last of several settings counts, and a game without a sea file has a default one at rest.
     let calm = shipped("games/pav01_vs_pav01.toml");
     let windy =
         load_with(&calm, &settings(&["sea.wind.from_deg=90", "sea.wind.speed_m_s=3", "sea.wind.speed_m_s=4"])).unwrap();
     assert_eq!(windy.sea.wind.as_ref().unwrap().speed_10m_m_s, 4.0);
     assert_eq!((windy.sea.water_density_kg_m3, windy.sea.waves.is_none()), (1000.0, true));
-    // A distribution is drawn as if it stood in the file.
+    // A distribution is drawn as if it were in the file.
     let drawn = load_with(&game, &settings(&["boat.gps.noise_m={ uniform = [0.5, 0.75] }"])).unwrap();
     let noises = drawn.drawn.iter().filter(|drawn| drawn.parameter.ends_with("gps.noise_m")).map(|drawn| drawn.value);
     assert_eq!(noises.clone().filter(|noise| (0.5..=0.75).contains(noise)).count(), 4, "{:?}", drawn.drawn);

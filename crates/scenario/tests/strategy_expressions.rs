@@ -1,4 +1,5 @@
-//! Expressions of strategy files: they mean what CEL says, are written as they were typed, and survive the journey.
+//! Expressions of strategy files: they have CEL's meaning, print as typed, and survive
+//! serialisation.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -17,7 +18,7 @@ kind = "op_region"
 kind = "avoid_collision"
 "#;
 
-/// The game as these tests know it.
+/// The game's values in these tests.
 struct Known;
 
 impl Values for Known {
@@ -80,7 +81,8 @@ fn number(program: &Program) -> &Expression {
     &wait.duration_s.as_ref().unwrap().expression
 }
 
-/// The expressions of the file beside this one: whether it is a condition, its text, and its value (1 for true).
+/// The expressions of the accompanying file: whether it is a condition, its text, and its value (1
+/// for true).
 fn cases() -> Vec<(bool, &'static str, f64)> {
     let lines = include_str!("strategy_expressions.txt").lines().filter(|line| !line.starts_with('#'));
     let case = |line: &'static str| {
@@ -95,7 +97,7 @@ fn cases() -> Vec<(bool, &'static str, f64)> {
     cases
 }
 
-/// The program with this expression, which must be sound, and the expression in it.
+/// The program with this expression, which must be valid, and the expression in it.
 fn read(is_condition: bool, text: &str) -> (Program, Expression) {
     let program = if is_condition { with_condition(text) } else { with_number(text) };
     let program = program.unwrap_or_else(|problems| panic!("{text}: {problems}"));
@@ -142,7 +144,7 @@ fn expressions_in_words_mean_the_same() {
     }
 }
 
-/// What expressions are made of, and what they are not.
+/// Fragments of valid and invalid expressions.
 fn pieces() -> Vec<&'static str> {
     let words = "tagged laps phase 'go' \"go\" 1 2.5 true null CF in 0x 1u b'x' é \u{1f6a4} \n";
     let signs = "&& || ! == != < >= + - * / % ? : ( ) [ ] { } , . distance( mates( min( has( \\ ' \" // `";
@@ -164,7 +166,7 @@ proptest! {
     }
 }
 
-/// Whatever the answer is, it is an answer, and problems stand within the file.
+/// Any result is acceptable, but problems must be within the file.
 fn answers(given: &str) {
     let text = format!(
         "{HEAD}[[rule]]\nwhen = {given}\nset = {{ laps = 1 }}\n[behaviour.w]\nkind = \"timer\"\nduration_s = {given}\n"
@@ -193,7 +195,7 @@ fn deep_and_long_expressions_are_refused() {
     ] {
         answers(&quoted(&text));
     }
-    // What is long but flat is fine.
+    // Long but flat expressions are valid.
     let flat = format!("{}tagged", "tagged || ".repeat(90));
     assert!(with_condition(&flat).is_ok());
 }

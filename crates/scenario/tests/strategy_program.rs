@@ -1,4 +1,4 @@
-//! Strategy files as programs: what a file says is what the program does, and what can be is allowed.
+//! Strategy files as programs: programs match their files, and possible modes are accepted.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -12,7 +12,7 @@ use std::time::Duration;
 
 const SAFE: &str = "[behaviour.stay_in]\nkind = \"op_region\"\n[behaviour.keep_clear]\nkind = \"avoid_collision\"\n";
 
-/// The strategy of `x.toml`, with the other files beside it.
+/// The strategy of `x.toml`, with the other files in the same folder.
 fn strategy_of(text: &str, others: &[(&str, &str)]) -> Result<Strategy, Problems> {
     let folder = tempfile::tempdir().unwrap();
     for (name, text) in others.iter().chain([&("x.toml", text), &("safe.toml", SAFE)]) {
@@ -116,7 +116,7 @@ fn a_program_says_what_its_file_says() {
     assert_eq!(loiter.turn, Turn::Clockwise);
     assert!(matches!(loiter.shape, Shape::Ellipse(Ellipse { along_m: 15.0, across_m: 50.0, corners: 24, .. })));
 
-    // What the base says stays, but for what the file says instead.
+    // Values of the base stay unless the file overrides them.
     let keep_clear = behaviour(&program, "keep_clear");
     let Task::AvoidCollision(avoid) = &keep_clear.task else { panic!("{keep_clear:?}") };
     assert_eq!(
@@ -138,7 +138,7 @@ fn a_strategy_deals_the_programs_of_its_roles() {
     assert_eq!(names, ["safe", "y", "safe"]);
     assert_eq!((strategy.name.as_str(), strategy.about.as_str()), ("x", "two"));
     assert_eq!((strategy.assignment, strategy.roles[1].about.as_str()), (Assignment::Seeded, "the other"));
-    // A program as a strategy is followed by everybody.
+    // All boats follow a program used as a strategy.
     let alone = strategy_of("base = \"safe.toml\"\nabout = \"alone\"\n", &[]).unwrap();
     assert_eq!((alone.roles.len(), alone.about.as_str(), alone.assignment), (1, "alone", Assignment::Fixed));
     assert_eq!(alone.roles[0].modes[0].name, "active");
@@ -151,7 +151,7 @@ fn a_file_that_is_unsafe_keeps_its_reason() {
     assert_eq!(program("base = \"safe.toml\"\n").unsafe_because, None);
 }
 
-/// A program whose first modes have these conditions, and a rule that gives these values.
+/// A program whose first modes have these conditions, and a rule with these assignments.
 fn with_modes(conditions: &[&str], set: &str) -> String {
     let variables =
         "[variables]\nalarmed = false\nlaps = 0\nphase = { values = [\"go\", \"return\"], shared = true }\n";
@@ -167,10 +167,10 @@ fn what_can_be_is_allowed() {
         (&["tagged == own_side", "tagged"][..], "{ laps = 1 }"),
         (&["enemies < 2", "enemies < 3", "enemies < 4"], "{ laps = 1 }"),
         (&["distance(CF) > 1 && distance(CF) < 2", "distance(CF) < 1.5"], "{ laps = 1 }"),
-        // The distance to one place says nothing of that to another.
+        // The distance to one place does not determine that to another.
         (&["distance(CF) < 1", "distance(CH) < 1"], "{ laps = 1 }"),
         (&["closing(opponent) < 0", "closing(opponent) < 1"], "{ laps = 1 }"),
-        // The same two numbers, otherwise compared, may be anything.
+        // The same two numbers in another comparison may have any result.
         (&["score < enemy_score", "score > enemy_score", "score == enemy_score"], "{ laps = 1 }"),
         (&["laps == 1"], "{ laps = 1 }"),
         (&["laps > 1000"], "{ laps = \"laps + 1\" }"),
@@ -191,7 +191,7 @@ fn what_can_be_is_allowed() {
 
 #[test]
 fn what_is_too_hard_to_decide_is_allowed_before_long() {
-    // Ten pigeons do not fit into nine holes, but only all cases would tell.
+    // Ten pigeons do not fit into nine holes, but only an exhaustive search would show it.
     let pigeons = ["CB", "CF", "CH", "CM", "CC", "PB", "PF", "PH", "PM", "PC"];
     let holes = pigeons.len() - 1;
     let sits = |pigeon: usize, hole: usize| format!("distance({}) * {hole} > 1", pigeons[pigeon]);
@@ -217,14 +217,14 @@ fn many_numbers_in_many_conditions_are_looked_at_before_long() {
     assert_eq!(before_long(with_modes(&conditions, "{ laps = 1 }")), Ok("x".to_owned()));
 }
 
-/// The name of a strategy with this text, or what is wrong with it; a test that gets no answer fails.
+/// The name of a strategy with this text, or its problems; a test without a result fails.
 fn before_long(text: String) -> Result<String, Problems> {
     let (send, receive) = std::sync::mpsc::channel();
     std::thread::spawn(move || send.send(strategy_of(&text, &[]).map(|strategy| strategy.name)));
     receive.recv_timeout(Duration::from_secs(120)).expect("an answer before long")
 }
 
-/// What each kind must say.
+/// The required keys of each kind.
 fn required(kind: &str) -> &'static str {
     match kind {
         "waypoint" => "points = [\"CF\"]\n",
@@ -256,7 +256,7 @@ fn numbers_of_behaviours_have_the_ranges_and_defaults_that_are_declared() {
             }
             let (low, high) = (about["minimum"].as_f64().unwrap(), about["maximum"].as_f64().unwrap());
             for value in [low - 1.0, high + 1.0] {
-                // Given as an expression, it is held to the same range.
+                // An expression is limited to the same range.
                 for value in [format!("{value:?}"), format!("\"{value:?} * 1\"")] {
                     let problems = strategy_of(&file(&format!("{key} = {value}\n")), &[]).unwrap_err().to_string();
                     assert!(problems.contains(&format!("{key} is")), "{kind} {key}: {problems}");

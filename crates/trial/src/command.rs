@@ -1,9 +1,9 @@
-//! What a boat in a trial is told, and the units in which people write that down.
+//! Commands to a boat in a trial, and the units in which users write them.
 
 use scenario::boat::{Boat, Drive, Kinematic, ThrustCurve, Thruster};
 use sim::thruster::ThrusterModel;
 
-/// What a boat is told.
+/// A command to a boat.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Command {
     /// Thrusters off.
@@ -16,7 +16,7 @@ pub enum Command {
         /// Starboard thruster.
         starboard: f64,
     },
-    /// Thrust and rudder of a kinematic boat; its loops rest.
+    /// Thrust and rudder of a kinematic boat, without its control loops.
     Impose {
         /// Per cent.
         thrust: f64,
@@ -33,10 +33,11 @@ pub enum Command {
 }
 
 impl Command {
-    /// The columns of [`Command::Hold`], which needs none and fits into those of any other.
+    /// The columns of [`Command::Hold`], which needs none and is compatible with those of any
+    /// other.
     pub(crate) const NO_COLUMNS: [&str; 2] = ["", ""];
 
-    /// The columns in which a command like this is written.
+    /// The columns for a command of this kind.
     pub(crate) fn columns(&self) -> [&'static str; 2] {
         match self {
             Command::Hold => Command::NO_COLUMNS,
@@ -46,7 +47,7 @@ impl Command {
         }
     }
 
-    /// The numbers in those columns.
+    /// The values in those columns.
     pub(crate) fn numbers(&self) -> [f64; 2] {
         match *self {
             Command::Hold => [0.0, 0.0],
@@ -59,14 +60,15 @@ impl Command {
     }
 }
 
-/// A pair of columns that together are a command.
+/// A pair of columns that together form a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pair {
-    /// Shaft speeds of a boat with a propeller curve.
+    /// Shaft speeds of a boat with a propeller curve, rad/s.
     RadS,
-    /// Settings in per cent: of a thrust table's setting, of full ahead or astern for a propeller.
+    /// Settings in per cent: of a thrust table's setting, or of full ahead or astern for a
+    /// propeller.
     Pct,
-    /// Thrusts that the thrust curve turns back into settings.
+    /// Thrusts, N, converted to settings by the inverse thrust curve.
     Newton,
     /// Thrust and rudder of a kinematic boat.
     ThrustRudder,
@@ -75,10 +77,10 @@ pub enum Pair {
 }
 
 impl Pair {
-    /// All there are.
+    /// All pairs.
     pub const ALL: [Pair; 5] = [Pair::RadS, Pair::Pct, Pair::ThrustRudder, Pair::SpeedHeading, Pair::Newton];
 
-    /// The names of the two columns, in the order of their numbers.
+    /// The names of the two columns, in order.
     #[must_use]
     pub fn columns(self) -> [&'static str; 2] {
         match self {
@@ -91,7 +93,7 @@ impl Pair {
     }
 }
 
-/// What one kind of boat understands, and within which numbers.
+/// The commands that a kind of boat accepts, and their ranges.
 #[derive(Clone, Debug)]
 pub enum Engine {
     /// Two thrusters.
@@ -101,11 +103,11 @@ pub enum Engine {
 }
 
 impl Engine {
-    /// That of `boat`.
+    /// The engine of `boat`.
     #[must_use]
     pub fn new(boat: &Boat) -> Engine {
         match &boat.drive {
-            // The tick matters to what an engine does, not to what it understands.
+            // The tick affects how an engine responds, not the commands it accepts.
             Drive::Thrusters { thruster, .. } => {
                 Engine::Thrusters(Box::new(ThrusterModel::new(thruster, 0.05)), thruster.clone())
             }
@@ -113,7 +115,7 @@ impl Engine {
         }
     }
 
-    /// The mean throttle that settings of `TrialBoat::settings` are, as a share of full.
+    /// The mean throttle of `TrialBoat::settings`, as a share of full.
     pub(crate) fn throttle(&self, settings: [f64; 2]) -> f64 {
         match self {
             Engine::Thrusters(model, _) => {
@@ -124,10 +126,10 @@ impl Engine {
         }
     }
 
-    /// The numbers allowed in each of the two columns, or why this boat cannot be commanded in them.
+    /// The allowed range of each of the two columns, or why this boat does not accept them.
     ///
     /// # Errors
-    /// What the boat lacks, and what it understands instead.
+    /// The boat's missing part, and the commands that it accepts.
     pub fn ranges(&self, pair: Pair) -> Result<[(f64, f64); 2], String> {
         match (self, pair) {
             (Engine::Thrusters(_, thruster), Pair::RadS) => match &thruster.curve {
@@ -155,7 +157,7 @@ impl Engine {
         }
     }
 
-    /// The command that two numbers within [`Engine::ranges`] are.
+    /// The command for two numbers within [`Engine::ranges`].
     #[must_use]
     pub fn command(&self, pair: Pair, [a, b]: [f64; 2]) -> Command {
         match (self, pair) {
@@ -170,7 +172,7 @@ impl Engine {
     }
 }
 
-/// The share of full ahead or astern that a number in a thruster's column is.
+/// Converts a number in a thruster's column to a share of full ahead or astern.
 fn share(model: &ThrusterModel, thruster: &Thruster, pair: Pair, number: f64) -> f64 {
     let setting = match (pair, &thruster.curve) {
         (Pair::Pct, ThrustCurve::Propeller(_)) => return number / 100.0,

@@ -1,20 +1,20 @@
-//! Where a free boat goes: nobody steers it, and the sea does what it likes.
+//! The drift of a free boat, which only the sea moves.
 
 use super::manoeuvre::turned_rad;
 use super::sample::Sample;
 use primitives::Ned;
 
-/// How a boat drifts, over the second half of what was sailed, when it has found how it lies.
+/// A boat's drift over the second half of the run, once its heading has settled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drift {
     /// Mean velocity over the ground, m/s.
     pub velocity_m_s: Ned,
-    /// Mean heading, rad, whole turns counted.
+    /// Mean heading, rad, including whole turns.
     pub heading_rad: f64,
 }
 
 impl Drift {
-    /// That of these samples; `None` where there are too few.
+    /// The drift in these samples; `None` if there are too few.
     #[must_use]
     pub fn of(samples: &[Sample]) -> Option<Drift> {
         let middle = samples.len() / 2;
@@ -36,14 +36,14 @@ impl Drift {
         self.velocity_m_s.length()
     }
 
-    /// The bearing it drifts to, rad; `None` where it stays.
+    /// The bearing it drifts to, rad; `None` if it does not move.
     #[must_use]
     pub fn toward_rad(&self) -> Option<f64> {
         (self.speed_m_s() > STAYS_M_S).then(|| Ned::default().bearing_rad(self.velocity_m_s))
     }
 }
 
-/// What is slower stays where it is, m/s: a micrometre in a few minutes.
+/// A slower boat counts as stationary, m/s: a micrometre in a few minutes.
 const STAYS_M_S: f64 = 1e-8;
 
 #[cfg(test)]
@@ -58,7 +58,7 @@ mod tests {
 
     #[test]
     fn in_a_steady_wind_a_boat_drifts_beam_on_as_the_balance_of_forces_says() {
-        /// What is left to settle after 150 s, over the speed.
+        /// Remaining transient after 150 s, as a share of the speed.
         const TOLERANCE: f64 = 0.005;
         let boats = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/boats");
         let tick = SimTime::from_s(0.05);

@@ -1,7 +1,7 @@
-//! Sea trials: one boat in open water, commanded by a recorded series or put through a standard manoeuvre.
+//! Sea trials: one boat in open water, with a recorded series of commands or a standard manoeuvre.
 //!
-//! Open [`replay`] first. Files, units and plots are the shell's; here is what happens to the boat. [`identify`]
-//! fits a boat file to what a recorded boat did.
+//! Open [`replay`] first. The command line handles files, units and plots; this crate handles the
+//! boat. [`identify`] fits a boat file to a recorded run.
 
 mod command;
 mod drift;

@@ -1,7 +1,7 @@
-//! The standard manoeuvres: how each is steered, and when it is over.
+//! The standard manoeuvres: their commands and their ends.
 //!
-//! Definitions follow IMO resolution MSC.137(76) and its explanatory notes MSC/Circ.1053, for boats that steer by two
-//! thrusters where those speak of a rudder: see [`Manoeuvre`].
+//! Definitions follow IMO resolution MSC.137(76) and its explanatory notes MSC/Circ.1053, applied
+//! to boats that steer with two thrusters in place of a rudder: see [`Manoeuvre`].
 
 use super::command::{Command, Engine};
 use super::replay::{ROW, Unsound, ticks_per_row};
@@ -33,64 +33,64 @@ pub enum Manoeuvre {
 }
 
 impl Manoeuvre {
-    /// The names of all there are.
+    /// The names of all manoeuvres.
     pub const NAMES: &[&str] = Manoeuvre::VARIANTS;
 
-    /// What it is called on the command line and in the names of files.
+    /// Its name on the command line and in file names.
     #[must_use]
     pub fn name(self) -> &'static str {
         self.into()
     }
 }
 
-/// How a manoeuvre is sailed.
+/// The settings of a manoeuvre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plan {
-    /// Which.
+    /// The manoeuvre.
     pub manoeuvre: Manoeuvre,
     /// The heading of the approach, rad.
     pub course_rad: f64,
     /// The speed of the approach, m/s; `None` is the highest that the front seat accepts.
     pub approach_m_s: Option<f64>,
-    /// How long the approach takes, s.
+    /// The duration of the approach, s.
     pub approach_s: f64,
-    /// 1 turns to starboard (first), −1 to port.
+    /// Initial turn: 1 to starboard, −1 to port.
     pub side: f64,
     /// The heading at which a zigzag switches, rad.
     pub switch_rad: f64,
-    /// How far apart a zigzag sets the thrusters, or how far it sets the rudder, as a share of full.
+    /// The difference between the thrusters in a zigzag, or its rudder angle, as a share of full.
     pub differential: f64,
-    /// How long to go on; `None` is until the manoeuvre is over.
+    /// The duration, s; `None`: until the manoeuvre is over.
     pub duration_s: Option<f64>,
 }
 
-/// What was sailed, from the moment the manoeuvre began.
+/// A performed manoeuvre, from its beginning.
 #[derive(Clone, Debug)]
 pub struct Sailed {
-    /// The track from there; the first sample ends the approach.
+    /// The track; the first sample ends the approach.
     pub samples: Vec<Sample>,
-    /// Speed over the ground at the end of the approach, m/s, the mean of its last 5 s.
+    /// Speed over the ground at the end of the approach, m/s, averaged over its last 5 s.
     pub approach_m_s: f64,
-    /// When a zigzag switched, s.
+    /// The times of a zigzag's switches, s.
     pub switches: Vec<f64>,
 }
 
-/// Over how long the end of the approach is averaged, s.
+/// Averaging time at the end of the approach, s.
 const MEAN_S: f64 = 5.0;
-/// The longest that a manoeuvre goes on if nobody says how long, s.
+/// Default maximum duration of a manoeuvre, s.
 const LONGEST_S: f64 = 600.0;
-/// How long boats drift and spin if nobody says, s.
+/// Default duration of drift and spin, s.
 const DRIFT_S: f64 = 300.0;
 const SPIN_S: f64 = 60.0;
 /// A zigzag is over after this many switches.
 const SWITCHES: usize = 7;
-/// Dead in the water is slower than this share of the approach.
+/// A boat below this share of the approach speed counts as dead in the water.
 pub(super) const DEAD: f64 = 0.01;
-/// Speed is steady when it changes by less than this share in [`STEADY_S`].
+/// The speed is steady when it changes by less than this share in [`STEADY_S`].
 const STEADY: f64 = 0.001;
 const STEADY_S: f64 = 10.0;
 
-/// What turns a boat and drives it ahead, whatever it is driven by.
+/// Commands for turning and propulsion with any kind of engine.
 #[derive(Clone, Copy, Debug)]
 struct Helm {
     is_kinematic: bool,
@@ -116,13 +116,13 @@ impl Helm {
     }
 }
 
-/// Sails `plan` with a boat that has just been put into the water; `trial_boat` is at its start, pointing along the course.
+/// Performs `plan` with a boat at its start, pointing along the course.
 ///
 /// # Errors
-/// [`Unsound`] where the boat's numbers go bad.
+/// [`Unsound`] if the boat's state becomes non-finite.
 ///
 /// # Panics
-/// If the tick does not fit into [`ROW`].
+/// If the tick does not divide [`ROW`].
 pub fn sail(boat: &Boat, trial_boat: &mut TrialBoat, plan: &Plan) -> Result<Sailed, Unsound> {
     let per_row = ticks_per_row(trial_boat.tick()).expect("the tick was checked");
     let is_kinematic = matches!(boat.drive, Drive::Kinematic(_));
@@ -149,7 +149,7 @@ pub fn sail(boat: &Boat, trial_boat: &mut TrialBoat, plan: &Plan) -> Result<Sail
         }
         for _ in 0..per_row {
             if plan.manoeuvre == Manoeuvre::Zigzag {
-                // Turned on, not wrapped: a boat that spins has not come back.
+                // Unwrapped: a boat that spins has not returned to its course.
                 off_course_rad += wrap_pi(trial_boat.pose().psi_rad - plan.course_rad - off_course_rad);
                 if side * off_course_rad > plan.switch_rad {
                     side = -side;
@@ -165,7 +165,7 @@ pub fn sail(boat: &Boat, trial_boat: &mut TrialBoat, plan: &Plan) -> Result<Sail
     }
 }
 
-/// The straight approach: the speed at its end, m/s, and the throttle as a share of full.
+/// The straight approach. Returns the speed at its end, m/s, and the throttle as a share of full.
 fn approach(boat: &Boat, trial_boat: &mut TrialBoat, plan: &Plan, per_row: u32) -> Result<(f64, f64), Unsound> {
     let speed_m_s = plan.approach_m_s.unwrap_or_else(|| boat.speed_max_m_s());
     let course = Command::Steer { heading_rad: plan.course_rad, speed_m_s };
@@ -201,8 +201,8 @@ fn command(plan: &Plan, helm: Helm, side: f64) -> Command {
     }
 }
 
-/// Whether a manoeuvre has shown what it is sailed for. `turned_rad` is by how much the boat has turned since it began,
-/// whole turns counted.
+/// Whether a manoeuvre is complete. `turned_rad` is the boat's turn since its beginning, including
+/// whole turns.
 fn is_over(plan: &Plan, sailed: &Sailed, turned_rad: f64, t_s: f64) -> bool {
     if let Some(duration_s) = plan.duration_s {
         return t_s >= duration_s - 1e-6;
@@ -228,7 +228,7 @@ fn is_steady(samples: &[Sample]) -> bool {
     after > 0.0 && (after - before).abs() < STEADY * after
 }
 
-/// By how much the boat has turned since the first sample, whole turns counted, rad clockwise, at each sample.
+/// The boat's turn since the first sample, including whole turns, rad clockwise, at each sample.
 #[must_use]
 pub fn turned_rad(samples: &[Sample]) -> Vec<f64> {
     let mut turned = 0.0;

@@ -1,4 +1,4 @@
-//! What a manoeuvre shows in numbers.
+//! The results of a manoeuvre as numbers.
 
 use super::drift::Drift;
 use super::manoeuvre::{DEAD, Manoeuvre, Plan, Sailed, turned_rad};
@@ -7,14 +7,14 @@ use primitives::angle::compass_deg_from_rad;
 use primitives::{Ned, math};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// A number with what it is and its unit; NaN where the boat did not get that far.
+/// A number with its name and unit; NaN if the boat did not get that far.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measure {
-    /// What it is.
+    /// Its name.
     pub name: &'static str,
-    /// How much of it.
+    /// Its value.
     pub value: f64,
-    /// In what unit.
+    /// Its unit.
     pub unit: &'static str,
 }
 
@@ -43,13 +43,14 @@ fn along_and_across(plan: &Plan, at: Ned) -> (f64, f64) {
     (at.dot(Ned { north: cos, east: sin }), at.dot(Ned { north: -sin, east: cos }))
 }
 
-/// The mean over samples of what `of` makes of each; NaN over none.
+/// The mean of `of` over samples; NaN for none.
 fn mean(samples: &[Sample], of: impl Fn(&Sample) -> f64) -> f64 {
     samples.iter().map(of).sum::<f64>() / samples.len() as f64
 }
 
-/// Advance, transfer and tactical diameter are MSC.137(76)'s: to a change of heading of 90° and 180°, of midships, from
-/// where the thrusters were set. Steady means over the last whole turn.
+/// Advance, transfer and tactical diameter as in MSC.137(76): at a heading change of 90° and 180°,
+/// of midships, from where the thrusters were set. Steady values are means over the last whole
+/// turn.
 fn turning_circle(plan: &Plan, sailed: &Sailed) -> Vec<Measure> {
     let turned = turned_rad(&sailed.samples);
     let first = |angle_rad: f64| turned.iter().position(|turned| plan.side * turned >= angle_rad);
@@ -77,8 +78,8 @@ fn turning_circle(plan: &Plan, sailed: &Sailed) -> Vec<Measure> {
     ]
 }
 
-/// Overshoot is how far the heading goes on beyond the angle after a switch, until the next one. The period is that of
-/// whole swings after the first switch.
+/// The overshoot is the heading's excess over the angle after a switch, until the next one. The
+/// period is that of whole swings after the first switch.
 fn zigzag(plan: &Plan, sailed: &Sailed) -> Vec<Measure> {
     let turned = turned_rad(&sailed.samples);
     let switches = &sailed.switches;
@@ -89,7 +90,7 @@ fn zigzag(plan: &Plan, sailed: &Sailed) -> Vec<Measure> {
         let furthest = swing.map(|(_, turned)| side * turned).fold(f64::NEG_INFINITY, f64::max);
         (furthest - plan.switch_rad).to_degrees()
     };
-    // An even number of half swings, the first left out.
+    // An even number of half swings, excluding the first.
     let halves = switches.len().saturating_sub(2) / 2 * 2;
     let period_s = match switches.get(1 + halves) {
         Some(last) if halves > 0 => (last - switches[1]) / (halves as f64 / 2.0),
@@ -106,7 +107,8 @@ fn zigzag(plan: &Plan, sailed: &Sailed) -> Vec<Measure> {
     ]
 }
 
-/// Head reach is along the course, track reach along the way sailed, until the boat is dead in the water.
+/// Head reach is along the course, track reach along the track, until the boat is dead in the
+/// water.
 fn crash_stop(plan: &Plan, sailed: &Sailed) -> Vec<Measure> {
     let dead = |sample: &Sample| sample.surge_through_water_m_s <= DEAD * sailed.approach_m_s;
     let end = sailed.samples.iter().position(dead);
@@ -158,7 +160,7 @@ fn spin(sailed: &Sailed) -> Vec<Measure> {
     let reached = sailed.samples.iter().find(|sample| sample.nu.yaw.abs() >= 0.632 * rate_rad_s.abs());
     let sense = turned.last().map_or(1.0, |end| end.signum());
     let end = turned.last().map_or(0.0, |end| end.abs());
-    // The mean place and time of the whole turn that began this far before the end.
+    // The mean position and time of the whole turn that began this far before the end.
     let turn = |before_end: f64| {
         let range = end - before_end..=end - before_end + TAU;
         let inside = turned.iter().zip(&sailed.samples).filter(|(turned, _)| range.contains(&(sense * **turned)));

@@ -1,4 +1,4 @@
-//! A series of commands: what was recorded in the field, or what somebody wants to see.
+//! A series of commands: recorded in the field, or written by a user.
 
 use super::command::{Command, Engine, Pair};
 use super::sheet::{Mistake, Sheet};
@@ -7,19 +7,19 @@ use primitives::SimTime;
 /// The longest trial, s: a day. Times count from the start of the trial.
 pub const LONGEST_S: f64 = 86_400.0;
 
-/// Commands, each of which holds from its time until the next one's.
+/// Commands, each of which is in force until the time of the next.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Orders {
-    /// Rising times, and what is commanded from then on.
+    /// Rising times, each with its command.
     steps: Vec<(SimTime, Command)>,
 }
 
 impl Orders {
-    /// The commands in a sheet, for a boat with this engine. Columns that are no commands are ignored.
+    /// Reads the commands of a sheet for a boat with this engine. Other columns are ignored.
     ///
     /// # Errors
-    /// Where the columns are missing or ambiguous, the boat does not understand them, or a number is beyond what it can
-    /// do.
+    /// If the columns are missing or ambiguous, the boat does not accept them, or a number is out
+    /// of its range.
     pub fn of_sheet(sheet: &Sheet, engine: &Engine) -> Result<Orders, Mistake> {
         let times_s = sheet.times(LONGEST_S)?;
         let (pair, columns) = pair_of(sheet)?;
@@ -41,7 +41,7 @@ impl Orders {
         self.steps.last().map_or(SimTime::ZERO, |(at, _)| *at)
     }
 
-    /// What is commanded at `now`: the last command that is not later; before the first, nothing.
+    /// The command at `now`: the last one not later; before the first, a hold.
     #[must_use]
     pub fn at(&self, now: SimTime) -> Command {
         let passed = self.steps.partition_point(|(at, _)| *at <= now);
@@ -49,11 +49,12 @@ impl Orders {
     }
 }
 
-/// Which commands the columns are, and their places. Beside another pair `port_newton,starboard_newton` are the thrusts
-/// that were had, not those that were wanted: a trial's own file has them.
+/// The pair of command columns and their indices. Beside another pair,
+/// `port_newton,starboard_newton` are the actual thrusts, not commands: a trial's own file has
+/// them.
 fn pair_of(sheet: &Sheet) -> Result<(Pair, [usize; 2]), Mistake> {
     let place = |head: &str| {
-        // The heading in a trial's own file is the one it had; the one it was told has a name of its own.
+        // The heading in a trial's own file is the actual one; the ordered one has its own column.
         let told = if head == "heading_deg" { sheet.column("heading_order_deg") } else { None };
         told.or_else(|| sheet.column(head))
     };

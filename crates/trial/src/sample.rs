@@ -1,4 +1,4 @@
-//! What a trial writes down about a boat at one moment, and the columns in which it stands.
+//! A sample of a trial: the boat at one moment, and its columns in the file.
 
 use super::command::Command;
 use primitives::Ned;
@@ -13,24 +13,24 @@ pub const COLUMNS: [&str; 9] =
 /// A boat at one moment of a trial.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// Since the start of the trial, s.
+    /// Time since the start of the trial, s.
     pub t_s: f64,
-    /// Position of midships from the start, m.
+    /// Position of midships relative to the start, m.
     pub at: Ned,
     /// Heading, rad clockwise from north.
     pub psi_rad: f64,
     /// Velocity over the ground along the boat's axes.
     pub nu: Planar,
-    /// Speed ahead through the water, m/s: without the current, and without the waves' to and fro.
+    /// Speed ahead through the water, m/s: without the current and the waves' orbital motion.
     pub surge_through_water_m_s: f64,
-    /// Thrust of the port and the starboard thruster, N; NaN for a boat that has none.
+    /// Thrust of the port and the starboard thruster, N; NaN for a boat without thrusters.
     pub thrusts_newton: [f64; 2],
-    /// What it is told from this moment on.
+    /// The command from this moment on.
     pub command: Command,
 }
 
 impl Sample {
-    /// The numbers of a row, in the units and the order of [`COLUMNS`].
+    /// The values of a row, in the units and the order of [`COLUMNS`].
     #[must_use]
     pub fn row(&self) -> [f64; 9] {
         [
@@ -53,11 +53,11 @@ impl Sample {
     }
 }
 
-/// Writes samples as CSV: the columns of [`COLUMNS`], and where asked for those of the commands, in per cent or as
-/// speed and heading, as they were given.
+/// Writes samples as CSV: the columns of [`COLUMNS`] and, on request, those of the commands as
+/// given, in per cent or as speed and heading.
 ///
 /// # Errors
-/// What the writer says.
+/// Errors of the writer.
 pub fn write_csv(samples: &[Sample], with_orders: bool, out: impl std::io::Write) -> std::io::Result<()> {
     let mut writer = csv::Writer::from_writer(out);
     let orders = samples.iter().map(|sample| sample.command.columns()).find(|heads| *heads != Command::NO_COLUMNS);
@@ -72,7 +72,7 @@ pub fn write_csv(samples: &[Sample], with_orders: bool, out: impl std::io::Write
     writer.flush()
 }
 
-/// A number with as many places as matter: a micrometre is far below anything that is known about a boat.
+/// A number with its significant decimals: a micrometre is far below any known accuracy of a boat.
 fn text(number: f64, is_time: bool) -> String {
     decimal(number, if is_time { 3 } else { 9 })
 }

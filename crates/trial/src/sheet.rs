@@ -1,41 +1,41 @@
-//! A CSV file as people keep them: a line of names, then numbers; mistakes are named by file, line and column.
+//! A CSV file from users: a line of names, then numbers. Errors give file, line and column.
 
 use std::io::Read;
 use thiserror::Error;
 
-/// Most rows a file may have: a day at 50 a second, and more.
+/// Maximum number of rows of a file: more than a day at 50 per second.
 const ROWS_MAX: usize = 5_000_000;
 
-/// Most bytes.
+/// Maximum file size, bytes.
 const BYTES_MAX: u64 = 512 << 20;
 
 /// A file with named columns.
 #[derive(Clone, Debug)]
 pub struct Sheet {
-    /// What the file is called in messages.
+    /// The file's name in messages.
     file: String,
-    /// Names as they are compared: lower case, with `_` between words.
+    /// Normalised names: lower case, with `_` between words.
     heads: Vec<String>,
     rows: Vec<(u64, csv::StringRecord)>,
 }
 
-/// What is wrong in a file.
+/// A fault of a file.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{file}{}: {message}", line.map(|line| format!(":{line}")).unwrap_or_default())]
 pub struct Mistake {
     /// The file.
     pub file: String,
-    /// The line, where it is in one.
+    /// The line, if the fault is in one.
     pub line: Option<u64>,
-    /// The column, what was found, what is allowed.
+    /// The column, the value found and the allowed values.
     pub message: String,
 }
 
 impl Sheet {
-    /// Reads a file that is called `file` in messages.
+    /// Reads a file whose name in messages is `file`.
     ///
     /// # Errors
-    /// Where it is no CSV, has no rows, or has two columns of one name.
+    /// If it is not CSV, has no rows, or has two columns with the same name.
     pub fn read(file: &str, input: impl Read) -> Result<Sheet, Mistake> {
         let mut bytes = vec![];
         let whole = |message| Mistake { file: file.to_owned(), line: None, message };
@@ -43,7 +43,7 @@ impl Sheet {
         if length.map_err(|error| whole(format!("cannot be read: {error}")))? as u64 > BYTES_MAX {
             return Err(whole(format!("longer than {BYTES_MAX} bytes")));
         }
-        // Of a remark at the end of a file the reader makes a row, unless its line ends.
+        // The reader turns a final comment into a row unless its line ends.
         bytes.push(b'\n');
         let wrong = |error: csv::Error| Mistake {
             file: file.to_owned(),
@@ -64,7 +64,7 @@ impl Sheet {
             let record = record.map_err(wrong)?;
             let line = record.position().map_or(0, |position| line_of(&bytes, position));
             if record.len() == 1 && record[0].is_empty() {
-                // A line of spaces.
+                // A blank line.
                 continue;
             }
             if record.len() != sheet.heads.len() {
@@ -89,13 +89,13 @@ impl Sheet {
         &self.heads
     }
 
-    /// The place of a column, if it is there.
+    /// The index of a column, if it exists.
     #[must_use]
     pub fn column(&self, head: &str) -> Option<usize> {
         self.heads.iter().position(|known| known == head)
     }
 
-    /// What stands in a row and column; the row must exist.
+    /// The text in a row and column; the row must exist.
     #[must_use]
     pub fn text(&self, row: usize, column: usize) -> &str {
         self.rows[row].1.get(column).unwrap_or_default()
@@ -104,11 +104,11 @@ impl Sheet {
     /// The number in a row and column, within `low` to `high`.
     ///
     /// # Errors
-    /// Where it is no number, or beyond that.
+    /// If it is not a number, or out of range.
     pub fn number(&self, row: usize, column: usize, (low, high): (f64, f64)) -> Result<f64, Mistake> {
         let text = self.text(row, column);
         let found = if text.is_empty() { "empty".to_owned() } else { text.to_owned() };
-        // A setting that was computed as full ahead may be beyond it by a rounding.
+        // A setting computed as full ahead may exceed it by a rounding error.
         let slack = 1e-9 * low.abs().max(high.abs());
         match text.parse::<f64>() {
             Ok(number) if (low - slack..=high + slack).contains(&number) => Ok(number.clamp(low, high)),
@@ -119,22 +119,22 @@ impl Sheet {
         }
     }
 
-    /// Something wrong in a row.
+    /// A fault of a row.
     #[must_use]
     pub fn row_mistake(&self, row: usize, message: String) -> Mistake {
         self.mistake(Some(self.rows[row].0), message)
     }
 
-    /// Something wrong in the file, or in one of its lines.
+    /// A fault of the file, or of one of its lines.
     #[must_use]
     pub fn mistake(&self, line: Option<u64>, message: String) -> Mistake {
         Mistake { file: self.file.clone(), line, message }
     }
 
-    /// The times in column `t_s`, each later than the one before.
+    /// The times in column `t_s`, strictly increasing.
     ///
     /// # Errors
-    /// Where that is not so.
+    /// If they are not.
     pub fn times(&self, high_s: f64) -> Result<Vec<f64>, Mistake> {
         let missing = || self.mistake(Some(1), format!("no column t_s among {}", self.heads.join(", ")));
         let column = self.column("t_s").ok_or_else(missing)?;
@@ -151,15 +151,15 @@ impl Sheet {
     }
 }
 
-/// The line of a record. The reader says where the one before ended; blank lines and remarks may follow there. A remark begins
-/// with its line.
+/// The line of a record. The reader returns the end of the previous one; blank lines and comments
+/// may follow there. A comment begins at the start of its line.
 fn line_of(bytes: &[u8], position: &csv::Position) -> u64 {
     let rest = bytes.get(position.byte() as usize..).unwrap_or_default();
     let lines = rest.split(|byte| *byte == b'\n').map(|line| line.strip_suffix(b"\r").unwrap_or(line));
     position.line() + lines.take_while(|line| line.is_empty() || line.starts_with(b"#")).count() as u64
 }
 
-/// A column's name as it is compared: `Port (rad/s)` is `port_rad_s`.
+/// A normalised column name: `Port (rad/s)` is `port_rad_s`.
 fn plain_head(head: &str) -> String {
     let spelt = head.trim_start_matches('\u{feff}').to_lowercase().replace('%', "pct");
     let words: Vec<&str> = spelt.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
@@ -177,7 +177,7 @@ fn plain_head(head: &str) -> String {
     joined
 }
 
-/// A limit in at most six digits: no one wants to read 13.225999999999999.
+/// A limit in at most six digits, rather than 13.225999999999999.
 fn short(number: f64) -> String {
     let text = format!("{number:.6}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()

@@ -1,4 +1,4 @@
-//! One boat afloat in open water, told what to do tick by tick.
+//! One boat afloat in open water, commanded tick by tick.
 
 use super::command::Command;
 use super::sample::Sample;
@@ -12,14 +12,14 @@ use sim::hull::Planar;
 use sim::kinematic::{KinematicModel, KinematicState};
 use sim::{VehiclePlan, World, WorldPlan};
 
-/// How a boat begins.
+/// A boat's initial state.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Start {
     /// Heading, rad clockwise from north.
     pub psi_rad: f64,
     /// Velocity over the ground along the boat's axes.
     pub nu: Planar,
-    /// Thrust of a kinematic boat, per cent; `None` is what keeps its speed.
+    /// Thrust of a kinematic boat, per cent; `None`: the thrust that keeps its speed.
     pub thrust_pct: Option<f64>,
 }
 
@@ -28,12 +28,12 @@ pub struct Start {
 pub struct TrialBoat {
     world: Box<World>,
     tick: SimTime,
-    /// Where it is counted from.
+    /// The origin of its positions.
     origin: Ned,
 }
 
 impl TrialBoat {
-    /// A boat at its start. `seed` chooses the randomness of the sea and of its sensors.
+    /// A boat at its start. `seed` selects the randomness of the sea and of its sensors.
     #[must_use]
     pub fn new(boat: &Boat, sea: &Sea, tick: SimTime, seed: u64, start: &Start) -> TrialBoat {
         let vehicle = VehiclePlan { name: "boat", kind: 0, start: Pose::default(), is_external: false, faults: vec![] };
@@ -50,9 +50,9 @@ impl TrialBoat {
         });
         let mut psi_rad = start.psi_rad;
         if let Drive::Kinematic(kinematic) = &boat.drive {
-            // An order for two thrusters cannot say full thrust and half rudder: in a trial the
-            // loops of a kinematic boat are set directly. A test compares that with what the
-            // world computes.
+            // An order for two thrusters cannot express full thrust and half rudder: in a trial the
+            // loops of a kinematic boat are set directly. A test compares that with the world's
+            // result.
             let mut state = world.state().clone();
             state.points[0] = point_at_start(kinematic, start, world.sea().current_at(Ned::default()));
             psi_rad = state.points[0].psi_rad();
@@ -75,7 +75,7 @@ impl TrialBoat {
         self.world.state().now
     }
 
-    /// Counts positions from here on from where the boat is.
+    /// Makes the boat's present position the origin of positions from now on.
     pub fn set_origin(&mut self) {
         self.origin = self.pose().at;
     }
@@ -84,24 +84,24 @@ impl TrialBoat {
         self.world.state().boats[0].pose
     }
 
-    /// Moves a boat with thrusters to where it was measured, moving as it was measured; its thrusters stay as they are.
+    /// Sets a boat with thrusters to a measured position and motion; its thrusters stay unchanged.
     pub fn relocate(&mut self, pose: Pose, nu: Planar) {
         self.world.set_under_way(VehicleId(0), pose, nu);
     }
 
-    /// Moves it on by one tick.
+    /// Advances it by one tick.
     pub fn step(&mut self, command: Command) {
         self.world.step(&[order(command)]);
         self.world.read_sensors();
     }
 
-    /// Whether its numbers are still numbers.
+    /// Whether its state is finite.
     #[must_use]
     pub fn is_sound(&self) -> bool {
         !self.world.state().boats[0].quarantined
     }
 
-    /// What there is to write down now, at `t_s` of the trial, about to be told `command`.
+    /// The sample at `t_s` of the trial, before `command`.
     #[must_use]
     pub fn sample(&self, t_s: f64, command: Command) -> Sample {
         let state = self.world.state();
@@ -133,7 +133,7 @@ fn point_at_start(kinematic: &Kinematic, start: &Start, current_m_s: Ned) -> Kin
     if start.nu == Planar::default() && start.thrust_pct.is_none() {
         return KinematicState::at_rest(start.psi_rad);
     }
-    // Speed is through the water; drifting sideways is what a boat without mass cannot do.
+    // Speed is through the water; a boat without mass cannot drift sideways.
     let ahead_m_s = start.nu.surge - in_body(start.psi_rad, current_m_s).ahead;
     let speed_m_s = ahead_m_s.clamp(0.0, kinematic.speed_max_m_s);
     let thrust = start.thrust_pct.unwrap_or_else(|| KinematicModel::new(kinematic).thrust_for_speed(speed_m_s));
@@ -144,8 +144,8 @@ fn in_body(psi_rad: f64, ned: Ned) -> Body {
     frame::body_from_ned(Rotation::from_heading(psi_rad), ned)
 }
 
-/// A kinematic boat takes half the sum of two shares as thrust and half their difference as rudder; full thrust and half
-/// rudder are a share beyond 1.
+/// A kinematic boat takes half the sum of two shares as thrust and half their difference as rudder;
+/// full thrust and half rudder need a share beyond 1.
 fn order(command: Command) -> Order {
     match command {
         Command::Thrust { port, starboard } => Order::Thrust { port, starboard },

@@ -1,4 +1,4 @@
-//! Open water: a sea, and a field that holds nothing to bump into.
+//! Open water: a sea, and a field without obstacles.
 
 use primitives::Ned;
 use primitives::frame::LatLon;
@@ -6,19 +6,19 @@ use rules::Field;
 use rules::field::{Plan, Walls};
 use scenario::sea::{Current, Sea};
 
-/// Extent of the field each way, m. It ends nothing: a boat sails on beyond it, and so does the sea. Only random
-/// eddies are laid over it.
+/// Extent of the field each way, m. It is not a limit: boats and the sea continue beyond it. Only
+/// random eddies are placed in it.
 const FIELD_M: f64 = 1000.0;
 /// Density of sea water, kg/m³.
 const SEA_WATER_KG_M3: f64 = 1025.0;
 
-/// The sea of a trial that names none: salt water at rest, no wind.
+/// The default sea of a trial: salt water at rest, no wind.
 #[must_use]
 pub fn still_sea() -> Sea {
     Sea { name: "still".into(), water_density_kg_m3: SEA_WATER_KG_M3, ..Sea::at_rest() }
 }
 
-/// Gives `sea` this mean current in place of its own. What else flows in it (tide, shear, eddies) stays.
+/// Replaces the mean current of `sea`. Its other currents (tide, shear, eddies) stay.
 pub fn set_mean_current(sea: &mut Sea, speed_m_s: f64, toward_deg: f64) {
     let toward = Ned::toward_deg(toward_deg);
     let wander = sea.current.wander.map(|wander| scenario::sea::Wander { toward, ..wander });

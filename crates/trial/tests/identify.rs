@@ -1,4 +1,5 @@
-//! Known parameters come back from noisy data, and a log that does not say them is noticed.
+//! Identification recovers known parameters from noisy data and detects logs that do not determine
+//! them.
 
 use primitives::SimTime;
 use primitives::stream::Stream;
@@ -8,7 +9,8 @@ use trial::identify::{self, Fit, Log, NoFit, Setting};
 use trial::{Engine, Orders, Sheet, Start, TrialBoat};
 
 const TICK: SimTime = SimTime(50_000_000);
-/// Standard deviation of the noise on each measured column of a trial: x, y, heading, surge, sway, yaw rate.
+/// Standard deviation of the noise on each measured column of a trial: x, y, heading, surge, sway,
+/// yaw rate.
 const NOISE: [f64; 6] = [0.3, 0.3, 1.0, 0.05, 0.05, 0.5];
 
 fn boat() -> Boat {
@@ -16,7 +18,7 @@ fn boat() -> Boat {
     scenario::load_boat(&path).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Where the search begins: 15 to 60 % off in everything.
+/// The initial guess of the search: 15 to 60 % off in every parameter.
 fn wrong(truth: &Boat) -> Boat {
     let mut boat = truth.clone();
     boat.hull.surge_linear_kg_s *= 1.6;
@@ -31,7 +33,7 @@ fn wrong(truth: &Boat) -> Boat {
     boat
 }
 
-/// Commands for four minutes, each for some seconds, both thrusters alike or apart.
+/// Commands for four minutes, each for some seconds, with both thrusters equal or different.
 fn orders_csv(stream: &mut Stream) -> String {
     let (mut text, mut t_s) = ("t_s,port_pct,starboard_pct\n".to_owned(), 0.0);
     while t_s < 240.0 {
@@ -43,7 +45,7 @@ fn orders_csv(stream: &mut Stream) -> String {
     text + "245,0,0\n"
 }
 
-/// A log of `boat` under those commands, with so much of [`NOISE`].
+/// A log of `boat` under those commands, with `noise` times [`NOISE`].
 fn log_csv(boat: &Boat, orders_csv: &str, noise: f64, stream: &mut Stream) -> String {
     let sheet = Sheet::read("orders.csv", orders_csv.as_bytes()).expect("it is CSV");
     let orders = Orders::of_sheet(&sheet, &Engine::new(boat)).expect("it understands them");
@@ -98,7 +100,7 @@ fn known_parameters_come_back_within_their_stated_confidence() {
         }
         assert!((fit.qualities[3].rms - 0.05).abs() < 0.005, "what is left is the noise: {:?}", fit.qualities);
     }
-    // 95 % of 36 are 34; fewer than 31 would be one chance in a hundred.
+    // 95 % of 36 is 34; fewer than 31 would have a probability of one in a hundred.
     assert!(within >= 31, "{within} of {all} within their 95 %");
 }
 
@@ -118,7 +120,7 @@ fn without_noise_they_come_back_to_four_places() {
 #[test]
 fn what_the_log_cannot_tell_is_said() {
     let truth = boat();
-    // Straight ahead, at one speed: thrust and resistance are one number.
+    // Straight ahead at one speed, thrust and resistance cannot be separated.
     let straight = "t_s,port_pct,starboard_pct\n0,60,60\n120,60,60\n";
     let csv = log_csv(&truth, straight, 1.0, &mut Stream::new(1, "test"));
     let fit =

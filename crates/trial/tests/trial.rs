@@ -1,4 +1,4 @@
-//! A boat in a trial is the boat of a game: same law, same sea.
+//! A boat in a trial behaves like a boat in a game: same model, same sea.
 
 use messages::Order;
 use primitives::{Ned, Pose, SimTime};

@@ -1,4 +1,4 @@
-//! One game of an environment: steps of the policy, rewards, a new game when one is over.
+//! One game of an environment: policy steps, rewards, and a new game when one ends.
 
 use super::game_mind::GameMind;
 use super::games::Standing;
@@ -14,40 +14,40 @@ use rules::event::EventCursor;
 use scenario::Scenario;
 use sim::Contest;
 
-/// Who plays whom in a game.
+/// The two sides of a game.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Side {
-    /// The team of the policy that learns.
+    /// The team of the learning policy.
     pub learner: TeamId,
-    /// Which of the setup's opponents plays the other.
+    /// Index of the opponent in the setup that plays the other team.
     pub opponent: usize,
 }
 
-/// A game that is being played.
+/// A running game.
 pub(super) struct Game {
     seed: u64,
     side: Side,
     steps: u32,
     contest: Contest,
     runner: MindRunner<GameMind>,
-    /// The boats that are given actions, those of the policy that learns first.
+    /// The boats that receive actions, those of the learning policy first.
     pilots: Vec<VehicleId>,
     read: EventCursor,
     tally: Tally,
-    /// By vehicle.
+    /// By vehicle index.
     boats: Vec<BoatProgress>,
     rewards: Vec<f64>,
     watch: Option<Watch>,
 }
 
-/// What became of a step.
+/// The result of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ending {
     /// The game goes on.
     None,
     /// The game is over.
     Over,
-    /// The game would go on, but the episode is as long as it may be.
+    /// The episode has reached its maximum length, though the game would go on.
     CutOff,
 }
 
@@ -69,8 +69,8 @@ impl Game {
                 (false, Player::Model(model), _) => {
                     GameMind::Pilot(Box::new(policy_pilot(setup, scenario, vehicle).by_model(model.clone())))
                 }
-                // The arena's own game, with a pilot in the place of a mind: a test plays the
-                // same one in the arena and compares digests.
+                // The arena's own game, with a pilot in place of a mind: a test plays the same game
+                // in the arena and compares digests.
                 _ => GameMind::Pilot(Box::new(pilot(setup, scenario, vehicle))),
             }
         };
@@ -89,24 +89,24 @@ impl Game {
             rewards: vec![0.0; count],
             watch,
         };
-        // Before the first pictures, so that nothing the game is given is missed.
+        // Before the first pictures, so that the watch misses none of the game's inputs.
         game.show(Moment::Decision);
         game.contest.pictures();
         game.look(setup);
         game
     }
 
-    /// The boats that are given actions, those of the policy that learns first.
+    /// The boats that receive actions, those of the learning policy first.
     pub(super) fn boats_with_actions(&self) -> &[VehicleId] {
         &self.pilots
     }
 
-    /// How many boats are given actions.
+    /// The number of boats that receive actions.
     pub(super) fn pilots(&self) -> usize {
         self.pilots.len()
     }
 
-    /// The pilot in this place, those of the policy that learns first, and the picture of its team.
+    /// The pilot at this index, those of the learning policy first, and the picture of its team.
     fn pilot(&mut self, place: usize) -> Option<(&mut Pilot, &Picture)> {
         let vehicle = self.pilots[place];
         let pilot = self.runner.mind_mut(vehicle).and_then(GameMind::pilot_mut)?;
@@ -120,7 +120,7 @@ impl Game {
         }
     }
 
-    /// Plays a step of the policy.
+    /// Plays a policy step.
     pub(super) fn step(&mut self, setup: &Setup) -> Ending {
         for _ in 0..setup.decisions_per_step {
             if self.contest.is_over() {
@@ -147,36 +147,36 @@ impl Game {
         ending
     }
 
-    /// Shows it to whoever sees it.
+    /// Passes the moment to the watch, if any.
     fn show(&mut self, moment: Moment) {
         if let Some(watch) = &mut self.watch {
             watch(&mut self.contest, moment);
         }
     }
 
-    /// Nobody sees it from now on.
+    /// Removes the watch.
     pub(super) fn end_watch(&mut self) {
         self.watch = None;
     }
 
-    /// A boat's reward of the last step.
+    /// A boat's reward in the last step.
     pub(super) fn reward_of(&self, place: usize) -> f64 {
         self.rewards[self.pilots[place].index()]
     }
 
-    /// Writes what a boat is shown; whether it will do as it is told then.
+    /// Writes a boat's observation. Returns whether the boat will follow its action.
     pub(super) fn observe(&mut self, place: usize, out: &mut [f32]) -> bool {
         let Some((pilot, picture)) = self.pilot(place) else { return false };
         out.copy_from_slice(pilot.observe(picture));
         pilot.obeys()
     }
 
-    /// What a teacher did with a boat in the last step, as an action.
+    /// The teacher's action for a boat in the last step.
     pub(super) fn taught(&mut self, place: usize) -> Option<Action> {
         self.pilot(place).and_then(|(pilot, _)| pilot.taught())
     }
 
-    /// How it stands.
+    /// The current standing.
     pub(super) fn standing(&self) -> Standing {
         let (score, scenario) = (self.contest.score(), self.contest.scenario());
         let teams = [self.side.learner, TeamId(1 - self.side.learner.0)];
@@ -199,11 +199,11 @@ impl Game {
         let scenario = self.contest.scenario();
         let step_s = scenario.tick.as_s() * f64::from(scenario.ticks_per_decision * setup.decisions_per_step);
         for (i, reward) in self.rewards.iter_mut().enumerate() {
-            // A potential of the state alone, nothing at the end: it does not change what the
-            // best policy is (Ng, Harada and Russell, ICML 1999). Places are paid undiscounted
-            // for what is gained in a step. Paid by the second, half a second of the right
-            // course changes the sum by a hundredth of itself, and boats that had learnt from
-            // 300,000 samples to retreat were no nearer to home than ones that lay still.
+            // A potential of the state alone, 0 at the end: it does not change the best policy (Ng,
+            // Harada and Russell, ICML 1999). Places pay undiscounted for the gain in a step. If
+            // they paid per second, half a second on the right course would change the sum by a
+            // hundredth: boats trained to retreat on 300,000 such samples were no nearer to home
+            // than stationary ones.
             let after = if ending == Ending::Over { 0.0 } else { rewards.potential.of(&self.boats[i]) };
             *reward = setup.discount * after + rewards.place.of(&self.boats[i]) - before[i] + rewards.second * step_s;
         }
@@ -217,7 +217,7 @@ impl Game {
         }
     }
 
-    /// Notes how the boats are, for rewards.
+    /// Updates the boats' progress for rewards.
     fn look(&mut self, setup: &Setup) {
         let scenario = self.contest.scenario();
         let mut placed: Vec<Placed> = scenario
@@ -234,7 +234,7 @@ impl Game {
     }
 }
 
-/// A boat that is given actions, or shows those of a teacher.
+/// A boat that receives actions or demonstrates those of a teacher.
 fn pilot(setup: &Setup, scenario: &Scenario, vehicle: VehicleId) -> Pilot {
     if let Some(teacher) = &setup.teacher {
         let program = agent::roles::role_in(scenario, vehicle, &teacher.strategy);
@@ -243,7 +243,7 @@ fn pilot(setup: &Setup, scenario: &Scenario, vehicle: VehicleId) -> Pilot {
     policy_pilot(setup, scenario, vehicle)
 }
 
-/// A boat by a policy.
+/// A boat controlled by a policy.
 fn policy_pilot(setup: &Setup, scenario: &Scenario, vehicle: VehicleId) -> Pilot {
     match &setup.control {
         Control::Direct => Pilot::direct(scenario, vehicle, setup.spaces),
@@ -254,7 +254,7 @@ fn policy_pilot(setup: &Setup, scenario: &Scenario, vehicle: VehicleId) -> Pilot
     }
 }
 
-/// Each two games of a kind are from both sides, unless the side is given.
+/// Draws the sides: two consecutive games of a kind are from both sides, unless the side is fixed.
 fn draw_side(setup: &Setup, seed: u64) -> Side {
     let total: f64 = setup.opponents.iter().map(|(weight, _)| weight.max(0.0)).sum();
     let mut left = Stream::new(seed, "opponent").between(0.0, total);
@@ -263,7 +263,7 @@ fn draw_side(setup: &Setup, seed: u64) -> Side {
         left < 0.0
     });
     let last = || setup.opponents.iter().rposition(|(weight, _)| *weight > 0.0).unwrap_or_default();
-    // By the seed: the field has two ends, and the wind a direction.
+    // By the seed: the two ends of the field differ, and the wind has a direction.
     let learner = setup.learner.unwrap_or(TeamId((seed % 2) as u8));
     Side { learner, opponent: chosen.unwrap_or_else(last) }
 }

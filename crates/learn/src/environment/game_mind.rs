@@ -1,4 +1,4 @@
-//! The mind of a boat in an environment: a pilot, whose actions come from outside, or a strategy.
+//! The mind of a boat in an environment: a pilot with external actions, or a strategy.
 
 use agent::{Mind, Pilot, Proposal};
 use messages::helm::HelmReport;

@@ -1,4 +1,5 @@
-//! Many games at a time: one step of all of them on several threads, written into slices of whoever asks.
+//! Many parallel games: one step of all of them on several threads, written into the caller's
+//! slices.
 
 use super::game::{Ending, Game, Side};
 use super::setup::{Player, Setup, SetupError};
@@ -11,89 +12,92 @@ use rayon::prelude::*;
 use rules::count::Counts;
 use sim::Contest;
 
-/// How a game stands.
+/// The standing of a game.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Standing {
-    /// The seed of the game: with the setup it names the game.
+    /// The seed of the game: with the setup it identifies the game.
     pub seed: u64,
-    /// Who plays whom.
+    /// The sides.
     pub side: Side,
-    /// Points of the policy that learns, and of its enemies.
+    /// Points of the learning policy and of its enemies.
     pub score: [u32; 2],
-    /// What the team of the policy that learns did, and its enemies, how often.
+    /// Event counts of the learning policy's team and of its enemies.
     pub counts: [Counts; 2],
-    /// Steps of the policy.
+    /// Policy steps so far.
     pub steps: u32,
 }
 
 /// An episode that ended in a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Finished {
-    /// Which of the games.
+    /// Index of the game.
     pub game: usize,
-    /// Its number: they count up game by game and episode by episode.
+    /// Episode number, counted game by game and episode by episode.
     pub number: u64,
-    /// How it stood in the end.
+    /// The final standing.
     pub standing: Standing,
     /// Whether it was cut off before the game was over.
     pub cut_off: bool,
 }
 
-/// What a step shows, a row for each boat that is given actions: game by game, first the boats of the policy that learns and then,
-/// if any opponent is a policy, those of its enemies.
+/// The results of a step, a row for each boat that receives actions: game by game, first the boats
+/// of the learning policy and then, if any opponent is a policy, those of its enemies.
 #[derive(Debug)]
 pub struct Rows<'a> {
-    /// What every boat is shown, rows × numbers.
+    /// The observation of every boat, rows × values.
     pub observations: &'a mut [f32],
-    /// What boats were shown last before a new game began, rows × numbers. Only the rows of games that end in the step are written.
+    /// The boats' last observations before a new game began, rows × values. Only the rows of games
+    /// that end in the step are written.
     pub final_observations: &'a mut [f32],
-    /// What the step was worth, by row.
+    /// The reward of the step, by row.
     pub rewards: &'a mut [f32],
-    /// By row, whether its next action counts: not of a tagged boat, nor where a strategy plays the enemies.
+    /// By row, whether its next action takes effect: false for a tagged boat, and where a strategy
+    /// plays the enemies.
     pub counts: &'a mut [bool],
 }
 
-/// Games that are played side by side; each begins anew when it is over.
+/// Parallel games; each restarts when it is over.
 ///
-/// What a row shows depends on the setup, the seed and the actions alone, not on the number of threads.
+/// Rows depend on the setup, the seed and the actions alone, not on the number of threads.
 pub struct Games {
     setup: Setup,
     slots: Vec<Slot>,
     starts: Starts,
-    /// None for one thread, which is the caller's: a game's step is shorter than waking another.
+    /// None for a single thread, the caller's: a game's step is shorter than waking another thread.
     pool: Option<rayon::ThreadPool>,
     rows_per_game: usize,
     observation_size: usize,
     finished: Vec<Finished>,
 }
 
-/// A place for one game after the other.
+/// A slot for consecutive games.
 struct Slot {
     game: Game,
-    /// The number of its game among all that are played: places count up by as many as there are.
+    /// The number of its current game among all games: slots advance by the number of slots.
     number: u64,
     ended: Option<Finished>,
-    /// What a teacher did in the last step, by row.
+    /// The teacher's action in the last step, by row.
     taught: Vec<Option<Action>>,
-    /// The truth for a critic, row by row: as it is now, and as it was before a new game began.
+    /// The truth for a critic, row by row: current, and before a new game began.
     truth: [Vec<f32>; 2],
-    /// Whether its boats have been shown how things stand: observing twice would be two decisions.
+    /// Whether its boats have been observed: observing twice would be two decisions.
     is_shown: bool,
 }
 
 impl Games {
-    /// Begins so many games, on so many threads. Seeds count up from `seed`, game by game and episode by episode.
+    /// Starts `games` games on `threads` threads. Seeds count up from `seed`, game by game and
+    /// episode by episode.
     ///
     /// # Errors
-    /// [`SetupError`] where nothing can be played.
+    /// [`SetupError`] if the setup cannot be played.
     pub fn new(setup: Setup, games: usize, threads: usize, seed: u64) -> Result<Games, SetupError> {
         Games::watched(setup, games, threads, seed, None)
     }
 
-    /// As [`Games::new`], and shows the games to others.
+    /// Like [`Games::new`], with watches.
     ///
     /// # Errors
-    /// [`SetupError`] where nothing can be played.
+    /// [`SetupError`] if the setup cannot be played.
     pub fn watched(
         setup: Setup,
         games: usize,
@@ -121,24 +125,24 @@ impl Games {
         })
     }
 
-    /// What is played.
+    /// The setup.
     #[must_use]
     pub fn setup(&self) -> &Setup {
         &self.setup
     }
 
-    /// One more opponent, with weight 0.
+    /// Adds an opponent with weight 0.
     pub fn add_opponent(&mut self, player: Player) {
         self.setup.opponents.push((0.0, player));
     }
 
-    /// From its next game on, every opponent is drawn by another weight; one without has weight 0.
+    /// Sets the opponents' draw weights from each slot's next game on; missing ones are 0.
     pub fn set_weights(&mut self, weights: impl IntoIterator<Item = f64>) {
         let mut weights = weights.into_iter();
         self.setup.opponents.iter_mut().for_each(|(weight, _)| *weight = weights.next().unwrap_or(0.0));
     }
 
-    /// How many rows there are, and how many of them to a game.
+    /// The number of rows in all, and per game.
     #[must_use]
     pub fn rows(&self) -> (usize, usize) {
         (self.slots.len() * self.rows_per_game, self.rows_per_game)
@@ -150,48 +154,50 @@ impl Games {
         &self.finished
     }
 
-    /// What a teacher did with the boats of a game in the last step, by row; none where no action does that.
+    /// The teacher's actions for the boats of a game in the last step, by row; none where no action
+    /// corresponds.
     #[must_use]
     pub fn taught(&self, game: usize) -> &[Option<Action>] {
         &self.slots[game].taught
     }
 
-    /// What a critic is given of a game besides observations, row by row: as it is now, and, if a game ended in the last step, as it was
-    /// then. Rows of boats that are given no actions are missing.
+    /// A critic's input for a game besides observations, row by row: current, and, if a game ended
+    /// in the last step, at its end. Rows of boats without actions are missing.
     #[must_use]
     pub fn truth(&self, game: usize) -> (&[f32], &[f32]) {
         let [now, last] = &self.slots[game].truth;
         (now, last)
     }
 
-    /// Nobody sees the games from now on.
+    /// Removes all watches.
     pub fn end_watches(&mut self) {
         self.starts.end_watches();
         self.slots.iter_mut().for_each(|slot| slot.game.end_watch());
     }
 
-    /// A game as it stands.
+    /// The current game in a slot.
     #[must_use]
     pub fn contest(&self, game: usize) -> &Contest {
         self.slots[game].game.contest()
     }
 
-    /// The boats of a game that are given actions, in the order of its rows.
+    /// The boats of a game that receive actions, in the order of its rows.
     #[must_use]
     pub fn boats(&self, game: usize) -> &[VehicleId] {
         self.slots[game].game.boats_with_actions()
     }
 
-    /// How a game stands.
+    /// The standing of a game.
     #[must_use]
     pub fn standing(&self, game: usize) -> Standing {
         self.slots[game].game.standing()
     }
 
-    /// Shows the games that have begun and were not shown yet; the rows of others stay as they are.
+    /// Writes the rows of games that have begun and were not written yet; other rows stay
+    /// unchanged.
     ///
     /// # Panics
-    /// If the slices are not as long as there are rows.
+    /// If the slices are not as long as the number of rows.
     pub fn show(&mut self, rows: Rows<'_>) {
         self.for_each_game(rows, |setup, _, _, slot, rows| {
             if !slot.is_shown {
@@ -201,11 +207,11 @@ impl Games {
         });
     }
 
-    /// Begins all games anew, with the seeds that count up from this one as in [`Games::new`], or with the next ones.
-    /// [`Games::show`] shows them.
+    /// Restarts all games, with seeds from this one on as in [`Games::new`], or with the next ones.
+    /// [`Games::show`] writes them.
     ///
     /// # Errors
-    /// [`SetupError::NoStart`] where a game cannot begin.
+    /// [`SetupError::NoStart`] if a game cannot begin.
     pub fn restart(&mut self, seed: Option<u64>) -> Result<(), SetupError> {
         if let Some(seed) = seed {
             self.starts = self.starts.from(&self.setup, seed);
@@ -224,11 +230,12 @@ impl Games {
         begun.into_iter().collect()
     }
 
-    /// Begins one game anew: that of this seed, or its next one. Its seeds go on from there, by as many as there are games.
-    /// [`Games::show`] shows it.
+    /// Restarts one game with this seed, or its next one. Its seeds continue from there, in steps
+    /// of the number of games. [`Games::show`] writes it.
     ///
     /// # Errors
-    /// [`SetupError::NoStart`] where it cannot begin; [`SetupError::SeedOfStarts`] for a seed where starts come round.
+    /// [`SetupError::NoStart`] if it cannot begin; [`SetupError::SeedOfStarts`] for a seed outside
+    /// repeating starts.
     pub fn restart_game(&mut self, game: usize, seed: Option<u64>) -> Result<(), SetupError> {
         let count = self.slots.len() as u64;
         let slot = &mut self.slots[game];
@@ -243,10 +250,11 @@ impl Games {
     /// Plays one step of every game with an action for each row.
     ///
     /// # Errors
-    /// [`SetupError::NoStart`] where a new game cannot begin.
+    /// [`SetupError::NoStart`] if a new game cannot begin.
     ///
     /// # Panics
-    /// If there is not one action for each row, or the slices are not as long as there are rows.
+    /// If there is not one action for each row, or the slices are not as long as the number of
+    /// rows.
     pub fn step(&mut self, actions: &[Action], rows: Rows<'_>) -> Result<(), SetupError> {
         assert_eq!(actions.len(), self.rows().0, "one action a row");
         let (count, per_game) = (self.slots.len() as u64, self.rows_per_game);
@@ -300,14 +308,14 @@ impl Games {
 }
 
 impl Slot {
-    /// Begins the game of its number.
+    /// Starts the game of its current number.
     fn begin(&mut self, setup: &Setup, starts: &Starts) -> Result<(), SetupError> {
         self.game = starts.game(setup, self.number)?;
         self.is_shown = false;
         Ok(())
     }
 
-    /// Plays a step and shows what came of it.
+    /// Plays a step and writes the results.
     fn play(&mut self, setup: &Setup, game: usize, actions: &[Action], rows: &mut Rows<'_>) {
         let pilots = self.game.pilots();
         actions.iter().take(pilots).enumerate().for_each(|(i, action)| self.game.act(i, *action));
@@ -327,7 +335,7 @@ impl Slot {
         });
     }
 
-    /// Writes what the boats are shown now.
+    /// Writes the boats' current observations.
     fn show(&mut self, setup: &Setup, rows: &mut Rows<'_>) {
         let size = rows.observations.len() / rows.rewards.len();
         self.is_shown = true;

@@ -1,5 +1,5 @@
-//! Games as environments for learning: the very referee, sea, boats and minds of a game, with the decisions of some boats made
-//! outside.
+//! Games as learning environments: the same referee, sea, boats and minds as in any game, with
+//! external actions for some boats.
 
 mod game;
 mod game_mind;

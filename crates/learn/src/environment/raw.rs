@@ -1,4 +1,4 @@
-//! A setup as a person gives it: paths of files, seconds and names.
+//! A setup as users give it: file paths, seconds and names.
 
 use super::setup::{Control, Player, Setup, SetupError};
 use crate::rewards::Rewards;
@@ -9,50 +9,50 @@ use scenario::Scenario;
 use scenario::strategy::Strategy;
 use std::path::{Path, PathBuf};
 
-/// What policies see, before it is known how large the teams are.
+/// The observation space, before the team sizes are known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RawObservation {
     /// [`ObservationSpace::Pyquaticus`].
     Pyquaticus,
-    /// [`ObservationSpace::Squall`], with room for the boats of the game where nothing else is said.
+    /// [`ObservationSpace::Squall`], by default with slots for the boats of the game.
     Squall {
-        /// How many mates there is room for.
+        /// Number of slots for mates.
         mates: Option<u8>,
-        /// How many enemies.
+        /// Number of slots for enemies.
         enemies: Option<u8>,
-        /// How many decisions of the policy are given together.
+        /// Number of the policy's decisions in one observation.
         frames: u8,
     },
 }
 
-/// A setup as it is given.
+/// A setup as given.
 #[derive(Clone, Debug)]
 pub struct RawSetup {
     /// The game file.
     pub game: PathBuf,
-    /// What policies see.
+    /// The policies' observation space.
     pub observation: RawObservation,
-    /// What they choose from.
+    /// The policies' action space.
     pub action: ActionSpace,
-    /// The strategy file through whose helms actions reach the boats; none: as orders.
+    /// The strategy file whose helms apply the actions; none: actions are orders.
     pub helm: Option<PathBuf>,
-    /// How long an action holds, s: a multiple of the game's `decision_s`, which it is by default.
+    /// How long an action holds, s: a multiple of the game's `decision_s`, its default.
     pub decision_s: Option<f64>,
-    /// An episode is cut off after this time at the latest, s.
+    /// The maximum length of an episode, s.
     pub episode_max_s: Option<f64>,
-    /// How many starts come round: see [`Setup::starts`].
+    /// The number of repeating starts: see [`Setup::starts`].
     pub starts: Option<u32>,
-    /// The name of the team that learns; none: by turns.
+    /// The name of the learning team; none: alternating.
     pub team: Option<String>,
-    /// The strategy file that sails all but one boat of a policy's team; none: policies sail all.
+    /// The strategy file for all but one boat of a policy's team; none: policies control all.
     pub mates: Option<PathBuf>,
-    /// The opponents' strategy files, each with its weight; none of a file: the policy itself.
+    /// The opponents' strategy files, each with its weight; without a file: the policy itself.
     pub opponents: Vec<(f64, Option<PathBuf>)>,
     /// The rewards file; none: all are 0.
     pub rewards: Option<PathBuf>,
-    /// What a reward a step later is worth, 0 to 1.
+    /// The value of a reward one step later, 0 to 1.
     pub discount: f64,
-    /// What a critic is given.
+    /// A critic's input.
     pub critic: CriticInput,
 }
 
@@ -60,7 +60,7 @@ impl RawSetup {
     /// Reads the files and checks the rest.
     ///
     /// # Errors
-    /// [`SetupError`]: the first field that is wrong, or everything that is wrong with a file.
+    /// [`SetupError`]: the first invalid field, or all faults of a file.
     pub fn check(&self) -> Result<Setup, SetupError> {
         let scenario = scenario::load(&self.game)?;
         let helm = self.helm.as_deref().map(strategy).transpose()?;
@@ -131,7 +131,7 @@ fn wrong(field: &'static str, found: impl ToString, allowed: &str) -> SetupError
     SetupError::Field { field, found: found.to_string(), allowed: allowed.to_owned() }
 }
 
-/// How many decisions of the game there are to one of a policy that decides as often as this, s.
+/// The number of the game's decisions per decision of a policy with this period, s.
 pub(super) fn decisions_per_step(decision_s: f64, scenario: &Scenario) -> Result<u32, SetupError> {
     let least_s = scenario.decision().as_s();
     let times = (decision_s / least_s).round();
@@ -142,7 +142,7 @@ pub(super) fn decisions_per_step(decision_s: f64, scenario: &Scenario) -> Result
     Err(wrong("decision_s", decision_s, &allowed))
 }
 
-/// How many steps of the policy an episode of this length has, s.
+/// The number of policy steps in an episode of this length.
 pub(super) fn steps_max(episode_max_s: f64, scenario: &Scenario, decisions_per_step: u32) -> Result<u32, SetupError> {
     let step_s = scenario.decision().as_s() * f64::from(decisions_per_step);
     let steps = (episode_max_s / step_s - 1e-6).ceil();

@@ -1,4 +1,4 @@
-//! Records games of an environment, each into a file of its own, as `squall run` records one.
+//! Records games of an environment, each in its own file, in the format of `squall run`.
 
 use super::watch::{Moment, Watch, Watches};
 use messages::Frame;
@@ -10,25 +10,25 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Others may record into the same folder: so often another name is tried.
+/// Maximum number of names tried, since others may record into the same folder.
 const NAMES_MAX: u32 = 100;
 
-/// What has become of recordings, until somebody asks.
+/// The results of recordings, kept until they are read.
 #[derive(Default)]
 pub struct RecordingLog {
-    /// The file that was completed last.
+    /// The most recently completed file.
     newest: Mutex<Option<PathBuf>>,
-    /// What went wrong, in words.
+    /// Error messages.
     problems: Mutex<Vec<String>>,
 }
 
 impl RecordingLog {
-    /// The newest file, if one has been completed since this was asked last.
+    /// The newest file, if one was completed since the last call.
     pub fn take_newest(&self) -> Option<PathBuf> {
         self.newest.lock().unwrap_or_else(PoisonError::into_inner).take()
     }
 
-    /// What has gone wrong since this was asked last.
+    /// The errors since the last call.
     pub fn take_problems(&self) -> Vec<String> {
         std::mem::take(&mut *self.problems.lock().unwrap_or_else(PoisonError::into_inner))
     }
@@ -42,36 +42,38 @@ impl RecordingLog {
     }
 }
 
-/// What recordings are called, and whether games that are given up are kept.
+/// The file names of recordings, and whether abandoned games are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RecordingNames {
-    /// By the time, the game and its seed: always a new file. Of a game that is given up what was played is kept, without a result.
+    /// By time, game and seed: always a new file. The played part of an abandoned game is kept,
+    /// without a result.
     ByTime,
-    /// By the game's seed and number: [`recording_name`]. A file of that name is replaced; a game that is given up leaves none.
+    /// By the game's seed and number: [`recording_name`]. An existing file is replaced; an
+    /// abandoned game leaves none.
     ByNumber,
 }
 
-/// What the recording of a game with this seed and number is called.
+/// The file name of the recording of a game with this seed and number.
 #[must_use]
 pub fn recording_name(seed: u64, number: u64) -> String {
     format!("{seed}_{number}.mcap")
 }
 
-/// How games are recorded.
+/// Recording settings.
 #[derive(Clone)]
 pub struct Recordings {
-    /// The folder; it is there.
+    /// The existing folder.
     pub folder: PathBuf,
-    /// What the files are called.
+    /// The naming scheme.
     pub names: RecordingNames,
-    /// Each so manieth game is recorded, the first one included.
+    /// Record every n-th game, including the first.
     pub every: u64,
-    /// The commit of the program that records.
+    /// The commit of the recording program.
     pub commit: String,
 }
 
 impl Recordings {
-    /// Records games by watching them. What becomes of it goes into the log; games go on whatever that is.
+    /// Returns watches that record games. Results go to the log; errors do not stop games.
     #[must_use]
     pub fn watches(self, log: Arc<RecordingLog>) -> Watches {
         let recordings = Arc::new(self);
@@ -90,7 +92,7 @@ impl Recordings {
         })
     }
 
-    /// A new file for a game.
+    /// Creates the file for a game.
     fn begin(&self, game: &Scenario, number: u64) -> Result<(GameRecorder, PathBuf), RecordError> {
         let mut tried = 0;
         loop {
@@ -111,7 +113,7 @@ impl Recordings {
     }
 }
 
-/// A game, and how far its recording is.
+/// A game and the stage of its recording.
 struct RecordedGame {
     recordings: Arc<Recordings>,
     number: u64,
@@ -121,14 +123,14 @@ struct RecordedGame {
     stage: Stage,
 }
 
-/// A game of which no step is played leaves no file.
+/// A game without a played step leaves no file.
 enum Stage {
-    /// Nothing has been seen.
+    /// Nothing received yet.
     Waiting,
     /// A copy of the game at its start, and its first frame.
     Start(Box<Contest>, Arc<Frame>),
     Recording(Box<GameRecorder>, PathBuf),
-    /// The file is complete, or there is none, and why has been told.
+    /// The file is complete, or it failed and the error is logged.
     Ended,
 }
 
@@ -140,8 +142,8 @@ impl RecordedGame {
                 contest.keep_inputs();
                 Stage::Start(Box::new(contest.clone()), Arc::new(contest.frame(&mut self.shown)))
             }
-            // Decision by decision within a step, where the game is played: a step ends one
-            // game and begins the next.
+            // Decision by decision within a step, while the game is played: a step ends one game
+            // and begins the next.
             (Stage::Start(mut start, first), Moment::Decision) => {
                 match self.recordings.begin(start.scenario(), self.number) {
                     Ok((mut recorder, path)) => {
@@ -178,7 +180,7 @@ impl RecordedGame {
 }
 
 impl Drop for RecordedGame {
-    /// A game that was given up.
+    /// Ends the recording of an abandoned game.
     fn drop(&mut self) {
         let Stage::Recording(recorder, path) = std::mem::replace(&mut self.stage, Stage::Ended) else { return };
         let problem = recorder.state().problem();
@@ -195,10 +197,10 @@ impl Drop for RecordedGame {
     }
 }
 
-/// Makes a folder for recordings where there is none, and tries it.
+/// Creates a folder for recordings if necessary, and checks that it is writable.
 ///
 /// # Errors
-/// If it takes no files.
+/// If files cannot be created in it.
 pub fn check_recording_folder(folder: &Path) -> std::io::Result<()> {
     std::fs::create_dir_all(folder)?;
     let file = folder.join(format!(".squall-{}-{}", std::process::id(), utc::now_ns()));

@@ -1,4 +1,4 @@
-//! What is played in an environment: the game, who learns, what a policy sees and may do, and against whom.
+//! The setup of an environment: the game, the learner, the spaces of a policy, and its opponents.
 
 use super::truth;
 use crate::rewards::Rewards;
@@ -16,112 +16,115 @@ use thiserror::Error;
 pub enum Control {
     /// As orders.
     Direct,
-    /// As proposals to the helms of this strategy, every role of which has a behaviour of the kind `policy`.
+    /// As proposals to the helms of this strategy, each of whose roles has a behaviour of the kind
+    /// `policy`.
     Helm(Box<Strategy>),
 }
 
-/// A strategy that plays instead of the policy, which learns to do as it does.
+/// A strategy that plays in place of the policy, which imitates it.
 #[derive(Clone, Debug)]
 pub struct Teacher {
     /// The strategy.
     pub strategy: Box<Strategy>,
-    /// With [`ActionSpace::Options`]: which option a mode is, by the mode's path. What is in none of these modes is not taught.
+    /// With [`ActionSpace::Options`]: the option of each mode, by the mode's path. Other modes are
+    /// not taught.
     pub options: BTreeMap<String, usize>,
 }
 
-/// Who plays a team in a game.
+/// The player of a team.
 #[derive(Clone, Debug)]
 pub enum Player {
-    /// Whoever gives the actions: the policy that learns, or one that it once was.
+    /// External actions: the learning policy or an earlier version of it.
     Policy,
     /// The helms of a strategy.
     Strategy(Box<Strategy>),
-    /// A policy as it was, through the same control as the one that learns.
+    /// A fixed policy, through the same control as the learning one.
     Model(PolicyModel),
 }
 
-/// What is played.
+/// The setup of an environment.
 #[derive(Clone, Debug)]
 pub struct Setup {
-    /// The game; seeds choose what is random in it.
+    /// The game; seeds choose its random values.
     pub scenario: Scenario,
-    /// What policies see and do.
+    /// The policies' observation and action spaces.
     pub spaces: Spaces,
-    /// How it reaches the boats.
+    /// How actions reach the boats.
     pub control: Control,
-    /// Who plays the policy's boats instead of it; none: it plays itself.
+    /// Plays the policy's boats in its place; none: the policy plays.
     pub teacher: Option<Teacher>,
-    /// What a critic is given.
+    /// A critic's input.
     pub critic: CriticInput,
-    /// Decisions of the game to one of the policy.
+    /// Decisions of the game per policy step.
     pub decisions_per_step: u32,
-    /// An episode ends after so many steps at the latest, though the game would go on; none plays whole games.
+    /// Maximum number of steps of an episode, after which it is cut off; none: whole games.
     pub steps_max: Option<u32>,
-    /// There are so many different starts, which come round again: what takes longest of a new game, its sea and its boats, is made once
-    /// for each. None: every game has a start of its own.
+    /// The number of different starts, which repeat: the slowest part of a new game, its sea and
+    /// its boats, is created once for each. None: every game has its own start.
     pub starts: Option<u32>,
-    /// The team that learns; none: the one and the other by turns, seed by seed.
+    /// The learning team; none: alternating with the seed.
     pub learner: Option<TeamId>,
-    /// Policies sail one boat of their team, each by turns, and this strategy the others; none: policies sail all.
+    /// Policies control one boat of their team, alternating, and this strategy the others; none:
+    /// policies control all.
     pub mates: Option<Box<Strategy>>,
-    /// The enemies, each with how often it is drawn.
+    /// The enemies, each with its draw weight.
     pub opponents: Vec<(f64, Player)>,
-    /// What is worth how much.
+    /// The reward definition.
     pub rewards: Rewards,
-    /// What a reward a step later is worth, for potentials.
+    /// The value of a reward one step later, for potentials.
     pub discount: f64,
 }
 
-/// Why nothing can be played.
+/// Why a setup cannot be played.
 #[derive(Debug, Error)]
 pub enum SetupError {
     /// Games are between two teams.
     #[error("the game has {0} teams; an environment is a game between two")]
     Teams(usize),
-    /// A policy with numbers for equal teams.
+    /// A policy with observations for equal teams, in a game with unequal teams.
     #[error("the teams have {0} and {1} boats; policies play either side, so they must have as many")]
     Uneven(usize, usize),
-    /// Nobody to play against.
+    /// No opponents.
     #[error("no opponent is given, or none with a weight above 0")]
     NoOpponent,
-    /// A strategy that asks no policy for what it is to choose.
+    /// A strategy without a suitable policy behaviour.
     #[error("the role {role:?} has no behaviour of the kind \"policy\" {expected}: nothing would come of actions")]
     NoPolicy {
         /// The role.
         role: String,
-        /// What the behaviour would need.
+        /// What the behaviour needs.
         expected: &'static str,
     },
     /// Steps without a decision.
     #[error("a policy decides every 0 decisions of the game; expected 1 or more")]
     NoDecisions,
-    /// Nothing to begin with.
+    /// Zero starts.
     #[error("there are 0 starts; expected 1 or more, or none for a new one every time")]
     NoStarts,
-    /// A seed that is not among the starts that come round.
+    /// A seed outside the repeating starts.
     #[error("seed is {seed}, expected {first} to {last}: only so many starts come round (`starts`)")]
     SeedOfStarts {
-        /// What was asked for.
+        /// The requested seed.
         seed: u64,
-        /// The first of them.
+        /// The first valid seed.
         first: u64,
-        /// The last one.
+        /// The last valid seed.
         last: u64,
     },
-    /// Something that a person gave is not what it may be.
+    /// An invalid value from the user.
     #[error("{field} is {found}, expected {allowed}")]
     Field {
-        /// What it is called.
+        /// The field's name.
         field: &'static str,
-        /// What it is.
+        /// The value found.
         found: String,
-        /// What it may be.
+        /// The allowed values.
         allowed: String,
     },
     /// A file that cannot be used.
     #[error(transparent)]
     Files(#[from] Problems),
-    /// A policy whose weights are no numbers any more.
+    /// A policy with non-finite weights.
     #[error("the policy has diverged: {0}")]
     Diverged(String),
     /// The game cannot begin.
@@ -130,10 +133,10 @@ pub enum SetupError {
 }
 
 impl Setup {
-    /// What makes it impossible to play, if anything does.
+    /// Checks that the setup can be played.
     ///
     /// # Errors
-    /// [`SetupError`], the first that was found.
+    /// [`SetupError`]: the first problem found.
     pub fn check(&self) -> Result<(), SetupError> {
         if self.scenario.teams.len() != 2 {
             return Err(SetupError::Teams(self.scenario.teams.len()));
@@ -164,7 +167,7 @@ impl Setup {
         Ok(())
     }
 
-    /// Whether the programs of a strategy do what policies choose.
+    /// Checks that the programs of a strategy apply the policies' choices.
     fn check_helm(&self, strategy: &Strategy) -> Result<(), SetupError> {
         let has_options = self.spaces.action == ActionSpace::Options;
         let asks = |task: &Task| matches!(task, Task::Policy(policy) if policy.model.is_none() && policy.sets.is_some() == has_options);
@@ -183,7 +186,7 @@ impl Setup {
         Ok(())
     }
 
-    /// The options that a policy chooses among; none if it chooses something else.
+    /// The options that a policy chooses among; none for other action spaces.
     #[must_use]
     pub fn options(&self) -> Option<&[String]> {
         match &self.control {
@@ -195,7 +198,7 @@ impl Setup {
         }
     }
 
-    /// How many discrete actions there are; none if they are continuous.
+    /// The number of discrete actions; none if they are continuous.
     #[must_use]
     pub fn actions(&self) -> Option<usize> {
         self.options().map(<[String]>::len).or(self.spaces.action.count())
@@ -207,16 +210,16 @@ impl Setup {
         self.opponents.iter().any(|(_, player)| matches!(player, Player::Policy))
     }
 
-    /// How many rows there are to a game: one for each boat that may be given actions.
+    /// The number of rows per game: one for each boat that may receive actions.
     #[must_use]
     pub fn rows_per_game(&self) -> usize {
         let of_team = if self.mates.is_some() { 1 } else { self.team_size() };
         of_team * if self.is_self_play() { 2 } else { 1 }
     }
 
-    /// The boats of a team that a policy sails in the game of a seed.
+    /// The boats of a team that a policy controls in the game of a seed.
     pub fn pilots_of(&self, team: TeamId, seed: u64) -> impl Iterator<Item = VehicleId> {
-        // Sides alternate with the seed, and boats with every second one.
+        // Sides alternate with the seed, and boats with every second seed.
         let one = self.mates.is_some().then(|| (seed / 2) as usize % self.team_size().max(1));
         self.boats_of(team)
             .enumerate()
@@ -230,26 +233,26 @@ impl Setup {
         boats.filter(move |vehicle| self.scenario.team_of(*vehicle) == team)
     }
 
-    /// How many boats a team has.
+    /// The number of boats in a team.
     #[must_use]
     pub fn team_size(&self) -> usize {
         self.boats_of(TeamId(0)).count()
     }
 
-    /// What the numbers of an observation are called.
+    /// The names of an observation's values.
     #[must_use]
     pub fn observation_names(&self) -> Vec<String> {
         let boats = self.team_size();
         self.spaces.observation.names(boats.saturating_sub(1), boats)
     }
 
-    /// How many numbers a critic is given.
+    /// The number of values of a critic's input.
     #[must_use]
     pub fn state_size(&self) -> usize {
         self.observation_size() + self.truth_size()
     }
 
-    /// What those of them are called that no policy is given.
+    /// The names of the critic's values that no policy receives.
     #[must_use]
     pub fn truth_names(&self) -> Vec<String> {
         let boats = self.team_size();
@@ -259,7 +262,7 @@ impl Setup {
         }
     }
 
-    /// How many of them no policy is given.
+    /// The number of the critic's values that no policy receives.
     #[must_use]
     pub fn truth_size(&self) -> usize {
         match self.critic {
@@ -268,7 +271,7 @@ impl Setup {
         }
     }
 
-    /// How many numbers an observation has.
+    /// The number of values of an observation.
     #[must_use]
     pub fn observation_size(&self) -> usize {
         let boats = self.team_size();

@@ -1,4 +1,4 @@
-//! A stage of a training as a setup.
+//! Converts a stage of a training to a setup.
 
 use super::raw::{decisions_per_step, steps_max};
 use super::setup::{Control, Player, Setup, SetupError, Teacher};
@@ -8,11 +8,11 @@ use scenario::Overrides;
 use std::collections::{BTreeMap, BTreeSet};
 
 impl Setup {
-    /// What is played in a stage: first against the policy itself, if it ever is, then against the stage's strategies. Nobody is
-    /// drawn yet but the first.
+    /// The setup of a stage: opponents are first the policy itself, if the stage has self-play,
+    /// then the stage's strategies. Only the first has a draw weight yet.
     ///
     /// # Errors
-    /// [`SetupError`]: what is wrong with a file, or makes it impossible to play.
+    /// [`SetupError`]: the faults of a file, or the reason why it cannot be played.
     pub fn of_stage(training: &Training, stage: &Stage) -> Result<Setup, SetupError> {
         let overrides = Overrides { sea: stage.sea.clone(), ..Overrides::default() };
         let scenario = scenario::load_with(&stage.game, &overrides)?;
@@ -50,7 +50,7 @@ impl Setup {
         Ok(setup)
     }
 
-    /// A teacher whose modes are the options that there are.
+    /// A teacher whose modes map to the existing options.
     fn teacher_of(&self, said: &training::Teacher) -> Result<Teacher, SetupError> {
         let strategy = Box::new(scenario::load_strategy(&said.strategy)?);
         let modes: BTreeSet<String> =

@@ -1,4 +1,5 @@
-//! How games of an environment begin: their seeds count up, and come round again if there are only so many starts.
+//! The starts of an environment's games: their seeds count up, and repeat if the number of starts
+//! is limited.
 
 use super::game::Game;
 use super::setup::{Setup, SetupError};
@@ -6,12 +7,12 @@ use super::watch::Watches;
 use sim::Contest;
 use std::sync::OnceLock;
 
-/// How games begin.
+/// The starts of games.
 pub(super) struct Starts {
     seed: u64,
-    /// Of as many games as there are starts, at their start: made when it is first played.
+    /// One game per repeating start, at its start; created when first played.
     made: Vec<OnceLock<Contest>>,
-    /// Who sees the games; none: nobody.
+    /// Watches for games, if any.
     watches: Option<Watches>,
 }
 
@@ -21,12 +22,12 @@ impl Starts {
         Starts { seed, made: (0..count).map(|_| OnceLock::new()).collect(), watches }
     }
 
-    /// The same games from another seed on.
+    /// The same games, beginning at another seed.
     pub(super) fn from(&self, setup: &Setup, seed: u64) -> Starts {
         Starts::new(setup, seed, self.watches.clone())
     }
 
-    /// Nobody sees the games that begin from now on.
+    /// Removes the watches of future games.
     pub(super) fn end_watches(&mut self) {
         self.watches = None;
     }
@@ -34,9 +35,9 @@ impl Starts {
     /// The game with this number.
     pub(super) fn game(&self, setup: &Setup, number: u64) -> Result<Game, SetupError> {
         let watch = self.watches.as_ref().and_then(|watches| watches(number));
-        // Starts that come round again must be more than the games side by side: with 64 of
-        // both each game always had the same start, and nothing was learnt. One that comes
-        // round takes 0.03 ms, a new one with a sea 0.41 ms.
+        // Repeating starts must outnumber the parallel games: with 64 of both, each game always had
+        // the same start, and nothing was learnt. A repeated start takes 0.03 ms, a new one with a
+        // sea 0.41 ms.
         let number = if self.made.is_empty() { number } else { number % self.made.len() as u64 };
         let seed = self.seed.wrapping_add(number);
         let place = self.made.get(number as usize);

@@ -1,8 +1,10 @@
-//! The truth about a game as numbers, for a critic: what no boat's sensors tell, in a frame that is the same for both teams.
+//! The truth about a game as a critic's input: values beyond any boat's sensors, in a frame that is
+//! the same for both teams.
 //!
-//! Places and directions are told ahead of the boat's team, as it looks at the enemies' end, and to its port, from the middle of the
-//! field; speeds in units of 3 m/s, wind in units of 10 m/s, truths as 0 or 1. The own boat comes first, then its mates, then the
-//! enemies, each in the scenario's order.
+//! Places and directions are relative to the middle of the field: ahead of the boat's team as it
+//! faces the enemies' end, and to its port. Speeds are in units of 3 m/s, wind in units of 10 m/s,
+//! booleans are 0 or 1. The own boat comes first, then its mates, then the enemies, each in the
+//! scenario's order.
 
 use messages::{Picture, VehicleTruth};
 use primitives::frame::{Body, Rotation, ned_from_body};
@@ -10,7 +12,7 @@ use primitives::{Ned, VehicleId};
 use rules::event::EventCursor;
 use sim::Contest;
 
-/// The numbers of each boat.
+/// The values of each boat.
 const BOAT: [&str; 11] = [
     "position_ahead",
     "position_port",
@@ -24,7 +26,7 @@ const BOAT: [&str; 11] = [
     "outside",
     "tag_wait",
 ];
-/// The numbers of the game.
+/// The values of the game.
 const GAME: [&str; 8] = [
     "enemy_flag_taken",
     "own_flag_taken",
@@ -35,19 +37,19 @@ const GAME: [&str; 8] = [
     "current_ahead",
     "current_port",
 ];
-/// What speeds are divided by, m/s: a Surveyor's top speed.
+/// Unit of speeds, m/s: a Surveyor's top speed.
 const SPEED_M_S: f64 = 3.0;
-/// What wind speeds are divided by, m/s.
+/// Unit of wind speeds, m/s.
 const WIND_M_S: f64 = 10.0;
-/// What points are divided by.
+/// Unit of points.
 const POINTS: f64 = 10.0;
 
-/// How many numbers there are in a game of so many boats.
+/// The number of values in a game with this many boats.
 pub(super) fn size(boats: usize) -> usize {
     boats * BOAT.len() + GAME.len()
 }
 
-/// What the numbers are called, in their order, in a game of teams with so many mates and enemies to a boat.
+/// The names of the values, in order, for a boat with this many mates and enemies.
 pub(super) fn names(mates: usize, enemies: usize) -> Vec<String> {
     let mates = (1..=mates).map(|i| format!("mate_{i}"));
     let enemies = (1..=enemies).map(|i| format!("enemy_{i}"));
@@ -56,13 +58,13 @@ pub(super) fn names(mates: usize, enemies: usize) -> Vec<String> {
     of_boats.chain(GAME.map(str::to_owned)).collect()
 }
 
-/// Adds the numbers of each of these boats, boat by boat.
+/// Appends the values of each of these boats, boat by boat.
 pub(super) fn write(contest: &Contest, boats: &[VehicleId], out: &mut Vec<f32>) {
-    // Events that happened are of no use here: the cursor stands behind them.
+    // A default cursor: past events are not needed here.
     let mut cursor = EventCursor::default();
     cursor.read(contest.events());
-    // The truth is of use in training alone: what is left for a critic to guess is what boats
-    // will do. It stands beside the observation, and no policy is ever given it.
+    // The truth is used in training only: it leaves the critic only the boats' future decisions to
+    // guess. It is stored beside the observation, and no policy ever receives it.
     let frame = contest.frame(&mut cursor);
     let scenario = contest.scenario();
     let field = &scenario.field;
@@ -113,7 +115,7 @@ pub(super) fn write(contest: &Contest, boats: &[VehicleId], out: &mut Vec<f32>) 
     }
 }
 
-/// By vehicle, the share of the time between two tags for which it must still wait.
+/// By vehicle index, the remaining share of the time between two tags.
 fn waits(contest: &Contest) -> Vec<f64> {
     let (scenario, now) = (contest.scenario(), contest.now());
     let mut waits = vec![0.0; scenario.vehicles.len()];

@@ -1,4 +1,4 @@
-//! Games with slices of their own, for whoever has none: from actions to observations and rewards.
+//! Games with their own buffers: from actions to observations and rewards.
 
 use super::game::Side;
 use super::games::{Finished, Games, Rows};
@@ -7,19 +7,20 @@ use super::watch::Watches;
 use agent::Action;
 use sim::Contest;
 
-/// [`Games`] that keep what they show last.
+/// [`Games`] that store their last results.
 pub struct VectorEnvironment {
     games: Games,
     shown: Shown,
 }
 
-/// The memory of [`Rows`].
+/// The buffers of [`Rows`].
 struct Shown {
     observations: Vec<f32>,
     final_observations: Vec<f32>,
     rewards: Vec<f32>,
     counts: Vec<bool>,
-    /// What a critic is given, rows × numbers, and the same before a new game began; empty where that is the observation.
+    /// A critic's inputs, rows × values, and those before a new game began; empty if they are the
+    /// observations.
     states: Vec<f32>,
     final_states: Vec<f32>,
 }
@@ -32,18 +33,19 @@ impl Shown {
 }
 
 impl VectorEnvironment {
-    /// Begins so many games, on so many threads. Seeds count up from `seed`, game by game and episode by episode.
+    /// Starts `games` games on `threads` threads. Seeds count up from `seed`, game by game and
+    /// episode by episode.
     ///
     /// # Errors
-    /// [`SetupError`] where nothing can be played.
+    /// [`SetupError`] if the setup cannot be played.
     pub fn new(setup: Setup, games: usize, threads: usize, seed: u64) -> Result<VectorEnvironment, SetupError> {
         VectorEnvironment::watched(setup, games, threads, seed, None)
     }
 
-    /// As [`VectorEnvironment::new`], and shows the games to others.
+    /// Like [`VectorEnvironment::new`], with watches.
     ///
     /// # Errors
-    /// [`SetupError`] where nothing can be played.
+    /// [`SetupError`] if the setup cannot be played.
     pub fn watched(
         setup: Setup,
         games: usize,
@@ -67,65 +69,68 @@ impl VectorEnvironment {
         Ok(environment)
     }
 
-    /// What is played.
+    /// The setup.
     #[must_use]
     pub fn setup(&self) -> &Setup {
         self.games.setup()
     }
 
-    /// One more opponent, with weight 0.
+    /// Adds an opponent with weight 0.
     pub fn add_opponent(&mut self, player: Player) {
         self.games.add_opponent(player);
     }
 
-    /// From its next game on, every opponent is drawn by another weight; one without has weight 0.
+    /// Sets the opponents' draw weights from each slot's next game on; missing ones are 0.
     pub fn set_weights(&mut self, weights: impl IntoIterator<Item = f64>) {
         self.games.set_weights(weights);
     }
 
-    /// How many rows there are, and how many of them to a game.
+    /// The number of rows in all, and per game.
     #[must_use]
     pub fn rows(&self) -> (usize, usize) {
         self.games.rows()
     }
 
-    /// What every boat is shown, rows × numbers.
+    /// The observation of every boat, rows × values.
     #[must_use]
     pub fn observations(&self) -> &[f32] {
         &self.shown.observations
     }
 
-    /// What boats were shown last before a new game began, rows × numbers; of games that ended in the last step alone.
+    /// The boats' last observations before a new game began, rows × values; valid only for games
+    /// that ended in the last step.
     #[must_use]
     pub fn final_observations(&self) -> &[f32] {
         &self.shown.final_observations
     }
 
-    /// What a critic is given, rows × [`Setup::state_size`].
+    /// A critic's inputs, rows × [`Setup::state_size`].
     #[must_use]
     pub fn states(&self) -> &[f32] {
         if self.setup().truth_size() == 0 { &self.shown.observations } else { &self.shown.states }
     }
 
-    /// The same before a new game began; of games that ended in the last step alone.
+    /// The same before a new game began; valid only for games that ended in the last step.
     #[must_use]
     pub fn final_states(&self) -> &[f32] {
         if self.setup().truth_size() == 0 { &self.shown.final_observations } else { &self.shown.final_states }
     }
 
-    /// What a teacher did with the boats of a game in the last step, by row: see [`Games::taught`].
+    /// The teacher's actions for the boats of a game in the last step, by row: see
+    /// [`Games::taught`].
     #[must_use]
     pub fn taught(&self, game: usize) -> &[Option<Action>] {
         self.games.taught(game)
     }
 
-    /// What the last step was worth, by row.
+    /// The rewards of the last step, by row.
     #[must_use]
     pub fn rewards(&self) -> &[f32] {
         &self.shown.rewards
     }
 
-    /// By row, whether its next action counts: not of a tagged boat, nor where a strategy plays the enemies.
+    /// By row, whether its next action takes effect: false for a tagged boat, and where a strategy
+    /// plays the enemies.
     #[must_use]
     pub fn counts(&self) -> &[bool] {
         &self.shown.counts
@@ -137,19 +142,19 @@ impl VectorEnvironment {
         self.games.finished()
     }
 
-    /// How many boats of a game are given actions: its first rows.
+    /// The number of boats of a game that receive actions: its first rows.
     #[must_use]
     pub fn boats(&self, game: usize) -> usize {
         self.games.boats(game).len()
     }
 
-    /// A game as it stands.
+    /// The current game in a slot.
     #[must_use]
     pub fn contest(&self, game: usize) -> &Contest {
         self.games.contest(game)
     }
 
-    /// Who plays whom in a game.
+    /// The sides of a game.
     #[must_use]
     pub fn side(&self, game: usize) -> Side {
         self.games.standing(game).side
@@ -158,7 +163,7 @@ impl VectorEnvironment {
     /// Plays one step of every game with an action for each row.
     ///
     /// # Errors
-    /// [`SetupError::NoStart`] where a new game cannot begin.
+    /// [`SetupError::NoStart`] if a new game cannot begin.
     ///
     /// # Panics
     /// If there is not one action for each row.
@@ -168,7 +173,7 @@ impl VectorEnvironment {
         Ok(())
     }
 
-    /// Puts observations and the truth side by side.
+    /// Joins observations and the truth.
     fn note_states(&mut self) {
         let truth = self.setup().truth_size();
         if truth == 0 {

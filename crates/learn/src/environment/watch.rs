@@ -1,19 +1,21 @@
-//! Whoever sees the games of an environment as they are played, such as a recorder.
+//! Watches: observers of an environment's games, such as a recorder.
 
 use sim::Contest;
 use std::sync::Arc;
 
-/// What a game is shown for.
+/// The moment at which a watch is called.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Moment {
-    /// A decision is open, and nothing has been asked or done in it.
+    /// A decision is open; no input has been given in it yet.
     Decision,
-    /// The episode has ended at the decision that was shown last: the game is over, or was cut off.
+    /// The episode has ended at the last decision: the game is over or was cut off.
     End,
 }
 
-/// Sees one game from its start on, decision by decision. It is dropped without an end where the game is given up.
+/// Receives one game from its start on, decision by decision. Dropped without an end if the game is
+/// abandoned.
 pub type Watch = Box<dyn FnMut(&mut Contest, Moment) + Send>;
 
-/// Who sees the game of a number, if anybody does. Numbers count up game by game and episode by episode.
+/// Creates the watch for the game with a number, if it is to be watched. Numbers count up game by
+/// game and episode by episode.
 pub type Watches = Arc<dyn Fn(u64) -> Option<Watch> + Send + Sync>;

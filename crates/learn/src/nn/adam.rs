@@ -1,17 +1,17 @@
-//! Adam (Kingma and Ba, ICLR 2015), with the gradient's norm limited.
+//! Adam (Kingma and Ba, ICLR 2015), with gradient norm clipping.
 
 use serde::{Deserialize, Serialize};
 
-/// How Adam goes.
+/// Settings of Adam.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AdamSettings {
-    /// Decay of the mean of gradients.
+    /// Decay of the gradients' mean.
     pub beta_1: f32,
-    /// Decay of the mean of their squares.
+    /// Decay of the squared gradients' mean.
     pub beta_2: f32,
-    /// Added to the root of that.
+    /// Added to the square root of that mean.
     pub epsilon: f32,
-    /// A longer gradient is made as long as this; none: as it is.
+    /// Maximum gradient norm, to which longer gradients are scaled; none: unlimited.
     pub norm_max: Option<f32>,
 }
 
@@ -32,13 +32,13 @@ pub struct Adam {
 }
 
 impl Adam {
-    /// For so many parameters.
+    /// An optimiser for this many parameters.
     #[must_use]
     pub fn new(parameters: usize, settings: AdamSettings) -> Adam {
         Adam { settings, powers: (1.0, 1.0), mean: vec![0.0; parameters], square: vec![0.0; parameters] }
     }
 
-    /// Takes one step against a gradient; gives the gradient's norm before it was limited.
+    /// Takes one step against a gradient. Returns the gradient's norm before clipping.
     pub fn step(&mut self, parameters: &mut [f32], gradient: &[f32], learning_rate: f32) -> f32 {
         let AdamSettings { beta_1, beta_2, epsilon, norm_max } = self.settings;
         let norm = gradient.iter().map(|number| f64::from(*number) * f64::from(*number)).sum::<f64>().sqrt() as f32;

@@ -1,7 +1,8 @@
 //! Small neural networks: plain layers, their gradients, and Adam.
 //!
-//! Everything is single precision and the same to the bit on any number of threads: rows are worked on in shards of a fixed size, and
-//! what shards add up to is summed in their order. Matrices are multiplied by nalgebra.
+//! Everything is single precision with the same bits for any number of threads: rows are processed
+//! in shards of a fixed size, and the shards' results are summed in order. Matrices are multiplied
+//! by nalgebra.
 
 mod adam;
 mod model;
@@ -10,5 +11,5 @@ mod perceptron;
 pub use adam::{Adam, AdamSettings};
 pub use perceptron::{Perceptron, Trace};
 
-/// Rows of a shard.
+/// Rows per shard.
 pub const SHARD: usize = 256;

@@ -13,7 +13,7 @@ impl Perceptron {
         self.file(output, None, metadata)
     }
 
-    /// The same with the hyperbolic tangent of every output.
+    /// The same with the hyperbolic tangent applied to every output.
     ///
     /// # Errors
     /// [`NetworkError`], if a weight is not finite.
@@ -45,7 +45,7 @@ impl Perceptron {
     fn onnx_layer(&self, i: usize) -> Layer {
         let (inputs, outputs) = (self.sizes()[i], self.sizes()[i + 1]);
         let (weights, biases) = self.layer(i);
-        // Ours stand by input, those of a file by output.
+        // Squall stores weights by input, ONNX files by output.
         let turned = (0..outputs).flat_map(|to| (0..inputs).map(move |from| weights[from * outputs + to]));
         Layer { inputs, outputs, weights: turned.collect(), biases: biases.to_vec() }
     }

@@ -1,4 +1,4 @@
-//! A multilayer perceptron: layers of weights with the hyperbolic tangent between them, none after the last.
+//! A multilayer perceptron: layers of weights with the hyperbolic tangent after all but the last.
 
 use nalgebra::{DMatrixView, DMatrixViewMut};
 use onnx::tanh;
@@ -8,27 +8,27 @@ use serde::{Deserialize, Serialize};
 /// A multilayer perceptron.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Perceptron {
-    /// Numbers of a row: of the input, of each hidden layer, of the output.
+    /// Row sizes: of the input, of each hidden layer, of the output.
     sizes: Vec<usize>,
-    /// Layer by layer: for each input its weight to every output, then the biases.
+    /// Layer by layer: for each input its weights to all outputs, then the biases.
     parameters: Vec<f32>,
 }
 
-/// What a forward pass leaves for the backward one: every layer's rows, the input first.
+/// The forward pass's data for the backward pass: every layer's rows, the input first.
 #[derive(Clone, Debug, Default)]
 pub struct Trace {
     layers: Vec<Vec<f32>>,
 }
 
 impl Trace {
-    /// The output, rows × numbers.
+    /// The output, rows × values.
     #[must_use]
     pub fn output(&self) -> &[f32] {
         self.layers.last().map_or(&[], Vec::as_slice)
     }
 }
 
-/// Where a layer's numbers stand.
+/// The indices of a layer's parameters.
 #[derive(Clone, Copy)]
 struct Layer {
     inputs: usize,
@@ -39,8 +39,8 @@ struct Layer {
 }
 
 impl Perceptron {
-    /// Random weights: orthogonal with a gain of √2, and of `output_gain` in the last layer; biases of 0 (as PPO does: Andrychowicz
-    /// and others, ICLR 2021).
+    /// Random weights: orthogonal with a gain of √2, and of `output_gain` in the last layer; zero
+    /// biases (as in PPO: Andrychowicz and others, ICLR 2021).
     ///
     /// # Panics
     /// With fewer than two sizes, or a size of 0.
@@ -59,7 +59,7 @@ impl Perceptron {
         network
     }
 
-    /// Numbers of a row of each layer, the input first.
+    /// Row size of each layer, the input first.
     #[must_use]
     pub fn sizes(&self) -> &[usize] {
         &self.sizes
@@ -71,7 +71,7 @@ impl Perceptron {
         &self.parameters
     }
 
-    /// The same, to change.
+    /// All weights and biases, mutable.
     pub fn parameters_mut(&mut self) -> &mut [f32] {
         &mut self.parameters
     }
@@ -94,7 +94,8 @@ impl Perceptron {
         })
     }
 
-    /// The output for every row of `input`, rows × numbers, and what the backward pass needs, in memory that is used again.
+    /// Computes the output for every row of `input`, rows × values, and the backward pass's data,
+    /// in reused memory.
     pub fn forward(&self, input: &[f32], trace: &mut Trace) {
         let rows = input.len() / self.sizes[0];
         debug_assert_eq!(input.len(), rows * self.sizes[0]);
@@ -108,22 +109,23 @@ impl Perceptron {
             let biases = &self.parameters[layer.biases..layer.end];
             after.clear();
             (0..rows).for_each(|_| after.extend_from_slice(biases));
-            // Rows lie one after the other, so that to a library of columns every matrix is its transpose.
+            // Rows are stored consecutively, so a column-major library sees the transpose of every
+            // matrix.
             let weights = columns(&self.parameters[layer.weights..layer.biases], layer.outputs, layer.inputs);
-            // For nets of a few hundred units this is faster than JAX, torch, burn and candle,
-            // all measured for one update of PPO.
+            // For nets of a few hundred units this is faster than JAX, torch, burn and candle, each
+            // measured for one update of PPO.
             columns_mut(after, layer.outputs, rows).gemm(1.0, &weights, &columns(before, layer.inputs, rows), 1.0);
             if i < last {
-                // The hyperbolic tangent of the evaluator of models, a rational function:
-                // libm's would take most of the time, and a policy must be on the boat what it
-                // was in training.
+                // The rational hyperbolic tangent of the model evaluator: libm's would take most of
+                // the time, and a policy must compute the same on the boat as in training.
                 after.iter_mut().for_each(|number| *number = tanh(*number));
             }
         }
     }
 
-    /// Adds the gradient of a loss by all parameters to `gradient`, given that by every output, rows × numbers, which is used up. Gives
-    /// that by every input where it is asked for.
+    /// Adds the gradient of a loss with respect to all parameters to `gradient`, given the gradient
+    /// with respect to every output, rows × values, which is overwritten. Returns the gradient with
+    /// respect to every input on request.
     pub fn backward(
         &self,
         trace: &Trace,
@@ -141,8 +143,8 @@ impl Perceptron {
                 biases.iter_mut().zip(row).for_each(|(sum, number)| *sum += number);
             }
             let by = columns(by_output, layer.outputs, rows);
-            // A copy and no view with strides: nalgebra 0.35's product of such a view with a
-            // matrix of five rows or fewer wrote beyond the end of the result.
+            // A copy, not a strided view: nalgebra 0.35's product of such a view with a matrix of
+            // five rows or fewer wrote beyond the end of the result.
             let turned = transposed(before, layer.inputs);
             columns_mut(weights, layer.outputs, layer.inputs).gemm(
                 1.0,
@@ -175,7 +177,7 @@ impl Perceptron {
     }
 }
 
-/// A matrix whose columns lie one after the other.
+/// A matrix stored column by column.
 fn columns(numbers: &[f32], height: usize, width: usize) -> DMatrixView<'_, f32> {
     DMatrixView::from_slice(numbers, height, width)
 }
@@ -184,7 +186,7 @@ fn columns_mut(numbers: &mut [f32], height: usize, width: usize) -> DMatrixViewM
     DMatrixViewMut::from_slice(numbers, height, width)
 }
 
-/// Numbers that lie row by row, column by column.
+/// Converts row-major numbers to column-major.
 fn transposed(numbers: &[f32], width: usize) -> Vec<f32> {
     let height = numbers.len() / width;
     let mut turned = vec![0.0; numbers.len()];
@@ -194,8 +196,8 @@ fn transposed(numbers: &[f32], width: usize) -> Vec<f32> {
     turned
 }
 
-/// A random matrix, row by row, whose rows or columns, whichever are shorter in number, are orthonormal: Gram and Schmidt's process
-/// on normal numbers.
+/// A random matrix, row-major, with orthonormal rows or columns, whichever are fewer: the
+/// Gram-Schmidt process on normal numbers.
 fn orthogonal(rows: usize, columns: usize, stream: &mut Stream) -> Vec<f64> {
     let (count, length) = (rows.min(columns), rows.max(columns));
     let mut vectors: Vec<Vec<f64>> = Vec::with_capacity(count);

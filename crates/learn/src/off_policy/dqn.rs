@@ -1,5 +1,6 @@
-//! Double DQN (van Hasselt, Guez and Silver, AAAI 2016): a network that says what each discrete action is worth, and one that it was,
-//! which says it of the action that the newer one would choose next.
+//! Double DQN (van Hasselt, Guez and Silver, AAAI 2016): a network that estimates the value of each
+//! discrete action, and a target network that evaluates the action that the newer one would choose
+//! next.
 
 use super::{Minibatch, Replay, Slope};
 use crate::nn::{Adam, AdamSettings, Perceptron, SHARD, Trace};
@@ -9,24 +10,26 @@ use primitives::stream::Stream;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// A network with its target and its optimiser: all that learning goes on from, but for the replay buffer.
+/// A network with its target and its optimiser: the whole learning state, except for the replay
+/// buffer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DqnLearner {
-    /// From an observation to what the rest of the episode is worth after each action, in the units of scaled rewards.
+    /// From an observation to the value of the rest of the episode after each action, in the units
+    /// of scaled rewards.
     pub network: Perceptron,
-    /// What the network was.
+    /// The target network.
     pub target: Perceptron,
     optimiser: Adam,
-    /// Steps of the optimiser.
+    /// Number of optimiser steps.
     steps: u64,
 }
 
 impl DqnLearner {
-    /// A new network over this many actions that is shown this many numbers.
+    /// A new network with these numbers of inputs and actions.
     #[must_use]
     pub fn new(observation: usize, hidden: &[usize], actions: usize, seed: u64) -> DqnLearner {
         let sizes = [&[observation], hidden, &[actions]].concat();
-        // With the hyperbolic tangent between layers, as all networks here and unlike the
+        // With the hyperbolic tangent between layers, like all networks here and unlike the
         // paper's: boats evaluate no other.
         let network = Perceptron::new(&sizes, 0.01, &mut Stream::new(seed, "actor"));
         let settings = AdamSettings { epsilon: 1e-8, norm_max: Some(10.0), ..AdamSettings::default() };
@@ -34,13 +37,13 @@ impl DqnLearner {
         DqnLearner { target: network.clone(), network, optimiser, steps: 0 }
     }
 
-    /// One step of the optimiser from transitions that are drawn from a buffer, on the threads of the pool that it is called in. Gives
+    /// One optimiser step on transitions drawn from a buffer, in the calling thread pool. Returns
     /// the loss.
     pub fn update(&mut self, replay: &Replay<u16>, settings: &Dqn, stream: &mut Stream) -> f32 {
         self.step(&replay.draw(settings.minibatch, stream), settings)
     }
 
-    /// One step of the optimiser from given transitions. Gives the loss.
+    /// One optimiser step on the given transitions. Returns the loss.
     pub fn step(&mut self, minibatch: &Minibatch<u16>, settings: &Dqn) -> f32 {
         let (gradient, loss) = self.gradient(minibatch, settings);
         self.optimiser.step(self.network.parameters_mut(), &gradient, settings.learning_rate);
@@ -51,8 +54,8 @@ impl DqnLearner {
         loss
     }
 
-    /// The gradient of the loss by the network's parameters, and the loss: the mean of Huber's function, with the limit 1, of what was
-    /// not expected.
+    /// The gradient of the loss with respect to the network's parameters, and the loss: the mean
+    /// Huber loss, with the limit 1, of the temporal-difference errors.
     #[must_use]
     pub fn gradient(&self, minibatch: &Minibatch<u16>, settings: &Dqn) -> (Vec<f32>, f32) {
         let size = self.network.sizes()[0];
@@ -67,7 +70,7 @@ impl DqnLearner {
         (slope.gradient, slope.loss)
     }
 
-    /// What the transitions of a shard, from the first one on, add to the gradient.
+    /// The contribution of a shard to the gradient, from its first transition on.
     fn shard(
         &self,
         minibatch: &Minibatch<u16>,
@@ -99,13 +102,13 @@ impl DqnLearner {
     }
 }
 
-/// Half the square up to 1, and a straight line beyond.
+/// The Huber loss: half the square up to 1, and a straight line beyond.
 fn huber(off: f32) -> f32 {
     let size = off.abs();
     if size <= 1.0 { 0.5 * off * off } else { size - 0.5 }
 }
 
-/// The action that is worth most or, in a share of all draws, any one.
+/// The action with the greatest value or, with probability `epsilon`, a random one.
 pub fn explored(values: &[f32], epsilon: f32, stream: &mut Stream) -> usize {
     if stream.unit() < f64::from(epsilon) { stream.below(values.len() as u64) as usize } else { likeliest(values) }
 }

@@ -1,7 +1,8 @@
-//! Off-policy algorithms: a policy learns from transitions of a replay buffer, whatever policy they come from.
+//! Off-policy algorithms: a policy learns from transitions of a replay buffer, which any policy may
+//! have produced.
 //!
-//! As in PPO, rows are worked on in shards of a fixed size whose gradients are summed in their order, so that what is learnt is the same
-//! to the bit on any number of threads.
+//! As in PPO, rows are processed in shards of a fixed size whose gradients are summed in order, so
+//! that training gives the same bits for any number of threads.
 
 pub mod dqn;
 mod replay;

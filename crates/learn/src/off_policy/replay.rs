@@ -6,27 +6,28 @@ use serde::{Deserialize, Serialize};
 /// One step of one boat.
 #[derive(Clone, Copy, Debug)]
 pub struct Transition<'a, A> {
-    /// What the policy was shown.
+    /// The observation before the step.
     pub observation: &'a [f32],
-    /// What was chosen.
+    /// The chosen action.
     pub action: A,
-    /// What the step was worth.
+    /// The reward.
     pub reward: f32,
-    /// What it was shown after the step; after the last step of an episode, the last state of that episode.
+    /// The observation after the step; after the last step of an episode, that of its last state.
     pub next_observation: &'a [f32],
-    /// Whether the game was over after the step: nothing more is to be expected then.
+    /// Whether the game was over after the step, so that no further reward follows.
     pub over: bool,
-    /// Whether the boat did what was chosen. Of other transitions only values are learnt: a tagged boat is steered home.
+    /// Whether the boat followed the action. From other transitions only values are learnt: a
+    /// tagged boat is steered home.
     pub counts: bool,
 }
 
-/// The newest transitions, so many at most.
+/// The newest transitions, up to a capacity.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Replay<A> {
-    /// Numbers of an observation.
+    /// Number of values per observation.
     size: usize,
     capacity: usize,
-    /// Where the next transition goes once the buffer is full: the place of the oldest.
+    /// The index for the next transition in a full buffer: that of the oldest.
     oldest: usize,
     observations: Vec<f32>,
     next_observations: Vec<f32>,
@@ -36,32 +37,32 @@ pub struct Replay<A> {
     counts: Vec<bool>,
 }
 
-/// Transitions drawn from a buffer, each list by transition.
+/// Transitions drawn from a buffer, one entry of each list per transition.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Minibatch<A> {
-    /// What the policy was shown, transitions × numbers.
+    /// The observations before the step, transitions × values.
     pub observations: Vec<f32>,
-    /// What was chosen.
+    /// The chosen actions.
     pub actions: Vec<A>,
-    /// What the step was worth.
+    /// The rewards.
     pub rewards: Vec<f32>,
-    /// What the policy was shown after the step, transitions × numbers.
+    /// The observations after the step, transitions × values.
     pub next_observations: Vec<f32>,
-    /// Whether the game was over then.
+    /// Whether the game was over.
     pub over: Vec<bool>,
-    /// Whether the boat did what was chosen.
+    /// Whether the boat followed the action.
     pub counts: Vec<bool>,
 }
 
 impl<A: Copy> Replay<A> {
-    /// An empty buffer for so many transitions with observations of so many numbers.
+    /// An empty buffer for `capacity` transitions with observations of `size` values.
     ///
     /// # Panics
     /// If either is 0.
     #[must_use]
     pub fn new(size: usize, capacity: usize) -> Replay<A> {
-        // Part of the state that a training is resumed from, some 100 MB by default: to fill it
-        // again by playing would take the games themselves back.
+        // Part of a training's saved state, some 100 MB by default: refilling it by playing would
+        // require the earlier state of the games themselves.
         assert!(size > 0 && capacity > 0, "{size}, {capacity}");
         Replay {
             size,
@@ -76,24 +77,24 @@ impl<A: Copy> Replay<A> {
         }
     }
 
-    /// How many transitions there are.
+    /// The number of transitions.
     #[must_use]
     pub fn len(&self) -> usize {
         self.rewards.len()
     }
 
-    /// Whether there is none.
+    /// Whether it has no transitions.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.rewards.is_empty()
     }
 
-    /// Forgets all transitions.
+    /// Removes all transitions.
     pub fn clear(&mut self) {
         *self = Replay::new(self.size, self.capacity);
     }
 
-    /// Keeps a transition, in place of the oldest if the buffer is full.
+    /// Stores a transition, replacing the oldest if the buffer is full.
     ///
     /// # Panics
     /// If an observation has another size.
@@ -118,10 +119,10 @@ impl<A: Copy> Replay<A> {
         (self.over[i], self.counts[i]) = (over, counts);
     }
 
-    /// Draws so many transitions, each of all alike and with replacement.
+    /// Draws transitions uniformly with replacement.
     ///
     /// # Panics
-    /// If there is none.
+    /// If the buffer is empty.
     pub fn draw(&self, count: usize, stream: &mut Stream) -> Minibatch<A> {
         let drawn: Vec<usize> = (0..count).map(|_| stream.below(self.len() as u64) as usize).collect();
         let rows = |from: &[f32]| -> Vec<f32> {
@@ -141,13 +142,13 @@ impl<A: Copy> Replay<A> {
 }
 
 impl<A> Minibatch<A> {
-    /// How many transitions there are.
+    /// The number of transitions.
     #[must_use]
     pub fn len(&self) -> usize {
         self.rewards.len()
     }
 
-    /// Whether there is none.
+    /// Whether it has no transitions.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.rewards.is_empty()

@@ -1,5 +1,5 @@
-//! TD3, the twin delayed deep deterministic policy gradient (Fujimoto, van Hoof and Meger, ICML 2018): a policy of continuous actions, and
-//! two critics that say what actions are worth.
+//! TD3, the twin delayed deep deterministic policy gradient (Fujimoto, van Hoof and Meger, ICML
+//! 2018): a policy with continuous actions, and two critics that estimate the value of actions.
 
 use super::{Minibatch, Replay, Slope};
 use crate::nn::{Adam, AdamSettings, Perceptron, SHARD, Trace};
@@ -9,40 +9,43 @@ use primitives::stream::Stream;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// Numbers of an action.
+/// Dimension of an action.
 pub const NUMBERS: usize = 2;
 
-/// An action: numbers from -1 to 1.
+/// An action, each component from -1 to 1.
 pub type Numbers = [f32; NUMBERS];
 
-/// A policy and its critics, with their targets and optimisers: all that learning goes on from, but for the replay buffer.
+/// A policy and its critics, with their targets and optimisers: the whole learning state, except
+/// for the replay buffer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Td3Learner {
     /// From an observation to numbers whose hyperbolic tangents are the action.
     pub actor: Perceptron,
-    /// From an observation and an action to what the rest of the episode is worth, in the units of scaled rewards.
+    /// From an observation and an action to the value of the rest of the episode, in the units of
+    /// scaled rewards.
     pub critics: [Perceptron; 2],
-    /// What the policy was, slowly following it.
+    /// The target policy, which slowly follows the policy.
     pub target_actor: Perceptron,
-    /// What the critics were.
+    /// The target critics.
     pub target_critics: [Perceptron; 2],
     actor_optimiser: Adam,
     critic_optimisers: [Adam; 2],
-    /// Steps of the critics' optimisers.
+    /// Number of steps of the critics' optimisers.
     steps: u64,
 }
 
-/// What one step of the optimisers was like.
+/// The losses of one optimiser step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Td3Losses {
-    /// Half the mean square of what the critics did not expect, in the mean of both.
+    /// Half the mean squared error of the critics, averaged over both.
     pub critic: f32,
-    /// Less what the first critic says that the policy's actions are worth, in the mean; none in a step without the policy.
+    /// The negative mean value of the policy's actions according to the first critic; none in a
+    /// step without the policy.
     pub actor: Option<f32>,
 }
 
 impl Td3Learner {
-    /// A new policy that is shown this many numbers.
+    /// A new policy with this number of inputs.
     #[must_use]
     pub fn new(observation: usize, hidden: &[usize], seed: u64) -> Td3Learner {
         let sizes = |from: usize, to: usize| [&[from], hidden, &[to]].concat();
@@ -50,7 +53,7 @@ impl Td3Learner {
         let critic = |name| Perceptron::new(&sizes(observation + NUMBERS, 1), 1.0, &mut Stream::new(seed, name));
         let critics = ["critic/one", "critic/two"].map(critic);
         let optimiser = |network: &Perceptron| {
-            // As the authors have it: gradients are taken as long as they are.
+            // As in the paper: no gradient clipping.
             let settings = AdamSettings { epsilon: 1e-8, norm_max: None, ..AdamSettings::default() };
             Adam::new(network.parameters().len(), settings)
         };
@@ -65,7 +68,7 @@ impl Td3Learner {
         }
     }
 
-    /// One step of the optimisers from transitions that are drawn from a buffer, on the threads of the pool that it is called in.
+    /// One optimiser step on transitions drawn from a buffer, in the calling thread pool.
     pub fn update(&mut self, replay: &Replay<Numbers>, settings: &Td3, stream: &mut Stream) -> Td3Losses {
         let minibatch = replay.draw(settings.minibatch, stream);
         let noise: Vec<Numbers> =
@@ -73,10 +76,11 @@ impl Td3Learner {
         self.step(&minibatch, &noise, settings)
     }
 
-    /// One step of the optimisers from given transitions, with given noise on the target policy's actions.
+    /// One optimiser step on the given transitions, with the given noise on the target policy's
+    /// actions.
     ///
     /// # Panics
-    /// If there is not one pair of numbers of noise for each transition.
+    /// If there is not one pair of noise values for each transition.
     pub fn step(&mut self, minibatch: &Minibatch<Numbers>, noise: &[Numbers], settings: &Td3) -> Td3Losses {
         assert_eq!(minibatch.len(), noise.len());
         let targets = self.targets(minibatch, noise, settings);
@@ -100,7 +104,8 @@ impl Td3Learner {
         Td3Losses { critic, actor: Some(actor) }
     }
 
-    /// What each step is worth by its reward and the smaller of what the target critics say of a noisy action of the target policy.
+    /// The target value of each step: its reward plus the smaller of the target critics' values of
+    /// a noisy action of the target policy.
     fn targets(&self, minibatch: &Minibatch<Numbers>, noise: &[Numbers], settings: &Td3) -> Vec<f32> {
         let size = self.actor.sizes()[0];
         let of_shard = |(first, rows): (usize, &[f32])| -> Vec<f32> {
@@ -131,7 +136,8 @@ impl Td3Learner {
         shards.concat()
     }
 
-    /// Half the mean square of what a critic did not expect, and its gradient by the critic's parameters.
+    /// Half the mean squared error of a critic, and its gradient with respect to the critic's
+    /// parameters.
     fn critic_slope(&self, which: usize, minibatch: &Minibatch<Numbers>, targets: &[f32]) -> Slope {
         let (critic, size) = (&self.critics[which], self.actor.sizes()[0]);
         let per_row = 1.0 / minibatch.len() as f32;
@@ -154,8 +160,9 @@ impl Td3Learner {
         Slope::sum(shards.map(of_shard).collect::<Vec<Slope>>())
     }
 
-    /// The gradient, by the policy's parameters, of less than what the first critic says that its actions are worth, in the mean over the
-    /// transitions in which boats did what was chosen; and that loss.
+    /// The gradient, with respect to the policy's parameters, of the negative mean value of its
+    /// actions according to the first critic, over the transitions in which boats followed the
+    /// action; and that loss.
     #[must_use]
     pub fn actor_gradient(&self, minibatch: &Minibatch<Numbers>) -> (Vec<f32>, f32) {
         let (critic, size) = (&self.critics[0], self.actor.sizes()[0]);
@@ -188,28 +195,28 @@ impl Td3Learner {
     }
 }
 
-/// The action that a policy's output makes.
+/// Converts a policy's output to an action.
 #[must_use]
 pub fn action(output: &[f32]) -> Numbers {
     std::array::from_fn(|i| tanh(output[i]))
 }
 
-/// An action with noise, as it is played.
+/// An action with exploration noise.
 pub fn explored(action: Numbers, deviation: f32, stream: &mut Stream) -> Numbers {
     action.map(|number| (number + deviation * stream.normal() as f32).clamp(-1.0, 1.0))
 }
 
-/// An action that is drawn uniformly.
+/// A uniformly random action.
 pub fn drawn(stream: &mut Stream) -> Numbers {
     [0; NUMBERS].map(|_| stream.between(-1.0, 1.0) as f32)
 }
 
-/// Noise on a number of the target policy's action, of a normal number.
+/// Noise on a component of the target policy's action, from a standard normal number.
 fn smoothing(settings: &Td3, normal: f64) -> f32 {
     (settings.smoothing * normal as f32).clamp(-settings.smoothing_max, settings.smoothing_max)
 }
 
-/// Rows of observations, each with its action behind it.
+/// Rows of observations, each followed by its action.
 fn with_actions(observations: &[f32], actions: &[Numbers], size: usize) -> Vec<f32> {
     let mut rows = Vec::with_capacity(actions.len() * (size + NUMBERS));
     for (observation, action) in observations.chunks_exact(size).zip(actions) {
@@ -219,7 +226,7 @@ fn with_actions(observations: &[f32], actions: &[Numbers], size: usize) -> Vec<f
     rows
 }
 
-/// Takes a network a share of the way to another.
+/// Moves a network by a share of the way to another.
 fn approach(target: &mut Perceptron, network: &Perceptron, share: f32) {
     let numbers = target.parameters_mut().iter_mut().zip(network.parameters());
     numbers.for_each(|(target, number)| *target += share * (number - *target));

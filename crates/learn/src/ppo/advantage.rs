@@ -1,23 +1,24 @@
-//! Advantages: how much better a step came out than was expected (generalised advantage estimation, Schulman and others, ICLR 2016).
+//! Advantages: how much better than expected a step turned out (generalised advantage estimation,
+//! Schulman and others, ICLR 2016).
 
-/// What is needed of a row's steps, each slice steps × rows.
+/// The data of rows of steps, each slice steps × rows.
 #[derive(Clone, Copy, Debug)]
 pub struct Steps<'a> {
-    /// How many rows there are.
+    /// The number of rows.
     pub rows: usize,
-    /// What each step was worth.
+    /// The reward of each step.
     pub rewards: &'a [f32],
-    /// What was expected before each step.
+    /// The expected value before each step.
     pub values: &'a [f32],
-    /// What is expected after each step: after the last of an episode that was cut off, of its last state.
+    /// The expected value after each step; if the step cut an episode off, that of its last state.
     pub next_values: &'a [f32],
-    /// Whether the game was over after the step: nothing is expected then.
+    /// Whether the game was over after the step, with an expected value of 0.
     pub over: &'a [bool],
-    /// Whether the episode ended with the step: what comes next is another one.
+    /// Whether the episode ended with the step, so that the next step belongs to another one.
     pub ended: &'a [bool],
 }
 
-/// The advantage of every step, steps × rows: with the values the returns to learn.
+/// The advantage of every step, steps × rows; plus the values they are the returns to learn.
 #[must_use]
 pub fn advantages(steps: Steps<'_>, discount: f32, lambda: f32) -> Vec<f32> {
     let Steps { rows, rewards, values, next_values, over, ended } = steps;
@@ -40,7 +41,8 @@ mod tests {
 
     #[test]
     fn they_are_the_weighted_sums_of_all_later_surprises() {
-        // Two rows of six steps; the first ends by its rules after the third, the second is cut off after the fourth.
+        // Two rows of six steps; in the first the game is over after the third, the second is cut
+        // off after the fourth.
         let (rows, count) = (2, 6);
         let number = |i: usize| (0.37 * i as f32).fract() - 0.4;
         let rewards: Vec<f32> = (0..rows * count).map(number).collect();

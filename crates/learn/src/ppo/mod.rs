@@ -1,5 +1,5 @@
-//! Proximal policy optimisation (Schulman and others, arXiv 1707.06347): the update of a policy and of what it expects, from what it
-//! did.
+//! Proximal policy optimisation (Schulman and others, arXiv 1707.06347): updates a policy and its
+//! value estimates from played samples.
 
 mod advantage;
 pub mod choice;
@@ -13,20 +13,21 @@ use primitives::stream::Stream;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// A policy and what it expects, with their optimisers: all that a run goes on from.
+/// A policy and its critic, with their optimisers: the whole learning state.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ActorCritic {
     /// From an observation to the logit of each action.
     pub actor: Perceptron,
-    /// From a state, or the observation, to what the rest of the episode is worth, in the units of [`ActorCritic::scale`].
+    /// From a state, or the observation, to the value of the rest of the episode, in the units of
+    /// [`ActorCritic::scale`].
     pub critic: Perceptron,
-    /// What values are multiplied with: the standard deviation of returns.
+    /// The unit of values: the standard deviation of returns.
     pub scale: Scale,
     actor_optimiser: Adam,
     critic_optimiser: Adam,
 }
 
-/// The size of returns, as seen so far.
+/// The observed scale of returns.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scale {
     count: f64,
@@ -35,13 +36,13 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// The standard deviation; 1 before anything was seen.
+    /// The standard deviation; 1 before any returns.
     #[must_use]
     pub fn deviation(&self) -> f32 {
         if self.count < 2.0 { 1.0 } else { (self.squares / self.count).sqrt().max(1e-3) as f32 }
     }
 
-    /// Takes returns in; those long ago count less.
+    /// Adds returns; older ones count less.
     fn see(&mut self, returns: &[f32]) {
         const MEMORY: f64 = 1e6;
         let forget = (MEMORY / (self.count + returns.len() as f64)).min(1.0);
@@ -55,55 +56,57 @@ impl Scale {
     }
 }
 
-/// Samples, each slice by sample.
+/// Samples, one entry of each slice per sample.
 #[derive(Clone, Copy, Debug)]
 pub struct Batch<'a> {
-    /// What the policy was shown, samples × numbers.
+    /// The policy's observations, samples × values.
     pub observations: &'a [f32],
-    /// What the critic was shown, samples × numbers.
+    /// The critic's inputs, samples × values.
     pub states: &'a [f32],
-    /// What was done.
+    /// The chosen actions.
     pub actions: &'a [u16],
-    /// The logarithm of its probability then.
+    /// The log probabilities of the actions when chosen.
     pub log_probabilities: &'a [f32],
-    /// How much better it came out than was expected.
+    /// The advantages.
     pub advantages: &'a [f32],
-    /// What is to be expected.
+    /// The returns to learn.
     pub returns: &'a [f32],
-    /// What is learnt from them.
+    /// The learning objective.
     pub lesson: Lesson,
-    /// Whether the boat did what was chosen. Of other samples only the critic learns: it has to know what a tagged boat can expect.
+    /// Whether the boat followed the action. From other samples only the critic learns: it must
+    /// know the value of being tagged.
     pub counts: &'a [bool],
 }
 
-/// What a policy learns from samples.
+/// A policy's learning objective.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lesson {
-    /// To do more often what came out better than was expected, within limits: PPO.
+    /// To repeat what turned out better than expected, within limits: PPO.
     Reinforcement,
-    /// To do what was done, whatever came of it: behaviour cloning, by the cross-entropy.
+    /// To repeat the sampled actions whatever their result: behaviour cloning, by the
+    /// cross-entropy.
     Imitation,
 }
 
-/// What an update was like, in the mean over its samples.
+/// Statistics of an update, averaged over its samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Statistics {
     /// The loss of the policy.
     pub policy_loss: f32,
-    /// Half the mean square of what was not expected, in units of the scale.
+    /// Half the mean squared error of the critic, in units of the scale.
     pub value_loss: f32,
     /// Entropy of the policy, nats.
     pub entropy: f32,
-    /// How different the policy has become, nats.
+    /// Divergence of the new policy from the old one, nats.
     pub divergence: f32,
     /// The share of samples that were clipped.
     pub clipped: f32,
-    /// How many times the samples were gone through.
+    /// Number of epochs.
     pub epochs: f32,
 }
 
 impl ActorCritic {
-    /// A new policy over this many actions that is shown this many numbers, and a critic that is shown these.
+    /// A new policy with these numbers of inputs and actions, and a critic with `state` inputs.
     #[must_use]
     pub fn new(observation: usize, state: usize, hidden: &[usize], actions: usize, seed: u64) -> ActorCritic {
         let sizes = |from: usize, to: usize| [&[from], hidden, &[to]].concat();
@@ -118,10 +121,10 @@ impl ActorCritic {
         }
     }
 
-    /// Learns from samples, on the threads of the pool that it is called in; `stream` shuffles them.
+    /// Learns from samples, in the calling thread pool; `stream` shuffles them.
     ///
     /// # Panics
-    /// If the slices are not of as many samples as there are actions.
+    /// If a slice does not match the number of actions.
     pub fn update(&mut self, batch: &Batch<'_>, settings: &Ppo, rate: f32, stream: &mut Stream) -> Statistics {
         let count = batch.actions.len();
         let (observation, state) = (self.actor.sizes()[0], self.critic.sizes()[0]);
@@ -162,8 +165,7 @@ impl ActorCritic {
         let samples = (counted().count(), minibatch.len());
         let advantages = Normal::of(counted().map(|i| batch.advantages[i]));
         let of_shard = |shard: &[u32]| self.shard(batch, shard, samples, advantages, settings);
-        // Shards of a fixed size, summed in their order: the same bits on any number of
-        // threads.
+        // Shards of a fixed size, summed in order: the same bits for any number of threads.
         let shards: Vec<Shard> = minibatch.par_chunks(SHARD).map(of_shard).collect();
         let mut shards = shards.into_iter();
         let Some(mut all) = shards.next() else { return Sums::default() };
@@ -177,7 +179,7 @@ impl ActorCritic {
         all.sums
     }
 
-    /// The gradients of a shard's part of the mean loss.
+    /// A shard's contribution to the gradients of the mean loss.
     fn shard(
         &self,
         batch: &Batch<'_>,
@@ -199,10 +201,10 @@ impl ActorCritic {
         let of_rows = shard.iter().zip(trace.output().chunks_exact(actions)).zip(by_logits.chunks_exact_mut(actions));
         for ((i, logits), by) in of_rows {
             let i = *i as usize;
-            // Of what a tagged boat was told nothing depends; policies that learnt from that
-            // too sailed out to sea. The critic does learn from it: as long as it did not, it
-            // expected nothing sensible of being tagged, and policies that won 16 games of 20
-            // against Pav01 won none after another half a million samples.
+            // A tagged boat's actions have no effect; policies that also learnt from them drove out
+            // to sea. The critic does learn from these samples: before it did, its values of being
+            // tagged were meaningless, and policies that won 16 games of 20 against Pav01 won none
+            // after another half a million samples.
             if !batch.counts[i] {
                 continue;
             }
@@ -211,8 +213,8 @@ impl ActorCritic {
             let (action, was) = (usize::from(batch.actions[i]), batch.log_probabilities[i]);
             match batch.lesson {
                 Lesson::Reinforcement => policy_gradient(&logs, action, (was, advantage), settings, by, &mut sums),
-                // Learning from nothing reached in a million samples what a hundred thousand of
-                // imitation give.
+                // Without imitation, a million samples did not reach the level of a hundred
+                // thousand samples of imitation.
                 Lesson::Imitation => imitation_gradient(&logs, action, by, &mut sums),
             }
             by.iter_mut().for_each(|number| *number *= per_counted);
@@ -221,7 +223,8 @@ impl ActorCritic {
         self.actor.backward(&trace, &mut by_logits, &mut actor, None);
         self.critic.forward(&rows(batch.states, self.critic.sizes()[0]), &mut trace);
         let deviation = self.scale.deviation();
-        // In standard deviations of returns: rewards of any size are learnt at Adam's pace.
+        // In standard deviations of returns, so that rewards of any scale are learnt at Adam's
+        // pace.
         let off = |(i, value): (&u32, &f32)| value - batch.returns[*i as usize] / deviation;
         let mut by_values: Vec<f32> = shard.iter().zip(trace.output()).map(off).collect();
         sums.value = by_values.iter().map(|off| 0.5 * off * off).sum();
@@ -232,7 +235,7 @@ impl ActorCritic {
     }
 }
 
-/// What a shard adds.
+/// A shard's contribution.
 struct Shard {
     actor: Vec<f32>,
     critic: Vec<f32>,
@@ -279,7 +282,8 @@ impl Normal {
     }
 }
 
-/// The gradient of a sample's loss by its logits: that of the clipped objective less the entropy's worth.
+/// The gradient of a sample's loss with respect to its logits: the clipped objective less the
+/// entropy bonus.
 fn policy_gradient(
     logs: &[f32],
     action: usize,
@@ -293,7 +297,7 @@ fn policy_gradient(
     let limited = ratio.clamp(1.0 - settings.clip, 1.0 + settings.clip);
     let (free, held) = (ratio * advantage, limited * advantage);
     let entropy = -logs.iter().map(|log| libm::expf(*log) * log).sum::<f32>();
-    // Where the limited one is less, nothing is gained by going on.
+    // Where the clipped objective is smaller, the gradient is zero.
     let by_log = if free <= held { -ratio * advantage } else { 0.0 };
     for (i, (by, log)) in by.iter_mut().zip(logs).enumerate() {
         let probability = libm::expf(*log);
@@ -303,12 +307,12 @@ fn policy_gradient(
     }
     sums.policy -= free.min(held);
     sums.entropy += entropy;
-    // An estimate that is never negative (Schulman, 2020).
+    // A non-negative estimator (Schulman, 2020).
     sums.divergence += (ratio - 1.0) - change;
     sums.clipped += f32::from(u8::from((ratio - 1.0).abs() > settings.clip));
 }
 
-/// The gradient of a sample's cross-entropy by its logits.
+/// The gradient of a sample's cross-entropy with respect to its logits.
 fn imitation_gradient(logs: &[f32], action: usize, by: &mut [f32], sums: &mut Sums) {
     for (i, (by, log)) in by.iter_mut().zip(logs).enumerate() {
         let probability = libm::expf(*log);
@@ -340,7 +344,8 @@ mod tests {
         let logits = [0.3_f64, -1.1, 0.8, 0.1, -0.4];
         let mut logs = [0.0; 5];
         log_probabilities(&logits.map(|logit| logit as f32), &mut logs);
-        // Within the limits, beyond them where more would be gained, and beyond them where it must go back.
+        // Within the limits; beyond them with more to gain; and beyond them where the policy must
+        // return.
         for (change, advantage) in [(0.05, 1.3), (0.05, -0.7), (0.5, 1.0), (-0.5, -1.0), (0.5, -1.0), (-0.5, 1.0)] {
             let action = 2;
             let was = logs[action] - change;

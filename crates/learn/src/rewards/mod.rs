@@ -1,6 +1,6 @@
-//! Rewards: what happens in a game, as numbers for boats that learn.
+//! Rewards: events and states of a game converted to numbers for learning boats.
 //!
-//! [`Rewards`] are data, from `scenarios/rewards/*.toml`, whose keys they declare.
+//! [`Rewards`] are data, read from `scenarios/rewards/*.toml`; the type declares the keys.
 
 mod progress;
 
@@ -131,7 +131,7 @@ pub struct Place {
 }
 
 impl Place {
-    /// Of a boat that is there.
+    /// The potential of a boat with this progress.
     #[must_use]
     pub fn of(&self, boat: &BoatProgress) -> f64 {
         if boat.tagged {
@@ -149,7 +149,7 @@ impl Place {
 }
 
 impl Potential {
-    /// Of a boat that has come so far.
+    /// The value of the place of a boat with this progress.
     #[must_use]
     pub fn of(&self, boat: &BoatProgress) -> f64 {
         if boat.tagged {
@@ -163,14 +163,15 @@ impl Potential {
 }
 
 impl Rewards {
-    /// Whether it matters where boats are among the others: [`Among`].
+    /// Whether positions relative to other boats matter: [`Among`].
     #[must_use]
     pub fn mind_others(&self) -> bool {
         let Place { intruder, guard, shield, clear, .. } = self.place;
         [intruder, guard, shield, clear].iter().any(|worth| *worth != 0.0)
     }
 
-    /// Adds what events are worth to the boats' rewards. `carrying` says of each boat whether it carried a flag before them.
+    /// Adds the worth of events to the boats' rewards. `carrying` is whether each boat carried a
+    /// flag before them.
     pub fn add_events(&self, scenario: &Scenario, events: &[Logged], carrying: &[bool], rewards: &mut [f64]) {
         let team_of = |vehicle: VehicleId| scenario.team_of(vehicle);
         let mut add = |vehicle: VehicleId, worth: fn(&Worth) -> f64| {
@@ -206,7 +207,7 @@ impl Rewards {
         }
     }
 
-    /// What the end of a game with this score is worth to a team.
+    /// A team's reward for the end of a game with this score.
     #[must_use]
     pub fn of_end(&self, score: &[u32], team: TeamId) -> f64 {
         let own = f64::from(score[team.index()]);

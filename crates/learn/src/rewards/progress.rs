@@ -1,18 +1,19 @@
-//! How far a boat has come, and where it is among the others: what potentials and places are worth is worked out from this.
+//! The progress of a boat and its position among the others, from which potentials and places are
+//! computed.
 
 use primitives::frame::Ned;
 use primitives::id::TeamId;
 use rules::field::Field;
 
-/// A place is worth something within this share of the field's width from it.
+/// A guarding place has worth within this distance, as a share of the field's width.
 const REACH: f64 = 0.25;
-/// Whoever guards something stands off it by this share of the field's width, towards the enemy.
+/// A guard's distance from the guarded place towards the enemy, as a share of the field's width.
 const STAND_OFF: f64 = 0.125;
 
 /// A boat on the field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placed {
-    /// Where it is.
+    /// Its position.
     pub at: Ned,
     /// Its team, one of two.
     pub team: TeamId,
@@ -22,39 +23,41 @@ pub struct Placed {
     pub carrying: bool,
 }
 
-/// How far a boat has come, and where it is among the others.
+/// A boat's progress and its position among the others.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BoatProgress {
     /// Whether it is tagged.
     pub tagged: bool,
     /// Whether it carries a flag.
     pub carrying: bool,
-    /// Its distance from the enemies' flag, of several the nearest, in widths of the field.
+    /// Distance from the nearest enemy flag, in field widths.
     pub from_flag: f64,
-    /// Its distance from its own flag, of several the nearest, where by most rules a flag is brought and a tagged boat is untagged,
-    /// in widths of the field.
+    /// Distance from the nearest own flag, where by most rules a flag is brought and a tagged boat
+    /// is untagged, in field widths.
     pub from_home: f64,
-    /// Where it is among the others, as far as that is asked for.
+    /// Its position among the others, if requested.
     pub among: Among,
 }
 
-/// Where a boat is among the others, each from 0 to 1.
+/// A boat's position among the others, each value from 0 to 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Among {
-    /// How near it is to the nearest intruder, an untagged enemy on its side: 1 there, 0 a field's width away, or without one.
+    /// Nearness to the nearest intruder, an untagged enemy on its side: 1 at the intruder, 0 a
+    /// field's width away or without one.
     pub at_intruder: f64,
-    /// How near it is to where the own flag is guarded from: see [`Place::guard`](super::Place::guard).
+    /// Nearness to the place that guards the own flag: see [`Place::guard`](super::Place::guard).
     pub on_guard: f64,
-    /// How near it is to where a mate is shielded from: see [`Place::shield`](super::Place::shield).
+    /// Nearness to the place that shields a mate: see [`Place::shield`](super::Place::shield).
     pub at_shield: f64,
-    /// How far it is from the nearest untagged enemy: 0 there, 1 from a quarter of the field's width on.
+    /// Distance from the nearest untagged enemy: 0 there, 1 from a quarter of the field's width on.
     pub clear: f64,
 }
 
-/// How far each boat has come. With `among_others` also where it is among them; else that is 0, and costs nothing.
+/// Computes each boat's progress. With `among_others` also its position among the others; otherwise
+/// that is 0, and costs nothing.
 ///
 /// # Panics
-/// If a team is none of the field's two.
+/// If a team is not one of the field's two.
 pub fn progress(field: &Field, boats: &[Placed], among_others: bool, out: &mut [BoatProgress]) {
     let width_m = field.plan.width_m;
     for (boat, out) in boats.iter().zip(out.iter_mut()) {
@@ -70,12 +73,13 @@ pub fn progress(field: &Field, boats: &[Placed], among_others: bool, out: &mut [
     out.iter_mut().enumerate().for_each(|(i, out)| out.among = posts.among(field, boats, i));
 }
 
-/// What whoever protects something has to know.
+/// The places from which flags and mates are protected.
 struct Posts {
-    /// By team, from where its flag is guarded, of several the one that an untagged enemy is nearest to; none where no enemy is
-    /// untagged.
+    /// By team, the place that guards its flag; of several flags, the one nearest to an untagged
+    /// enemy. None if no enemy is untagged.
     flag: [Option<Ned>; 2],
-    /// Untagged boats on the enemies' side: which, how far its nearest untagged enemy is, m, and from where it is shielded from that.
+    /// Untagged boats on the enemies' side: index, distance of the nearest untagged enemy, m, and
+    /// the place that shields it from that enemy.
     mates: Vec<(usize, f64, Ned)>,
 }
 
@@ -112,18 +116,18 @@ impl Posts {
     }
 }
 
-/// The home of a team's flag that is nearest to a place.
+/// The home of the team's flag nearest to a place.
 fn flag_near(field: &Field, team: TeamId, at: Ned) -> Ned {
     field.nearest_own_flag(team, at).expect("each of the two teams has a flag")
 }
 
-/// Where the untagged enemy of a team is who is nearest to a place.
+/// The position of the team's untagged enemy that is nearest to a place.
 fn nearest_enemy(boats: &[Placed], team: TeamId, to: Ned) -> Option<Ned> {
     let enemies = boats.iter().filter(|boat| boat.team != team && !boat.tagged);
     enemies.map(|boat| boat.at).min_by(|a, b| a.distance(to).total_cmp(&b.distance(to)))
 }
 
-/// The place so far from one towards another, or that one if it is nearer.
+/// The point at distance `off_m` from one place towards another, or the latter if it is nearer.
 fn between(from: Ned, to: Ned, off_m: f64) -> Ned {
     let away_m = from.distance(to);
     if away_m <= off_m { to } else { from + (to - from).scaled(off_m / away_m) }
@@ -193,7 +197,8 @@ mod tests {
 
     #[test]
     fn a_flag_is_guarded_from_an_eighth_of_the_field_before_it_towards_the_nearest_enemy() {
-        // The enemy nearest to the flag at (20, 40) is due ahead: the place is (40, 40), or the enemy's own.
+        // The enemy nearest to the flag at (20, 40) is straight ahead: the place is (40, 40), or
+        // the enemy's position.
         for (enemy_along_m, boat_along_m, want) in
             [(90.0, 40.0, 1.0), (90.0, 50.0, 0.75), (90.0, 85.0, 0.0), (30.0, 40.0, 0.75), (30.0, 30.0, 1.0)]
         {
@@ -216,7 +221,8 @@ mod tests {
         };
         // From (100, 40) 20 m towards (150, 40) is (120, 40), 10 m from the boat at (110, 40).
         close(shield((100.0, 40.0, false))[0].at_shield, 0.75);
-        // Nobody shields itself, and the mate has nobody else abroad but the boat at (110, 40): its place is (130, 40).
+        // A boat does not shield itself, and the mate's only shield target is the boat at (110,
+        // 40): its place is (130, 40).
         close(shield((100.0, 40.0, false))[1].at_shield, 0.25);
         for at_home_or_tagged in [(70.0, 40.0, false), (100.0, 40.0, true)] {
             close(shield(at_home_or_tagged)[0].at_shield, 0.0);
@@ -247,7 +253,8 @@ mod tests {
             tagged: false,
             carrying: false,
         };
-        // The enemy at (70, 10) is 50 m from the flag at (20, 10), which is guarded from (40, 10), and 58 m from that at (20, 40).
+        // The enemy at (70, 10) is 50 m from the flag at (20, 10), which is guarded from (40, 10),
+        // and 58 m from the flag at (20, 40).
         let boats = [boat(60.0, 10.0, 0), boat(40.0, 10.0, 0), boat(70.0, 10.0, 1)];
         let mut out = [BoatProgress::default(); 3];
         progress(&field, &boats, true, &mut out);

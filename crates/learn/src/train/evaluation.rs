@@ -1,4 +1,4 @@
-//! How good a policy is: games of it against an opponent, from both sides.
+//! Evaluation of a policy: games against an opponent, from both sides.
 
 use super::learner::greedy;
 use super::{outputs, pool};
@@ -7,14 +7,14 @@ use crate::nn::Perceptron;
 use agent::Action;
 use serde::{Deserialize, Serialize};
 
-/// What came of games.
+/// The results of games.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Played {
-    /// How many were won, drawn and lost.
+    /// The number of games won, drawn and lost.
     pub results: [u32; 3],
-    /// The mean points of a game, those of the policy first.
+    /// The mean points per game, those of the policy first.
     pub points: [f64; 2],
-    /// How often a boat of the policy left the field, in the mean of a game.
+    /// The mean number per game of field exits by the policy's boats.
     pub left_field: f64,
 }
 
@@ -33,7 +33,7 @@ impl Played {
         played
     }
 
-    /// The share of games that were won, draws counting half.
+    /// The share of games won, a draw counting half.
     #[must_use]
     pub fn won(&self) -> f64 {
         let [won, drawn, lost] = self.results.map(f64::from);
@@ -41,10 +41,10 @@ impl Played {
     }
 }
 
-/// Plays one game of each of so many seeds with the likeliest actions of a policy, or its continuous ones.
+/// Plays one game for each seed with the likeliest actions of a policy, or its continuous ones.
 ///
 /// # Errors
-/// [`SetupError`] where nothing can be played.
+/// [`SetupError`] if the setup cannot be played.
 pub fn evaluate(
     actor: &Perceptron,
     setup: Setup,
@@ -59,8 +59,7 @@ pub fn evaluate(
     while ended.iter().any(Option::is_none) {
         let observations = environment.observations();
         let logits = pool.install(|| outputs(actor, observations));
-        // What it thinks best and not what it would draw: that is what a boat does that has the
-        // policy on board.
+        // Greedy, not sampled: a boat with the policy on board does the same.
         let chosen = logits.chunks_exact(logits.len() / rows).map(|output| greedy(is_discrete, output));
         let actions: Vec<Action> = chosen.collect();
         environment.step(&actions)?;

@@ -1,65 +1,66 @@
-//! Opponents of a policy that learns, and how often each is drawn: by how often it wins.
+//! The league: opponents of a learning policy, drawn by how often they win.
 
 use crate::environment::Finished;
 use crate::training::{self, Stage};
 use scenario::policy::{PartialSpec, PolicyModel};
 use serde::{Deserialize, Serialize};
 
-/// Of the weight of its kind, an opponent that never wins has this share of an equal part.
+/// Least draw weight of an opponent that never wins, as a share of an equal part.
 const LEAST: f64 = 0.1;
-/// What a game of the past counts for each that is played later.
+/// Decay of a past game's weight per later game.
 const MEMORY: f64 = 0.98;
 
-/// A past policy.
+/// A past version of the policy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct PastSelf {
     /// Samples that it had learnt from.
     pub(super) samples: u64,
-    /// Its file.
+    /// Its ONNX file.
     onnx: Vec<u8>,
 }
 
-/// How games against an opponent went.
+/// The results against an opponent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Record {
     games: f64,
-    /// A draw is half a loss.
+    /// Losses; a draw counts half.
     lost: f64,
 }
 
 /// The opponents of a stage.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct League {
-    /// In the order of the setup's opponents: the policy itself if it plays itself, the strategies, and past policies.
+    /// In the order of the setup's opponents: the policy itself in self-play, the strategies, and
+    /// past policies.
     records: Vec<Record>,
-    /// How many of them are no past policies.
+    /// The number of records that are not past policies.
     fixed: usize,
     past: Vec<PastSelf>,
-    /// How many past policies there were, those that are not kept any more included.
+    /// The number of past policies so far, including discarded ones.
     kept: usize,
 }
 
 impl League {
-    /// The opponents of another stage: past policies stay.
+    /// Sets the opponents of another stage; past policies stay.
     pub(super) fn begin(&mut self, fixed: usize) {
         self.fixed = fixed;
         self.kept = self.past.len();
         self.records = vec![Record::default(); fixed + self.past.len()];
     }
 
-    /// Forgets the past policies that are not kept, as games begin anew.
+    /// Removes the records of discarded past policies when games restart.
     pub(super) fn compact(&mut self) {
         let forgotten = self.kept - self.past.len();
         self.records.drain(self.fixed..self.fixed + forgotten);
         self.kept = self.past.len();
     }
 
-    /// The past policies that are kept.
+    /// The stored past policies.
     pub(super) fn past(&self) -> impl Iterator<Item = PolicyModel> {
         self.past.iter().filter_map(PastSelf::model)
     }
 
-    /// Keeps a policy; gives it as an opponent.
+    /// Stores a policy and returns it as an opponent.
     pub(super) fn keep(&mut self, samples: u64, onnx: Vec<u8>, most: usize) -> Option<PolicyModel> {
         self.past.push(PastSelf { samples, onnx });
         self.kept += 1;
@@ -69,12 +70,12 @@ impl League {
         self.past.last().and_then(PastSelf::model)
     }
 
-    /// When the newest past policy was kept.
+    /// The number of samples of the newest past policy.
     pub(super) fn newest(&self) -> u64 {
         self.past.last().map_or(0, |past| past.samples)
     }
 
-    /// Takes in how games went.
+    /// Records the results of games.
     pub(super) fn see(&mut self, finished: &[Finished]) {
         for one in finished {
             let Some(record) = self.records.get_mut(one.standing.side.opponent) else { continue };
@@ -91,7 +92,7 @@ impl League {
         }
     }
 
-    /// How often each opponent is drawn, in the order of the setup's.
+    /// The draw weights of the opponents, in the setup's order.
     pub(super) fn weights(&self, stage: &Stage, league: &training::League) -> Vec<f64> {
         let plays_itself = self.fixed > stage.opponent.len();
         let strategies = usize::from(plays_itself)..self.fixed;
@@ -106,7 +107,7 @@ impl League {
             parts.for_each(|(weight, urgency)| *weight = total * urgency / sum.max(f64::MIN_POSITIVE));
         }
         if plays_itself {
-            // As long as there is no past, the present stands for it.
+            // Without past policies, the current one takes their weight.
             weights[0] = stage.self_play + if past.is_empty() { stage.past_selves } else { 0.0 };
         }
         weights
@@ -114,9 +115,9 @@ impl League {
 }
 
 impl Record {
-    /// How much there is to be learnt from it, by how often it wins.
+    /// The learning value of an opponent, from its share of wins.
     fn urgency(self, priority: f64) -> f64 {
-        // As if it had won one game of two before.
+        // With a prior of one win in two games.
         let lost = (self.lost + 1.0) / (self.games + 2.0);
         LEAST + (1.0 - LEAST) * libm::pow(lost, priority)
     }

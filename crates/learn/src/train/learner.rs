@@ -1,4 +1,4 @@
-//! What learns in a training: the policy of one algorithm, with all that its learning goes on from.
+//! The learner of a training: the policy of one algorithm with its whole learning state.
 
 use super::off_policy::OffPolicy;
 use crate::environment::Setup;
@@ -13,7 +13,7 @@ use onnx::NetworkError;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// The policy of one algorithm, with all that its learning goes on from.
+/// The policy of one algorithm with its whole learning state.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Learner {
     /// Proximal policy optimisation.
@@ -25,7 +25,7 @@ pub enum Learner {
 }
 
 impl Learner {
-    /// A new one of a training's algorithm for these games, whose policy chooses among this many actions.
+    /// A new learner with a training's algorithm for these games and this number of actions.
     pub(super) fn new(training: &Training, setup: &Setup, actions: usize) -> Learner {
         let (hidden, seed) = (&training.network.hidden, training.seed);
         let observation = setup.observation_size();
@@ -52,7 +52,7 @@ impl Learner {
         }
     }
 
-    /// The network that chooses.
+    /// The network that chooses actions.
     #[must_use]
     pub fn actor(&self) -> &Perceptron {
         match self {
@@ -71,7 +71,7 @@ impl Learner {
         }
     }
 
-    /// Forgets what does not hold in another stage: transitions of other games, rewards and helms.
+    /// Discards data of the previous stage: transitions with other games, rewards and helms.
     pub(super) fn begin_stage(&mut self) {
         match self {
             Learner::Ppo(_) => {}
@@ -81,7 +81,8 @@ impl Learner {
     }
 }
 
-/// The action that a policy's output makes without exploration: the likeliest, or the one worth most, of discrete actions.
+/// Converts a policy's output to an action without exploration: the likeliest or most valuable of
+/// discrete actions.
 pub(super) fn greedy(is_discrete: bool, output: &[f32]) -> Action {
     if is_discrete { Action::likeliest(output) } else { Action::Continuous(action(output)) }
 }

@@ -1,27 +1,28 @@
-//! What an update was like, whatever algorithm made it.
+//! Statistics of an update, for every algorithm.
 
 use crate::ppo::Statistics;
 
-/// What an update was like, in the mean over its samples. What an algorithm does not have is none.
+/// Statistics of an update, averaged over its samples. Values that an algorithm lacks are none.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Learnt {
-    /// The loss of the policy: of TD3 less what its critic expects of its actions, in scaled rewards.
+    /// The loss of the policy; for TD3 the negative value that its critic expects of its actions,
+    /// in scaled rewards.
     pub policy_loss: Option<f32>,
-    /// How much what is expected was off: half its mean square, in units of the standard deviation of returns with PPO, and in scaled
-    /// rewards with TD3; the mean of Huber's function in scaled rewards with double DQN.
+    /// Value loss: half the mean squared error, in units of the standard deviation of returns for
+    /// PPO and in scaled rewards for TD3; the mean Huber loss in scaled rewards for double DQN.
     pub value_loss: Option<f32>,
     /// Entropy of the policy, nats.
     pub entropy: Option<f32>,
-    /// How different the policy has become, nats.
+    /// Divergence of the new policy from the old one, nats.
     pub divergence: Option<f32>,
     /// The share of samples that were clipped.
     pub clipped: Option<f32>,
-    /// How many times the samples were gone through; with a replay buffer, how many were drawn from it for each that went into it.
+    /// Number of epochs; with a replay buffer, the number of samples drawn per sample stored.
     pub epochs: Option<f32>,
 }
 
 impl Learnt {
-    /// All of it with the names that it has in tables and curves.
+    /// All values with their names in tables and curves.
     #[must_use]
     pub fn named(&self) -> [(&'static str, Option<f32>); 6] {
         [

@@ -1,4 +1,4 @@
-//! Training: plays with the policy, learns from it, and goes on, stage by stage.
+//! Training: plays with the policy and learns from the samples, stage by stage.
 
 mod evaluation;
 mod league;
@@ -27,55 +27,56 @@ use state::State;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// The metadata of models that say where they come from.
+/// The metadata keys of a model's origin.
 const SAMPLES: &str = "squall.samples";
-/// Games of the evaluation have seeds from here on, which training never reaches.
+/// First seed of evaluation games, beyond any training seed.
 const EVALUATION_SEED: u64 = 1 << 62;
-/// The environments of a training are this many seeds apart.
+/// Seed spacing between the environments of a training, as a power of two.
 const SEEDS_BITS: u32 = 24;
-/// Games begin anew, so that a training can be taken up again, after so many times their length.
+/// All games restart after this many times their length, so that a training can be resumed there.
 const LENGTHS: i64 = 4;
 
-/// A training that goes on.
+/// A training in progress.
 pub struct Trainer {
     training: Training,
     setups: Vec<Setup>,
-    /// The opponents of the evaluation, each with its file's stem.
+    /// The setups of the evaluation's opponents, each with its file's stem.
     judges: Vec<(String, Setup)>,
     threads: usize,
     pool: rayon::ThreadPool,
     environment: VectorEnvironment,
-    /// Who sees the episodes, by their number in the training.
+    /// Watches of episodes, by their number in the training.
     watches: Option<Watches>,
-    /// Updates from one new beginning of all games to the next, by stage.
+    /// Updates from one restart of all games to the next, by stage.
     updates_per_epoch: Vec<u64>,
     state: State,
 }
 
-/// What an update of the policy was like.
+/// Statistics of an update.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Progress {
-    /// Samples that the policy has learnt from so far.
+    /// Samples learnt from so far.
     pub samples: u64,
-    /// The stage.
+    /// Index of the stage.
     pub stage: usize,
-    /// What the optimisers did.
+    /// Statistics of the optimisers.
     pub learnt: Learnt,
     /// The mean reward of a step.
     pub reward: f32,
-    /// The episodes that ended, with the name of who played against the policy. Their numbers are those of [`Trainer::watch`].
+    /// The episodes that ended, each with the opponent's name. Their numbers are those of
+    /// [`Trainer::watch`].
     pub finished: Vec<(Finished, String)>,
-    /// How good the policy is now, if it was looked at.
+    /// The evaluation of the current policy, if one was due.
     pub evaluated: Option<Evaluated>,
-    /// Whether that made it the best one.
+    /// Whether it is the best policy so far.
     pub is_best: bool,
-    /// Whether the training can be taken up again from here: see [`Trainer::state`].
+    /// Whether the training can be resumed from here: see [`Trainer::state`].
     pub can_be_resumed: bool,
 }
 
-/// What was played and learnt at once.
+/// The result of playing and learning once.
 struct Update {
-    /// Samples in which boats did what was chosen.
+    /// Samples in which boats followed their actions.
     counted: u64,
     /// All samples.
     transitions: u64,
@@ -86,18 +87,19 @@ struct Update {
 }
 
 impl Trainer {
-    /// Begins a training on so many threads.
+    /// Starts a training on `threads` threads.
     ///
     /// # Errors
-    /// [`SetupError`], if a file cannot be used, or nothing can be played.
+    /// [`SetupError`], if a file cannot be used or a setup cannot be played.
     pub fn new(training: Training, threads: usize) -> Result<Trainer, SetupError> {
         Trainer::with(training, threads, None)
     }
 
-    /// Takes a training up again from [`Trainer::state`]: what comes of it is what would have come of it.
+    /// Resumes a training from [`Trainer::state`], with the same results as without the
+    /// interruption.
     ///
     /// # Errors
-    /// [`StateError`], if it is the state of another training, or of another version, or a file cannot be used.
+    /// [`StateError`], if the state is from another training or version, or a file cannot be used.
     pub fn resume(training: Training, threads: usize, state: &[u8]) -> Result<Trainer, StateError> {
         let state = State::read(state, &training)?;
         Ok(Trainer::with(training, threads, Some(state))?)
@@ -136,14 +138,15 @@ impl Trainer {
         Ok(Trainer { training, setups, judges, threads, pool, environment, watches, updates_per_epoch, state })
     }
 
-    /// Shows the episodes to others from now on, those of the evaluation excepted. Episodes are numbered through a training, as far as they
-    /// are whole games; where games end early, a number may come again, with another seed. It changes nothing of what is learnt.
+    /// Adds watches to the episodes from now on, except those of evaluations. Episodes are numbered
+    /// through a training as whole games; where games end early, a number may recur with another
+    /// seed. Watches do not affect learning.
     ///
     /// # Errors
-    /// [`SetupError::NoStart`] where a game cannot begin.
+    /// [`SetupError::NoStart`] if a game cannot begin.
     ///
     /// # Panics
-    /// If there was an update since the training was begun or resumed: games would begin anew.
+    /// If there was an update since the training was started or resumed: games would restart.
     pub fn watch(&mut self, watches: Watches) -> Result<(), SetupError> {
         assert_eq!(self.state.updates_of_epoch, 0, "games are seen from their start on");
         self.watches = Some(watches);
@@ -157,19 +160,19 @@ impl Trainer {
         &self.training
     }
 
-    /// The policy and what it expects, as they are now.
+    /// The current learner.
     #[must_use]
     pub fn learner(&self) -> &Learner {
         &self.state.learner
     }
 
-    /// Samples that the policy has learnt from, and those of all stages.
+    /// Samples learnt from so far, and those of all stages.
     #[must_use]
     pub fn samples(&self) -> (u64, u64) {
         (self.state.samples, self.training.stage.iter().map(|stage| stage.samples).sum())
     }
 
-    /// Everything that was seen of the policy so far.
+    /// All evaluations so far.
     #[must_use]
     pub fn evaluations(&self) -> &[Evaluated] {
         &self.state.evaluations
@@ -187,16 +190,16 @@ impl Trainer {
         self.state.stage >= self.training.stage.len()
     }
 
-    /// All that a training is taken up again from, wherever [`Progress::can_be_resumed`].
+    /// The state to resume a training from, valid wherever [`Progress::can_be_resumed`].
     #[must_use]
     pub fn state(&self) -> Vec<u8> {
         self.state.write(&self.training)
     }
 
-    /// The policy as it is now, as an ONNX file.
+    /// The current policy as an ONNX file.
     ///
     /// # Errors
-    /// If a weight is no finite number: the training has failed.
+    /// If a weight is not finite: the training has failed.
     pub fn model(&self) -> Result<Vec<u8>, onnx::NetworkError> {
         let mut metadata = BTreeMap::from(self.spec().metadata());
         let Training { name, seed, .. } = &self.training;
@@ -210,7 +213,7 @@ impl Trainer {
         self.state.learner.onnx(metadata)
     }
 
-    /// What the policy is given and chooses.
+    /// The policy's observation and action spaces and its period.
     #[must_use]
     pub fn spec(&self) -> PolicySpec {
         let Training { observation, action, period_s, .. } = self.training;
@@ -220,7 +223,8 @@ impl Trainer {
     /// Plays and learns once.
     ///
     /// # Errors
-    /// [`SetupError::NoStart`] where a new game cannot begin; [`SetupError::Diverged`] if the policy has become none.
+    /// [`SetupError::NoStart`] if a new game cannot begin; [`SetupError::Diverged`] if the policy
+    /// has non-finite weights.
     ///
     /// # Panics
     /// If all stages are over.
@@ -253,7 +257,7 @@ impl Trainer {
         Ok(Progress { samples, stage, learnt, reward, finished, evaluated, is_best, can_be_resumed })
     }
 
-    /// Who an opponent of a stage is.
+    /// The name of a stage's opponent.
     fn opponent_name(&self, stage: usize, opponent: usize) -> String {
         match self.environment.setup().opponents.get(opponent) {
             Some((_, Player::Policy)) => "itself".to_owned(),
@@ -263,7 +267,7 @@ impl Trainer {
         }
     }
 
-    /// Looks at the policy, and keeps it, if it is time to.
+    /// Evaluates the policy and adds it to the league when due.
     fn after_update(&mut self) -> Result<(Option<Evaluated>, bool), SetupError> {
         let Training { league, evaluation, .. } = &self.training;
         let plays_past = self.training.stage[self.state.stage].past_selves > 0.0;
@@ -286,8 +290,7 @@ impl Trainer {
         }
         let evaluated = Evaluated { samples: self.state.samples, stage: self.state.stage, played };
         let won = evaluated.won();
-        // By games of an evaluation with the same seeds each time: returns of self-play say
-        // little.
+        // By evaluation games with the same seeds each time: returns of self-play say little.
         let is_best = self.state.best.as_ref().is_none_or(|best| won >= best.won);
         if is_best {
             self.state.best = Some(Best { samples: self.state.samples, won, onnx: self.model().map_err(diverged)? });
@@ -296,7 +299,8 @@ impl Trainer {
         Ok((Some(evaluated), is_best))
     }
 
-    /// Goes on to the next stage, or begins all games anew, if it is time to: then nothing of the games needs to be known.
+    /// Starts the next stage, or restarts all games, when due: the state of the games is then
+    /// irrelevant.
     fn begin_anew(&mut self, evaluated: Option<&Evaluated>) -> Result<bool, SetupError> {
         let state = &mut self.state;
         let stage: &Stage = &self.training.stage[state.stage];
@@ -305,8 +309,8 @@ impl Trainer {
         if !is_over && state.updates_of_epoch < self.updates_per_epoch[state.stage] {
             return Ok(false);
         }
-        // To be resumed anywhere a training would need the state of every helm in every game.
-        // Where all games begin anew the state is what was learnt, and the opponents.
+        // Resuming at any other point would require the state of every helm in every game. Where
+        // all games restart, the state is only the learner and the opponents.
         (state.epoch, state.updates_of_epoch) = (state.epoch + 1, 0);
         if is_over {
             (state.stage, state.samples_of_stage) = (state.stage + 1, 0);
@@ -322,7 +326,7 @@ impl Trainer {
     }
 }
 
-/// Plays and learns once by PPO, when this share of all samples is done.
+/// Plays and learns once by PPO; `done` is this share of all samples.
 fn update_by_ppo(
     learner: &mut ActorCritic,
     environment: &mut VectorEnvironment,
@@ -352,7 +356,7 @@ fn update_by_ppo(
     Ok(Update { counted, transitions, reward, finished: rollout.finished, learnt })
 }
 
-/// New games of the stage that a training is in.
+/// New games of a training's current stage.
 fn environment(
     training: &Training,
     setups: &[Setup],
@@ -360,7 +364,7 @@ fn environment(
     threads: usize,
     watches: Option<&Watches>,
 ) -> Result<VectorEnvironment, SetupError> {
-    // After the last stage nothing is played any more.
+    // After the last stage nothing is played.
     let mut setup = setups[state.stage.min(setups.len() - 1)].clone();
     setup.opponents.extend(state.league.past().map(|model| (0.0, Player::Model(model))));
     let stage = &training.stage[state.stage.min(setups.len() - 1)];
@@ -372,13 +376,13 @@ fn environment(
     VectorEnvironment::watched(setup, training.games as usize, threads, seed, watches)
 }
 
-/// The number of the first episode after games have begun anew so many times.
+/// The number of the first episode after this many restarts of all games.
 fn first_number(training: &Training, epoch: u64) -> u64 {
     epoch * LENGTHS as u64 * u64::from(training.games)
 }
 
-/// The games of the evaluation: those of the last stage against each of its opponents.
-/// Nobody learns from them, so there is no teacher, and no truth for a critic.
+/// The evaluation games: those of the last stage against each of its opponents. No learner needs a
+/// teacher or a critic's truth there.
 fn judges(training: &Training, last: Option<&Setup>) -> Result<Vec<(String, Setup)>, SetupError> {
     let mut judges = vec![];
     for path in &training.evaluation.opponents {
@@ -408,12 +412,12 @@ fn updates_per_epoch(training: &Training, setup: &Setup) -> u64 {
     (LENGTHS * game.0 / update.0.max(1)).max(1) as u64
 }
 
-/// So many threads for the work on networks.
+/// A thread pool for work on networks.
 fn pool(threads: usize) -> rayon::ThreadPool {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started")
 }
 
-/// The output of a network for every row of an input, on the threads of the pool that this is called in.
+/// The network's output for every row of an input, in the calling thread pool.
 fn outputs(network: &Perceptron, input: &[f32]) -> Vec<f32> {
     let sizes = network.sizes();
     let (from, to) = (sizes[0], sizes[sizes.len() - 1]);

@@ -1,5 +1,5 @@
-//! An update of an off-policy algorithm: steps of all games with exploration, which go into the replay buffer, and steps of the optimiser
-//! with what is drawn from it.
+//! An update of an off-policy algorithm: explorative steps of all games fill the replay buffer,
+//! then the optimisers take steps on samples drawn from it.
 
 use super::learnt::Learnt;
 use super::{Update, outputs};
@@ -18,14 +18,14 @@ use serde::{Deserialize, Serialize};
 pub struct OffPolicy<L, S, A> {
     /// The networks and their optimisers.
     pub learner: L,
-    /// How it learns.
+    /// Settings of the algorithm.
     pub settings: S,
-    /// What it learns from.
+    /// The replay buffer.
     pub replay: Replay<A>,
 }
 
 impl OffPolicy<Td3Learner, Td3, Numbers> {
-    /// Plays and learns once. As long as `is_new`, actions are drawn uniformly until something is learnt.
+    /// Plays and learns once. While `is_new`, actions are uniformly random until learning starts.
     pub(super) fn update(
         &mut self,
         environment: &mut VectorEnvironment,
@@ -36,14 +36,15 @@ impl OffPolicy<Td3Learner, Td3, Numbers> {
         let OffPolicy { learner, settings, replay } = self;
         let actor = &learner.actor;
         let choose = |observations: &[f32], counts: &[bool], known: usize| -> Vec<Numbers> {
-            // TD3 and double DQN are there since entries of the 2023 games learnt by them, so
-            // that what their paper tells can be tried again.
+            // TD3 and double DQN are included because entries of the 2023 games used them, so that
+            // their paper's results can be reproduced.
             if is_new && known < settings.warm_up {
                 return counts.iter().map(|_| td3::drawn(stream)).collect();
             }
             let outputs = pool.install(|| outputs(actor, observations));
             let explored = |(output, counts): (&[f32], &bool)| {
-                // Nothing depends on the action of a boat that does not obey: its critics learn that by all actions.
+                // The action of a boat that does not follow it has no effect: critics learn that
+                // from all actions.
                 if *counts {
                     td3::explored(td3::action(output), settings.exploration, stream)
                 } else {
@@ -75,7 +76,7 @@ impl OffPolicy<Td3Learner, Td3, Numbers> {
 }
 
 impl OffPolicy<DqnLearner, Dqn, u16> {
-    /// Plays and learns once, after so many samples in all.
+    /// Plays and learns once, at this total number of samples.
     pub(super) fn update(
         &mut self,
         environment: &mut VectorEnvironment,
@@ -88,7 +89,8 @@ impl OffPolicy<DqnLearner, Dqn, u16> {
         let choose = |observations: &[f32], counts: &[bool], _: usize| -> Vec<u16> {
             let outputs = pool.install(|| outputs(network, observations));
             let explored = |(values, counts): (&[f32], &bool)| {
-                // Nothing depends on the action of a boat that does not obey: it is learnt of all actions.
+                // The action of a boat that does not follow it has no effect: the network learns
+                // that from all actions.
                 dqn::explored(values, if *counts { epsilon } else { 1.0 }, stream) as u16
             };
             outputs.chunks_exact(outputs.len() / counts.len()).zip(counts).map(explored).collect()
@@ -112,8 +114,8 @@ impl OffPolicy<DqnLearner, Dqn, u16> {
     }
 }
 
-/// Plays so many steps of all games; those of boats that a policy sails go into the buffer. `choose` is given the observations, which of
-/// them count, and how many transitions there are.
+/// Plays this many steps of all games; stores those of boats that a policy controls in the buffer.
+/// `choose` receives the observations, which of them count, and the number of transitions.
 fn play<A: Copy>(
     environment: &mut VectorEnvironment,
     steps: usize,

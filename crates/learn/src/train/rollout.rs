@@ -1,4 +1,4 @@
-//! A rollout: some steps of all games with the policy as it is, and what can be learnt from them.
+//! A rollout: steps of all games with the current policy, and the samples from them.
 
 use super::outputs;
 use crate::environment::{Finished, SetupError, VectorEnvironment};
@@ -7,7 +7,7 @@ use crate::training::Ppo;
 use agent::Action;
 use primitives::stream::Stream;
 
-/// What was played, each steps × rows.
+/// The played steps, each list steps × rows.
 pub(super) struct Rollout {
     rows: usize,
     observations: Vec<f32>,
@@ -18,14 +18,14 @@ pub(super) struct Rollout {
     next_values: Vec<f32>,
     rewards: Vec<f32>,
     counts: Vec<bool>,
-    /// Whether a policy sails the row's boat at all.
+    /// Whether a policy controls the row's boat at all.
     sailed: Vec<bool>,
     over: Vec<bool>,
     ended: Vec<bool>,
     pub(super) finished: Vec<Finished>,
 }
 
-/// The steps of boats that a policy sails, for an update.
+/// The steps of boats that a policy controls, for an update.
 pub(super) struct Samples {
     pub(super) observations: Vec<f32>,
     pub(super) states: Vec<f32>,
@@ -38,7 +38,7 @@ pub(super) struct Samples {
 }
 
 impl Rollout {
-    /// Plays so many steps of every game.
+    /// Plays this many steps of every game.
     pub(super) fn play(
         environment: &mut VectorEnvironment,
         pool: &rayon::ThreadPool,
@@ -104,7 +104,8 @@ impl Rollout {
         Ok(rollout)
     }
 
-    /// Notes what a teacher did in the last step; where no action does that, there is nothing to learn.
+    /// Records the teacher's actions in the last step; steps without a corresponding action are not
+    /// learnt.
     fn take_taught(&mut self, environment: &VectorEnvironment) {
         let (rows, per_game) = environment.rows();
         let first = self.counts.len() - rows;
@@ -141,7 +142,7 @@ impl Rollout {
         logits.chunks_exact(count).map(draw).collect()
     }
 
-    /// The steps of boats that a policy sails.
+    /// The steps of boats that a policy controls.
     pub(super) fn samples(&self, settings: &Ppo) -> Samples {
         let steps = Steps {
             rows: self.rows,

@@ -1,4 +1,4 @@
-//! All that a training is taken up again from.
+//! The state to resume a training from.
 
 use super::evaluation::Played;
 use super::league::League;
@@ -9,14 +9,14 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 use xxhash_rust::xxh3::xxh3_64;
 
-/// Where a training stands as games begin anew.
+/// The state of a training at a restart of all games.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct State {
     pub(super) learner: Learner,
     pub(super) updates: u64,
-    /// Since games began anew last.
+    /// Updates since the last restart of all games.
     pub(super) updates_of_epoch: u64,
-    /// How often games began anew.
+    /// Number of restarts of all games.
     pub(super) epoch: u64,
     pub(super) samples: u64,
     pub(super) stage: usize,
@@ -26,19 +26,19 @@ pub(super) struct State {
     pub(super) best: Option<Best>,
 }
 
-/// How good a policy was.
+/// An evaluation of a policy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Evaluated {
-    /// Samples that it had learnt from.
+    /// Samples that the policy had learnt from.
     pub samples: u64,
-    /// The stage.
+    /// Index of the stage.
     pub stage: usize,
-    /// What came of its games, by the name of the opponent.
+    /// The results of its games, by the name of the opponent.
     pub played: Vec<(String, Played)>,
 }
 
 impl Evaluated {
-    /// The share of all games that were won, draws counting half.
+    /// The share of all games won, a draw counting half.
     #[must_use]
     pub fn won(&self) -> f64 {
         self.played.iter().map(|(_, played)| played.won()).sum::<f64>() / self.played.len().max(1) as f64
@@ -50,17 +50,17 @@ impl Evaluated {
 pub struct Best {
     /// Samples that it had learnt from.
     pub samples: u64,
-    /// The share of all games of the evaluation that it won, draws counting half.
+    /// The share of all evaluation games won, a draw counting half.
     pub won: f64,
-    /// Its file.
+    /// Its ONNX file.
     pub onnx: Vec<u8>,
 }
 
-/// What a state begins with: whose it is.
+/// The beginning of a state, which identifies the training.
 #[derive(PartialEq, Serialize, Deserialize)]
 struct Head {
     version: String,
-    /// As JSON.
+    /// The training as JSON.
     training: String,
 }
 
@@ -71,22 +71,22 @@ impl Head {
     }
 }
 
-/// Why a training cannot be taken up again.
+/// Why a training cannot be resumed.
 #[derive(Debug, Error)]
 pub enum StateError {
-    /// These are no such bytes.
+    /// Not a valid state.
     #[error("it is no state of a training, or a damaged one")]
     Damaged,
-    /// It was made by another version of the program.
+    /// The state is from another version of the program.
     #[error("it was made by version {found}, expected {}", primitives::VERSION)]
     Version {
-        /// That version.
+        /// The version found.
         found: String,
     },
-    /// It is the state of another training.
+    /// The state is from another training.
     #[error("it is the state of another training: the training file has changed since it was written")]
     Other,
-    /// Nothing can be played.
+    /// A setup cannot be played.
     #[error(transparent)]
     Setup(#[from] SetupError),
 }
@@ -115,13 +115,13 @@ impl State {
     }
 
     pub(super) fn read(bytes: &[u8], training: &Training) -> Result<State, StateError> {
-        // The version stands first: of another one nothing else may be as here.
+        // The version comes first: in another version the rest may have another format.
         let (version, _) = postcard::take_from_bytes::<String>(bytes).map_err(|_| StateError::Damaged)?;
         if version != primitives::VERSION {
             return Err(StateError::Version { found: version });
         }
-        // A flipped bit in a weight is a number like any other: without a checksum another policy would
-        // come of it.
+        // A flipped bit in a weight is a valid number: without a checksum it would silently change
+        // the policy.
         let (bytes, sum) = bytes.split_last_chunk().ok_or(StateError::Damaged)?;
         if xxh3_64(bytes) != u64::from_le_bytes(*sum) {
             return Err(StateError::Damaged);

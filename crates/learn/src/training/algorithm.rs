@@ -1,4 +1,4 @@
-//! The algorithm that a training learns by: the one whose table its file has.
+//! The learning algorithm of a training: the one whose table is in its file.
 
 use super::{Dqn, Ppo, Td3, Training};
 
@@ -26,7 +26,7 @@ impl Training {
 }
 
 impl Algorithm {
-    /// What its table is called.
+    /// The name of its table.
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
@@ -36,13 +36,13 @@ impl Algorithm {
         }
     }
 
-    /// Whether it chooses one of several actions, or else numbers.
+    /// Whether its actions are discrete rather than continuous.
     #[must_use]
     pub fn is_discrete(&self) -> bool {
         !matches!(self, Algorithm::Td3(_))
     }
 
-    /// Steps of every game to an update.
+    /// Steps of every game per update.
     #[must_use]
     pub fn steps(&self) -> usize {
         match self {
@@ -52,7 +52,7 @@ impl Algorithm {
         }
     }
 
-    /// What a reward one step later is worth.
+    /// The value of a reward one step later.
     #[must_use]
     pub fn discount(&self) -> f32 {
         match self {

@@ -1,4 +1,4 @@
-//! A training file and all the files it names, checked.
+//! Checks a training file and all the files it names.
 
 use super::{Stage, Training};
 use crate::rewards::Rewards;
@@ -51,7 +51,7 @@ pub(super) fn training(diagnostics: &mut Diagnostics, document: &Document<Traini
     document.is_faultless(diagnostics).then_some(training)
 }
 
-/// Reads the files that a stage names; gives its game.
+/// Reads the files that a stage names. Returns its game.
 fn files(
     diagnostics: &mut Diagnostics,
     document: &Document<Training>,
@@ -77,7 +77,7 @@ fn check_opponents(diagnostics: &mut Diagnostics, document: &Document<Training>,
         return;
     }
     let has_strategies = stage.strategies > 0.0 && !stage.opponent.is_empty();
-    // In the first stage there may be none of the past yet; then it plays against itself.
+    // In the first stage there may be no past policies yet; the policy then plays against itself.
     if !has_strategies && stage.self_play == 0.0 && stage.past_selves == 0.0 {
         let message = format!(
             "stage {:?} has nobody to play against, expected an opponent, self_play or past_selves",

@@ -1,4 +1,4 @@
-//! The algorithm of a training, checked: there is one, and it chooses from the actions there are.
+//! Checks the algorithm of a training: there is exactly one, and it supports the action space.
 
 use super::{Algorithm, CriticInput, Training};
 use scenario::{Diagnostics, Document};
@@ -6,7 +6,7 @@ use scenario::{Diagnostics, Document};
 /// The tables of algorithms.
 const TABLES: [&str; 3] = ["ppo", "td3", "dqn"];
 
-/// Notes what is wrong with the algorithm.
+/// Reports faults of the algorithm.
 pub(super) fn check(diagnostics: &mut Diagnostics, document: &Document<Training>) {
     let training = &document.raw;
     let mut said = TABLES.into_iter().filter(|table| document.has(table));
@@ -36,7 +36,7 @@ pub(super) fn check(diagnostics: &mut Diagnostics, document: &Document<Training>
     }
 }
 
-/// Notes what only PPO can.
+/// Reports settings that only PPO supports.
 fn check_ppo_alone(diagnostics: &mut Diagnostics, document: &Document<Training>, name: &str) {
     let critic = "network.critic";
     if document.is_sound(critic) && document.raw.network.critic != CriticInput::Observation {

@@ -1,4 +1,5 @@
-//! Double DQN, Q-learning with two networks (van Hasselt, Guez and Silver, AAAI 2016), as a training file sets it.
+//! Training file settings of double DQN, Q-learning with two networks (van Hasselt, Guez and
+//! Silver, AAAI 2016).
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -46,7 +47,7 @@ pub struct Dqn {
 }
 
 impl Dqn {
-    /// The share of actions that are drawn uniformly after so many samples.
+    /// The share of uniformly random actions after this many samples.
     #[must_use]
     pub fn epsilon_after(&self, samples: u64) -> f32 {
         let done = (samples as f64 / self.epsilon_samples as f64).min(1.0) as f32;

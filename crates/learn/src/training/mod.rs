@@ -1,6 +1,6 @@
-//! Training files: which games a policy learns in, from what it starts, and how it learns.
+//! Training files: a policy's games, its networks and its learning algorithm.
 //!
-//! [`Training`] is data, from `scenarios/training/*.toml`, whose keys it declares.
+//! [`Training`] is data, read from `scenarios/training/*.toml`; the type declares the keys.
 
 mod algorithm;
 mod check;

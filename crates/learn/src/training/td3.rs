@@ -1,4 +1,5 @@
-//! TD3, the twin delayed deep deterministic policy gradient (Fujimoto, van Hoof and Meger, ICML 2018), as a training file sets it.
+//! Training file settings of TD3, the twin delayed deep deterministic policy gradient (Fujimoto,
+//! van Hoof and Meger, ICML 2018).
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -1,5 +1,5 @@
-//! TD3 and double DQN: steps against an outside implementation, gradients against differences, the same bits on any number of threads, and
-//! that something is learnt.
+//! TD3 and double DQN: steps compared with an independent implementation, gradients with finite
+//! differences, the same bits for any number of threads, and learning success.
 
 mod step;
 mod toy;
@@ -27,14 +27,14 @@ fn numbers(stream: &mut Stream) -> Numbers {
     [0; NUMBERS].map(|_| stream.between(-1.0, 1.0) as f32)
 }
 
-/// Checks a gradient against differences of the loss over a step of each parameter.
+/// Checks a gradient against finite differences of the loss for each parameter.
 fn assert_slopes<L: Clone>(
     learner: &L,
     network: impl Fn(&mut L) -> &mut Perceptron,
     gradient_and_loss: impl Fn(&L) -> (Vec<f32>, f32),
 ) {
     const STEP: f32 = 1e-2;
-    // Of slopes of about 0.1, from differences over such a step in single precision.
+    // For slopes of about 0.1, from finite differences in single precision.
     const TOLERANCE: f32 = 1e-3;
     let (gradient, _) = gradient_and_loss(learner);
     assert!(gradient.iter().any(|slope| slope.abs() > 30.0 * TOLERANCE), "{gradient:?}");

@@ -1,4 +1,4 @@
-//! Two steps of each optimiser against numbers that numpy made: see `reference.py`.
+//! Two steps of each optimiser compared with numbers from numpy: see `reference.py`.
 
 use learn::nn::Perceptron;
 use learn::off_policy::Minibatch;
@@ -7,10 +7,10 @@ use learn::off_policy::td3::{NUMBERS, Numbers, Td3Learner};
 use learn::training::{Dqn, Td3};
 
 const ROWS: usize = 300;
-/// Of numbers of about 1, which two steps of 0.001 change; ours are in single precision.
+/// For numbers of about 1, which two steps of 0.001 change; Squall's are in single precision.
 const TOLERANCE: f64 = 1e-5;
 
-/// As `numbers` of `reference.py`.
+/// Same as `numbers` of `reference.py`.
 fn numbers(count: usize, phase: f64, size: f64) -> Vec<f32> {
     (0..count).map(|i| (size * libm::sin(1.3 * i as f64 + phase)) as f32).collect()
 }
@@ -36,7 +36,7 @@ fn pairs(phase: f64, size: f64) -> Vec<Numbers> {
     all.chunks_exact(NUMBERS).map(|pair| [pair[0], pair[1]]).collect()
 }
 
-/// Checks numbers against those of a line of `reference.txt`.
+/// Compares numbers with a line of `reference.txt`.
 fn assert_reference(name: &str, got: &[f32]) {
     let mut lines = include_str!("reference.txt").lines().map(|line| line.split(' '));
     let mut line = lines.find(|line| line.clone().next() == Some(name)).unwrap_or_else(|| panic!("no line {name}"));

@@ -1,4 +1,4 @@
-//! Small problems with known answers, which are learnt from random transitions.
+//! Small problems with known answers, learnt from random transitions.
 
 use learn::nn::Trace;
 use learn::off_policy::dqn::DqnLearner;
@@ -11,20 +11,20 @@ fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads").install(work)
 }
 
-/// Where an action takes something on a line from -1 to 1.
+/// The next position on a line from -1 to 1.
 fn moved(place: f32, action: f32) -> f32 {
     (place + 0.3 * action).clamp(-1.0, 1.0)
 }
 
-/// Random steps on the line; it costs the square of the distance from the middle, and what the second number has no use for. In a fifth
-/// of the steps another does as it likes, whatever the action is.
+/// Random steps on the line. The cost is the square of the distance from the middle, plus a cost
+/// for a second component other than 0.5. In a fifth of the steps the action is ignored.
 fn steps_on_a_line(count: usize) -> Replay<td3::Numbers> {
     let (mut replay, stream) = (Replay::new(1, count), &mut Stream::new(2, "test/line"));
     for i in 0..count {
         let (place, action, counts) = (stream.between(-1.0, 1.0) as f32, td3::drawn(stream), i % 5 != 0);
         let next = moved(place, if counts { action[0] } else { 1.0 });
         let cost = next * next + if counts { 0.5 * (action[1] - 0.5) * (action[1] - 0.5) } else { 0.0 };
-        // Somebody else's steps begin farther out, as a tagged boat is another state.
+        // Steps with ignored actions begin farther out, as a tagged boat is another state.
         let mark = if counts { 0.0 } else { 3.0 };
         replay.push(Transition {
             observation: &[place + mark],
@@ -72,18 +72,19 @@ fn td3_learns_to_go_to_the_middle_of_a_line_and_stay_there() {
         }
         assert!(place.abs() < 0.1, "from {start} it came to {place}");
     }
-    // In the middle nothing is to be lost any more, and by the end of the line one step's cost and what follows.
+    // In the middle no further cost arises; at the end of the line one step's cost and the
+    // following ones.
     let value = |place: f32| {
         let mut trace = Trace::default();
         learner.critics[0].forward(&[place, (-place / 0.3).clamp(-1.0, 1.0), 0.5], &mut trace);
         trace.output()[0]
     };
     let want = -(0.7_f32.powi(2) + 0.8 * 0.4_f32.powi(2) + 0.64 * 0.1_f32.powi(2));
-    // The smaller of two critics expects a little less.
+    // The smaller of two critics underestimates a little.
     assert!(value(0.0).abs() < 0.15 && (value(1.0) - want).abs() < 0.15, "{} {}, not {want}", value(0.0), value(1.0));
 }
 
-/// The last place of a row of places; who comes there has won.
+/// The last place of a row of places, whose arrival wins.
 const LAST: usize = 7;
 
 /// Random steps in a row of places, to the left and to the right.

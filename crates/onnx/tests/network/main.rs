@@ -1,6 +1,6 @@
-//! Networks against ONNX Runtime, and files that were changed.
+//! Networks compared with ONNX Runtime, and modified files.
 //!
-//! `models.py` in this folder says where the models and the numbers come from.
+//! `models.py` in this folder creates the models and the numbers.
 
 mod change;
 mod perceptron;
@@ -10,7 +10,7 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// How far from ONNX Runtime a number may be: this much, and this part of it. Both round each sum, in another order.
+/// Absolute and relative tolerance against ONNX Runtime. Both round each sum, in different orders.
 const ERROR_MAX: f32 = 1e-5;
 
 const MODELS: [&str; 5] = ["operators", "old_operators", "two_inputs", "sb3_torchscript", "sb3_dynamo"];
@@ -75,7 +75,8 @@ fn a_network_says_what_it_takes_and_gives_and_what_its_file_says() {
     assert_eq!(network.output_named("values"), None);
 }
 
-/// The bits that the policy gives for its first row: the same on every machine and with every compiler.
+/// The bits of the policy's output for its first row: the same on every machine and with every
+/// compiler.
 #[test]
 fn a_network_gives_the_same_bits_everywhere() {
     let mut digests = vec![];

@@ -1,4 +1,4 @@
-//! Perceptrons as files: what is written is read again, and what does not fit together is not written.
+//! Perceptrons as files: a written one can be read, and an inconsistent one is not written.
 
 use crate::assert_close;
 use onnx::{Activation, Head, Layer, Network, Normalisation, Perceptron};
@@ -40,7 +40,7 @@ fn rows() -> Vec<Vec<f32>> {
     (0..5).map(|_| (0..9).map(|_| between(&mut random, -3.0, 3.0)).collect()).collect()
 }
 
-/// A layer in double precision, as the definition says.
+/// A layer in double precision, by its definition.
 fn plain(layer: &Layer, input: &[f64]) -> Vec<f64> {
     let output = |j: usize| {
         let weights = &layer.weights[j * layer.inputs..(j + 1) * layer.inputs];
@@ -82,7 +82,8 @@ fn what_is_written_is_read_again_with_the_same_outputs() {
     }
 }
 
-/// Leaves files for `crates/onnx/crosscheck/network_check.py`, which looks at them with the packages of others.
+/// Writes files for `crates/onnx/crosscheck/network_check.py`, which checks them with third-party
+/// packages.
 #[test]
 fn the_same_perceptron_is_written_as_the_same_bytes() {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("network");

@@ -1,4 +1,4 @@
-//! The faults of a game, checked against the boats that they befall.
+//! Checks the faults of a game against the affected boats.
 
 use crate::boat::{Boat, Drive};
 use crate::diagnostics::Diagnostics;
@@ -68,7 +68,7 @@ fn check_keys(diagnostics: &mut Diagnostics, document: &Document<raw::Game>, pat
     }
 }
 
-/// What a boat lacks that could fail so.
+/// The part that a boat lacks for this kind of fault.
 fn lacks(kind: FaultKind, boat: &Boat) -> Option<&'static str> {
     match kind {
         FaultKind::AgentLost | FaultKind::LinkLost => None,

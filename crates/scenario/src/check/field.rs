@@ -1,4 +1,4 @@
-//! A field file, checked.
+//! Checks a field file.
 
 use super::boat::estimate;
 use super::polygon::check_corners;
@@ -9,7 +9,7 @@ use primitives::frame::Ned;
 use primitives::id::TeamId;
 use rules::field::{Field, Flag, Obstacle};
 
-/// How far outside of the field an obstacle may stand and still matter, m.
+/// Maximum distance of a relevant obstacle outside the field, m.
 const NEAR_M: f64 = 50.0;
 
 /// Checks a field.
@@ -50,7 +50,7 @@ fn extra_flags(diagnostics: &mut Diagnostics, document: &Document<raw::Field>, f
     document.raw.flag.iter().enumerate().filter_map(flag).collect()
 }
 
-/// Whether `position`, given at `at`, is inside the field; notes it if not.
+/// Whether `position`, given at `at`, is inside the field; reports it if not.
 pub(super) fn is_inside(diagnostics: &mut Diagnostics, field: &Field, at: usize, position: Ned) -> bool {
     let is_inside = field.contains(position);
     if !is_inside {

@@ -1,18 +1,20 @@
-//! Files of one kind that a file names, each read once.
+//! Files of one kind that a file refers to, each read once.
 
 use crate::diagnostics::Diagnostics;
 use crate::source::tidied;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Reads and checks the file at a path, which is referred to from a place, for an owner who draws its numbers.
+/// Reads and checks the file at a path, with the place of the reference, for an owner who draws its
+/// numbers.
 type LoadFile<T> = fn(&mut Diagnostics, &Path, Option<usize>, &str) -> Option<T>;
 
-/// Files of one kind that a game names. Each is read once; or once for each owner, always or if it has numbers to be drawn.
+/// Files of one kind that a game refers to. Each is read once, or once per owner: always, or if it
+/// has numbers to draw.
 pub(super) struct FileCache<T> {
     pub(super) items: Vec<T>,
     path_of: BTreeMap<String, PathBuf>,
-    /// Of files without numbers to be drawn, by path and owner ("" where owners share them).
+    /// For files without numbers to draw, by path and owner ("" if owners share them).
     index_of: BTreeMap<(PathBuf, String), Option<usize>>,
     is_by_owner: bool,
     load: LoadFile<T>,
@@ -23,7 +25,7 @@ impl<T> FileCache<T> {
         FileCache { items: vec![], path_of: BTreeMap::new(), index_of: BTreeMap::new(), is_by_owner: false, load }
     }
 
-    /// Files that each owner has in a version of its own.
+    /// Files with a separate version for each owner.
     pub(super) fn by_owner(load: LoadFile<T>) -> FileCache<T> {
         FileCache { is_by_owner: true, ..FileCache::new(load) }
     }
@@ -32,7 +34,7 @@ impl<T> FileCache<T> {
         (path, if self.is_by_owner { owner.to_owned() } else { String::new() })
     }
 
-    /// The index of the file that `given`, standing at `place`, names, as `owner` has it.
+    /// The index of `owner`'s version of the file that `given`, at `place`, refers to.
     pub(super) fn index(
         &mut self,
         diagnostics: &mut Diagnostics,
@@ -51,7 +53,8 @@ impl<T> FileCache<T> {
         Some(index)
     }
 
-    /// The index of the file at `path`, whatever it is named: two versions of one strategy may meet.
+    /// The index of the file at `path`, regardless of its name: two versions of one strategy may
+    /// meet.
     pub(super) fn index_at(
         &mut self,
         diagnostics: &mut Diagnostics,

@@ -1,4 +1,4 @@
-//! A game file and all the files it names, checked.
+//! Checks a game file and all the files it refers to.
 
 use super::boat::{FASTEST_PER_TICK, fastest_decay};
 use super::file_cache::FileCache;
@@ -17,24 +17,24 @@ use rules::field::Field;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// The most vehicles of a game.
+/// Maximum number of vehicles of a game.
 const MOST_VEHICLES: usize = 10_000;
 
-/// A vehicle whose start position is not known yet.
+/// A vehicle whose start position is not yet known.
 pub(super) struct Entry {
     pub(super) name: String,
-    /// Where it stands in the files.
+    /// Its place in the files.
     pub(super) place: usize,
     pub(super) team: TeamId,
     pub(super) boat: usize,
     strategy: usize,
-    /// The start position it states; `None` is the team's line.
+    /// The start position in its file; `None` is the team's line.
     pub(super) start_position: Option<StartPosition>,
     pub(super) heading_deg: Option<f64>,
     source: Source,
 }
 
-/// Who plays, as far as it is known, and the files that they refer to.
+/// The vehicles known so far, and the files that they refer to.
 struct Fleet<'a> {
     document: &'a Document<raw::Game>,
     field: Option<&'a Field>,
@@ -115,7 +115,7 @@ pub(crate) fn game(diagnostics: &mut Diagnostics, document: &Document<raw::Game>
     document.is_faultless(diagnostics).then_some(scenario)
 }
 
-/// A setting of what the game replaces would do nothing.
+/// Reports a setting without effect because the game overrides it.
 fn check_duration(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) {
     let is_set = |key: &str| diagnostics.overrides.settings.iter().any(|setting| setting.key == key);
     if document.raw.duration_s.is_some() && is_set("rules.time_limit_s") {
@@ -125,7 +125,7 @@ fn check_duration(diagnostics: &mut Diagnostics, document: &Document<raw::Game>)
     }
 }
 
-/// Seeds take over one after the other.
+/// Reseeds must be in order of time.
 fn check_reseed(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) {
     for (i, pair) in document.raw.reseed.windows(2).enumerate() {
         if pair[1].after_s <= pair[0].after_s {
@@ -137,7 +137,7 @@ fn check_reseed(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) {
     }
 }
 
-/// The game's sea, or the one that takes its place.
+/// The game's sea, or its override.
 fn sea(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) -> Option<Sea> {
     if let Some(path) = diagnostics.overrides.sea.clone() {
         let document = read::document(diagnostics, Kind::SEA, &path, None)?;
@@ -154,7 +154,7 @@ fn sea(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) -> Option<
     }
 }
 
-/// The physics tick, and how many of them a decision lasts.
+/// The physics tick, and the number of ticks per decision.
 fn clock(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) -> (SimTime, u32) {
     let raw::Game { tick_s, decision_s, .. } = document.raw;
     let (tick, decision) = (SimTime::from_s(tick_s), SimTime::from_s(decision_s));
@@ -165,7 +165,7 @@ fn clock(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) -> (SimT
     (tick, (decision.0 / tick.0) as u32)
 }
 
-/// A boat that is stable at the usual tick may not be at a longer one.
+/// A boat that is stable at the default tick may be unstable at a longer one.
 fn check_tick(diagnostics: &mut Diagnostics, document: &Document<raw::Game>, tick: SimTime, boats: &[Boat]) {
     for boat in boats.iter().filter(|_| document.has("tick_s")) {
         let (motion, rate_per_s) = fastest_decay(boat);
@@ -181,7 +181,7 @@ fn check_tick(diagnostics: &mut Diagnostics, document: &Document<raw::Game>, tic
     }
 }
 
-/// The referee looks at ticks only.
+/// The referee's checks are at whole ticks.
 fn check_looks(diagnostics: &mut Diagnostics, document: &Document<raw::Game>, tick: SimTime, rules: Option<&Rules>) {
     let Some(rules) = rules else { return };
     for (key, period) in [("tag_look_period_s", rules.tag_look_period), ("flag_look_period_s", rules.flag_look_period)]
@@ -194,7 +194,7 @@ fn check_looks(diagnostics: &mut Diagnostics, document: &Document<raw::Game>, ti
     }
 }
 
-/// Models are made for teams of one size, unless they leave room for others.
+/// Models are made for a fixed team size, unless they have spare slots.
 fn check_models(diagnostics: &mut Diagnostics, entries: &[Entry], strategies: &[Strategy]) {
     for Entry { name, place, team, strategy, .. } in entries {
         let mates = entries.iter().filter(|other| other.team == *team).count() - 1;
@@ -247,7 +247,7 @@ impl Fleet<'_> {
             let message = "vehicle is missing, expected at least one [[vehicle]] or [[fleet]]";
             diagnostics.note_if_intact(document.at(""), message);
         }
-        // The teams' strategies are checked even where no boat of theirs follows them.
+        // The teams' strategies are checked even if no boat follows them.
         let followed = self.strategies.items.len();
         for i in 0..document.raw.team.len() {
             self.strategy_of_team(diagnostics, i);
@@ -341,7 +341,7 @@ impl Fleet<'_> {
         index.map(|index| TeamId(index as u8))
     }
 
-    /// The boat of the vehicle `name`, which stands at `path`.
+    /// The boat of the vehicle `name` at `path`.
     fn boat(
         &mut self,
         diagnostics: &mut Diagnostics,
@@ -404,7 +404,7 @@ impl Fleet<'_> {
         if is_exchanged { TeamId(1 - team.0) } else { team }
     }
 
-    /// The strategy that a team states, or the one that takes its place.
+    /// The strategy of a team's file, or its override.
     fn strategy_of_team(&mut self, diagnostics: &mut Diagnostics, team: usize) -> Option<usize> {
         let raw::Team { name, strategy } = &self.document.raw.team[team];
         let owner = diagnostics.overrides.owner_of_strategy(&name.0);
@@ -415,7 +415,7 @@ impl Fleet<'_> {
         self.strategies.index(diagnostics, &strategy_path(&strategy.as_ref()?.0), place, owner)
     }
 
-    /// Notes that a vehicle or fleet lacks a key, which its game or team could give as well.
+    /// Reports a missing key of a vehicle or fleet, which its game or team could also give.
     fn missing(&self, diagnostics: &mut Diagnostics, path: &str, expected: &str) {
         if self.document.is_sound(path) {
             let key: Vec<&str> = path.split('.').filter(|part| part.parse::<usize>().is_err()).collect();
@@ -425,7 +425,7 @@ impl Fleet<'_> {
     }
 }
 
-/// Whether a game of so many vehicles is not too large.
+/// Whether a game may have this many vehicles.
 fn is_room(diagnostics: &mut Diagnostics, place: usize, total: usize) -> bool {
     if total > MOST_VEHICLES {
         diagnostics.note(place, format!("vehicles are {total} with this one, expected at most {MOST_VEHICLES}"));
@@ -433,7 +433,7 @@ fn is_room(diagnostics: &mut Diagnostics, place: usize, total: usize) -> bool {
     total <= MOST_VEHICLES
 }
 
-/// The path of a strategy that is given by a path, or by the name of one in the folder of strategies.
+/// The path of a strategy given by a path, or by a name in the folder of strategies.
 fn strategy_path(given: &str) -> String {
     let is_name = !given.contains(['/', '\\', '.']);
     if is_name { format!("../{}/{given}.toml", Kind::STRATEGY.folder()) } else { given.to_owned() }

@@ -1,7 +1,8 @@
-//! From files as typed to what the program believes: estimates, and rules that combine several values.
+//! Converts files as typed to checked types: estimates missing values and applies rules that
+//! combine several values.
 //!
-//! What a single value may be says its declaration, and has been checked when a check gets it. Every check
-//! notes all it finds in the [`Diagnostics`] and returns `None` if anything was wrong.
+//! The declaration of a value defines its allowed range, which is already checked here. Every check
+//! reports all faults in the [`Diagnostics`] and returns `None` if there were any.
 
 mod boat;
 mod fault;

@@ -1,12 +1,12 @@
-//! A polygon of a file, checked.
+//! Checks a polygon of a file.
 
 use primitives::frame::Ned;
 use rules::field::{do_meet, turn};
 
-/// Whether no two sides of a polygon meet but neighbours at their corner.
+/// Checks that no two sides of a polygon meet, except neighbours at their corner.
 ///
 /// # Errors
-/// Which corner is at fault, and why.
+/// The index of the faulty corner, and the reason.
 pub fn check_corners(corners: &[Ned]) -> Result<(), (usize, String)> {
     let count = corners.len();
     let side = |i: usize| (corners[i], corners[(i + 1) % count]);
@@ -14,7 +14,7 @@ pub fn check_corners(corners: &[Ned]) -> Result<(), (usize, String)> {
         if corners[i] == side(i).1 {
             return Err((i, "polygon has two corners in one place, expected different ones".into()));
         }
-        // Neighbours share a corner; they may only not fold back onto one another.
+        // Neighbours share a corner; they must not fold back onto one another.
         let crossing = (i + 1..count).find(|&j| {
             let (is_next, is_before) = (j == i + 1, (j + 1) % count == i);
             match (is_next, is_before) {

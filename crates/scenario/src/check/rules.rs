@@ -1,4 +1,4 @@
-//! A rules file, checked.
+//! Checks a rules file.
 
 use crate::diagnostics::Diagnostics;
 use crate::read::Document;
@@ -9,7 +9,7 @@ pub(crate) fn rules(diagnostics: &mut Diagnostics, document: &Document<Rules>) -
     let mut rules = document.raw.clone();
     rules.win_score = rules.win_score.filter(|win_score| *win_score > 0);
     rules.sharing.view_rad = rules.sharing.view_rad.filter(|view_rad| *view_rad < f64::to_radians(360.0));
-    // A keep-out circle must leave room at the own flag for what boats have to do there.
+    // A keep-out circle must leave room at the own flag for the tasks of boats there.
     let needed = [
         (rules.untag_at == UntagAt::OwnFlag, "untag_radius_m", rules.untag_radius_m),
         (rules.capture_at == CaptureAt::OwnFlag, "capture_radius_m", rules.capture_radius_m),

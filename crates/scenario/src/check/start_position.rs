@@ -1,4 +1,5 @@
-//! Where boats start: at a position, at a named point, in the team's line, or somewhere in a rectangle.
+//! Checks start positions: a position, a named point, the team's line, or a random position in a
+//! rectangle.
 
 use super::field::is_inside;
 use super::game::Entry;
@@ -14,12 +15,13 @@ use primitives::id::TeamId;
 use primitives::near::Near;
 use rules::field::Field;
 
-/// What a default rectangle leaves free at either side, m.
+/// Free margin of a default rectangle on either side, m.
 const MARGIN_M: f64 = 2.0;
-/// Boats drawn one by one jam when their gaps cover about 0.69 of the rectangle as squares; half is easy.
+/// Largest share of the rectangle for the boats' gaps as squares. Boats placed one by one jam at
+/// about 0.69; half is easy.
 const FULLEST: f64 = 0.5;
 
-/// The start position that the vehicle at `path` states; `None` is the team's line.
+/// The start position given for the vehicle at `path`; `None` is the team's line.
 pub(super) fn stated(
     diagnostics: &mut Diagnostics,
     document: &Document<raw::Game>,
@@ -50,7 +52,7 @@ pub(super) fn stated(
     Some(StartPosition::At(Pose { at, psi_rad: rad_from_compass_deg(heading_deg) }))
 }
 
-/// The rectangle that the `spawn` at `path` states, if `count` boats fit into it.
+/// The rectangle of the `spawn` at `path`, if `count` boats fit into it.
 pub(super) fn somewhere(
     diagnostics: &mut Diagnostics,
     document: &Document<raw::Game>,
@@ -89,8 +91,9 @@ pub(super) fn somewhere(
     Some(StartPosition::Somewhere { along_m, across_m, gap_m })
 }
 
-/// The start positions of all entries, in their order; those that state none lie in their team's line: midway
-/// between own flag and scrimmage line, evenly across, from port to starboard, bows to the opponent.
+/// The start positions of all entries, in order. Those without a given one are in their team's
+/// line: midway between own flag and scrimmage line, evenly across, from port to starboard, bows to
+/// the opponent.
 pub(super) fn all(entries: &[Entry], field: &Field) -> Vec<StartPosition> {
     let plan = &field.plan;
     let along_m = (plan.flag_inset_m + plan.width_m / 2.0) / 2.0;
@@ -114,7 +117,7 @@ pub(super) fn all(entries: &[Entry], field: &Field) -> Vec<StartPosition> {
     entries.iter().map(&mut start_position_of).collect()
 }
 
-/// Notes boats that would start on top of one another, or on an obstacle.
+/// Reports boats that would start too close to each other or to an obstacle.
 pub(super) fn check_clear(
     diagnostics: &mut Diagnostics,
     entries: &[Entry],
@@ -139,7 +142,7 @@ pub(super) fn check_clear(
     for pair in near.pairs(|i| placed[i].1, placed.len(), longest_m) {
         let ((a, _, a_length_m), (b, _, b_length_m)) = (placed[usize::from(pair.a)], placed[usize::from(pair.b)]);
         let (apart_m, least_m) = (pair.distance_squared.sqrt(), a_length_m.max(b_length_m));
-        // A boat in a crowd is told of once, and a crowded fleet once.
+        // Each crowded boat is reported once, and so is a crowded fleet.
         if apart_m < least_m && b.place != last {
             last = b.place;
             let message =
@@ -149,7 +152,7 @@ pub(super) fn check_clear(
     }
 }
 
-/// Whether `name` is one of the field's named points; notes it if not.
+/// Whether `name` is one of the field's named points; reports it if not.
 fn is_point(diagnostics: &mut Diagnostics, at: usize, key: &str, name: &str) -> bool {
     let names = Field::point_names();
     let is_known = names.iter().any(|known| known == name);

@@ -1,4 +1,4 @@
-//! Observations: which numbers a policy is given of what its boat knows. `agent` writes them.
+//! Observations: the values that a policy receives of its boat's knowledge. `agent` writes them.
 
 pub mod pyquaticus;
 pub mod squall;
@@ -27,7 +27,7 @@ pub enum ObservationSpace {
 }
 
 impl ObservationSpace {
-    /// Counted up when the meaning of one of its numbers changes.
+    /// Incremented when the meaning of a value changes.
     #[must_use]
     pub fn version(self) -> u32 {
         match self {
@@ -36,7 +36,7 @@ impl ObservationSpace {
         }
     }
 
-    /// How many numbers there are in a game of teams with so many mates and enemies to a boat.
+    /// The number of values for a boat with this many mates and enemies.
     #[must_use]
     pub fn size(self, mates: usize, enemies: usize) -> usize {
         match self {
@@ -47,8 +47,8 @@ impl ObservationSpace {
         }
     }
 
-    /// What the numbers are called, in their order, in a game of teams with so many mates and enemies to a boat. Older frames say how
-    /// many decisions of the policy ago they were: `t-1.speed`.
+    /// The names of the values, in order, for a boat with this many mates and enemies. Names of
+    /// older frames begin with their age in policy decisions: `t-1.speed`.
     #[must_use]
     pub fn names(self, mates: usize, enemies: usize) -> Vec<String> {
         match self {
@@ -62,7 +62,8 @@ impl ObservationSpace {
     }
 }
 
-/// The names of the own boat's numbers, and then of each other boat's: `mate_1_speed`, `enemy_2_speed`.
+/// The names of the own boat's values, and then of each other boat's: `mate_1_speed`,
+/// `enemy_2_speed`.
 pub(super) fn names_of(own: &[&str], other: &[&str], (mates, enemies): (usize, usize)) -> Vec<String> {
     let mates = (1..=mates).map(|i| format!("mate_{i}"));
     let others = mates.chain((1..=enemies).map(|i| format!("enemy_{i}")));

@@ -1,16 +1,16 @@
-//! What the numbers of the observation space `pyquaticus` are called.
+//! The names of the values in the observation space `pyquaticus`.
 
 use super::names_of;
 
-/// Counted up when the meaning of a number changes: models of another version are refused.
+/// Incremented when the meaning of a value changes: models of another version are rejected.
 pub(super) const VERSION: u32 = 1;
 
-/// Of the own boat.
+/// Number of values of the own boat.
 const OWN: usize = 21;
-/// Of another one.
+/// Number of values of another boat.
 pub const OTHER: usize = 8;
 
-/// The numbers of the own boat.
+/// Names of the own boat's values.
 const OWN_NAMES: [&str; OWN] = [
     "enemy_flag_bearing",
     "enemy_flag_distance",
@@ -34,16 +34,16 @@ const OWN_NAMES: [&str; OWN] = [
     "score",
     "enemy_score",
 ];
-/// Those of another boat.
+/// Names of another boat's values.
 const OTHER_NAMES: [&str; OTHER] =
     ["bearing", "distance", "relative_heading", "speed", "has_flag", "on_own_side", "time_since_tag", "tagged"];
 
-/// What the numbers are called, in their order.
+/// The names of all values, in order.
 pub(super) fn names(mates: usize, enemies: usize) -> Vec<String> {
     names_of(&OWN_NAMES, &OTHER_NAMES, (mates, enemies))
 }
 
-/// How many numbers there are with so many other boats.
+/// The number of values with this many other boats.
 pub(super) fn size(others: usize) -> usize {
     OWN + others * OTHER
 }

@@ -1,16 +1,16 @@
-//! What the numbers of the observation space `squall` are called.
+//! The names of the values in the observation space `squall`.
 
 use super::names_of;
 
-/// Counted up when the meaning of a number changes: models of another version are refused.
+/// Incremented when the meaning of a value changes: models of another version are rejected.
 pub(super) const VERSION: u32 = 1;
 
-/// Of the own boat, its goals and the game.
+/// Number of values of the own boat, its goals and the game.
 const OWN: usize = 44;
-/// Of another boat: whether it is there, where, how it moves, its state.
+/// Number of values of another boat: presence, position, motion, state.
 pub const OTHER: usize = 16;
 
-/// The numbers of the own boat, its goals and the game.
+/// Names of the values of the own boat, its goals and the game.
 const OWN_NAMES: [&str; OWN] = [
     "position_ahead",
     "position_port",
@@ -57,7 +57,7 @@ const OWN_NAMES: [&str; OWN] = [
     "time_left",
     "rank",
 ];
-/// Those of another boat.
+/// Names of another boat's values.
 const OTHER_NAMES: [&str; OTHER] = [
     "known",
     "ahead",
@@ -77,12 +77,12 @@ const OTHER_NAMES: [&str; OTHER] = [
     "near_own_flag",
 ];
 
-/// What the numbers of a frame are called, in their order.
+/// The names of a frame's values, in order.
 pub(super) fn names(mates: usize, enemies: usize) -> Vec<String> {
     names_of(&OWN_NAMES, &OTHER_NAMES, (mates, enemies))
 }
 
-/// How many numbers there are.
+/// The number of values of a frame.
 pub(super) fn size(mates: usize, enemies: usize) -> usize {
     OWN + (mates + enemies) * OTHER
 }

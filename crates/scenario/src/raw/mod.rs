@@ -1,8 +1,8 @@
-//! Scenario files as people type them, where what the program believes has another form: `check` makes the one from the other.
+//! Scenario files as typed, where the checked types differ: `check` converts them.
 //!
-//! All other types of a scenario stand for themselves. Every key is declared once, here or there; how, is told in
-//! `schema`. The doc comments are the descriptions in the JSON Schemas and the reference, so they are written for people
-//! who write files.
+//! All other types of a scenario are both. Every key is declared once, here or there; `schema`
+//! describes how. The doc comments are the descriptions in the JSON Schemas and the reference, so
+//! they are written for authors of files.
 
 mod boat;
 mod field;

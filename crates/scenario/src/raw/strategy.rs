@@ -43,7 +43,7 @@ pub struct Strategy {
     pub(crate) rule: Vec<Rule>,
 }
 
-/// Values given to variables, by their names.
+/// Values assigned to variables, by variable name.
 pub(crate) type Values = BTreeMap<String, Value>;
 
 /// A value for a variable.
@@ -106,7 +106,8 @@ pub(crate) struct Rule {
     pub(crate) set: Values,
 }
 
-/// A behaviour: the keys of [`strategy::Behaviour`], one for each [`Moment`], and those of its kind, which [`Task`] declares.
+/// A behaviour: the keys of [`strategy::Behaviour`], one for each [`Moment`], and those of its
+/// kind, which [`Task`] declares.
 #[derive(Debug, Deserialize)]
 #[serde(transparent)]
 pub(crate) struct Behaviour(pub(crate) Json);
@@ -139,7 +140,7 @@ impl JsonSchema for Behaviour {
     }
 }
 
-/// Adds to the keys of one kind of behaviour those of all.
+/// Adds the common keys to those of one kind of behaviour.
 fn complete(definition: &mut Json, kind: &str, common: &Json) {
     let mut properties = common["properties"].clone();
     properties["kind"] = json!({ "type": "string", "description": "What it does.", "const": kind });

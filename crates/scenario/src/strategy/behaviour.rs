@@ -1,4 +1,4 @@
-//! Behaviours: what a boat's helm weighs against each other, and when.
+//! Behaviours: the objectives that a boat's helm weighs, and when they run.
 
 use super::{Expression, Parameter, Task};
 use schemars::JsonSchema;
@@ -39,9 +39,9 @@ pub struct Behaviour {
 /// A value given to a variable at a moment of a behaviour's life.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Post {
-    /// When.
+    /// The moment.
     pub at: Moment,
-    /// The variable, by index.
+    /// Index of the variable.
     pub variable: u16,
     /// Its new value.
     pub value: Expression,

@@ -1,35 +1,36 @@
 //! Expressions of strategy files: conditions, weights and numbers that follow the game.
 //!
-//! In a file they are written in CEL; the check makes of them this tree, in which names are numbers and types are
-//! known to fit. Everything is an `f64`: false and true are 0 and 1, a text is its place among the texts that its
-//! variable may have.
+//! Files contain them in CEL. The check converts them to this tree, in which names are indices and
+//! types are correct. All values are `f64`: false and true are 0 and 1, a text is its index among
+//! the values of its variable.
 
 use super::{Fact, Measure, Place};
 use serde::{Deserialize, Serialize};
 use strum::{EnumMessage, IntoStaticStr, VariantArray};
 
-/// An expression whose types fit.
+/// A correctly typed expression.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Expression {
     /// A number, a truth or a text.
     Constant(f64),
     /// A variable of the strategy, by its index in [`super::Program::variables`].
     Variable(u16),
-    /// What is known of the game.
+    /// A fact about the game.
     Fact(Fact),
-    /// Something about a place or a boat.
+    /// A measure of a place or a boat.
     Measure(Measure, Place),
-    /// The same between two of them.
+    /// A measure between two places.
     Between(Measure, Box<(Place, Place)>),
-    /// How many mates there are for which the condition holds, with the mates' own values of shared variables.
+    /// The number of mates for which the condition holds, with the mates' own values of shared
+    /// variables.
     Mates(Box<Expression>),
-    /// Not so.
+    /// Logical negation.
     Not(Box<Expression>),
-    /// Minus this.
+    /// Arithmetic negation.
     Minus(Box<Expression>),
     /// Two values joined.
     Join(Join, Box<(Expression, Expression)>),
-    /// The second where the first is true, else the third.
+    /// The second expression if the first is true, else the third.
     Choose(Box<(Expression, Expression, Expression)>),
 }
 
@@ -80,7 +81,7 @@ pub enum Join {
     Greatest,
 }
 
-/// What expressions are evaluated against. What is not answered is 0.
+/// The values that expressions are evaluated with. The default of all is 0.
 pub trait Values {
     /// The value of a fact.
     fn fact(&self, _fact: Fact) -> f64 {
@@ -90,21 +91,21 @@ pub trait Values {
     fn variable(&self, _index: u16) -> f64 {
         0.0
     }
-    /// What is asked about a place.
+    /// A measure of a place.
     fn measure(&self, _measure: Measure, _place: &Place) -> f64 {
         0.0
     }
-    /// What is asked of one place as seen from another.
+    /// A measure from one place to another.
     fn between(&self, _measure: Measure, _from: &Place, _to: &Place) -> f64 {
         0.0
     }
-    /// How many mates there are for which `condition` holds.
+    /// The number of mates for which `condition` holds.
     fn mates(&self, _condition: &Expression) -> f64 {
         0.0
     }
 }
 
-/// What constants are evaluated against.
+/// For evaluating constants.
 impl Values for () {}
 
 impl Expression {
@@ -114,7 +115,7 @@ impl Expression {
         Expression::Constant(truth(is))
     }
 
-    /// The value; one that is no number becomes 0.
+    /// The value; NaN becomes 0.
     #[must_use]
     pub fn value(&self, values: &impl Values) -> f64 {
         let value = match self {
@@ -127,7 +128,7 @@ impl Expression {
             Expression::Not(inner) => truth(!inner.is_true(values)),
             Expression::Minus(inner) => -inner.value(values),
             Expression::Join(join, sides) => match (join, sides.0.value(values)) {
-                // One side may decide alone.
+                // One side alone may determine the value.
                 (Join::And, 0.0) => 0.0,
                 (Join::Or, left) if left != 0.0 => 1.0,
                 (_, left) => join.of(left, sides.1.value(values)),
@@ -146,7 +147,7 @@ impl Expression {
         self.value(values) != 0.0
     }
 
-    /// Its value, if that does not depend on the game or on variables.
+    /// Its value, if it depends neither on the game nor on variables.
     #[must_use]
     pub fn constant(&self) -> Option<f64> {
         let mut asks = false;
@@ -154,20 +155,20 @@ impl Expression {
         (!asks).then(|| self.value(&()))
     }
 
-    /// Whether it is itself a question about the game or a variable.
+    /// Whether it directly refers to the game or to a variable.
     #[must_use]
     pub fn asks(&self) -> bool {
         use Expression::{Between, Fact, Mates, Measure, Variable};
         matches!(self, Variable(_) | Fact(_) | Measure(..) | Between(..) | Mates(_))
     }
 
-    /// The variable that it is, if it is one.
+    /// The variable, if the expression is one.
     #[must_use]
     pub fn as_variable(&self) -> Option<u16> {
         if let Expression::Variable(index) = self { Some(*index) } else { None }
     }
 
-    /// Calls `visit` with this expression and everything in it.
+    /// Calls `visit` with this expression and all its parts.
     pub fn walk<'a>(&'a self, visit: &mut impl FnMut(&'a Expression)) {
         visit(self);
         match self {
@@ -181,13 +182,13 @@ impl Expression {
 }
 
 impl Join {
-    /// Whether what is joined is true or false.
+    /// Whether the result is true or false.
     #[must_use]
     pub fn is_truth(self) -> bool {
         !matches!(self, Join::Plus | Join::Minus | Join::Times | Join::Over | Join::Least | Join::Greatest)
     }
 
-    /// Two values joined.
+    /// Joins two values.
     #[must_use]
     pub fn of(self, a: f64, b: f64) -> f64 {
         match self {

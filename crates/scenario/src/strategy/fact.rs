@@ -1,9 +1,9 @@
-//! Facts and measures: what expressions may ask of the game.
+//! Facts and measures: the game's values available to expressions.
 
 use serde::{Deserialize, Serialize};
 use strum::{EnumMessage, IntoStaticStr, VariantArray};
 
-/// What kind of value something has.
+/// The kind of a value.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Kind {
     /// True or false.
@@ -15,13 +15,13 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// A truth, or else a number.
+    /// A truth if `is_truth`, otherwise a number.
     #[must_use]
     pub fn of(is_truth: bool) -> Kind {
         if is_truth { Kind::Truth } else { Kind::Number }
     }
 
-    /// A value of this kind, as people write it.
+    /// A value of this kind, as written in files.
     #[must_use]
     pub fn text_of(&self, value: f64) -> String {
         match self {
@@ -117,7 +117,7 @@ impl Fact {
         is_own || matches!(self, FlagTaken | EnemyFlagTaken | MateHasFlag | EnemyInZone)
     }
 
-    /// Whether it counts something, and so is a whole number.
+    /// Whether it is a count, and so a whole number.
     #[must_use]
     pub fn is_whole(self) -> bool {
         !self.is_truth() && !matches!(self, Fact::TimeS | Fact::TimeLeftS | Fact::ModeS | Fact::StepS | Fact::SpeedMS)
@@ -131,13 +131,13 @@ impl Measure {
         matches!(self, Measure::Known | Measure::OnOwnSide | Measure::IsTagged)
     }
 
-    /// Whether it counts something, and so is a whole number.
+    /// Whether it is a count, and so a whole number.
     #[must_use]
     pub fn is_whole(self) -> bool {
         self == Measure::MatesNearer
     }
 
-    /// Whether it can be asked of two places.
+    /// Whether it applies to two places.
     #[must_use]
     pub fn is_of_two(self) -> bool {
         matches!(self, Measure::Distance | Measure::Closing)

@@ -1,7 +1,7 @@
-//! Strategies: how the boats of a team play, as data.
+//! Strategies: the play of a team's boats, as data.
 //!
-//! A [`Strategy`] deals [`Program`]s to the boats of a team. A program is what one boat's helm goes by: variables, a
-//! tree of modes, behaviours, and rules that give values to variables.
+//! A [`Strategy`] deals [`Program`]s to the boats of a team. One boat's helm follows a program:
+//! variables, a tree of modes, behaviours, and rules that assign values to variables.
 
 mod behaviour;
 mod expression;
@@ -28,23 +28,24 @@ use crate::policy::PolicyModel;
 use serde::{Deserialize, Serialize};
 use strum::{EnumMessage, IntoStaticStr, VariantArray};
 
-/// The most contacts or obstacles that one behaviour responds to at a time: the nearest.
+/// Maximum number of contacts or obstacles that one behaviour responds to at a time: the nearest.
 pub const NEAREST_MAX: usize = 16;
-/// The most functions that the behaviours of a mode may ask for together, each contact or obstacle counted.
+/// Maximum number of functions from all behaviours of a mode, each contact or obstacle counted.
 pub const FUNCTIONS_MAX: usize = 256;
-/// The most shared variables of a program.
+/// Maximum number of shared variables of a program.
 pub const SHARED_MAX: usize = 256;
 
-/// How the boats of a team play.
+/// The strategy of a team's boats.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Strategy {
     /// The strategy file's stem.
     pub name: String,
-    /// What the strategy is, in the file's words.
+    /// The file's description of the strategy.
     pub about: String,
-    /// The programs, dealt to the team's boats of this strategy in order, again from the start when they run out.
+    /// The programs, dealt to the team's boats of this strategy in order, again from the first when
+    /// they run out.
     pub roles: Vec<Program>,
-    /// How they are dealt.
+    /// How the roles are dealt.
     pub assignment: Assignment,
 }
 
@@ -58,24 +59,24 @@ pub enum Assignment {
     Seeded,
 }
 
-/// What one boat's helm goes by.
+/// The program of one boat's helm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Program {
-    /// The stem of the file it is from.
+    /// The stem of its file.
     pub name: String,
-    /// What the program is, in the file's words.
+    /// The file's description of the program.
     pub about: String,
-    /// How decisions are made.
+    /// Settings of the helm's decisions.
     pub helm: Helm,
     /// Its variables.
     pub variables: Vec<Variable>,
     /// Its modes, parents before children, siblings in order; at least one.
     pub modes: Vec<Mode>,
-    /// Its behaviours, by name.
+    /// Its behaviours, sorted by name.
     pub behaviours: Vec<Behaviour>,
-    /// What gives values to variables, in order.
+    /// The rules that assign values to variables, in order.
     pub rules: Vec<Rule>,
-    /// Why a mode may do without `op_region` or `avoid_collision`, if one does.
+    /// The reason why a mode may lack `op_region` or `avoid_collision`, if one does.
     pub unsafe_because: Option<String>,
 }
 
@@ -105,44 +106,45 @@ pub struct Helm {
 pub struct Variable {
     /// Its name.
     pub name: String,
-    /// What it can be.
+    /// The kind of its values.
     pub kind: Kind,
-    /// What it is at first: see [`Expression`] for how truths and texts are numbers.
+    /// Its initial value: see [`Expression`] for how truths and texts are numbers.
     pub initial: f64,
-    /// Whether the team is told of it.
+    /// Whether it is shared with the team.
     pub shared: bool,
 }
 
-/// A mode: what the boat is at.
+/// A mode: the boat's current activity.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mode {
     /// Its name, unique in the program.
     pub name: String,
-    /// The mode it is a part of, by index; parents stand before their children.
+    /// Index of the mode that it is a part of; parents precede their children.
     pub parent: Option<usize>,
-    /// Of the parts of a mode the first whose condition holds is the one; the last of them has none.
+    /// The condition of a part: the first part whose condition holds is active; the last one has
+    /// none.
     pub when: Option<Expression>,
-    /// Given to variables when the mode begins.
+    /// Assignments when the mode begins.
     pub enter: Vec<(u16, Expression)>,
 }
 
-/// Gives values to variables.
+/// A rule that assigns values to variables.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Rule {
-    /// Only at this event.
+    /// Applies only at this event.
     pub on: Option<Trigger>,
-    /// Only where this holds.
+    /// Applies only if this condition holds.
     pub when: Option<Expression>,
     /// The variables, by index, and their new values.
     pub set: Vec<(u16, Expression)>,
 }
 
-/// An event that a rule waits for.
+/// The trigger event of a rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Trigger {
-    /// To whom it happens.
+    /// The affected boat.
     pub who: Who,
-    /// What happens.
+    /// The kind of event.
     pub what: What,
 }
 
@@ -175,12 +177,12 @@ pub enum What {
 }
 
 impl Strategy {
-    /// The models that its programs ask.
+    /// The models that its programs use.
     pub fn models(&self) -> impl Iterator<Item = &PolicyModel> {
         self.roles.iter().flat_map(Program::models)
     }
 
-    /// Whether a person may steer boats that play it.
+    /// Whether a person may steer boats with this strategy.
     #[must_use]
     pub fn is_steered(&self) -> bool {
         self.roles.iter().any(|role| role.proposer() == Some(Proposer::Person))
@@ -188,7 +190,7 @@ impl Strategy {
 }
 
 impl Program {
-    /// The models that it asks.
+    /// The models that it uses.
     pub fn models(&self) -> impl Iterator<Item = &PolicyModel> {
         self.behaviours.iter().filter_map(|behaviour| match &behaviour.task {
             Task::Policy(policy) => policy.model.as_ref(),
@@ -196,7 +198,7 @@ impl Program {
         })
     }
 
-    /// Who proposes courses and speeds from outside, if the program lets anybody.
+    /// The accepted external source of courses and speeds, if any.
     #[must_use]
     pub fn proposer(&self) -> Option<Proposer> {
         self.behaviours.iter().find_map(|behaviour| match &behaviour.task {
@@ -205,7 +207,7 @@ impl Program {
         })
     }
 
-    /// The variable that whoever is outside gives one of its texts to, by index, if the program has options.
+    /// Index of the variable whose text an external source sets, if the program has options.
     #[must_use]
     pub fn options(&self) -> Option<u16> {
         self.behaviours.iter().find_map(|behaviour| match &behaviour.task {
@@ -214,7 +216,7 @@ impl Program {
         })
     }
 
-    /// The texts of a variable; none if it has other values.
+    /// The texts of a variable; empty for other kinds.
     #[must_use]
     pub fn texts(&self, variable: u16) -> &[String] {
         match &self.variables[usize::from(variable)].kind {
@@ -234,14 +236,14 @@ impl Program {
         (0..self.modes.len()).filter(|mode| self.is_leaf(*mode))
     }
 
-    /// The mode's name with those of the modes it is a part of, outermost first: `defending:intercepting`.
+    /// The mode's name after those of its parents, outermost first: `defending:intercepting`.
     #[must_use]
     pub fn path(&self, mode: usize) -> String {
         let name = &self.modes[mode].name;
         self.modes[mode].parent.map_or_else(|| name.clone(), |parent| format!("{}:{name}", self.path(parent)))
     }
 
-    /// The leaf that the conditions choose.
+    /// The active leaf according to the conditions.
     ///
     /// # Panics
     /// If the last part of a mode has a condition, which no checked program has.
@@ -260,9 +262,10 @@ impl Program {
     }
 }
 
-/// What strategy files call by a name: the variant's, in snake case. Its doc comment is what people read about it.
+/// Enums whose variants have names in strategy files, in snake case. The doc comment is shown to
+/// users.
 pub trait Named: Copy + Into<&'static str> + VariantArray + EnumMessage {
-    /// All of them, in the order in which they are explained.
+    /// All variants, in the order of the documentation.
     fn all() -> &'static [Self] {
         Self::VARIANTS
     }
@@ -272,12 +275,12 @@ pub trait Named: Copy + Into<&'static str> + VariantArray + EnumMessage {
         self.into()
     }
 
-    /// What it is.
+    /// Its meaning.
     fn meaning(self) -> &'static str {
         self.get_documentation().unwrap_or_default()
     }
 
-    /// The one called so.
+    /// The variant with this name.
     fn by_name(name: &str) -> Option<Self> {
         Self::all().iter().copied().find(|variant| variant.name() == name)
     }

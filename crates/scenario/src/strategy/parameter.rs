@@ -1,17 +1,17 @@
-//! Numbers of behaviours, which may follow the game.
+//! Numbers of behaviours, constant or dependent on the game.
 
 use super::{Expression, Values};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
-/// A number of a behaviour. It may be an expression, which is evaluated anew at every decision: that is how behaviours are
-/// updated while they run. Angles are compass degrees as in files.
+/// A number of a behaviour, which may be an expression. The helm evaluates it at every decision, so
+/// that behaviours follow the game while they run. Angles are compass degrees, as in files.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Parameter {
     /// Its value.
     pub expression: Expression,
-    /// The values it may have; others become the nearest of these.
+    /// The allowed range, to which values are clamped.
     pub range: (f64, f64),
 }
 
@@ -22,14 +22,14 @@ impl Parameter {
         self.expression.value(values).clamp(self.range.0, self.range.1)
     }
 
-    /// Its value, if that is always the same.
+    /// Its value, if constant.
     #[must_use]
     pub fn constant(&self) -> Option<f64> {
         self.expression.constant().map(|value| value.clamp(self.range.0, self.range.1))
     }
 }
 
-/// In a file it is the number, or the expression as text; its range is that of the key.
+/// In a file, a number or an expression as text; its range is that of the key.
 impl JsonSchema for Parameter {
     fn inline_schema() -> bool {
         true

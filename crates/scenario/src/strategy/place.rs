@@ -1,4 +1,4 @@
-//! Places and boats as strategies name them: fixed ones, and those that move with the game.
+//! Places and boats with names in strategies: fixed ones, and those that move with the game.
 
 use super::Named;
 use primitives::frame::Ned;
@@ -12,13 +12,13 @@ use strum::{EnumMessage, IntoStaticStr, VariantArray};
 /// A place.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Place {
-    /// Just there.
+    /// A fixed position.
     At(Ned),
     /// A named point of the own team, such as `CFX`.
     Point(String),
     /// Something that follows the game.
     Mark(Mark),
-    /// Where a boat is.
+    /// The position of a boat.
     Boat(Boat),
 }
 
@@ -62,21 +62,21 @@ pub enum Boat {
 }
 
 impl Place {
-    /// The mark, boat or named point called `name`.
+    /// The mark, boat or named point with this name.
     #[must_use]
     pub fn by_name(name: &str) -> Option<Place> {
         let point = || Field::point_names().into_iter().find(|point| point == name).map(Place::Point);
         Mark::by_name(name).map(Place::Mark).or_else(|| Boat::by_name(name).map(Place::Boat)).or_else(point)
     }
 
-    /// Every name that a place may have.
+    /// All names of places.
     #[must_use]
     pub fn names() -> Vec<String> {
         let fixed = [Mark::names(), Boat::names()].concat().into_iter().map(str::to_owned);
         fixed.chain(Field::point_names()).collect()
     }
 
-    /// The same in words, cut short.
+    /// The same as text, abbreviated.
     #[must_use]
     pub fn names_in_short() -> String {
         let (marks, boats) = (Mark::names().join(", "), Boat::names().join(", "));
@@ -92,7 +92,7 @@ impl JsonSchema for Place {
         "place".into()
     }
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        // Farther from the datum than this nobody sails, m.
+        // Bound on the distance from the datum, m; no boat goes that far.
         let number = json!({ "type": "number", "minimum": -1e6, "maximum": 1e6 });
         let position = json!({
             "description": "[x east, y north] in metres from the datum.",

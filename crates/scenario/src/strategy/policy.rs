@@ -1,4 +1,4 @@
-//! The behaviour of the kind `policy`: its keys, as [`super::task`] has those of the other kinds.
+//! The behaviour of the kind `policy` and its keys; [`super::task`] has the other kinds.
 
 use super::Parameter;
 use crate::action::ActionSpace;

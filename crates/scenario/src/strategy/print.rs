@@ -1,8 +1,8 @@
-//! Expressions printed in CEL, as they would be typed into a file.
+//! Prints expressions in CEL, as typed in a file.
 
 use super::{Expression, Join, Kind, Named, Place, Program};
 
-/// How tightly the parts of an expression bind, loosest first.
+/// Precedence of an expression's parts, loosest first.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Precedence {
     Choice,
@@ -16,7 +16,7 @@ enum Precedence {
 }
 
 impl Program {
-    /// What kind of value an expression of this program has.
+    /// The kind of an expression's value in this program.
     #[must_use]
     pub fn kind_of(&self, expression: &Expression) -> Kind {
         match expression {
@@ -33,25 +33,25 @@ impl Program {
         }
     }
 
-    /// A condition of this program, as it would be typed.
+    /// A condition of this program, as typed.
     #[must_use]
     pub fn condition_text(&self, expression: &Expression) -> String {
         self.text(expression, &Kind::Truth, Precedence::Choice)
     }
 
-    /// A number of this program, as it would be typed.
+    /// A number of this program, as typed.
     #[must_use]
     pub fn number_text(&self, expression: &Expression) -> String {
         self.text(expression, &Kind::Number, Precedence::Choice)
     }
 
-    /// A value for a variable of this program, as it would be typed.
+    /// A value for a variable of this program, as typed.
     #[must_use]
     pub fn value_text(&self, variable: u16, expression: &Expression) -> String {
         self.text(expression, &self.variables[usize::from(variable)].kind, Precedence::Choice)
     }
 
-    /// An expression where a value of `kind` stands and everything looser than `around` needs brackets.
+    /// An expression in the place of a value of `kind`; parts looser than `around` need brackets.
     fn text(&self, expression: &Expression, kind: &Kind, around: Precedence) -> String {
         let (text, binds) = match expression {
             Expression::Constant(value) => match kind {
@@ -97,13 +97,13 @@ impl Program {
         };
         let kind = match join {
             Join::And | Join::Or => Kind::Truth,
-            // Of two sides one may be a constant, which alone does not say what it is.
+            // One of the two sides may be a constant, which alone does not determine its kind.
             Join::Equal | Join::Unequal => match (self.kind_of(left), self.kind_of(right)) {
                 (Kind::Number, kind) | (kind, _) => kind,
             },
             _ => Kind::Number,
         };
-        // Chains of these are the same with and without brackets; of others the left side comes first.
+        // Chains of these are associative; other chains group from the left.
         let (at_left, at_right) = match join {
             Join::And | Join::Or => (binds, binds),
             _ if binds == Precedence::Relation => (Precedence::Sum, Precedence::Sum),
@@ -115,7 +115,7 @@ impl Program {
 }
 
 impl Place {
-    /// The place as it would be typed.
+    /// The place as typed.
     fn text(&self) -> String {
         match self {
             Place::At(at) => format!("[{}, {}]", at.east, at.north),

@@ -1,8 +1,8 @@
-//! What behaviours do: one type a kind, with its keys as a file gives them.
+//! The tasks of behaviours: one type per kind, with its keys as in files.
 //!
-//! Each key is declared once, here. Its doc comment says what it means, and in which unit; `range` and `length` say what
-//! is allowed, `default` what it is when left out. By the schema of these types files are checked, editors complete, and
-//! the reference page is written.
+//! Each key is declared once, here. Its doc comment gives its meaning and unit; `range` and
+//! `length` give the allowed values, `default` the value of an omitted key. The schema of these
+//! types is used to check files, for completion in editors, and for the reference page.
 
 use super::{Boat, Parameter, Place, Policy};
 use schemars::JsonSchema;
@@ -42,7 +42,7 @@ impl Task {
         self.into()
     }
 
-    /// Whether this keeps the boat safe, and so weighs more than others by default.
+    /// Whether it is a safety behaviour, which has a greater default weight.
     #[must_use]
     pub fn is_safety(&self) -> bool {
         matches!(self, Task::OpRegion(_) | Task::AvoidCollision(_) | Task::AvoidObstacle(_))

@@ -1,4 +1,4 @@
-//! The search for the parameters that fit a log best, and how well they are known.
+//! Searches for the parameters that fit a log best, and estimates their uncertainty.
 
 use super::log::{CHANNELS, Log, Unit};
 use super::parameter::{Knob, PARAMETERS, Parameter};
@@ -13,30 +13,30 @@ use thiserror::Error;
 /// A fitted parameter.
 #[derive(Clone, Copy, Debug)]
 pub struct Estimate {
-    /// Which.
+    /// The parameter.
     pub parameter: Parameter,
-    /// Its value in the boat that was given.
+    /// Its value in the initial boat.
     pub before: f64,
-    /// Its value now.
+    /// Its fitted value.
     pub value: f64,
-    /// Within how much of that the true value lies with 95 % probability, if the model is right and the noise white.
+    /// Half-width of the 95 % confidence interval, if the model is right and the noise white.
     pub plus_minus: f64,
 }
 
-/// How well a channel is fitted.
+/// The quality of the fit of a channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quality {
     /// Its name.
     pub channel: &'static str,
     /// Its unit.
     pub unit: &'static str,
-    /// Root of the mean squared residual.
+    /// Root mean square of the residuals.
     pub rms: f64,
     /// Share of the measurements' variance that the model explains.
     pub r_squared: f64,
 }
 
-/// Two parameters that the log can hardly tell apart.
+/// Two parameters that the log does not separate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Confused {
     /// Their names.
@@ -45,42 +45,42 @@ pub struct Confused {
     pub correlation: f64,
 }
 
-/// What a log says about a boat.
+/// The fit of a boat to a log.
 #[derive(Clone, Debug)]
 pub struct Fit {
     /// The boat with the fitted parameters.
     pub boat: Boat,
-    /// The parameters.
+    /// The estimated parameters.
     pub estimates: Vec<Estimate>,
-    /// The channels.
+    /// The quality of each channel.
     pub qualities: Vec<Quality>,
-    /// Pairs that are hardly told apart.
+    /// Pairs of strongly correlated parameters.
     pub confused: Vec<Confused>,
-    /// In how many segments.
+    /// The number of segments.
     pub segments: usize,
-    /// How many numbers were measured.
+    /// The number of measured values.
     pub measured: usize,
 }
 
 /// Why there is no fit.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum NoFit {
-    /// A name that is none of a parameter.
+    /// An unknown parameter name.
     #[error("{0} is no parameter, expected some of {list}", list = names().join(", "))]
     Unknown(String),
-    /// The boat has no such number.
+    /// The boat has no such parameter.
     #[error("the boat has no {0}")]
     NotThere(&'static str),
-    /// Nothing to fit.
+    /// No parameters to fit.
     #[error("no parameter to fit")]
     Nothing,
-    /// No row that a segment could begin with.
+    /// No row at which a segment could begin.
     #[error("no row of the log has heading, surge and yaw rate at once, and whatever else the log measures")]
     NoStart,
-    /// The search did not come to an end.
+    /// The search did not converge.
     #[error("the search failed: {0}")]
     Search(String),
-    /// The log says nothing about some parameters.
+    /// The log does not determine some parameters.
     #[error("the log does not determine {0}: leave some out with --fit, or record more")]
     Undetermined(String),
 }
@@ -89,9 +89,10 @@ pub enum NoFit {
 const CONFUSED: f64 = 0.95;
 /// 97.5 % of a normal distribution lie below this many standard deviations.
 const NORMAL_975: f64 = 1.96;
-/// How often channels are weighed anew by what is left of them.
+/// Number of searches, each with channel weights from the previous residuals.
 const WEIGHINGS: usize = 3;
-/// Channels are not taken to be better than this share of the first guess: a log without noise is a simulation.
+/// Least standard deviation of a channel, as a share of the initial guess: a log without noise
+/// comes from a simulation.
 const LEAST_SIGMA: f64 = 1e-4;
 
 /// The names of all parameters.
@@ -100,10 +101,11 @@ pub fn names() -> Vec<&'static str> {
     PARAMETERS.iter().map(|parameter| parameter.name).collect()
 }
 
-/// The parameters of these names; of none, those that are usual and that the boat's file does not have as zero.
+/// The parameters with these names; if none are named, the default ones with a non-zero value in
+/// the boat's file.
 ///
 /// # Errors
-/// [`NoFit`] for a name that is none.
+/// [`NoFit`] for an unknown name.
 pub fn parameters(named: &[String], boat: &Boat) -> Result<Vec<Parameter>, NoFit> {
     if named.is_empty() {
         let usual = |parameter: &&Parameter| parameter.by_default && parameter.value(boat).is_some_and(|v| v > 0.0);
@@ -118,18 +120,19 @@ pub fn parameters(named: &[String], boat: &Boat) -> Result<Vec<Parameter>, NoFit
 /// A step of the search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step {
-    /// The search is made so many times, each with channels weighed by what the one before left of them.
+    /// Total number of searches, each with channel weights from the previous residuals.
     pub searches: usize,
-    /// Which of them it is, from 1.
+    /// Number of the current search, from 1.
     pub search: usize,
-    /// What is left, in standard deviations of the channels: their root mean square. None where the boat cannot be sailed.
+    /// Root mean square of the residuals, in standard deviations of the channels. None if the boat
+    /// cannot be simulated.
     pub rms: Option<f64>,
 }
 
-/// Fits `parameters` of `boat` to a log, and tells of every step.
+/// Fits `parameters` of `boat` to a log, and reports every step.
 ///
 /// # Errors
-/// [`NoFit`] says why there is none.
+/// [`NoFit`] gives the reason.
 pub fn fit(
     boat: &Boat,
     log: &Log,
@@ -165,7 +168,7 @@ pub fn fit(
     report(&problem)
 }
 
-/// What was found, and how well it is known.
+/// Reports the fitted parameters and their uncertainty.
 fn report(problem: &Problem<'_>) -> Result<Fit, NoFit> {
     let at = problem.place();
     let lost = || NoFit::Search("the boat's numbers go bad near the best fit".to_owned());
@@ -177,7 +180,7 @@ fn report(problem: &Problem<'_>) -> Result<Fit, NoFit> {
     let deviation = |i: usize| covariance[(i, i)].sqrt();
     let estimate = |(i, knob): (usize, &Knob)| {
         let value = knob.value(at[i]);
-        // The search moves the logarithm: d value = value d log.
+        // The search varies the logarithm: d value = value d log.
         Estimate {
             parameter: knob.parameter,
             before: knob.before,

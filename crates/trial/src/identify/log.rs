@@ -1,11 +1,11 @@
-//! A log of a boat: what it was told, and what was measured of it.
+//! A log of a boat: its commands and measurements.
 
 use crate::{Engine, LONGEST_S, Mistake, Orders, Sheet};
 use primitives::SimTime;
 use primitives::angle::wrap_pi;
 use scenario::boat::{Boat, Drive};
 
-/// What can be measured: name, column, and from the column's unit to ours.
+/// Measured channels: name, column, and conversion from the column's unit to SI.
 pub(super) const CHANNELS: [(&str, &str, Unit); 6] = [
     ("x", "x_m", Unit::Plain),
     ("y", "y_m", Unit::Plain),
@@ -14,7 +14,7 @@ pub(super) const CHANNELS: [(&str, &str, Unit); 6] = [
     ("sway", "sway_m_s", Unit::Plain),
     ("yaw rate", "yaw_rate_deg_s", Unit::Degrees),
 ];
-/// Their places.
+/// Indices of the channels.
 pub(super) const X: usize = 0;
 pub(super) const HEADING: usize = 2;
 pub(super) const SURGE: usize = 3;
@@ -24,30 +24,31 @@ pub(super) const YAW_RATE: usize = 5;
 /// The unit of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Unit {
-    /// As it is.
+    /// SI already.
     Plain,
-    /// Degrees, or degrees a second.
+    /// Degrees, or degrees per second.
     Degrees,
 }
 
-/// A log, ready to be compared with a model.
+/// A log, prepared for comparison with a model.
 #[derive(Clone, Debug)]
 pub struct Log {
     pub(super) times: Vec<SimTime>,
-    /// x east, y north, heading (turned on, not wrapped), surge, sway, yaw rate; NaN where nothing was measured.
+    /// x east, y north, heading (unwrapped), surge, sway, yaw rate; NaN for missing measurements.
     pub(super) measured: Vec<[f64; 6]>,
     pub(super) orders: Orders,
 }
 
-/// Fewest rows that say anything.
+/// Least number of rows for a fit.
 const ROWS_MIN: usize = 20;
 
 impl Log {
-    /// The log in a sheet: `t_s`, commands for the thrusters, and of a trial's columns at least `heading_deg`,
-    /// `surge_m_s` and `yaw_rate_deg_s`. An empty cell or NaN is no measurement.
+    /// Reads a log from a sheet: `t_s`, commands for the thrusters, and at least the trial columns
+    /// `heading_deg`, `surge_m_s` and `yaw_rate_deg_s`. An empty cell or NaN is a missing
+    /// measurement.
     ///
     /// # Errors
-    /// Where columns are missing or a number is none.
+    /// If columns are missing or a cell is not a number.
     pub fn of_sheet(sheet: &Sheet, boat: &Boat) -> Result<Log, Mistake> {
         if matches!(boat.drive, Drive::Kinematic(_)) {
             return Err(sheet.mistake(None, format!("{} is kinematic, and has no hull to identify", boat.name)));
@@ -79,8 +80,8 @@ impl Log {
         Ok(Log { times: times_s.into_iter().map(SimTime::from_s).collect(), measured, orders })
     }
 
-    /// Where segments begin: the first row that `segment` has passed since the last, at which all is measured that a boat
-    /// starts from. The end of the last one stands last.
+    /// The first rows of segments: the first row at least `segment` after the last one with all
+    /// measurements that a start needs. The last entry is the end of the last segment.
     pub(super) fn segments(&self, segment: SimTime) -> Vec<usize> {
         let has_sway = self.measured.iter().any(|cells| cells[SWAY].is_finite());
         let has_place = self.measured.iter().any(|cells| cells[X].is_finite());
@@ -92,7 +93,7 @@ impl Log {
         let mut starts: Vec<usize> = vec![];
         for (row, cells) in self.measured.iter().enumerate() {
             let due = starts.last().is_none_or(|last| self.times[row] - self.times[*last] >= segment);
-            // A rest that is shorter than half a segment belongs to the one before.
+            // A remainder shorter than half a segment joins the previous one.
             let left = *self.times.last().unwrap_or(&SimTime::ZERO) - self.times[row];
             if due && is_start(cells) && (starts.is_empty() || left.0 * 2 >= segment.0) {
                 starts.push(row);
@@ -103,7 +104,7 @@ impl Log {
     }
 }
 
-/// What was measured, in our unit; NaN where nothing was.
+/// A measured value in SI; NaN if missing.
 fn cell(sheet: &Sheet, row: usize, column: usize, unit: Unit) -> Result<f64, Mistake> {
     let text = sheet.text(row, column);
     if text.is_empty() || text.eq_ignore_ascii_case("nan") {
@@ -113,7 +114,7 @@ fn cell(sheet: &Sheet, row: usize, column: usize, unit: Unit) -> Result<f64, Mis
     Ok(if unit == Unit::Degrees { number.to_radians() } else { number })
 }
 
-/// Headings without jumps of a whole turn.
+/// Unwraps headings: removes jumps of a whole turn.
 fn unwrap_headings(measured: &mut [[f64; 6]]) {
     let mut before: Option<f64> = None;
     for cells in measured.iter_mut().filter(|cells| cells[HEADING].is_finite()) {

@@ -1,6 +1,7 @@
-//! Identification: the numbers of a boat file that make the model sail as a recorded boat did.
+//! Identification: finds the parameters of a boat file with which the model reproduces a recorded
+//! run.
 //!
-//! Open [`fit`] first; `problem` says what is minimised.
+//! Open [`fit`] first; `problem` defines the minimised function.
 
 mod fit;
 mod log;
@@ -15,7 +16,7 @@ pub use rollout::Setting;
 
 use std::fmt::Write;
 
-/// A boat file that says what was fitted and leaves everything else to `base`. `log` is what the log is called.
+/// A boat file with the fitted parameters and everything else from `base`. `log` is the log's name.
 #[must_use]
 pub fn written(fit: &Fit, base: &str, log: &str) -> String {
     let mut text = format!("# Fitted to {} by squall identify: value ± 95 %.\n", log.replace(['\n', '\r'], " "));

@@ -1,23 +1,24 @@
-//! What can be fitted: numbers of a boat, their keys in a boat file, and how the search moves them.
+//! Fittable parameters: numbers of a boat, their keys in a boat file, and how the search varies
+//! them.
 
 use primitives::math;
 use scenario::boat::{Boat, Drive, Thruster};
 
-/// A number of a boat that can be fitted.
+/// A fittable number of a boat.
 #[derive(Clone, Copy, Debug)]
 pub struct Parameter {
-    /// What it is called on the command line.
+    /// Its name on the command line.
     pub name: &'static str,
     /// Its table in a boat file.
     pub table: &'static str,
     /// Its key there.
     pub key: &'static str,
-    /// Whether it is fitted if nobody says what to fit.
+    /// Whether it is fitted by default.
     pub by_default: bool,
     place: fn(&mut Boat) -> Option<&mut f64>,
 }
 
-/// All that can be fitted, in the order in which it is reported.
+/// All parameters, in the order of reports.
 pub const PARAMETERS: [Parameter; 16] = [
     hull("surge_linear", "surge_linear_kg_s", true, |boat| Some(&mut boat.hull.surge_linear_kg_s)),
     hull("surge_quadratic", "surge_quadratic_kg_m", true, |boat| Some(&mut boat.hull.surge_quadratic_kg_m)),
@@ -58,7 +59,7 @@ fn thruster(boat: &mut Boat) -> Option<&mut Thruster> {
 }
 
 impl Parameter {
-    /// Its value in `boat`, if that has it.
+    /// Its value in `boat`, if present.
     #[must_use]
     pub fn value(&self, boat: &Boat) -> Option<f64> {
         (self.place)(&mut boat.clone()).copied()
@@ -71,17 +72,18 @@ impl Parameter {
     }
 }
 
-/// A parameter as the search moves it: by a factor, so that it stays positive and one step means the same to all.
+/// A parameter as the search varies it: by a factor, so that it stays positive and steps are
+/// comparable.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Knob {
     pub(super) parameter: Parameter,
-    /// The value in the boat that was given.
+    /// The value in the initial boat.
     pub(super) before: f64,
-    /// What the factor multiplies.
+    /// The factor's base value.
     scale: f64,
 }
 
-/// How small a number stands for one that the boat has as zero when the search begins.
+/// Initial value for a parameter that is zero in the boat when the search begins.
 const FROM_ZERO: f64 = 0.01;
 
 impl Knob {
@@ -91,13 +93,13 @@ impl Knob {
         Some(Knob { parameter, before, scale })
     }
 
-    /// The value at a place of the search, where 0 is the beginning.
+    /// The value at a search coordinate, where 0 is the start.
     pub(super) fn value(&self, at: f64) -> f64 {
-        // A factor of e^20 either way is beyond any boat, and short of any overflow.
+        // A factor of e^20 either way is beyond any boat but does not overflow.
         self.scale * math::exp(at.clamp(-20.0, 20.0))
     }
 
-    /// Puts the value at a place of the search into a boat.
+    /// Sets the value at a search coordinate in a boat.
     pub(super) fn turn(&self, boat: &mut Boat, at: f64) {
         self.parameter.set(boat, self.value(at));
     }

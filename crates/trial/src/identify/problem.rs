@@ -1,8 +1,10 @@
-//! The fit as a problem of least squares: residuals, and how they change with the parameters.
+//! The fit as a least-squares problem: residuals, and their derivatives with respect to the
+//! parameters.
 //!
-//! Multiple shooting: the model starts anew in every segment, from a state that is itself fitted, since measured starts
-//! have noise. For given parameters the best starts are a small linear problem a segment, so the search only sees the
-//! parameters (variable projection, Golub and Pereyra 1973, with Kaufman's simplification of the Jacobian, 1975).
+//! Multiple shooting: the model restarts in every segment, from a state that is itself fitted,
+//! since measured starts have noise. For given parameters the best starts are a small linear
+//! problem per segment, so the search varies only the parameters (variable projection, Golub and
+//! Pereyra 1973, with Kaufman's simplification of the Jacobian, 1975).
 
 use super::log::Log;
 use super::parameter::Knob;
@@ -11,11 +13,12 @@ use levenberg_marquardt::LeastSquaresProblem;
 use nalgebra::{DMatrix, DVector, Dyn, Owned};
 use scenario::boat::Boat;
 
-/// Step of a parameter's logarithm for its derivative.
+/// Step of a parameter's logarithm for its finite difference.
 const PARAMETER_STEP: f64 = 1e-4;
-/// Step of a start, in standard deviations of its channel.
+/// Step of a start for its finite difference, in standard deviations of its channel.
 const START_STEP: f64 = 1e-2;
-/// Corrections of the starts for each set of parameters; the search goes on from the last ones, so they need few.
+/// Corrections of the starts for each set of parameters; few suffice, since the search continues
+/// from the last ones.
 const CORRECTIONS: usize = 2;
 
 /// The fit of one log.
@@ -26,19 +29,19 @@ pub(super) struct Problem<'a> {
     pub(super) log: &'a Log,
     pub(super) segments: Vec<usize>,
     pub(super) knobs: Vec<Knob>,
-    /// Standard deviation of each channel, by which residuals are divided.
+    /// Standard deviation of each channel, which divides its residuals.
     pub(super) sigmas: [f64; 6],
-    /// Measured cells: row and channel, in the order of the rows.
+    /// Measured cells: row and channel, by row.
     cells: Vec<(usize, usize)>,
-    /// Where each segment's cells begin; the end stands last.
+    /// The first cell of each segment, with the end appended.
     borders: Vec<usize>,
-    /// Channels of a start that are fitted: those that are measured.
+    /// The fitted channels of a start: the measured ones.
     fitted: Vec<usize>,
     at: DVector<f64>,
     starts: Vec<Point>,
-    /// Whitened residuals at `at`; none where the model cannot be sailed.
+    /// Whitened residuals at `at`; none if the model cannot be simulated.
     residuals: Option<DVector<f64>>,
-    /// Told of every step: the root mean square of the residuals.
+    /// Called at every step with the root mean square of the residuals.
     tell: &'a dyn Fn(Option<f64>),
 }
 
@@ -66,7 +69,7 @@ impl<'a> Problem<'a> {
             log,
             segments,
             knobs,
-            // What such instruments are good for; the residuals then say it better.
+            // Typical accuracies of such instruments; the residuals then give better values.
             sigmas: [0.3, 0.3, 0.02, 0.05, 0.05, 0.01],
             cells,
             borders,
@@ -76,19 +79,19 @@ impl<'a> Problem<'a> {
             residuals: None,
             tell,
         };
-        // A model that starts from a noisy measurement is off from the first row on, and the
-        // search would bend parameters to make up for it.
+        // A model that starts from a noisy measurement is off from the first row on, and the search
+        // would distort parameters to compensate.
         problem.settle();
         problem
     }
 
-    /// Weighs the channels anew.
+    /// Sets the channels' standard deviations.
     pub(super) fn weigh(&mut self, sigmas: [f64; 6]) {
         self.sigmas = sigmas;
         self.settle();
     }
 
-    /// The boat at a place of the search.
+    /// The boat at a search coordinate.
     pub(super) fn boat_at(&self, at: &DVector<f64>) -> Boat {
         let mut boat = self.boat.clone();
         self.knobs.iter().zip(at.iter()).for_each(|(knob, at)| knob.turn(&mut boat, *at));
@@ -99,7 +102,7 @@ impl<'a> Problem<'a> {
         &self.at
     }
 
-    /// How many numbers are measured, and how many are fitted to them, starts included.
+    /// The numbers of measured values and of fitted values, including starts.
     pub(super) fn sizes(&self) -> (usize, usize) {
         (self.cells.len(), self.knobs.len() + self.fitted.len() * self.starts.len())
     }
@@ -120,7 +123,8 @@ impl<'a> Problem<'a> {
         residuals.iter().all(|residual| residual.is_finite()).then_some(residuals)
     }
 
-    /// How the residuals change with the starts: the columns of a segment's start are those of its rows.
+    /// Derivatives of the residuals with respect to the starts: a segment's start columns are in
+    /// its rows.
     fn by_starts(&self, boat: &Boat, residuals: &DVector<f64>) -> Option<DMatrix<f64>> {
         let mut columns = Vec::with_capacity(self.fitted.len());
         for channel in &self.fitted {
@@ -131,20 +135,20 @@ impl<'a> Problem<'a> {
         Some(DMatrix::from_columns(&columns))
     }
 
-    /// For each segment, the best change of its start to take away `from`, in the columns of `by_starts`; none where
-    /// that is not determined.
+    /// For each segment, the best change of its start to cancel `from`, in the columns of
+    /// `by_starts`; none if undetermined.
     fn corrections(&self, by_starts: &DMatrix<f64>, from: &DVector<f64>) -> Option<Vec<DVector<f64>>> {
         let correction = |border: &[usize]| {
             let columns = by_starts.rows(border[0], border[1] - border[0]);
             let mut normal = columns.tr_mul(&columns);
-            // So small that it only matters where a channel says nothing at all.
+            // Small enough to matter only for a channel without information.
             (0..normal.nrows()).for_each(|i| normal[(i, i)] += 1e-9);
             Some(normal.cholesky()?.solve(&columns.tr_mul(&from.rows(border[0], border[1] - border[0]))))
         };
         self.borders.windows(2).map(correction).collect()
     }
 
-    /// What is left of a vector when the starts have taken away what they can.
+    /// The part of a vector that the starts cannot cancel.
     fn project(&self, by_starts: &DMatrix<f64>, from: &DVector<f64>) -> Option<DVector<f64>> {
         let mut left = from.clone();
         for (border, change) in self.borders.windows(2).zip(self.corrections(by_starts, from)?) {
@@ -155,7 +159,7 @@ impl<'a> Problem<'a> {
         Some(left)
     }
 
-    /// Finds the best starts for these parameters.
+    /// Computes the best starts for these parameters.
     fn settle(&mut self) {
         let boat = self.boat_at(&self.at);
         self.residuals = self.weighed(&boat, &self.starts);
@@ -169,7 +173,7 @@ impl<'a> Problem<'a> {
                     start[*channel] -= change * self.sigmas[*channel];
                 }
             }
-            // A correction that makes it worse came from beyond where the model is nearly linear.
+            // A correction that increases the residuals left the nearly linear range of the model.
             match self.weighed(&boat, &starts) {
                 Some(better) if better.norm_squared() < residuals.norm_squared() => {
                     (self.starts, self.residuals) = (starts, Some(better));

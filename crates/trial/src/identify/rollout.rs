@@ -1,4 +1,4 @@
-//! The model sailed along a log: what it says at each of the log's rows.
+//! Simulates the model along a log: its state at each of the log's rows.
 
 use super::log::{HEADING, Log, SURGE, SWAY, YAW_RATE};
 use crate::{Command, Start, TrialBoat};
@@ -11,21 +11,22 @@ use sim::hull::Planar;
 /// A boat's state in the order of the log's channels.
 pub(super) type Point = [f64; 6];
 
-/// On what water, and in what steps.
+/// The water and the time steps.
 #[derive(Clone, Debug)]
 pub struct Setting {
     /// The water.
     pub sea: Sea,
-    /// Chooses the sea's randomness.
+    /// The sea's random seed.
     pub seed: u64,
     /// Physics tick.
     pub tick: SimTime,
-    /// How long the model sails on from a start before it is set to the next.
+    /// The duration of a simulated segment from a start.
     pub segment: SimTime,
 }
 
-/// What `boat` does from each segment's start, told what the log was told, at the rows from the first start on; none if
-/// its numbers go bad. The thrusters go through all segments in one.
+/// The motion of `boat` from each segment's start under the log's commands, at the rows from the
+/// first start on; none if its state becomes non-finite. The thrusters run through all segments
+/// continuously.
 pub(super) fn rollout(
     boat: &Boat,
     setting: &Setting,
@@ -36,7 +37,8 @@ pub(super) fn rollout(
     let mut trial_boat = TrialBoat::new(boat, &setting.sea, setting.tick, setting.seed, &Start::default());
     let mut points = vec![[f64::NAN; 6]; segments[0]];
     for (segment, start) in segments.windows(2).zip(starts) {
-        // The thrusters take up what they were told before; where the boat goes meanwhile does not matter.
+        // The thrusters follow the earlier commands first; the boat's motion meanwhile does not
+        // matter.
         while trial_boat.now() + SimTime(setting.tick.0 / 2) < log.times[segment[0]] {
             trial_boat.step(log.orders.at(trial_boat.now()));
         }
@@ -59,14 +61,14 @@ pub(super) fn rollout(
     Some(points)
 }
 
-/// Where the boat is and how it moves; its heading within half a turn of the one before.
+/// The boat's position and motion; its heading within half a turn of the previous one.
 fn point(trial_boat: &TrialBoat, heading_before: f64) -> Point {
     let sample = trial_boat.sample(0.0, Command::Hold);
     let heading = heading_before + wrap_pi(sample.psi_rad - heading_before);
     [sample.at.east, sample.at.north, heading, sample.nu.surge, sample.nu.sway, sample.nu.yaw]
 }
 
-/// The straight line between two ticks.
+/// Linear interpolation between two ticks.
 fn between(before: (SimTime, Point), now: (SimTime, Point), at: SimTime) -> Point {
     let span = (now.0 - before.0).as_s();
     let share = if span > 0.0 { ((at - before.0).as_s() / span).clamp(0.0, 1.0) } else { 1.0 };

@@ -1,4 +1,4 @@
-//! A boat file, checked, with what it leaves out estimated.
+//! Checks a boat file and estimates missing values.
 
 mod kinematic;
 mod thruster;
@@ -12,14 +12,14 @@ use crate::read::Document;
 use crate::sensor::Gps;
 use kinematic::check_kinematic;
 
-/// The physics takes explicit steps of the game's tick: motions that die out faster than this many times
-/// a tick would grow instead. (Runge-Kutta of order four bears 2.78; the rest is margin.)
+/// The physics takes explicit steps of the game's tick: a decay rate beyond this many per tick
+/// would grow instead. (The limit of fourth-order Runge-Kutta is 2.78; the rest is margin.)
 pub(super) const FASTEST_PER_TICK: f64 = 2.0;
-/// The tick a boat file alone is checked against, s.
+/// The tick for checking a boat file without a game, s.
 const USUAL_TICK_S: f64 = 0.05;
-/// Water for the estimates, kg/m³.
+/// Water density for the estimates, kg/m³.
 const RHO_KG_M3: f64 = 1000.0;
-/// Fixes that are under way at once.
+/// Maximum latency of fixes, in fix periods.
 const MOST_PERIODS_LATE: f64 = 12.0;
 
 /// Checks a boat.
@@ -77,7 +77,7 @@ fn drive(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>) -> Optio
     Some(Drive::Thrusters { thruster, autopilot: raw.autopilot.clone()? })
 }
 
-/// A fix may be late by so many periods only.
+/// Checks the latency of fixes, which is limited to a number of periods.
 fn check_gps(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, gps: &Gps) {
     let (latency_s, most_s) = (gps.latency_s, MOST_PERIODS_LATE * gps.period_s);
     if latency_s > most_s {
@@ -87,14 +87,14 @@ fn check_gps(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, gps:
     }
 }
 
-/// Gives a number that the file leaves out.
+/// Replaces a number that the file omits.
 pub(super) fn estimate(number: &mut f64, estimated: impl FnOnce() -> f64) {
     if number.is_nan() {
         *number = estimated();
     }
 }
 
-/// Estimates what the file leaves out, by the recipes that the keys' descriptions state.
+/// Estimates the values that the file omits, by the recipes in the keys' descriptions.
 fn estimate_rest(boat: &mut Boat) {
     let (thrust_max_newton, speed_max_m_s) = match &boat.drive {
         Drive::Thrusters { thruster, autopilot } => (2.0 * full_ahead_newton(&thruster.curve), autopilot.speed_max_m_s),
@@ -105,7 +105,8 @@ fn estimate_rest(boat: &mut Boat) {
     estimate(&mut windage.frontal_area_m2, || 0.36 * beam_m * beam_m);
     estimate(&mut windage.lateral_area_m2, || 0.16 * length_m * length_m);
     estimate(&mut windage.height_m, || 0.25 * length_m);
-    // A radius of gyration of a quarter of the length, moved from the centre of gravity to midships.
+    // A radius of gyration of a quarter of the length, shifted from the centre of gravity to
+    // midships.
     estimate(&mut hull.yaw_inertia_kg_m2, || mass_kg * (length_m * length_m / 16.0 + hull.x_g_m * hull.x_g_m));
     // Söding (1982), as in MSS addedMassSurge.m: 2.7 ρ ∇^(5/3) / L².
     estimate(&mut hull.added_surge_kg, || {
@@ -125,7 +126,7 @@ fn estimate_rest(boat: &mut Boat) {
     estimate(&mut hull.crossflow_length_m, || length_m);
 }
 
-/// A mass matrix with a direction that has no inertia would accelerate without bound.
+/// A mass matrix that is singular in a direction would give unbounded acceleration.
 fn check_inertia(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, boat: &Boat) {
     let hull = &boat.hull;
     let (m, x_g, i_z) = (hull.mass_kg, hull.x_g_m, hull.yaw_inertia_kg_m2);
@@ -148,7 +149,7 @@ fn check_inertia(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, 
     }
 }
 
-/// The usual tick must be short enough for the boat.
+/// The default tick must be short enough for the boat.
 fn check_decay(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, boat: &Boat) {
     let (motion, rate_per_s) = fastest_decay(boat);
     let allowed_per_s = FASTEST_PER_TICK / USUAL_TICK_S;
@@ -166,7 +167,8 @@ fn check_decay(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, bo
     }
 }
 
-/// The motion that dies out fastest and its rate, 1/s, at top speed, 1 m/s of drift and 1 rad/s of turn.
+/// The motion with the fastest decay and its rate, 1/s, at top speed, 1 m/s of drift and 1 rad/s of
+/// turn.
 pub(super) fn fastest_decay(boat: &Boat) -> (&'static str, f64) {
     let hull = &boat.hull;
     let u_m_s = boat.speed_max_m_s();

@@ -1,4 +1,4 @@
-//! Thrusters, and what they fall short of.
+//! Checks thrusters and their flaws.
 
 use super::estimate;
 use crate::boat::{ThrustCurve, Thruster};

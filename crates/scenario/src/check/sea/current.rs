@@ -1,4 +1,4 @@
-//! The water's own motion.
+//! Checks the current.
 
 use crate::diagnostics::Diagnostics;
 use crate::raw;

@@ -1,4 +1,4 @@
-//! A sea file, checked.
+//! Checks a sea file.
 
 mod current;
 mod waves;

@@ -1,4 +1,4 @@
-//! Waves, by height and period or by the wind that raises them.
+//! Checks waves, given by height and period or by the wind that raises them.
 
 use crate::diagnostics::Diagnostics;
 use crate::raw;
@@ -6,9 +6,9 @@ use crate::read::Document;
 use crate::sea::{GRAVITY_M_S2, PROFILE_EXPONENT, Spreading, Waves};
 use primitives::math;
 
-/// Waves steeper than this (height over length at the peak) break before they get there.
+/// Maximum steepness (height over length at the peak); steeper waves break.
 const STEEPEST: f64 = 0.08;
-/// Waves higher than this share of the depth break.
+/// Maximum height as a share of the depth; higher waves break.
 const HIGHEST: f64 = 0.6;
 
 /// Checks waves.
@@ -74,7 +74,7 @@ fn height_and_period(
         diagnostics.note(document.at("waves.tp_s"), message);
         return None;
     }
-    // A sea without wind raises no waves; 0.5 m/s is the least that may be stated here.
+    // A sea without wind has no waves; 0.5 m/s is the least allowed value here.
     let wind_m_s = raw.wind_m_s.or(wind.map(|wind| wind.speed_m_s.clamp(0.5, 50.0)));
     match (raw.hs_m, raw.tp_s, raw.fetch_km, wind_m_s) {
         (Some(hs_m), ..) if is_fully_grown => Some(fully_grown_with(hs_m)),
@@ -84,8 +84,8 @@ fn height_and_period(
         }
         (Some(hs_m), Some(tp_s), ..) => Some((hs_m, tp_s)),
         (_, _, Some(x_km), Some(u)) if !is_fully_grown => {
-            // Carter, D. J. T. (1982). Prediction of wave height and period for a constant wind velocity. The sea is fully
-            // grown, with Hs = 0.02481 U², after 2.317 U² km.
+            // Carter, D. J. T. (1982). Prediction of wave height and period for a constant wind
+            // velocity. The sea is fully grown, with Hs = 0.02481 U², after 2.317 U² km.
             let x_km = x_km.min(2.317 * u * u);
             Some((0.0163 * x_km.sqrt() * u, 0.566 * math::exp(0.3 * libm::log(x_km) + 0.4 * libm::log(u))))
         }
@@ -103,10 +103,10 @@ fn height_and_period(
     }
 }
 
-/// Height and period of a fully grown sea of this height.
+/// Height and period of a fully grown sea with this height.
 ///
-/// Pierson and Moskowitz (1964): S = 8.1e-3 g² ω^-5 exp(-0.74 (g / (U ω))^4), with U 19.5 m above the water. Hence
-/// Hs = 0.2092 U² / g, and the peak is at 0.8772 g / U.
+/// Pierson and Moskowitz (1964): S = 8.1e-3 g² ω^-5 exp(-0.74 (g / (U ω))^4), with U 19.5 m above
+/// the water. Hence Hs = 0.2092 U² / g, and the peak is at 0.8772 g / U.
 fn fully_grown_with(hs_m: f64) -> (f64, f64) {
     let u_m_s = (hs_m * GRAVITY_M_S2 / 0.209_2).sqrt().max(0.1);
     (hs_m, std::f64::consts::TAU * u_m_s / (0.877_2 * GRAVITY_M_S2))

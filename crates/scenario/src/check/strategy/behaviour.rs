@@ -1,4 +1,5 @@
-//! Behaviours, checked: what their types declare is known to hold; names and expressions become what they stand for.
+//! Checks behaviours: values already satisfy their types' declarations; names and expressions are
+//! resolved.
 
 use super::scope::Scope;
 use super::variable::set;
@@ -16,14 +17,14 @@ use primitives::frame::Ned;
 use serde::Deserialize;
 use serde_json::{Map, Value as Json, json};
 
-/// The most behaviours of a program.
+/// Maximum number of behaviours of a program.
 const MOST: usize = 1000;
 
-/// Numbers of which the first may not be greater than the second.
+/// Pairs of numbers in ascending order.
 const IN_ORDER: [(&str, &str); 3] =
     [("inner_m", "outer_m"), ("cpa_min_m", "cpa_max_m"), ("inner_radius_m", "outer_radius_m")];
 
-/// Checks the behaviours. Where modes make no tree, nobody asks which of them are meant.
+/// Checks the behaviours. If the modes do not form a tree, references to modes are not checked.
 pub(super) fn behaviours(scope: &mut Scope<'_>, modes: Option<&[Mode]>) -> Vec<Behaviour> {
     let given = &scope.document.raw.behaviour;
     if given.is_empty() && scope.document.is_sound("behaviour") {
@@ -71,7 +72,7 @@ fn one(scope: &mut Scope<'_>, modes: Option<&[Mode]>, name: &str, given: &Json) 
     })
 }
 
-/// The keys of a table with their values as the checked types have them; those that are wrong are noted and left out.
+/// The keys of a table with their checked values; faults are reported and left out.
 fn checked_table(scope: &mut Scope<'_>, path: &str, given: &Map<String, Json>, about: &Json) -> Map<String, Json> {
     let mut table = Map::new();
     for (key, value) in given {
@@ -81,7 +82,7 @@ fn checked_table(scope: &mut Scope<'_>, path: &str, given: &Map<String, Json>, a
     table
 }
 
-/// The value at `path` as the checked types have it; `about` is the schema of the typed one.
+/// The checked value at `path`; `about` is the schema of the typed value.
 fn checked(scope: &mut Scope<'_>, path: &str, given: &Json, about: &Json) -> Option<Json> {
     let value = match (about["title"].as_str(), given) {
         (Some("a number or an expression"), _) => serde_json::to_value(scope.parameter(path, given, about)?),
@@ -99,12 +100,12 @@ fn checked(scope: &mut Scope<'_>, path: &str, given: &Json, about: &Json) -> Opt
     value.ok()
 }
 
-/// The parameter of this key, if it is given and right.
+/// The parameter of this key, if it is given and valid.
 fn parameter(keys: &Map<String, Json>, key: &str) -> Option<Parameter> {
     serde_json::from_value(keys.get(key)?.clone()).ok()
 }
 
-/// Notes numbers that are greater than those they may not exceed, where both are known beforehand.
+/// Reports pairs of numbers in the wrong order, if both are constants.
 fn check_order(scope: &mut Scope<'_>, path: &str, keys: &Map<String, Json>) {
     let constant = |key: &str| parameter(keys, key)?.constant();
     for (low, high) in IN_ORDER {
@@ -117,7 +118,7 @@ fn check_order(scope: &mut Scope<'_>, path: &str, keys: &Map<String, Json>) {
     }
 }
 
-/// The shape that a loiter goes round, by whichever of its keys is given.
+/// The shape of a loiter, from whichever of its keys is given.
 fn shape(scope: &mut Scope<'_>, path: &str, keys: &mut Map<String, Json>) -> Option<Json> {
     let given = ["polygon", "ellipse"].map(|key| scope.document.has(&format!("{path}.{key}")));
     let ellipse = format!("{path}.ellipse");
@@ -132,7 +133,7 @@ fn shape(scope: &mut Scope<'_>, path: &str, keys: &mut Map<String, Json>) -> Opt
     }
 }
 
-/// The variable that a policy gives its options to, if it has any.
+/// The variable that receives a policy's options, if it has any.
 fn sets(scope: &mut Scope<'_>, path: &str, keys: &mut Map<String, Json>) -> Option<Option<u16>> {
     let Some(Json::String(name)) = keys.remove("sets") else { return Some(None) };
     let at = format!("{path}.sets");
@@ -151,7 +152,7 @@ fn sets(scope: &mut Scope<'_>, path: &str, keys: &mut Map<String, Json>) -> Opti
     }
 }
 
-/// What is wrong with a model for a policy that sets this variable, if anything is.
+/// The reason why a model does not fit a policy that sets this variable, if any.
 fn misfit(scope: &Scope<'_>, model: &PolicyModel, sets: Option<u16>) -> Option<String> {
     let has_options = model.spec.action == ActionSpace::Options;
     let Some(variable) = sets.map(|index| &scope.variables[usize::from(index)]) else {
@@ -174,7 +175,7 @@ fn misfit(scope: &Scope<'_>, model: &PolicyModel, sets: Option<u16>) -> Option<S
     })
 }
 
-/// The model that a policy names, if it names one.
+/// The model that a policy refers to, if any.
 fn model(
     scope: &mut Scope<'_>,
     path: &str,
@@ -214,7 +215,7 @@ fn model(
     }
 }
 
-/// The modes in which a behaviour may run, by mode.
+/// Whether a behaviour may run in each mode.
 fn in_modes(scope: &mut Scope<'_>, path: &str, modes: &[Mode], given: Option<&[Json]>) -> Vec<bool> {
     let Some(given) = given else { return vec![true; modes.len()] };
     let mut allowed = vec![false; modes.len()];
@@ -230,7 +231,7 @@ fn in_modes(scope: &mut Scope<'_>, path: &str, modes: &[Mode], given: Option<&[J
             }
         }
     }
-    // Parents stand before their parts.
+    // Parents precede their parts.
     for (i, mode) in modes.iter().enumerate() {
         allowed[i] |= mode.parent.is_some_and(|parent| allowed[parent]);
     }

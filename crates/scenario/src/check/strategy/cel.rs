@@ -1,32 +1,32 @@
-//! Expressions as text: parsed as CEL, with the place of every part in the file.
+//! Parses expressions as CEL, with the place of every part in the file.
 
 use crate::diagnostics::Diagnostics;
 use cel::common::ast::{IdedExpr, SourceInfo};
 use cel::parser::PrattParser;
 use std::sync::Arc;
 
-/// The longest expression, characters.
+/// Maximum length of an expression, characters.
 pub(super) const LONGEST: usize = 1000;
-/// How deep its parts may be nested.
+/// Maximum nesting depth.
 pub(super) const DEEPEST: usize = 30;
 
-/// An expression, parsed.
+/// A parsed expression.
 pub(super) struct Parsed {
     pub(super) root: IdedExpr,
     places: Option<Arc<SourceInfo>>,
-    /// For every byte of the expression, and its end, where it stands in the virtual text.
+    /// For every byte of the expression, and its end, the offset in the virtual text.
     offsets: Vec<usize>,
 }
 
 impl Parsed {
-    /// Where a part stands in the virtual text.
+    /// The offset of a part in the virtual text.
     pub(super) fn place(&self, part: &IdedExpr) -> usize {
         let start = self.places.as_ref().and_then(|places| places.offset_for(part.id)).map_or(0, |(start, _)| start);
         self.offsets.get(start as usize).or(self.offsets.last()).copied().unwrap_or(0)
     }
 }
 
-/// Parses the expression given for `key`, which stands at `at`; what is wrong with its syntax is noted.
+/// Parses the expression of `key` at `at`; reports syntax errors.
 pub(super) fn parse(diagnostics: &mut Diagnostics, key: &str, at: usize, text: &str) -> Option<Parsed> {
     let length = text.chars().count();
     if length > LONGEST {
@@ -37,7 +37,8 @@ pub(super) fn parse(diagnostics: &mut Diagnostics, key: &str, at: usize, text: &
     let parser = || PrattParser::new().max_recursion_depth(DEEPEST as u16);
     match parser().parse(text) {
         Ok(root) => {
-            // The parser tells the places of the parts only where the syntax is wrong: a bracket too many makes it so.
+            // The parser reports the places of parts only for invalid syntax: a surplus bracket
+            // makes it invalid.
             let places = parser().parse(&format!("{text}\n)")).err();
             let places = places.and_then(|errors| errors.errors.into_iter().find_map(|error| error.source_info));
             Some(Parsed { root, places, offsets })
@@ -53,7 +54,8 @@ pub(super) fn parse(diagnostics: &mut Diagnostics, key: &str, at: usize, text: &
     }
 }
 
-/// The byte of `text` at a line and column, which count characters from 1; 0 and 0 is the start.
+/// The byte offset in `text` of a line and column, which count characters from 1; 0 and 0 is the
+/// start.
 fn byte_at(text: &str, (line, column): (isize, isize)) -> usize {
     let lines = (line - 1).max(0) as usize;
     let start: usize = text.split_inclusive('\n').take(lines).map(str::len).sum();
@@ -62,7 +64,7 @@ fn byte_at(text: &str, (line, column): (isize, isize)) -> usize {
     start + rest.char_indices().nth(columns).map_or(rest.len(), |(byte, _)| byte)
 }
 
-/// The parser's complaint in the words of these files; `rest` is the expression from there on.
+/// The parser's error in the terms of these files; `rest` is the expression from there on.
 fn complaint(message: &str, rest: &str) -> String {
     if message.contains("recursion limit") {
         return format!("is nested too deeply, expected at most {DEEPEST} brackets in each other");
@@ -93,7 +95,7 @@ fn complaint(message: &str, rest: &str) -> String {
     }
 }
 
-/// The first word or sign of `rest`.
+/// The first word or symbol of `rest`.
 fn token(rest: &str) -> &str {
     let is_word = |c: char| c.is_alphanumeric() || c == '_' || c == '.';
     let end = match rest.chars().next() {
@@ -104,7 +106,8 @@ fn token(rest: &str) -> &str {
     &rest[..end]
 }
 
-/// Where each byte of a string value, and its end, stands, if the value as written begins `source`, at `start`.
+/// The offset of each byte of a string value, and of its end, if the value as written begins
+/// `source`, at `start`.
 fn offsets(source: &str, start: usize, value: &str) -> Vec<usize> {
     let opening = ["\"\"\"", "'''", "\"", "'"].into_iter().find(|quotes| source.starts_with(quotes)).unwrap_or("");
     let has_escapes = opening.starts_with('"');
@@ -116,7 +119,7 @@ fn offsets(source: &str, start: usize, value: &str) -> Vec<usize> {
     let mut offsets = vec![];
     for c in value.chars() {
         let mut rest = source.get(at..).unwrap_or_default();
-        // A backslash at the end of a line stands for nothing, as does the white space after it.
+        // A backslash at the end of a line and the white space after it are omitted from the value.
         let continued = |escape: &&str| has_escapes && escape.starts_with(char::is_whitespace);
         while let Some(escape) = rest.strip_prefix('\\').filter(continued) {
             rest = escape.trim_start();

@@ -1,4 +1,4 @@
-//! Expressions, checked: names become what they stand for, and types must fit.
+//! Checks expressions: resolves names, and checks types.
 
 use super::cel::{DEEPEST, Parsed};
 use super::scope::Scope;
@@ -6,16 +6,16 @@ use crate::guess::did_you_mean;
 use crate::strategy::{Expression, Fact, Join, Kind, Measure, Named, Place};
 use ::cel::common::ast::{CallExpr, Expr, IdedExpr, LiteralValue, operators};
 
-/// Words that CEL keeps for itself.
+/// Reserved words of CEL.
 const RESERVED: &str = "as break const continue else false for function if import in let loop package namespace null return true \
                         var void while";
-/// What stands for a call and is no measure.
+/// Names of calls that are not measures.
 pub(super) const CALLS: [&str; 3] = ["min", "max", "mates"];
 
-/// A part of an expression, and of which kind it is. A text that is a constant has itself for its only value.
+/// A part of an expression, and its kind. A constant text has itself as its only value.
 type Read = (Expression, Kind);
 
-/// The expression that was parsed for `key`, which must be a truth or a number as `wanted`; what is wrong is noted.
+/// The expression parsed for `key`, which must be of the kind `wanted`; reports faults.
 pub(super) fn read(scope: &mut Scope<'_>, key: &str, parsed: &Parsed, wanted: &Kind) -> Option<Expression> {
     Reader { scope, key, parsed, among_mates: false, depth: 0 }.of_kind(&parsed.root, wanted)
 }
@@ -24,13 +24,13 @@ struct Reader<'a, 'b> {
     scope: &'a mut Scope<'b>,
     key: &'a str,
     parsed: &'a Parsed,
-    /// Within `mates(...)`, where only shared variables are known.
+    /// Within `mates(...)`, where only shared variables are available.
     among_mates: bool,
     depth: usize,
 }
 
 impl Reader<'_, '_> {
-    /// Notes what is wrong with a part.
+    /// Reports a fault of a part.
     fn refuse<T>(&mut self, part: &IdedExpr, message: &str) -> Option<T> {
         let message = format!("{} {message}", self.key);
         self.scope.diagnostics.note(self.parsed.place(part), message);
@@ -122,7 +122,7 @@ impl Reader<'_, '_> {
     }
 
     fn call(&mut self, part: &IdedExpr, call: &CallExpr) -> Option<Read> {
-        // CEL calls an infix operator by its sign between underscores.
+        // CEL names an infix operator by its symbol between underscores.
         let name = call.func_name.as_str();
         let sign = name.trim_matches('_');
         let join = Join::by_name(sign).filter(|_| CALLS.contains(&sign) == (sign == name));
@@ -156,7 +156,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// A measure, or what is none.
+    /// A measure; reports other calls.
     fn measure(&mut self, part: &IdedExpr, name: &str, arguments: &[IdedExpr]) -> Option<Read> {
         let given = format!("gives {} things to {name}(), expected", arguments.len());
         match (Measure::by_name(name), arguments) {
@@ -221,7 +221,7 @@ impl Reader<'_, '_> {
         Some((Expression::Join(join, Box::new(sides)), Kind::Truth))
     }
 
-    /// The place of `text` among the values of a variable.
+    /// The index of `text` among the values of a variable.
     fn text(&mut self, variable: &IdedExpr, part: &IdedExpr, values: &[String], text: &str) -> Option<Expression> {
         let name = if let Expr::Ident(name) = &variable.expr { name } else { "a text" };
         let wrong = |allowed| self.refuse(part, &format!("compares {name} with {text:?}, {allowed}"));
@@ -252,12 +252,12 @@ fn in_words(expression: &Expression, kind: &Kind) -> String {
     }
 }
 
-/// Whether CEL keeps `name` for itself.
+/// Whether `name` is a reserved word of CEL.
 pub(super) fn is_reserved(name: &str) -> bool {
     RESERVED.split(' ').any(|word| word == name)
 }
 
-/// A text as a value of a variable that may have `values`, or else what is allowed and may have been meant.
+/// The index of a text among `values`, or a message with the allowed ones and a suggestion.
 pub(super) fn text_value(values: &[String], text: &str) -> Result<Expression, String> {
     let known: Vec<&str> = values.iter().map(String::as_str).collect();
     let place = known.iter().position(|value| *value == text);

@@ -1,4 +1,4 @@
-//! A strategy file, checked: the roles that it deals, or the program that it is.
+//! Checks a strategy file: its roles, or its program.
 
 mod behaviour;
 mod cel;
@@ -20,8 +20,8 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Reads and checks the strategy file at `path`, which is referred to from a place, for a team that has values of its own in it, or for
-/// everybody ("").
+/// Reads and checks the strategy file at `path`, with the place of the reference, for a team with
+/// its own values in it, or for all teams ("").
 pub(crate) fn strategy_file(
     diagnostics: &mut Diagnostics,
     path: &Path,
@@ -57,7 +57,7 @@ pub(crate) fn strategy(diagnostics: &mut Diagnostics, document: &Document<raw::S
     document.is_faultless(diagnostics).then_some(strategy)
 }
 
-/// Strategy files that a file names, each read once.
+/// Strategy files that a file refers to, each read once.
 pub struct StrategyFiles(FileCache<Strategy>);
 
 impl Default for StrategyFiles {
@@ -67,7 +67,7 @@ impl Default for StrategyFiles {
 }
 
 impl StrategyFiles {
-    /// Reads and checks the strategy that the value at `key` of a file names; gives its path.
+    /// Reads and checks the strategy that the value at `key` of a file refers to. Returns its path.
     pub fn read<D>(
         &mut self,
         diagnostics: &mut Diagnostics,
@@ -84,7 +84,7 @@ impl StrategyFiles {
     }
 }
 
-/// Notes what a program says in a file that deals roles.
+/// Reports keys of a program in a file with roles.
 fn refuse_program(diagnostics: &mut Diagnostics, document: &Document<raw::Strategy>) {
     let keys = ["helm", "unsafe_i_know", "unsafe_because", "variables", "mode", "rule"].map(str::to_owned);
     let behaviours = document.raw.behaviour.keys().map(|name| format!("behaviour.{name}"));
@@ -94,7 +94,7 @@ fn refuse_program(diagnostics: &mut Diagnostics, document: &Document<raw::Strate
     }
 }
 
-/// The programs of the roles that a file names; a file named twice is read once.
+/// The programs of the roles in a file; a file with two references is read once.
 fn roles(diagnostics: &mut Diagnostics, document: &Document<raw::Strategy>, given: &[raw::FilePath]) -> Vec<Program> {
     let mut read: BTreeMap<PathBuf, Option<Program>> = BTreeMap::new();
     let mut roles = vec![];

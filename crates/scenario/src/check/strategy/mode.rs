@@ -1,14 +1,14 @@
-//! Modes of a strategy, checked: a tree, in which every part but the last has a condition.
+//! Checks the modes of a strategy: a tree, in which every part but the last has a condition.
 
 use super::scope::Scope;
 use super::variable::set;
 use crate::guess::did_you_mean;
 use crate::strategy::Mode;
 
-/// How deep modes may lie in each other.
+/// Maximum nesting depth of modes.
 const DEEPEST: usize = 20;
 
-/// Checks the modes. Where they make no tree, nothing comes back.
+/// Checks the modes. Returns none if they do not form a tree.
 pub(super) fn modes(scope: &mut Scope<'_>) -> Option<Vec<Mode>> {
     let given = &scope.document.raw.mode;
     if given.is_empty() {
@@ -54,10 +54,10 @@ fn parent(scope: &mut Scope<'_>, before: &[Mode], mode: usize, parent: &str) -> 
     Some(found)
 }
 
-/// Every part but the last needs a condition, the last must have none.
+/// Every part but the last needs a condition; the last must not have one.
 fn check_conditions(scope: &mut Scope<'_>, modes: &[Mode]) {
     let given = &scope.document.raw.mode;
-    // With a parent that is unknown nobody can say.
+    // With an unknown parent this is undecided.
     let is_known = |mode: usize| given[mode].r#in.is_some() == modes[mode].parent.is_some();
     for (i, mode) in modes.iter().enumerate().filter(|(i, _)| is_known(*i)) {
         let next = (i + 1..modes.len()).find(|other| modes[*other].parent == mode.parent && is_known(*other));

@@ -1,4 +1,4 @@
-//! A program, checked: its parts, then the whole.
+//! Checks a program: its parts, then the whole.
 
 use super::behaviour::behaviours;
 use super::mode::modes;
@@ -21,7 +21,7 @@ pub(super) fn program(diagnostics: &mut Diagnostics, document: &Document<raw::St
     let behaviours = behaviours(&mut scope, modes.as_deref());
     let rules = raw.rule.iter().enumerate().map(|(i, given)| rule(&mut scope, i, given)).collect();
     safety::check_reason(&mut scope);
-    // What is wrong with a part may be all that is wrong with the whole.
+    // Faults of a part may be the cause of faults of the whole.
     if scope.diagnostics.faults() > faults || !document.is_sound("") {
         return None;
     }
@@ -41,7 +41,7 @@ pub(super) fn program(diagnostics: &mut Diagnostics, document: &Document<raw::St
     document.is_faultless(scope.diagnostics).then_some(program)
 }
 
-/// Notes modes in which the behaviours could ask for more functions than a helm takes.
+/// Reports modes whose behaviours could exceed the helm's number of functions.
 fn check_functions(scope: &mut Scope<'_>, program: &Program) {
     for leaf in program.leaves() {
         let most = |behaviour: &Behaviour| match behaviour.task {

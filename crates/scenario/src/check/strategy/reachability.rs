@@ -1,21 +1,23 @@
-//! Modes that can never be: decided over everything that their conditions can tell apart.
+//! Detects unreachable modes, by enumerating all cases that their conditions distinguish.
 //!
-//! A term is a fact, a variable, a measure or a count of mates. A number that is compared with constants has one value
-//! for each of them and for each gap between them. What cannot be had so, such as a comparison of two numbers, is a
-//! term of its own that may hold or not: more cases than there are, never fewer.
+//! A term is a fact, a variable, a measure or a count of mates. A number compared with constants
+//! gets one value for each of them and for each gap between them. Other conditions, such as a
+//! comparison of two numbers, are terms of their own that may hold or not. This overestimates the
+//! cases, never underestimates them.
 
 use super::scope::Scope;
 use crate::strategy::{Expression, Fact, Join, Kind, Measure, Program, Task};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Of one mode no more cases than this are looked at; it is then taken to be possible.
+/// Maximum number of cases per mode; beyond it the mode counts as possible.
 const MOST_CASES: usize = 200_000;
-/// Of a program no more steps than this are made; modes that are left are taken to be possible.
+/// Maximum number of steps per program; beyond it the remaining modes count as possible.
 const MOST_STEPS: usize = 50_000_000;
-/// Of a program with more terms than this all modes are taken to be possible.
+/// Maximum number of terms per program; beyond it all modes count as possible.
 const MOST_TERMS: usize = u16::MAX as usize;
 
-/// Notes every mode whose conditions can never choose it. Parts of such a mode have had their say with it.
+/// Reports every mode that its conditions can never choose. The parts of such a mode are not
+/// reported again.
 pub(super) fn check(scope: &mut Scope<'_>, program: &Program) {
     let mut terms = Terms { program, index: BTreeMap::new(), values: vec![] };
     let conditions: Vec<Option<Expression>> =
@@ -49,7 +51,7 @@ pub(super) fn check(scope: &mut Scope<'_>, program: &Program) {
     }
 }
 
-/// What the variables of a mode's condition ever are, where that is not everything.
+/// The restricted values of the variables in a mode's condition, in words.
 fn only_ever(program: &Program, mode: usize) -> String {
     let mut asked = BTreeSet::new();
     let when = program.modes[mode].when.iter();
@@ -65,12 +67,12 @@ fn only_ever(program: &Program, mode: usize) -> String {
     words
 }
 
-/// The parts of the same mode that are asked before this one.
+/// The parts of the same mode with priority over this one.
 fn before(program: &Program, mode: usize) -> impl Iterator<Item = usize> {
     (0..mode).filter(move |other| program.modes[*other].parent == program.modes[mode].parent)
 }
 
-/// What must hold, and what must not, for a mode to be.
+/// The conditions that must hold, and those that must not, for a mode to be active.
 fn wanted<'a>(program: &Program, conditions: &'a [Option<Expression>], mode: usize) -> Vec<(&'a Expression, bool)> {
     let condition = |mode: usize| conditions[mode].as_ref();
     let mut wanted = vec![];
@@ -83,7 +85,7 @@ fn wanted<'a>(program: &Program, conditions: &'a [Option<Expression>], mode: usi
     wanted
 }
 
-/// Facts that say something about each other.
+/// Implications between facts.
 fn laws() -> [Expression; 3] {
     let fact = Expression::Fact;
     let join = |join, a, b| Expression::Join(join, Box::new((a, b)));
@@ -99,14 +101,14 @@ fn laws() -> [Expression; 3] {
 /// The terms of a program's conditions.
 struct Terms<'a> {
     program: &'a Program,
-    /// By how they print.
+    /// By printed form.
     index: BTreeMap<String, usize>,
-    /// For each term, one value for everything that can be told apart.
+    /// For each term, one value per distinguishable case.
     values: Vec<Vec<f64>>,
 }
 
 impl Terms<'_> {
-    /// A condition in which terms stand as variables, by their index here; those that are new are added.
+    /// A condition with terms replaced by variables, by their index here; adds new terms.
     fn formula(&mut self, condition: &Expression) -> Expression {
         if let Some(value) = condition.constant() {
             return Expression::Constant(value);
@@ -130,7 +132,7 @@ impl Terms<'_> {
         }
     }
 
-    /// Whether two truths are joined; of a constant alone nobody can say what it is.
+    /// Whether two truths are joined; a constant alone does not determine its kind.
     fn joins_truths(&self, join: Join, sides: &(Expression, Expression)) -> bool {
         let is_truth = |side| self.program.kind_of(side) == Kind::Truth;
         matches!(join, Join::And | Join::Or) || is_truth(&sides.0) || is_truth(&sides.1)
@@ -144,7 +146,7 @@ impl Terms<'_> {
         Expression::Variable(index as u16)
     }
 
-    /// One side of a comparison of a term with a constant, if it is one.
+    /// One side of a comparison between a term and a constant; none for other comparisons.
     fn compared(&mut self, side: &Expression, other: &Expression) -> Option<Expression> {
         if let Some(constant) = side.constant() {
             return Some(Expression::Constant(constant));
@@ -160,7 +162,7 @@ impl Terms<'_> {
         Some(variable)
     }
 
-    /// The values that a term may have. Of a number that is the least, and it is told whether it is whole.
+    /// The possible values of a term. For a number: the least value, and whether it is whole.
     fn values_of(&self, term: &Expression) -> (Vec<f64>, Option<bool>) {
         let number = |least, is_whole| (vec![least], Some(is_whole));
         match term {
@@ -185,7 +187,7 @@ impl Terms<'_> {
     }
 }
 
-/// The values that a variable ever has, if only constants are given to it.
+/// All values of a variable, if only constants are assigned to it.
 fn given_to(program: &Program, variable: u16) -> Option<Vec<f64>> {
     let sets = |task: &Task| matches!(task, Task::Policy(policy) if policy.sets == Some(variable));
     if program.behaviours.iter().any(|behaviour| sets(&behaviour.task)) {
@@ -205,19 +207,19 @@ fn given_to(program: &Program, variable: u16) -> Option<Vec<f64>> {
     Some(values)
 }
 
-/// A search through the cases that conditions can tell apart.
+/// A search through the distinguishable cases.
 struct Search<'a> {
     laws: &'a [Expression],
-    /// For each term, the values that it may have.
+    /// By term, its possible values.
     values: Vec<Vec<f64>>,
-    /// For each term, the value that is tried.
+    /// By term, the value being tried.
     tried: Vec<Option<f64>>,
     cases: usize,
     steps: usize,
 }
 
 impl Search<'_> {
-    /// Whether there is a case in which all that is wanted holds; `true` as well where there are too many.
+    /// Whether all of `wanted` can hold in some case; also `true` if there are too many cases.
     fn is_possible(&mut self, wanted: &[(&Expression, bool)]) -> bool {
         let laws = self.laws.iter().map(|law| (law, true));
         self.cases = 0;
@@ -249,7 +251,8 @@ impl Search<'_> {
         false
     }
 
-    /// The value of a formula, if those that are tried decide it, or else a term to try. Counts its steps.
+    /// The value of a formula, if the tried values determine it, or else a term to try. Counts
+    /// steps.
     fn value(&mut self, formula: &Expression) -> Result<f64, usize> {
         self.steps += 1;
         match formula {
@@ -259,7 +262,7 @@ impl Search<'_> {
             Expression::Join(join, sides) => {
                 let (a, b) = (self.value(&sides.0), self.value(&sides.1));
                 match join {
-                    // One side may decide alone.
+                    // One side alone may determine the value.
                     Join::And if [a, b].contains(&Ok(0.0)) => Ok(0.0),
                     Join::Or if [a, b].contains(&Ok(1.0)) => Ok(1.0),
                     _ => Ok(join.of(a?, b?)),

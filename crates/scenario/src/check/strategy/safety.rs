@@ -1,9 +1,10 @@
-//! Safety is not optional: every mode has what keeps a boat on the field and off other boats, or the file says why not.
+//! Mandatory safety: every mode keeps boats on the field and off other boats, or the file gives a
+//! reason why not.
 
 use super::scope::Scope;
 use crate::strategy::{Behaviour, Contacts, Program, Task};
 
-/// Checks that there is a reason where the file wants to do without, and none elsewhere.
+/// Checks that a file gives a reason if it opts out of safety, and only then.
 pub(super) fn check_reason(scope: &mut Scope<'_>) {
     let raw = &scope.document.raw;
     match (raw.unsafe_i_know, &raw.unsafe_because) {
@@ -23,8 +24,8 @@ pub(super) fn check_reason(scope: &mut Scope<'_>) {
     }
 }
 
-/// Notes every mode that lacks something, or the reason that nothing needs. Whoever keeps the boat safe is outweighed by no
-/// other behaviour: numbers that would are noted, expressions are held below.
+/// Reports every mode without safety behaviours, and an unnecessary reason. No other behaviour may
+/// outweigh a safety behaviour: constant weights are checked, expressions are limited at run time.
 pub(super) fn check(scope: &mut Scope<'_>, program: &mut Program) {
     let is_unsafe = program.unsafe_because.is_some();
     let mut is_lacking = false;
@@ -56,13 +57,12 @@ pub(super) fn check(scope: &mut Scope<'_>, program: &mut Program) {
     }
 }
 
-/// Sees to it that no behaviour outweighs what keeps the boat safe in a mode in which both run.
+/// Ensures that no behaviour outweighs a safety behaviour in a mode in which both run.
 fn hold_below_guards(scope: &mut Scope<'_>, program: &mut Program) {
     for leaf in program.leaves().collect::<Vec<_>>() {
-        // A guard is worth nothing if a number can disable it: a weight below a goal's, a range
-        // of nothing, a region wider than the field, an expression that becomes any of these.
-        // So guards have constants within limits, and nothing outweighs them; somebody reads
-        // the error while the file is loaded.
+        // A number can disable a guard: a weight below a goal's, a range of zero, a region wider
+        // than the field, or an expression with such a value. So guards have constants within
+        // limits, and nothing outweighs them. The error appears when the file is loaded.
         let weight = |kind: &str| {
             let guards = program.behaviours.iter().filter(|b| b.task.kind() == kind && b.modes[leaf] && b.is_guard());
             guards.filter_map(|b| b.weight.constant()).fold(0.0, f64::max)
@@ -85,14 +85,15 @@ fn hold_below_guards(scope: &mut Scope<'_>, program: &mut Program) {
 }
 
 impl Behaviour {
-    /// Whether this is a behaviour that keeps the boat safe wherever it is in force: on the field or off all other
-    /// boats, without a condition, without end, with a weight, and with numbers with which it can.
+    /// Whether this is a safety behaviour that is effective wherever it is in force: on the field
+    /// or off all other boats, without a condition, without an end, with a weight, and with
+    /// effective numbers.
     #[must_use]
     pub fn is_guard(&self) -> bool {
         matches!(self.task, Task::OpRegion(_) | Task::AvoidCollision(_)) && self.no_guard_since().is_none()
     }
 
-    /// Why this op_region or avoid_collision cannot be relied on, if it cannot.
+    /// The reason why this op_region or avoid_collision is not reliable, if any.
     fn no_guard_since(&self) -> Option<String> {
         let numbers = match &self.task {
             Task::OpRegion(task) => [

@@ -1,4 +1,4 @@
-//! What the parts of a program are checked with: the file, the variables, and where mistakes are noted.
+//! The context for checking the parts of a program: the file, the variables, and the diagnostics.
 
 use super::{cel, expression};
 use crate::diagnostics::Diagnostics;
@@ -7,7 +7,7 @@ use crate::read::Document;
 use crate::strategy::{Expression, Kind, Parameter, Program, Variable};
 use serde_json::Value as Json;
 
-/// A program file that is being checked. Values in it are named by their paths, as in `mode.1.when`.
+/// A program file under check. Its values are addressed by path, as in `mode.1.when`.
 pub(super) struct Scope<'a> {
     pub(super) diagnostics: &'a mut Diagnostics,
     pub(super) document: &'a Document<raw::Strategy>,
@@ -15,25 +15,25 @@ pub(super) struct Scope<'a> {
 }
 
 impl<'a> Scope<'a> {
-    /// The variable called `name`, and its index.
+    /// The variable with this name, and its index.
     pub(super) fn variable(&self, name: &str) -> Option<(u16, &'a Variable)> {
         let index = self.variables.iter().position(|variable| variable.name == name)?;
         Some((index as u16, &self.variables[index]))
     }
 
-    /// Notes that the value at `path` is wrong; the message is about its key.
+    /// Reports a fault of the value at `path`; the message is about its key.
     pub(super) fn note(&mut self, path: &str, message: &str) {
         let message = format!("{} {message}", key_of(path));
         self.diagnostics.note(self.document.at(path), message);
     }
 
-    /// The same, for who can do nothing without the value.
+    /// The same, for callers that cannot continue without the value.
     pub(super) fn refuse<T>(&mut self, path: &str, message: &str) -> Option<T> {
         self.note(path, message);
         None
     }
 
-    /// Notes that there is no value at `path`, unless there was one of another type.
+    /// Reports a missing value at `path`, unless a value of another type was there.
     pub(super) fn note_missing(&mut self, path: &str, expected: &str) {
         if self.document.is_sound(path) {
             let parts: Vec<&str> = path.split('.').filter(|part| part.parse::<usize>().is_err()).collect();
@@ -42,26 +42,26 @@ impl<'a> Scope<'a> {
         }
     }
 
-    /// Notes that something is wrong with a mode.
+    /// Reports a fault of a mode.
     pub(super) fn note_mode(&mut self, program: &Program, mode: usize, message: &str) {
         let at = self.document.at(&format!("mode.{mode}"));
         self.diagnostics.note(at, format!("mode {} {message}", program.path(mode)));
     }
 
-    /// The condition at `path`, if it is one.
+    /// The condition at `path`, if valid.
     pub(super) fn condition(&mut self, path: &str, text: Option<&str>) -> Option<Expression> {
         self.expression(path, text?, &Kind::Truth)
     }
 
-    /// The expression at `path`, if it is one of the type that is wanted.
+    /// The expression at `path`, if it is valid and of the kind `wanted`.
     pub(super) fn expression(&mut self, path: &str, text: &str, wanted: &Kind) -> Option<Expression> {
-        // In the place of a value that is wrong stands another, which nobody typed.
+        // A stand-in replaces a faulty value; it is not the user's text.
         let given = self.document.is_sound(path).then_some(text)?;
         let parsed = cel::parse(self.diagnostics, key_of(path), self.document.at(path), given)?;
         expression::read(self, key_of(path), &parsed, wanted)
     }
 
-    /// The number or expression at `path`, within the range that the schema `about` gives.
+    /// The number or expression at `path`, limited to the range in the schema `about`.
     pub(super) fn parameter(&mut self, path: &str, given: &Json, about: &Json) -> Option<Parameter> {
         let range = (about["minimum"].as_f64()?, about["maximum"].as_f64()?);
         let expression = match given.as_str() {

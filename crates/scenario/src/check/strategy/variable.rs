@@ -1,4 +1,4 @@
-//! Variables of a strategy, checked, and values that are given to them.
+//! Checks the variables of a strategy, and the values assigned to them.
 
 use super::expression::{CALLS, is_reserved, text_value};
 use super::scope::Scope;
@@ -8,7 +8,7 @@ use crate::raw;
 use crate::read::Document;
 use crate::strategy::{Expression, Fact, Kind, Measure, Named, Place, SHARED_MAX, Variable};
 
-/// The most variables of a program.
+/// Maximum number of variables of a program.
 const MOST: usize = 1000;
 
 /// Checks the variables, by name.
@@ -43,7 +43,7 @@ fn one(scope: &mut Scope<'_>, name: &str, given: &raw::Variable) -> Option<Varia
     Some(Variable { name: name.to_owned(), kind, initial, shared })
 }
 
-/// Whether a variable may be called `name`: it must be a name for CEL too, and nobody else's.
+/// Whether a variable may have this name: a CEL identifier that is not in use.
 fn is_free(scope: &mut Scope<'_>, path: &str, name: &str) -> bool {
     let at = scope.document.at(path);
     if !scope.diagnostics.is_name(at, "variable", name) {
@@ -63,7 +63,7 @@ fn is_free(scope: &mut Scope<'_>, path: &str, name: &str) -> bool {
     taken.is_none()
 }
 
-/// What a variable can be, and what it is at first.
+/// A variable's kind and initial value.
 fn kind_of(scope: &mut Scope<'_>, path: &str, table: &raw::VariableTable) -> Option<(Kind, f64)> {
     let initial_path = format!("{path}.initial");
     let texts: Vec<String> = table.values.iter().flatten().map(|value| value.0.clone()).collect();
@@ -95,7 +95,7 @@ fn kind_of(scope: &mut Scope<'_>, path: &str, table: &raw::VariableTable) -> Opt
     }
 }
 
-/// The text at `path` as a value of a variable that may have `values`.
+/// The text at `path` as a value of a variable with these `values`.
 fn text_at(scope: &mut Scope<'_>, path: &str, values: &[String], text: &str) -> Option<Expression> {
     let wrong = |allowed| scope.refuse(path, &format!("is {text:?}, {allowed}"));
     text_value(values, text).map_or_else(wrong, Some)
@@ -109,7 +109,7 @@ fn in_words(given: &raw::Value) -> String {
     }
 }
 
-/// Checks the values that are given to variables at `path`.
+/// Checks the assignments at `path`.
 pub(super) fn set(scope: &mut Scope<'_>, path: &str, given: &raw::Values) -> Vec<(u16, Expression)> {
     given.iter().filter_map(|(name, value)| assigned(scope, &format!("{path}.{name}"), name, value)).collect()
 }
