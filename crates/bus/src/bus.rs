@@ -13,13 +13,13 @@ use serde::Serialize;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Which messages go first. None waits for a link: what a congested link cannot take at once is dropped, and who needs to be
-/// heard says it again.
+/// Message priority. No message waits for a link: what a congested link cannot take at once is
+/// dropped, and senders that must be heard repeat.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Priority {
-    /// What stops boats: before everything else, and at once.
+    /// Stops of boats: sent at once, before everything else.
     Urgent,
-    /// Everything that is sent at every decision.
+    /// Everything sent at every decision.
     Normal,
 }
 
@@ -68,18 +68,18 @@ impl Bus {
         self.is_on_this_machine
     }
 
-    /// The game's token, where it is known.
+    /// The game's token, if known.
     pub(crate) fn token(&self) -> Option<&Token> {
         self.token.as_ref()
     }
 
-    /// The same session, for a node that knows this token.
+    /// The same session, for a node with this token.
     #[must_use]
     pub fn with_token(self, token: Option<Token>) -> Bus {
         Bus { token, ..self }
     }
 
-    /// This session's own identifier, unique on the network.
+    /// This session's identifier, unique on the network.
     #[must_use]
     pub fn id(&self) -> String {
         self.session.id()
@@ -93,7 +93,7 @@ impl Bus {
         self.session.publisher(key, priority).map(Publisher)
     }
 
-    /// Calls `receive` with the bytes of everything published on `key`.
+    /// Calls `receive` with the bytes of every message published on `key`.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
@@ -105,7 +105,7 @@ impl Bus {
         self.session.subscribe(key, true, Box::new(receive))
     }
 
-    /// As [`Bus::subscribe`], but not with what this session publishes itself.
+    /// Like [`Bus::subscribe`], but without messages that this session publishes.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
@@ -117,7 +117,7 @@ impl Bus {
         self.session.subscribe(key, false, Box::new(receive))
     }
 
-    /// Shows that this node is there, under `key`, until dropped or dead.
+    /// Shows a liveliness token under `key` until it is dropped or the node dies.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
@@ -125,7 +125,8 @@ impl Bus {
         self.session.show_alive(key)
     }
 
-    /// Calls `receive` with the key of every node under `key` that comes (`true`) or goes, beginning with those that are there.
+    /// Calls `receive` with the key of every node under `key` that appears (`true`) or leaves,
+    /// starting with those present.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
@@ -137,7 +138,7 @@ impl Bus {
         self.session.watch_alive(key, Box::new(receive))
     }
 
-    /// Calls `receive` with the identifier of every node whose link to this hub is gone.
+    /// Calls `receive` with the identifier of every node that loses its link to this hub.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
@@ -145,7 +146,7 @@ impl Bus {
         self.session.watch_links(Box::new(receive))
     }
 
-    /// The keys of all nodes under `key` that are there now.
+    /// The keys of all nodes present under `key`.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
@@ -153,14 +154,14 @@ impl Bus {
         self.session.who_is_alive(key, limit)
     }
 
-    /// Closes the session, so that the others need not find out.
+    /// Closes the session, so that other nodes learn of it at once.
     pub fn close(&self) {
         self.session.close();
     }
 }
 
 impl Publisher {
-    /// Whether anybody listens; a message that nobody hears need not be made.
+    /// Whether the key has a subscriber; messages without one need not be encoded.
     #[must_use]
     pub fn is_heard(&self) -> bool {
         self.0.is_heard()
@@ -174,7 +175,7 @@ impl Publisher {
         self.send_encoded::<M>(codec::encode(message))
     }
 
-    /// Sends a per-tick message that is CDR already.
+    /// Sends a per-tick message that is already encoded as CDR.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
@@ -182,7 +183,7 @@ impl Publisher {
         self.0.send(bytes, Encoding::Cdr { schema: M::SCHEMA, version: M::VERSION })
     }
 
-    /// Sends bytes that are JSON.
+    /// Sends JSON bytes.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
@@ -190,7 +191,7 @@ impl Publisher {
         self.0.send(json, Encoding::Json)
     }
 
-    /// Sends bytes as they are.
+    /// Sends bytes without a stated encoding.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
