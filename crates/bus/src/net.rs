@@ -17,7 +17,7 @@ use zenoh::Config;
 pub const DEFAULT_PORT: u16 = 7447;
 
 /// zenoh's settings for a link. Only its own messages, such as declarations, wait for a congested
-/// link (in µs), and briefly; a link that cannot take even those is closed. A batch has up to 64
+/// link (in us), and briefly; a link that cannot take even those is closed. A batch has up to 64
 /// kB: answers of a megabyte, and as many urgent messages as can be requested at once, fit in.
 /// Messages reassembled from fragments have a size limit.
 const LINKS: [(&str, &str); 5] = [
