@@ -16,7 +16,7 @@ use std::time::Duration;
 
 /// One message in this many is delayed before it is sent.
 const PAUSES: u64 = 8;
-/// Prefix of the key, followed by its identifier, under which a leaf shows that it is linked.
+/// Prefix of the token keys of linked leaves, followed by the leaf's identifier.
 const LINKS: &str = "link/";
 /// Duration of an attempt to connect where no hub listens.
 const CONNECT: Duration = Duration::from_secs(1);
