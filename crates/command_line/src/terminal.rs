@@ -33,8 +33,7 @@ pub fn is_seen(page: &str) -> bool {
     is_written("\x1b[H\x1b[J", &printable::coloured(page))
 }
 
-/// Sets when texts have colours; `Auto` checks that the terminal supports them and `NO_COLOR` is unset.
-/// forbid it.
+/// Sets when texts have colours; with `Auto`, if the terminal supports them and `NO_COLOR` is unset.
 pub fn set_colour(choice: clap::ColorChoice) {
     let choice = match choice {
         clap::ColorChoice::Auto => anstream::ColorChoice::Auto,

@@ -53,7 +53,6 @@ impl Stop<'_> {
 
 /// Plays a scenario with a seed. `see` receives the contest before every decision and at the end,
 /// with the minds that led there. The error says why the game could not start.
-/// it could not start.
 pub(crate) fn play_game(
     scenario: &Scenario,
     seed: u64,

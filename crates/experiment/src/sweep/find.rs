@@ -93,7 +93,7 @@ pub fn find(
         let mut value = |axis: &Axis| axis.at(stream.unit());
         let mut point = |_| Point::from(plan.sweep().axes.iter().map(&mut value).collect::<Vec<AxisValue>>());
         let points: Vec<Point> = (0..count).map(&mut point).collect();
-        // Two games per point, one from each side, with the point's index as the seed.
+        // A point has two games, one from each side. One of them is played, with its own seed.
         let round = plan.at(points, (plan.sweep().seed, 1));
         let job = |i: usize| Job {
             index: 2 * i + i % 2,

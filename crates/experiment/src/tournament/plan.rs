@@ -32,7 +32,6 @@ impl Plan {
     /// The games of a tournament: of every entry, or of the challenger, against every other. All
     /// pairings play the same seeds, each of them twice with sides exchanged. An entry against
     /// itself plays each once, since exchanging sides gives the same game.
-    /// the same game.
     ///
     /// # Errors
     /// All problems in the files and their combination; also a game with real boats, which cannot
