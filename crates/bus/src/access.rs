@@ -1,4 +1,4 @@
-//! What others may do at a hub: the rules for zenoh's access control.
+//! The rights of other nodes at a hub: the rules for zenoh's access control.
 //!
 //! Everything that no rule allows is denied. The rules bind nodes linked to the hub, not the hub's
 //! own session. What only the sim may do therefore needs no rule: publish pictures and gateway
@@ -143,7 +143,7 @@ impl Subject {
         patterns.iter().flat_map(spelled_out).map(|topic| topic::matching(game, &topic)).collect()
     }
 
-    /// The rules: messages of these kinds, in these directions (as seen from the hub), on these topics.
+    /// Access rules for kinds of messages, directions (as seen from the hub) and topics.
     fn rules(&self, game: &GameName) -> Vec<Value> {
         let Rights { publishes, hears, asks, answers } = self.rights;
         // A node that does not know the game's name searches for all games.

@@ -1,4 +1,5 @@
-//! A node on the network: publish, subscribe, queries, liveliness tokens, with the node's token and keys.
+//! A node on the network: publish, subscribe, queries and liveliness tokens, with its token and
+//! keys.
 
 use crate::keys::Bundle;
 use crate::net::is_loopback;
@@ -23,7 +24,7 @@ pub enum Priority {
     Normal,
 }
 
-/// A node's session.
+/// The session of a node, with its token and keys. Clones share the session.
 #[derive(Clone)]
 pub struct Bus {
     pub(crate) session: Arc<dyn Session>,
@@ -39,7 +40,7 @@ impl Bus {
     /// Opens the hub of a game.
     ///
     /// # Errors
-    /// [`BusError`] if it cannot listen where it should.
+    /// [`BusError`] if it cannot listen at its endpoints.
     pub fn hub(net: &Net, game: &GameName, scenario: &Scenario) -> Result<Bus, BusError> {
         runtime().open_hub(net, game, scenario).map(|session| Bus::of(session, net))
     }
@@ -47,7 +48,7 @@ impl Bus {
     /// Connects to a hub.
     ///
     /// # Errors
-    /// [`BusError`] if nobody listens there now.
+    /// [`BusError`] if no hub listens there now.
     pub fn leaf(net: &Net) -> Result<Bus, BusError> {
         runtime().open_leaf(net).map(|session| Bus::of(session, net))
     }
@@ -63,7 +64,7 @@ impl Bus {
         self.keys.as_deref()
     }
 
-    /// Whether the hub is reached by loopback.
+    /// Whether the connection to the hub uses loopback.
     pub(crate) fn is_on_this_machine(&self) -> bool {
         self.is_on_this_machine
     }

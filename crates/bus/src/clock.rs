@@ -23,7 +23,7 @@ pub fn suspended() -> Duration {
     runtime().suspended()
 }
 
-/// Sleeps where there is no condition to wait for: between two attempts, or two pictures for a
+/// Sleeps where no condition can be waited for: between two attempts, or two pictures for a
 /// person.
 pub fn rest(time: Duration) {
     runtime().sleep(time);

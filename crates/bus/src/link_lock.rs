@@ -20,7 +20,7 @@ pub enum LinkLockError {
     /// Another process holds it.
     #[error("another gateway on this machine has the link {link}: {}", .holder.map_or("a process that is ending".to_owned(), |pid| format!("process {pid}")))]
     Held {
-        /// The link.
+        /// The address of the link, as the user typed it.
         link: String,
         /// The holder's process number, if it recorded one.
         holder: Option<u32>,
@@ -28,7 +28,7 @@ pub enum LinkLockError {
     /// The lock file cannot be created.
     #[error("the link {link} cannot be locked: {source}")]
     File {
-        /// The link.
+        /// The address of the link, as the user typed it.
         link: String,
         /// The system's error.
         source: io::Error,

@@ -1,4 +1,5 @@
-//! A session on a network, as [`Bus`](crate::Bus) uses it: publish, subscribe, queries, liveliness tokens.
+//! The session interface behind [`Bus`](crate::Bus): publish, subscribe, queries, liveliness
+//! tokens.
 
 use crate::parcel::Parcel;
 use crate::{BusError, Priority};

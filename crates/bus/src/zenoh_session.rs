@@ -20,7 +20,7 @@ use zenoh::sample::{Locality, SampleKind};
 /// A zenoh session.
 pub(crate) struct ZenohSession(zenoh::Session);
 
-/// Sends on one key.
+/// Sends on one zenoh key.
 struct ZenohSender {
     publisher: zenoh::pubsub::Publisher<'static>,
     is_heard: Arc<AtomicBool>,

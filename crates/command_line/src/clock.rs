@@ -9,7 +9,7 @@ pub fn now() -> Instant {
     Instant::now()
 }
 
-/// Sleeps where there is no condition to wait for.
+/// Sleeps where no condition can be waited for.
 #[expect(clippy::disallowed_methods, reason = "between two looks at whether somebody wants it to stop")]
 pub fn rest(time: Duration) {
     std::thread::sleep(time);

@@ -10,9 +10,9 @@ use primitives::VehicleId;
 
 /// A session in a running game.
 pub struct Observer {
-    /// The session.
+    /// The session on the network.
     pub bus: Bus,
-    /// The game.
+    /// The name of the game.
     pub game: GameName,
     /// The sim's description of the game.
     pub info: GameInfo,
@@ -26,7 +26,7 @@ impl Observer {
         Ok(Observer { bus, game, info })
     }
 
-    /// The vehicle of this name.
+    /// The index of the vehicle with this name.
     pub fn vehicle(&self, name: &str) -> Result<VehicleId> {
         Ok(self.info.scenario.vehicle_named(name)?)
     }

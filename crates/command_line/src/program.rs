@@ -22,7 +22,7 @@ fn this() -> &'static Program {
     PROGRAM.get_or_init(|| Program { name: "squall", gateway: "squall gateway" })
 }
 
-/// Its name.
+/// The program's name.
 pub fn name() -> &'static str {
     this().name
 }

@@ -27,7 +27,7 @@ pub fn on_ctrl_c() -> anyhow::Result<Arc<AtomicBool>> {
     Ok(stop)
 }
 
-/// The same flag; in a child, the end of standard input sets it too.
+/// The same flag; in a child process, the end of standard input sets it too.
 pub fn on_ctrl_c_or_parent(for_parent: bool) -> anyhow::Result<Arc<AtomicBool>> {
     let stop = on_ctrl_c()?;
     if for_parent {

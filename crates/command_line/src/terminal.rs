@@ -7,7 +7,7 @@ use anstream::AutoStream;
 use primitives::printable;
 use std::io::Write;
 
-/// Prints text. A closed reader is no reason to stop a game.
+/// Prints text. Ignores a closed output, which must not stop a game.
 pub fn print(text: &str) {
     is_read(text);
 }
@@ -33,7 +33,8 @@ pub fn is_seen(page: &str) -> bool {
     is_written("\x1b[H\x1b[J", &printable::coloured(page))
 }
 
-/// Sets when texts have colours; with `Auto`, if the terminal supports them and `NO_COLOR` is unset.
+/// Sets when texts have colours; with `Auto`, if the terminal supports them and `NO_COLOR` is
+/// unset.
 pub fn set_colour(choice: clap::ColorChoice) {
     let choice = match choice {
         clap::ColorChoice::Auto => anstream::ColorChoice::Auto,

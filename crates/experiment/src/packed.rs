@@ -22,7 +22,7 @@ pub struct Packed {
     pub digest: String,
 }
 
-/// Why a plan cannot be unpacked.
+/// An error while unpacking a plan.
 #[derive(Debug, Error)]
 pub enum UnpackError {
     /// The checked file is invalid JSON.

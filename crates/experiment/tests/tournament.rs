@@ -113,7 +113,8 @@ fn record(seed: u64, sides: [usize; 2], score: [u32; 2]) -> Record {
 fn the_two_games_of_a_seed_are_one_observation() {
     const ROUNDING: f64 = 1e-6;
     let plan = Plan::new(&tournament("attack_1v1", 6, &["pav01", "idle"])).unwrap();
-    // The first entry has 2 and 4, then 5 and 5, then 6 and 8: 3, 5 and 7 a seed. Mean 5, standard deviation 2.
+    // The first entry has 2 and 4, then 5 and 5, then 6 and 8: 3, 5 and 7 per seed. Mean 5,
+    // standard deviation 2.
     let records = [
         record(7, [0, 1], [2, 3]),
         record(7, [1, 0], [1, 4]),
@@ -168,7 +169,7 @@ fn a_challenger_plays_everybody_and_nobody_else_plays() {
     let all = tournament("attack_1v1", 6, &["idle", "easy_attackers", "pav01"]);
     let plan = Plan::new(&Tournament { challenger: Some("easy_attackers_1".to_owned()), ..all }).unwrap();
     assert_eq!((plan.games_per_seed(), plan.games()), (4, 12));
-    // Against the idle team two games are won and four drawn; against pav01 two are won and four lost.
+    // Two wins and four draws against the idle team; two wins and four losses against pav01.
     let score = |seed: u64, sides: [usize; 2]| match (seed, sides) {
         (7, [1, _]) => [2, 1],
         (7, [_, 1]) => [0, 3],

@@ -1,4 +1,5 @@
-//! A simulated network in virtual time, for tests: the unchanged node code runs over it deterministically, faults included.
+//! A simulated network in virtual time, for tests: it runs unmodified node code deterministically,
+//! faults included.
 //!
 //! Nodes are threads of this process that block only through `bus`. Exactly one of them runs at a
 //! time; when all wait, virtual time jumps to the next event. One seed determines which ready

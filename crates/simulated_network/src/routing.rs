@@ -79,7 +79,7 @@ impl State {
 
     /// Whether a key has a subscriber.
     pub(crate) fn is_heard(&self, session: usize, key: &str) -> bool {
-        // A leaf cannot know.
+        // A leaf cannot know, so it assumes that there is one.
         !self.sessions[session].is_hub
             || self.on_publish.is_some()
             || !self.declared_beyond(session, Kind::Subscriber, key, None).is_empty()

@@ -121,7 +121,7 @@ impl SimulatedSession {
         Declaration::new(Undeclare { session: self.clone(), id: self.insert(key, what) })
     }
 
-    /// Declares for as long as the session is open.
+    /// Adds a declaration that lasts as long as the session. Returns its number.
     fn insert(&self, key: String, what: What) -> u64 {
         let mut state = self.world.state.lock();
         state.number += 1;

@@ -125,7 +125,7 @@ fn refused(file: &Path, problem: impl Display) -> BundleError {
     BundleError { file: file.to_owned(), problem: problem.to_string() }
 }
 
-/// Checks that a certificate is valid now.
+/// Checks the validity period of a certificate against `now`.
 fn check_period(certificate: &X509Certificate<'_>, now: ASN1Time) -> Result<(), String> {
     let validity = certificate.validity();
     if now > validity.not_after {

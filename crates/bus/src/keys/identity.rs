@@ -7,15 +7,15 @@ use thiserror::Error;
 /// The identity of a node: the common name of its certificate, and the name of its key folder.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Identity {
-    /// Serves the game.
+    /// The node that serves the game.
     Sim,
-    /// Agents of this team.
+    /// The agents of this team.
     Team(String),
     /// The gateway of this boat, or of any boat.
     Gateway(Option<String>),
-    /// Watches, and may stop boats.
+    /// A node that watches, and may stop boats.
     Observer,
-    /// Controls the game and operates boats.
+    /// A node that controls the game and operates boats.
     Operator,
 }
 

@@ -15,7 +15,7 @@ use time::OffsetDateTime;
 /// Clocks of boats and laptops may lag behind that of the machine that makes the keys.
 const CLOCKS_DIFFER: Duration = Duration::from_secs(24 * 3600);
 
-/// Why keys could not be made.
+/// An error while making keys.
 #[derive(Debug, Error)]
 pub enum MakeError {
     /// A file or folder could not be written.

@@ -167,7 +167,8 @@ impl StopClient {
     #[must_use]
     pub fn finish(&self, limit: Duration) -> Vec<String> {
         let start = clock::now();
-        // The sim's answer is no proof: the sim may be suspended while all boats have stopped, or
+        // The sim's answer proves nothing: the sim may be suspended while all boats have stopped,
+        // or
         // answer while one has not. Only the boats' own states count.
         self.wait(limit.min(GAME_MAX), |orders| orders.is_done(clock::now()));
         self.wait(limit.saturating_sub(clock::since(start)), |orders| orders.unfinished().is_empty());

@@ -58,9 +58,9 @@ impl KnownBoat {
 pub enum StopNews {
     /// A boat's own status shows a stop for the first time.
     Done {
-        /// The boat.
+        /// The name of the boat.
         vehicle: String,
-        /// The stop.
+        /// The kind of stop.
         command: StopCommand,
         /// The state as text.
         state: String,
@@ -69,23 +69,23 @@ pub enum StopNews {
     },
     /// A boat still does not show a stop after some time.
     Late {
-        /// The boat.
+        /// The name of the boat.
         vehicle: String,
-        /// The stop.
+        /// The kind of stop.
         command: StopCommand,
     },
     /// The sim has answered a stop of all boats after this time, or failed to, for this reason.
     Sim(Result<Duration, String>),
     /// The state of a boat has changed.
     State {
-        /// The boat.
+        /// The name of the boat.
         vehicle: String,
         /// The state as text.
         state: String,
     },
     /// A boat has been silent for some time.
     Silent {
-        /// The boat.
+        /// The name of the boat.
         vehicle: String,
     },
 }

@@ -21,9 +21,9 @@ pub(crate) struct Observations {
 /// The effect of an axis on an entry.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Effect {
-    /// The axis' key.
+    /// The key of the axis.
     pub axis: String,
-    /// The entry.
+    /// The name of the entry.
     pub entry: String,
     /// From the first level to the last; of a sampled design, groups of equally many points, by
     /// ascending values.
@@ -50,9 +50,9 @@ pub struct Level {
 pub struct Interaction {
     /// The keys of the axes.
     pub axes: [String; 2],
-    /// The entry.
+    /// The name of the entry.
     pub entry: String,
-    /// The metric.
+    /// The name of the metric.
     pub metric: &'static str,
     /// The means where both are low, the second alone is high, the first alone is high, and both
     /// are high.
@@ -297,7 +297,8 @@ mod tests {
 
     #[test]
     fn the_probability_is_that_of_the_tables_of_student() {
-        // A mean of 1 with a standard error of 1 / 2.2622 over 10 numbers: the quantile of 97.5 % with 9 degrees of freedom.
+        // A mean of 1 with a standard error of 1 / 2.2622 over 10 numbers: the 97.5 % quantile with
+        // 9 degrees of freedom.
         let spread = 1.0 / 2.2622 * 3.0;
         let numbers: Vec<f64> = (0..10).map(|i| 1.0 + if i % 2 == 0 { spread } else { -spread }).collect();
         let p = probability(&numbers).expect("ten numbers");

@@ -39,7 +39,7 @@ pub struct Found {
     pub named: Vec<Named>,
 }
 
-/// A game with a failure.
+/// A game with a failure, as listed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Named {
     /// The value of the metric.

@@ -64,7 +64,7 @@ pub struct PointReport {
     pub entries: Vec<EntryAtPoint>,
     /// Each other entry minus the first, on the same seeds.
     pub differences: Vec<Difference>,
-    /// A command that plays one of its games.
+    /// The command that replays one of its games.
     pub command: String,
 }
 
@@ -91,7 +91,7 @@ pub struct Difference {
 /// One of an entry's worst games.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Worst {
-    /// The entry.
+    /// The name of the entry.
     pub entry: String,
     /// The game's index in the tables.
     pub game: usize,

@@ -209,10 +209,10 @@ impl Study {
         Ok(())
     }
 
-    /// Writes the report of all games so far: `report.json`, `report.html` and `games.parquet`.
+    /// Writes the report on all games so far: `report.json`, `report.html` and `games.parquet`.
     ///
     /// # Errors
-    /// [`StudyError`]: a file cannot be read or written.
+    /// [`StudyError`] if a file cannot be read or written.
     pub fn report(&self, plan: &Plan) -> Result<Report, StudyError> {
         let rows = rows_in(plan, &text(&self.folder.join(GAMES))?);
         let report = Report::new(plan, &rows);

@@ -24,7 +24,7 @@ pub struct Row {
     pub result: Result<Metrics, String>,
 }
 
-/// The columns before those of the axes.
+/// The columns before the axes.
 const FIRST: [&str; 6] = ["game", "point", "entry", "seed", "side", BOATS];
 /// The column that only the CSV has: the number of the game's lines in the table of boats.
 const BOATS: &str = "boats";

@@ -1,4 +1,4 @@
-//! The breaking point: the value of an axis at which a condition on an entry begins to hold, by sequential search.
+//! The breaking point: the axis value where a condition starts to hold, found by sequential search.
 //!
 //! The condition is assumed false at one end of the axis and true at the other, with a single
 //! change between. At each tested value, seeds are played in batches until the interval of the
@@ -27,11 +27,11 @@ const ALPHA: f64 = 0.05;
 /// The result of the search.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BreakingPoint {
-    /// The axis' key.
+    /// The key of the axis.
     pub axis: String,
-    /// The entry.
+    /// The name of the entry.
     pub entry: String,
-    /// The condition.
+    /// The condition as text.
     pub condition: String,
     /// The last value, starting from the end where the condition is false, at which it is certainly
     /// false; `None` if there is no such value.
@@ -48,7 +48,7 @@ pub struct BreakingPoint {
 /// A tested value.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Tried {
-    /// The value.
+    /// The value of the axis.
     pub value: f64,
     /// The number of games played there.
     pub games: u64,
@@ -56,7 +56,7 @@ pub struct Tried {
     pub mean: Estimate,
     /// Whether the condition holds there; `None` if all games left it undecided.
     pub holds: Option<bool>,
-    /// A command that plays the first of its games.
+    /// The command that replays the first of its games.
     pub command: String,
     #[serde(skip)]
     share: f64,

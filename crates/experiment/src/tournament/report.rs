@@ -120,9 +120,9 @@ pub struct Cell {
 /// A range of seeds, inclusive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Seeds {
-    /// The first.
+    /// The first seed.
     pub first: u64,
-    /// The last.
+    /// The last seed.
     pub last: u64,
 }
 
@@ -282,7 +282,7 @@ fn standing<'a>(appearances: impl Iterator<Item = Appearance<'a>>) -> [u64; 3] {
     })
 }
 
-/// Each of `ranks` against each that it played.
+/// The results of each entry in `ranks` against each of its opponents.
 fn matrix<'a>(plan: &Plan, rounds: &[&'a [Record]], ranks: &[usize]) -> Vec<Cell> {
     let (Some(first), Some(last)) = (rounds.first(), rounds.last()) else { return vec![] };
     let seeds = Seeds { first: first[0].of.seed, last: last[0].of.seed };

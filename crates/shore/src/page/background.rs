@@ -1,4 +1,4 @@
-//! The background of the chart: an image of the site, or its shoreline as GeoJSON, drawn below the field.
+//! The background of the chart, below the field: an image of the site, or its shoreline as GeoJSON.
 //!
 //! Both are placed by WGS 84 latitude and longitude: GeoJSON has no other system since RFC 7946,
 //! and an image has a world file. The page aligns them with the field by the field's datum.

@@ -116,7 +116,7 @@ impl PageSession {
         self.pings.1 = back.max(ping.min(made));
     }
 
-    /// When the next message is due, if nothing changes.
+    /// When the next message is due without further events.
     pub(super) fn due(&self, now: Instant) -> Option<Instant> {
         self.viewer.due(now)
     }

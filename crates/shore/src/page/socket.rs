@@ -12,7 +12,7 @@ use std::pin::pin;
 use std::time::Duration;
 use tokio::time::{Instant, sleep_until, timeout};
 
-/// The longest message from a page, bytes.
+/// Size limit of a message from a page, bytes.
 pub(super) const RECEIVED_MAX: usize = 16 * 1024;
 /// Timeout of the close message.
 const CLOSE_LIMIT: Duration = Duration::from_millis(100);

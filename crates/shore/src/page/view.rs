@@ -52,7 +52,7 @@ pub trait Viewer: Send {
     /// The next message, if there is one; replaceable messages only within the budget.
     fn next_message(&mut self, now: Instant, budget: Budget) -> Option<Outgoing>;
 
-    /// When the next message is due, if nothing changes.
+    /// When the next message is due without further events.
     fn due(&self, now: Instant) -> Option<Instant>;
 }
 

@@ -13,7 +13,7 @@ use client::Client;
 use shore::page::{Page, PageSettings, View};
 use std::sync::Arc;
 
-/// A server on a free port that shows nothing yet.
+/// A server on a free port without a view.
 fn empty_page(token: Option<&str>, hosts: &[&str]) -> Page {
     Page::open(settings(token, hosts)).expect("a free port")
 }

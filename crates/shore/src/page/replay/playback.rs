@@ -40,7 +40,7 @@ impl Playback {
         self.speed
     }
 
-    /// When a moment will be shown, if nobody intervenes.
+    /// When a moment will be shown, without further commands; `None` if never.
     pub(super) fn when(&self, moment: SimTime) -> Option<Instant> {
         let ahead_s = (moment - self.at).as_s().max(0.0) / self.speed;
         self.since?.checked_add(Duration::try_from_secs_f64(ahead_s).ok()?)
