@@ -49,9 +49,8 @@ pub(crate) fn begin(session: &Session, numbers: Vec<u16>, files: OpenFiles, wait
         let Some(ends) = linger::ends(event.link()) else { return };
         match event.kind() {
             SampleKind::Put => links.lock().insert(ends),
-            // Identified by both addresses, since descriptors are reused: the same number may be
-            // another
-            // connection by now.
+            // Identified by both addresses, since descriptors are reused: the same number may
+            // be another connection by now.
             SampleKind::Delete => links.lock().remove(&ends),
         };
     };

@@ -41,7 +41,7 @@ fn disable_for(link: &Link) {
 /// stays open: zenoh holds its link during the report.
 fn disable_if(descriptor: RawFd, ends: Ends) {
     if matches!(descriptor::kind(descriptor), Kind::Connection(found) if found == ends) {
-        // A closed socket no longer needs it.
+        // A closed socket no longer needs it, so errors are ignored.
         // Disabled, not zero: with zero the system discards the data sent last. Links that are
         // never completed are not reported here; for those, `.cargo/config.toml` compiles zenoh's
         // linger time to nothing. Before, `strace -f -T -e close` showed calls of 10.0 s;

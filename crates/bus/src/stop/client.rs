@@ -168,8 +168,7 @@ impl StopClient {
     pub fn finish(&self, limit: Duration) -> Vec<String> {
         let start = clock::now();
         // The sim's answer proves nothing: the sim may be suspended while all boats have stopped,
-        // or
-        // answer while one has not. Only the boats' own states count.
+        // or answer while one has not. Only the boats' own states count.
         self.wait(limit.min(GAME_MAX), |orders| orders.is_done(clock::now()));
         self.wait(limit.saturating_sub(clock::since(start)), |orders| orders.unfinished().is_empty());
         self.visit(|orders| orders.unfinished())

@@ -195,7 +195,7 @@ impl StopOrders {
         self.boats.entry(vehicle.to_owned()).or_insert(unheard);
     }
 
-    /// Forgets a boat whose name turns out to be another one.
+    /// Forgets a boat that turns out to have another name, or not to exist.
     pub(super) fn forget(&mut self, vehicle: &str) {
         self.boats.remove(vehicle);
     }
