@@ -9,7 +9,7 @@ use std::time::Duration;
 /// How long the sim may take to answer a stop before the stop is repeated.
 const STOP_ANSWER: Duration = Duration::from_millis(200);
 
-/// How often a node whose queries the sim does not answer sends a stop.
+/// How often a node that may not query the sim publishes a stop.
 const SAID_UNASKED: u32 = 3;
 
 /// The sim's answer to one of several queries.

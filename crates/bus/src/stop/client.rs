@@ -162,8 +162,8 @@ impl StopClient {
         self.0.orders.wait(limit, holds)
     }
 
-    /// Waits up to `limit` until every stop is done, and returns the unfinished ones. Makes no
-    /// further requests. Without a game to name its boats, the known ones count.
+    /// Waits up to `limit` until every stop is done, and returns the unfinished ones. Call it after
+    /// the last request. Without a game to name its boats, the known ones count.
     #[must_use]
     pub fn finish(&self, limit: Duration) -> Vec<String> {
         let start = clock::now();

@@ -258,8 +258,8 @@ impl StopOrders {
         self.stops.iter_mut().filter(|stop| is_meant(stop)).for_each(|stop| stop.is_cancelled = true);
     }
 
-    /// The earliest time at which a status arriving now was true; `at_s` is its time since the
-    /// gateway started, s.
+    /// A lower bound of the time at which a status arriving now was true; `at_s` is its time since
+    /// the gateway started, s.
     pub(super) fn as_of(&mut self, now: Instant, vehicle: &str, at_s: f64) -> Instant {
         let at = Duration::try_from_secs_f64(at_s).ok();
         let (Some(boat), Some(at)) = (self.boats.get_mut(vehicle), at) else { return now };
