@@ -1,4 +1,4 @@
-//! What a boat speaks, on the command line.
+//! The boat's protocol as a command line argument.
 
 use clap::ValueEnum;
 use gateway::config::BoatProtocol;

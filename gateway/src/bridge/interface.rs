@@ -124,35 +124,35 @@ pub struct Output {
     pub events: Vec<Event>,
     /// Why an operator's request was refused.
     pub refused: Option<String>,
-    /// Whether the bytes carry an order that had not been sent yet.
+    /// Whether the bytes carry an order for the first time.
     pub carries_order: bool,
 }
 
-/// Navigation on its way to the sim.
+/// Navigation data for the sim.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NavOut {
-    /// Where the boat is.
+    /// The boat's position and motion.
     pub nav: Nav,
-    /// Whether it can be relied on.
+    /// Whether the data are reliable.
     pub valid: bool,
-    /// How old the fix is, s.
+    /// Age of the fix, s.
     pub age_s: f64,
 }
 
-/// Something that happened.
+/// An event for the log.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Event {
-    /// The supervisor went from one state to another.
+    /// The supervisor changed its state.
     State {
-        /// Before.
+        /// The previous state.
         from: String,
-        /// Now.
+        /// The new state.
         to: String,
     },
-    /// Another boat is in the way, or is no longer.
+    /// Another boat came into the way (`true`) or left it (`false`).
     Blocked(bool),
-    /// Something that a person should know.
+    /// A warning for the operator.
     Warning(String),
     /// A log message of the shell.
     Remark(String),

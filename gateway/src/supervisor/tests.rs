@@ -80,7 +80,8 @@ fn all_requests() -> Vec<Option<OperatorRequest>> {
         .collect()
 }
 
-/// Calls `check` with every step from every reachable supervisor: before, inputs, request, result.
+/// Calls `check` with every step from every reachable supervisor. Arguments: supervisor before,
+/// conditions, request, supervisor after, step.
 fn explore(mut check: impl FnMut(&Supervisor, &Conditions, Option<OperatorRequest>, &Supervisor, &Step)) -> usize {
     let (conditions, requests) = (all_conditions(), all_requests());
     let starts = all_actions().into_iter().flat_map(|actions| [true, false].map(|by_itself| (by_itself, actions)));
