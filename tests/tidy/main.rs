@@ -3,6 +3,7 @@
 //! Every rule reads a [`Tree`] of texts and gives its breaches. The first test holds the repository to all
 //! of them; the second breaks each in turn, as `breaches.txt` says, so that a rule which has stopped looking is noticed too.
 
+mod language;
 mod rule;
 mod shown_by;
 mod text;

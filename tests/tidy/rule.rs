@@ -1,5 +1,6 @@
 //! The rules, and what each finds wrong with a tree.
 
+use crate::language::{language, links};
 use crate::shown_by::shown_by;
 use crate::text::{is_path, joined, manifest_entries, names, quoted};
 use crate::tree::Tree;
@@ -73,7 +74,7 @@ pub(crate) type Breaches = Vec<String>;
 /// A name, and what finds its breaches.
 type Rule = (&'static str, fn(&Tree) -> Breaches);
 
-pub(crate) const RULES: [Rule; 15] = [
+pub(crate) const RULES: [Rule; 17] = [
     ("crates depend only on what lies below them", dependencies),
     ("only node shells use the bus", bus_in_shells),
     ("only bus names zenoh", zenoh_in_bus),
@@ -89,6 +90,8 @@ pub(crate) const RULES: [Rule; 15] = [
     ("CHANGELOG.md has this version", changelog),
     ("every dependency has its reason in Cargo.toml", reasons),
     ("tables of what is tested name tests that exist", shown_by),
+    ("documents are in plain English", language),
+    ("links in documents lead somewhere", links),
 ];
 
 fn dependencies(tree: &Tree) -> Breaches {

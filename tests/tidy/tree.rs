@@ -29,7 +29,7 @@ impl Tree {
             let name = entry.file_name().to_string_lossy().into_owned();
             let (at, path) = (entry.path(), if path.is_empty() { name.clone() } else { format!("{path}/{name}") });
             let is_text = [".rs", ".toml", ".md"].iter().any(|end| name.ends_with(end));
-            if at.is_dir() && !name.starts_with('.') && path != "runs" {
+            if at.is_dir() && !at.is_symlink() && !name.starts_with('.') && path != "runs" {
                 self.add(&at, &path);
             } else if at.is_file() && is_text {
                 let text = fs::read_to_string(&at).unwrap_or_else(|e| panic!("{path}: {e}"));
