@@ -91,11 +91,11 @@ fn a_training_goes_on_from_its_state_as_if_it_had_not_stopped() {
         let middle = flipped.len() / 2;
         flipped[middle] ^= 1;
         for damaged in [flipped, sound[..middle].to_vec(), vec![]] {
-            std::fs::write(cut.join(name), damaged).unwrap();
             // Checksums of earlier states are not needed.
             if name == "sums.csv" && damaged.len() == sound.len() {
                 continue;
             }
+            std::fs::write(cut.join(name), damaged).unwrap();
             let why = refusal(here, &["train", "short.toml", "--out", "cut", "--resume"]);
             assert!(why.contains(name), "{name}: {why}");
         }
