@@ -6,7 +6,7 @@ pub(crate) use command_line::terminal::*;
 use sim::{Progress, ProgressMessage};
 use std::io::IsTerminal;
 
-/// Shows the progress of a game to a person.
+/// Shows the progress of a game to the user.
 pub(crate) struct Screen {
     /// Whether a line can be overwritten.
     live: bool,
@@ -20,7 +20,7 @@ pub(crate) struct Screen {
 const PRINT_EVERY_S: f64 = 60.0;
 
 impl Screen {
-    /// The screen of this process, for a game with these names.
+    /// The screen of this process for a game with these names.
     pub(crate) fn new(names: Names) -> Screen {
         Screen { live: std::io::stdout().is_terminal(), status: String::new(), names, last_s: 0.0 }
     }

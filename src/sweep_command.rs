@@ -84,7 +84,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     Ok(if report.failures.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// Searches for the breaking point.
+/// Searches for the breaking point on one axis.
 fn until(args: &Args, plan: &Plan, text: &str, folder: &Path) -> Result<ExitCode> {
     let condition = Condition::parse(text, plan.sweep())?;
     let stop = stop::on_ctrl_c()?;

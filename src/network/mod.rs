@@ -1,4 +1,4 @@
-//! The commands that need a network or show a page: feature `network`.
+//! Commands that need a network or show a page (feature `network`).
 
 mod agent_command;
 mod child_process;

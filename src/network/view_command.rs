@@ -67,7 +67,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Shows a report, or a recording, until Ctrl-C.
+/// Shows a report or a recording until Ctrl-C.
 fn show_report(args: &Args, path: &Path) -> Result<ExitCode> {
     if args.for_parent {
         bail!("a report is shown to people");

@@ -58,7 +58,7 @@ struct Seen {
     frame: Option<Frame>,
     /// Number of frames so far.
     count: u64,
-    /// The newest events.
+    /// The newest events, oldest first.
     events: VecDeque<Logged>,
 }
 

@@ -1,7 +1,7 @@
 //! An E-stop through the gateway's control port reaches the boat's wire in time, whatever happens
 //! to the game; also tests orders ahead of the game's time.
 //!
-//! `SQUALL_TRIES=1000` measures it, and prints the distribution.
+//! `SQUALL_TRIES=1000` measures the delay and prints its distribution.
 
 use crate::boat::Boat;
 use crate::intruder::Intruder;

@@ -1,4 +1,4 @@
-//! Two machines whose cable is cut for a while.
+//! Games on two machines whose cable is cut for a while.
 
 use crate::support::FOUR;
 use crate::two_hosts::Hosts;

@@ -141,7 +141,7 @@ impl Process {
         Process(command.spawn().expect("the program starts"))
     }
 
-    /// kill -9.
+    /// Sends SIGKILL.
     pub(crate) fn kill(&mut self) {
         self.0.kill().expect("it can be killed");
         self.0.wait().expect("it can be collected");

@@ -71,7 +71,7 @@ fn a_file_is_recognised_wherever_it_lies() {
     let folder = tempfile::tempdir().unwrap();
     for &kind in KINDS {
         if ["game", "tournament", "training", "sweep"].contains(&kind.name()) {
-            continue; // Their references would not follow them.
+            continue; // Relative references would break in another folder.
         }
         for path in files(kind) {
             let text = std::fs::read_to_string(&path).unwrap();
@@ -254,7 +254,7 @@ fn a_number_beyond_the_range_of_its_schema_is_refused() {
             let number = |bound: &Value| bound.as_f64().unwrap();
             for value in [number(&low) - 1.0, number(&high) + 1.0] {
                 let value = match (is_whole, value > 1e18) {
-                    (true, true) => continue, // A file cannot say so large a whole number.
+                    (true, true) => continue, // TOML cannot represent such a large integer.
                     (true, false) => format!("{value:.0}"),
                     (false, _) => format!("{value:?}"),
                 };
@@ -368,7 +368,7 @@ fn the_examples_of_every_key_are_sound_and_show_the_defaults() {
 #[test]
 fn the_examples_of_the_handbook_are_sound() {
     let handbook = std::fs::read_to_string(shipped("README.md")).unwrap();
-    // Beside the shipped files that they name.
+    // Write them beside the shipped files that they name.
     let folder = tempfile::tempdir().unwrap();
     for path in KINDS.iter().flat_map(|kind| files(*kind)) {
         let text = std::fs::read_to_string(&path).unwrap();

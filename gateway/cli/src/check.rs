@@ -1,4 +1,4 @@
-//! `gateway check`: the sensor check of a boat, and with a vehicle the pre-flight check before arming.
+//! `gateway check`: a boat's sensor check; with a vehicle, the pre-flight check before arming.
 
 use super::preflight_report;
 use super::swing_guide::{Guide, guided_checks};

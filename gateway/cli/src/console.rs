@@ -69,7 +69,7 @@ struct Line {
     words: Words,
 }
 
-/// The session in a game, if there is one.
+/// The session in a game, with the game's name; `None` without a game.
 type Session = Arc<Watched<Option<(Bus, GameName)>>>;
 
 /// State shared by all threads.

@@ -23,7 +23,7 @@ use scenario::Kind;
 use std::path::Path;
 use std::process::ExitCode;
 
-/// The kinds of scenario files that the boat's program knows.
+/// The kinds of scenario files that the boat's program supports.
 pub const KINDS: &[Kind] =
     &[Kind::of::<Gateway>(), Kind::GAME, Kind::FIELD, Kind::RULES, Kind::BOAT, Kind::SEA, Kind::STRATEGY];
 

@@ -1,4 +1,4 @@
-//! `squall-gateway`: the gateway commands as a program of their own, for the small computer on a boat.
+//! `squall-gateway`: the gateway commands as a separate program, for the small computer on a boat.
 
 use clap::{ColorChoice, Parser};
 use command_line::program::{self, Program};

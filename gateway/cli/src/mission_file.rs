@@ -1,4 +1,4 @@
-//! Missions in `.sea` files: the lines that a boat receives.
+//! Missions in `.sea` files: the lines that are sent to a boat.
 
 use anyhow::{Context, Result, anyhow};
 use gateway::nmea::{Command, Framer, Mode, Sentence, checksum};

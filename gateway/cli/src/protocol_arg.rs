@@ -13,7 +13,7 @@ pub enum ProtocolArg {
 }
 
 impl ProtocolArg {
-    /// The protocol.
+    /// The protocol that this argument selects.
     pub fn protocol(self) -> BoatProtocol {
         match self {
             ProtocolArg::Surveyor => BoatProtocol::Surveyor,

@@ -24,7 +24,7 @@ use std::sync::OnceLock;
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 
-/// All boats at once.
+/// The name that addresses all boats at once.
 pub(super) const ALL: &str = "all";
 /// Timeout for a gateway's control port.
 const PORT_ANSWER: Duration = Duration::from_secs(3);
@@ -311,7 +311,7 @@ fn join(leaf: &LeafArgs, target: Option<&str>, client: &StopClient) -> Result<()
 enum Outcome {
     /// The game accepted the command, and with it all boats in it.
     Told,
-    /// There is no game.
+    /// No game exists.
     NoGame(Error),
     Reply(Box<OperatorReply>),
     Failed(Error),

@@ -1,4 +1,4 @@
-//! The boat's battery, by its own report.
+//! The boat's battery, according to its own reports.
 
 use crate::config::BatteryWatch;
 use primitives::SimTime;

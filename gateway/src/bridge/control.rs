@@ -92,7 +92,7 @@ impl ControlLog {
         ((now - since).as_s() > self.watch.echo_s && report.at > since).then_some(report.mode)
     }
 
-    /// Who commands the boat now.
+    /// Who commands the boat now, according to its reports.
     pub(super) fn control(&self, now: SimTime) -> Control {
         // Some boats report no operator. Their owner can declare in the file that the gateway
         // commands them; otherwise silence means that somebody else may.

@@ -55,7 +55,7 @@ impl Preflight {
 /// What only a game defines: the boat's field and properties in it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Site {
-    /// The field.
+    /// The field in which the boat plays.
     pub field: Field,
     /// The boat's length, m.
     pub length_m: f64,
@@ -83,8 +83,8 @@ pub enum Input {
     /// The link is down.
     LinkDown,
     /// Bytes from the boat.
-    // Recorded apart, as messages of the link with their direction: as JSON numbers they would
-    // take four times the room.
+    // Recorded separately, as messages of the link with their direction: as JSON numbers they would
+    // take four times the space.
     #[serde(skip)]
     Bytes(Vec<u8>),
     /// The sim has admitted the boat: earlier orders do not count.
@@ -105,7 +105,7 @@ pub enum Input {
     Operator(OperatorCommand),
     /// An operator's command for all boats.
     Fleet(FleetCommand),
-    /// A game was found, and says where the boat plays.
+    /// A game was found that defines the boat's site.
     Site(Box<Site>),
     /// The gateway did not run for this long, s; its guard may have stopped the boat.
     Hung(f64),
@@ -120,7 +120,7 @@ pub struct Output {
     pub bytes: Vec<u8>,
     /// Navigation data, if new.
     pub nav: Option<NavOut>,
-    /// What happened.
+    /// Events in order of occurrence.
     pub events: Vec<Event>,
     /// Why an operator's request was refused.
     pub refused: Option<String>,
@@ -154,6 +154,6 @@ pub enum Event {
     Blocked(bool),
     /// A warning for the operator.
     Warning(String),
-    /// A log message of the shell.
+    /// A log message of the node around the bridge.
     Remark(String),
 }

@@ -1,4 +1,5 @@
-//! The part of a bridge that needs the field: navigation, geofence, the box about the bow, set-points.
+//! The part of a bridge that needs the field: navigation, geofence, the box around the bow,
+//! set-points.
 
 use super::Site;
 use crate::bow_watch::BowWatch;

@@ -20,7 +20,7 @@ pub enum Cause {
     /// The boat did not respond to its orders as expected.
     #[error("{0}")]
     Thrust(ThrustFault),
-    /// The battery was low.
+    /// The battery voltage was low.
     #[error("the battery is low")]
     BatteryLow,
     /// Another operator took over: PSEAD's operator number.

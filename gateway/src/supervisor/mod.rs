@@ -55,7 +55,7 @@ pub struct Conditions {
     pub inside: bool,
     /// Whether the battery is low.
     pub battery_low: bool,
-    /// Whether another real boat is in the way.
+    /// Whether another real boat is in the box around the bow.
     pub blocked: bool,
     /// Whether there is a valid order within its time to live.
     pub order_fresh: bool,
@@ -101,7 +101,7 @@ pub enum OperatorRequest {
     Arm,
     /// Stop following orders.
     Disarm,
-    /// Stop, and stay stopped: this boat, or the whole fleet.
+    /// Stop, and stay stopped: this boat or the whole fleet.
     EStop(Scope),
     /// End the E-stop.
     Release(Scope),
@@ -114,7 +114,7 @@ pub enum OperatorRequest {
 pub enum Scope {
     /// This boat alone.
     Boat,
-    /// All boats.
+    /// The whole fleet.
     Fleet,
 }
 
@@ -134,7 +134,7 @@ pub enum Task {
 /// The state of the supervisor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum State {
-    /// Standby, waiting to be armed.
+    /// Standby; waiting to be armed.
     Safed,
     /// Following orders from agents.
     Armed,
@@ -160,7 +160,7 @@ pub enum Action {
     Zero,
     /// The order's set-point.
     Follow,
-    /// A task for its own controller.
+    /// A task for the boat's own controller.
     Task(Task),
 }
 

@@ -1,4 +1,5 @@
-//! The test rig: a boat with simple dynamics, its emulated front seat, the gateway, and a link with injectable faults.
+//! The test rig: a boat with simple dynamics, its emulated front seat, the gateway, and a faulty
+//! link.
 
 use crate::boat::{Boat, STEP_S, emulated};
 use crate::oracle::Oracle;

@@ -1,4 +1,4 @@
-//! Shutdown messages: the last bytes that a link sends.
+//! Shutdown messages: the last bytes sent by a link.
 
 use crate::event_log::{LIMIT, listen};
 use crate::tcp_client::joined_narrowly;

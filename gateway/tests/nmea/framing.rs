@@ -1,4 +1,4 @@
-//! The framer under noise: no sentence lost, none invented, bounded memory.
+//! The NMEA framer under noise: loses no sentence, invents none, and uses bounded memory.
 
 use crate::bodies;
 use gateway::nmea::{ACCEPTED_MAX, Counts, Framer, checksum};

@@ -1,4 +1,4 @@
-//! One boat's helm, live.
+//! Shows one boat's helm live.
 
 use super::super::helm_page;
 use super::super::helm_query::{self, SILENCE};
