@@ -1,9 +1,11 @@
-//! Lockstep ticks a second across processes, beside a bare zenoh ping of the same sizes in the same run.
+//! Compares lockstep ticks per second across processes with a bare zenoh ping of the same sizes in
+//! the same run.
 //!
-//! The ping does what transport alone costs: a hub publishes one message a team to N leaf processes and waits until
-//! each has answered; same topology, same bytes out and back, no game. Everything is repeated in turn, so that both
-//! sides see the same machine; medians are printed, and beside them what keys cost (TLS, and rules by certificate), and what the
-//! same game takes in one process. Boats of the strategy *idle* lie still: what is left of the game is its messages.
+//! The ping measures the cost of transport alone: a hub publishes one message per team to N leaf
+//! processes and waits until each has answered. Topology and message sizes are the same, but there
+//! is no game. The cases alternate, so that both sides see the same machine. The bench prints
+//! medians, the cost of keys (TLS and rules by certificate), and the rate of the same game in one
+//! process. Boats with the strategy *idle* lie still, so that only the game's messages remain.
 #![allow(clippy::print_stdout, clippy::disallowed_methods, reason = "a benchmark reads the clock and prints")]
 
 use std::path::Path;
@@ -12,9 +14,9 @@ use std::sync::mpsc::channel;
 use std::time::{Duration, Instant};
 use zenoh::{Config, Session, Wait};
 
-/// How many times each case is run.
+/// Runs of each case.
 const ROUNDS: usize = 5;
-/// How long a run lasts, s.
+/// Duration of a run, s.
 const RUN_S: f64 = 2.0;
 
 struct Case {
@@ -33,7 +35,7 @@ fn main() {
         return;
     }
     if std::env::var_os(bus::RUNTIME_VARIABLE).is_none() {
-        // The bare hub, too, is to run as the sim does.
+        // The bare hub must use the same zenoh threads as the sim.
         let mut again = Command::new(std::env::current_exe().expect("this program"));
         let status = again.args(&args[1..]).env(bus::RUNTIME_VARIABLE, bus::RUNTIME).status().expect("it starts again");
         std::process::exit(status.code().unwrap_or(1));
@@ -80,7 +82,7 @@ fn median(values: impl Iterator<Item = f64>) -> f64 {
     values[values.len() / 2]
 }
 
-/// A game of this many boats, by `squall run` with these options: decisions a second.
+/// Decisions per second of a game with this many boats, played by `squall run` with these options.
 fn squall(case: &Case, options: &[&str]) -> f64 {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
     let dir = tempfile::tempdir().expect("a temporary directory");
@@ -102,7 +104,7 @@ fn squall(case: &Case, options: &[&str]) -> f64 {
             fleet("red")
         )
     };
-    // A first short game finds how long one of about two seconds is.
+    // A first short game determines the length of one of about two seconds.
     let mut duration_s = 40.0;
     loop {
         std::fs::write(&game, text(duration_s)).expect("a file");
@@ -121,7 +123,7 @@ fn squall(case: &Case, options: &[&str]) -> f64 {
     }
 }
 
-/// The bytes of one picture and of one process's orders in such a game.
+/// The size of a picture and of one process's orders in such a game, bytes.
 fn sizes(case: &Case) -> (usize, usize) {
     use messages::{Order, Orders, VehicleOrder};
     use primitives::VehicleId;
@@ -173,13 +175,14 @@ fn echo(endpoint: &str, size: usize, name: &str) {
         .wait()
         .expect("a subscriber");
     let _token = session.liveliness().declare_token(format!("bare/alive/{name}")).wait().expect("a token");
-    // A message of one byte is the end.
+    // A message of one byte ends the run.
     while receiver.recv_timeout(Duration::from_secs(20)).is_ok_and(|bytes| bytes > 1) {
         back.put(vec![0_u8; size]).wait().expect("a session");
     }
 }
 
-/// The bare ping: rounds a second, by a hub in a process of its own like the sim's: this one.
+/// The bare ping's rounds per second. The hub is this process, separate from the others as the sim
+/// is.
 fn bare(case: &Case) -> f64 {
     let (out_size, back_size) = sizes(case);
     let port = bus::free_port(false).expect("a port");

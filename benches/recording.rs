@@ -1,12 +1,14 @@
-//! What recording costs: the rate of a lockstep game of 20 against 20 with a recording over its rate without.
+//! The cost of recording: the rate of a 20-against-20 lockstep game with a recording, divided by
+//! its rate without.
 //!
-//! Games with and without take turns, so that both see the same machine; medians are printed.
+//! Games with and without a recording alternate, so that both see the same machine. The bench
+//! prints medians.
 #![allow(clippy::print_stdout, clippy::disallowed_methods, reason = "a benchmark reads the clock and prints")]
 
 use std::path::Path;
 use std::process::Command;
 
-/// How many games of each kind.
+/// Games of each kind.
 const ROUNDS: usize = 7;
 
 fn main() {
@@ -43,7 +45,7 @@ fn main() {
     }
 }
 
-/// Simulated seconds a second of a game.
+/// Simulated seconds per second of a game.
 fn rate(game: &Path, options: &[&str], dir: &Path) -> f64 {
     let json = dir.join("result.json");
     let mut command = Command::new(env!("CARGO_BIN_EXE_squall"));

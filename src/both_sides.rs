@@ -1,18 +1,19 @@
-//! A game from both sides: played as it is and with the teams' strategies exchanged, and added up.
+//! A game played from both sides: once as it is and once with the teams' strategies swapped, with
+//! the points summed.
 
 use anyhow::{Result, bail};
 use primitives::id::TeamId;
 use scenario::Scenario;
 use sim::Report;
 
-/// The teams of a game that is played from both sides.
+/// The teams of a game played from both sides.
 pub(crate) struct BothSides {
-    /// The teams' names, and the names of the strategies with which they begin.
+    /// The teams' names, and the names of their strategies in the first game.
     teams: [(String, String); 2],
 }
 
 impl BothSides {
-    /// The teams of a game, and of the same one with the strategies exchanged.
+    /// The teams of a game and of its copy with swapped strategies.
     pub(crate) fn new(scenario: &Scenario, exchanged: &Scenario) -> Result<BothSides> {
         scenario.has_no_real_boats()?;
         let strategies = |scenario: &Scenario| -> Vec<_> {
@@ -29,7 +30,7 @@ impl BothSides {
         Ok(BothSides { teams })
     }
 
-    /// The points that each strategy has made in both games: that with which the first team began, and the other.
+    /// Each strategy's points in both games: first the strategy that starts with the first team.
     fn points(&self, reports: &[Report]) -> [u32; 2] {
         let points = |entry: usize| {
             let of_game =
@@ -39,7 +40,7 @@ impl BothSides {
         [points(0), points(1)]
     }
 
-    /// Who made how many points, for people.
+    /// The points of each strategy as text.
     pub(crate) fn text(&self, reports: &[Report]) -> String {
         let [(first, first_strategy), (second, second_strategy)] = &self.teams;
         let [points, other_points] = self.points(reports);
@@ -48,7 +49,7 @@ impl BothSides {
         )
     }
 
-    /// Who made how many points, for programs.
+    /// The points of each strategy as JSON.
     pub(crate) fn sum(&self, reports: &[Report]) -> serde_json::Value {
         let entry = |((team, strategy), points): (&(String, String), u32)| serde_json::json!({ "first_as": team, "strategy": strategy, "score": points });
         self.teams.iter().zip(self.points(reports)).map(entry).collect()

@@ -1,4 +1,4 @@
-//! `squall check` and `squall schema`: scenario files explained.
+//! `squall check` and `squall schema`: validate scenario files and print their schemas.
 
 use crate::kinds::KINDS;
 use crate::{explain, screen, style};
@@ -50,7 +50,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     }
 }
 
-/// What a good game asks of its boats that they cannot do.
+/// Demands of a valid game that its boats cannot meet.
 fn warnings(file: &Path, kind: Kind) -> Vec<String> {
     if kind != Kind::GAME {
         return Vec::new();

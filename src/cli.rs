@@ -1,4 +1,4 @@
-//! The command line as a whole: help in groups, what to do first, completions for shells, man pages.
+//! The command line as a whole: grouped help, first steps, shell completion scripts, man pages.
 
 use crate::screen;
 use anyhow::{Context, Result};
@@ -7,7 +7,8 @@ use clap::{ArgMatches, Command, CommandFactory};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// The subcommands by what they are for, in the order of the help; those among them that need a network are not in every build.
+/// The subcommands by purpose, in the order of the help. Those that need a network are not in every
+/// build.
 const GROUPS: [(&str, &[&str]); 6] = [
     ("Play", &["demo", "run", "tournament", "sweep"]),
     ("Learn", &["train", "policy"]),
@@ -17,7 +18,7 @@ const GROUPS: [(&str, &[&str]); 6] = [
     ("Files", &["files", "copy", "new", "strategy", "check", "schema", "completions", "man"]),
 ];
 
-/// What there is to do first, for somebody who typed nothing else.
+/// First steps, printed when no subcommand is given.
 const FIRST: &str = "\
 Squall simulates boats that play capture the flag.
 
@@ -52,7 +53,7 @@ pub(crate) fn command<T: CommandFactory>() -> Command {
     for (group, names) in GROUPS {
         let mut lines = String::new();
         for one in names.iter().filter_map(|name| command.find_subcommand(name)) {
-            // The first sentence: the rest is in the command's own help.
+            // The first sentence only; the command's own help has the rest.
             let about = one.get_about().map(ToString::to_string).unwrap_or_default();
             let about = about.split([':', ';', ',']).next().unwrap_or_default();
             lines.push_str(&format!("  {:width$}  {about}\n", one.get_name()));
@@ -65,7 +66,8 @@ pub(crate) fn command<T: CommandFactory>() -> Command {
     command.help_template("{about}\n\n{usage-heading} {usage}{after-help}\n\nOptions:\n{options}").after_help(text)
 }
 
-/// What was typed. It ends the program if that is no command, and says so if another build has it.
+/// Parses the command line. On an unknown command it exits, and names the build that has the
+/// command, if there is one.
 pub(crate) fn matches<T: CommandFactory>() -> ArgMatches {
     let mut command = command::<T>();
     command.try_get_matches_from_mut(std::env::args_os()).unwrap_or_else(|error| {
@@ -80,7 +82,7 @@ pub(crate) fn matches<T: CommandFactory>() -> ArgMatches {
     })
 }
 
-/// What somebody is told who wants what this build has not.
+/// The message for a command that this build does not include.
 pub(crate) fn not_built(what: &str) -> String {
     format!(
         "{what} is not in this program, which was built without the network: build it again without --no-default-features"
@@ -88,7 +90,7 @@ pub(crate) fn not_built(what: &str) -> String {
 }
 
 pub(crate) fn first<T: CommandFactory>() -> ExitCode {
-    // Without what only another build understands.
+    // Skip commands that only another build understands.
     let command = |line: &str| Some(line.trim().strip_prefix("squall ")?.split("  ").next()?.to_owned());
     let is_known = |line: &&str| command(line).and_then(|words| refused::<T>(&words)).is_none();
     let lines: Vec<&str> = FIRST.lines().filter(is_known).collect();
@@ -96,7 +98,7 @@ pub(crate) fn first<T: CommandFactory>() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// What this build does not understand of a command.
+/// The error of this build for a command line, if it does not accept it.
 fn refused<T: CommandFactory>(words: &str) -> Option<clap::Error> {
     let words = std::iter::once("squall").chain(words.split_whitespace());
     let refused = T::command().try_get_matches_from(words).err()?;
@@ -132,7 +134,7 @@ mod tests {
         let grouped: Vec<&str> = GROUPS.iter().flat_map(|(_, names)| names.iter().copied()).collect();
         let known: Vec<&str> = command.get_subcommands().map(Command::get_name).collect();
         assert!(known.iter().all(|name| grouped.contains(name)), "{grouped:?} lacks one of {known:?}");
-        // The others are in the build with the network.
+        // The other commands are in the build with the network.
         assert_eq!(grouped.len() == known.len(), cfg!(feature = "network"), "{grouped:?} and {known:?}");
         for one in command.get_subcommands() {
             let examples = one.get_after_help().map(ToString::to_string).unwrap_or_default();
@@ -154,7 +156,7 @@ mod tests {
         for one in all.get_subcommands() {
             let examples = one.get_after_help().map(ToString::to_string).unwrap_or_default();
             for line in examples.lines().filter_map(|line| line.trim().strip_prefix("squall ")) {
-                // What follows is for the shell.
+                // The rest of the line is for the shell.
                 let line = line.split(" >").next().unwrap_or(line);
                 wrong.extend(refused::<crate::Cli>(line).map(|error| format!("{line}: {error}")));
             }

@@ -1,4 +1,4 @@
-//! Which game, and what takes the place of what its file says: what `run` and `sim` ask alike.
+//! Command line arguments that select a game and override its file; shared by `run` and `sim`.
 
 use crate::output_file;
 use crate::scenario_files;
@@ -54,40 +54,40 @@ impl GameArgs {
         &self.scenario
     }
 
-    /// The scenario, with every problem in the error.
+    /// Loads the scenario; the error lists every problem.
     pub(crate) fn load(&self) -> Result<Scenario> {
         self.load_from(&Arc::default())
     }
 
-    /// The same, read from these files.
+    /// Loads the scenario from these files.
     pub(crate) fn load_from(&self, files: &Arc<Files>) -> Result<Scenario> {
         scenario::load_with_files(&self.scenario, &self.overrides()?, files)
             .with_context(|| format!("cannot play {}", self.scenario.display()))
     }
 
-    /// Which of the games of this scenario it is.
+    /// The seed that selects one of the scenario's games.
     pub(crate) fn seed(&self, scenario: &Scenario) -> u64 {
         self.seed.unwrap_or(scenario.seed)
     }
 
-    /// Whether the result can be written where it is asked for.
+    /// Checks that the result file can be written.
     pub(crate) fn check_result_file(&self) -> Result<()> {
         self.json.as_ref().map_or(Ok(()), |path| output_file::check(path, "the result"))
     }
 
-    /// Writes the result of the game to a file, if it is asked for.
+    /// Writes the game's result to a file, if requested.
     pub(crate) fn write_result(&self, report: &Report) -> Result<()> {
         self.json.as_ref().map_or(Ok(()), |path| output_file::write_json(path, "the result", &result_of(report)?))
     }
 
-    /// Writes the results of several games to a file, if it is asked for.
+    /// Writes the results of several games to a file, if requested.
     pub(crate) fn write_results(&self, reports: &[Report], sum: &serde_json::Value) -> Result<()> {
         let Some(path) = &self.json else { return Ok(()) };
         let games = reports.iter().map(result_of).collect::<Result<Vec<_>>>()?;
         output_file::write_json(path, "the results", &serde_json::json!({ "games": games, "sum": sum }))
     }
 
-    /// What takes the place of what the game file says.
+    /// The overrides of the game file.
     pub(crate) fn overrides(&self) -> Result<Overrides> {
         let mut settings = self.settings.clone();
         if let Some(field) = &self.field {
@@ -115,21 +115,21 @@ impl GameArgs {
     }
 }
 
-/// The result of a game, with how it was played.
+/// A game's result, with its settings.
 fn result_of(report: &Report) -> Result<serde_json::Value> {
     let mut value = serde_json::to_value(&report.outcome).context("the result is not JSON")?;
     value["run"] = serde_json::to_value(&report.run).context("the result is not JSON")?;
     Ok(value)
 }
 
-/// A speed from the command line, as in `10x` or `0.5`.
+/// Parses a speed such as `10x` or `0.5`.
 pub(crate) fn speed(text: &str) -> Result<f64, String> {
     let factor = text.strip_suffix('x').unwrap_or(text).parse().ok();
     let factor = factor.filter(|factor| (0.01..=1000.0).contains(factor));
     factor.ok_or_else(|| format!("speed {text:?} is not a factor from 0.01x to 1000x such as 10x"))
 }
 
-/// A team and its file from the command line.
+/// Parses a team and its file.
 fn team_and_file(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
         Some((team, file)) if !team.is_empty() && !file.is_empty() => Ok((team.to_owned(), file.to_owned())),

@@ -1,8 +1,8 @@
-//! What a helm decided, in words.
+//! The decision of a helm as text.
 
 use messages::helm::HelmReport;
 
-/// What was decided, or why nothing was.
+/// The decision, or the reason why there is none.
 pub(crate) fn decision(report: &HelmReport) -> String {
     match (report.course_deg, report.speed_m_s, &report.hold) {
         (Some(course_deg), Some(speed_m_s), _) => format!("course {course_deg:.0}°, {speed_m_s:.2} m/s"),

@@ -1,4 +1,4 @@
-//! `squall identify`: fits a boat file to a recorded series.
+//! `squall identify`: fits a boat file to a recorded time series.
 
 use crate::progress::Progress;
 use crate::trial_command::{read_sheet, tick, usual_tick_s};
@@ -75,7 +75,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The path of the base as it stands in `out`: relative where both lie in one folder, so that they can move together.
+/// The path of the base as written in `out`: relative if both are in one folder, so that they can
+/// be moved together.
 fn base_of(out: &Path, base: &Path) -> String {
     let whole = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
     let folder = match out.parent() {

@@ -1,4 +1,4 @@
-//! A whole game in this process, recorded if that is wanted.
+//! Plays a whole game in this process and optionally records it.
 
 use crate::clock;
 use anyhow::{Context, Result};
@@ -9,11 +9,11 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Plays the game of `scenario` that `seed` chooses, without a network, until it is over or `stop` is set, and shows it to `look` before
-/// every decision and at the end.
+/// Plays the game of `scenario` that `seed` selects, without a network, until it is over or `stop`
+/// is set. Calls `look` before every decision and at the end.
 ///
 /// # Errors
-/// The game cannot start, or there can be no recording in `file`.
+/// If the game cannot start or the recording in `file` cannot be created.
 pub(crate) fn play(
     scenario: &Scenario,
     seed: u64,

@@ -1,4 +1,4 @@
-//! `--jobs`: how many threads work.
+//! `--jobs`: the number of worker threads.
 
 use std::num::NonZeroUsize;
 
@@ -11,7 +11,7 @@ pub(crate) struct JobsArgs {
 }
 
 impl JobsArgs {
-    /// The threads that are worth having for so many games.
+    /// The number of useful threads for this many games.
     pub(crate) fn threads(&self, games: usize) -> NonZeroUsize {
         experiment::threads(self.jobs, games)
     }

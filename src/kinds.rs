@@ -1,4 +1,4 @@
-//! The kinds of scenario files that the program knows, in the order of the reference.
+//! The kinds of scenario files that the program supports, in the order of the reference.
 
 use experiment::sweep::Sweep;
 use experiment::tournament::Tournament;

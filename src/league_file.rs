@@ -1,4 +1,4 @@
-//! The folder of a league: the results of its games, which are only ever added to, and its newest report.
+//! The folder of a league: an append-only file of game results, and the newest report.
 
 use crate::output_file;
 use anyhow::{Context, Result, bail};
@@ -7,23 +7,24 @@ use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-/// The results, a line a game.
+/// The results, one line per game.
 const RESULTS: &str = "results.jsonl";
-/// The largest results that are read, bytes: some four million games.
+/// Size limit of the results, bytes: some four million games.
 const BYTES_MAX: u64 = 2 << 30;
 
-/// A league in its folder, which nobody else writes to meanwhile.
+/// A league in its folder, locked against other writers.
 pub(crate) struct LeagueFile {
     folder: PathBuf,
     path: PathBuf,
     file: File,
     pub(crate) league: League,
-    /// What could not be written.
+    /// The first write error.
     problem: Option<std::io::Error>,
 }
 
 impl LeagueFile {
-    /// The league of a folder, which is made. A last line that was torn off is dropped.
+    /// Opens the league in a folder, which is created if missing. Drops a last line that was cut
+    /// off.
     pub(crate) fn open(folder: &Path) -> Result<LeagueFile> {
         output_file::make_folder(folder)?;
         let path = folder.join(RESULTS);
@@ -51,19 +52,19 @@ impl LeagueFile {
         Ok(LeagueFile { folder: folder.to_owned(), path, file, league, problem: None })
     }
 
-    /// Adds a game; what cannot be written is told in the end.
+    /// Appends a game; `end` reports write errors.
     pub(crate) fn add(&mut self, plan: &Plan, pairings: &[String], record: &Record) {
         if self.problem.is_none() {
             self.problem = self.file.write_all(League::line(plan, pairings, record).as_bytes()).err();
         }
     }
 
-    /// Where its newest report goes.
+    /// The path of the newest report.
     pub(crate) fn report(&self) -> PathBuf {
         self.folder.join("report.json")
     }
 
-    /// Whether all was written.
+    /// Returns the first write error, if any.
     pub(crate) fn end(self) -> Result<()> {
         match self.problem {
             Some(error) => Err(error).with_context(|| format!("cannot write to {}", self.path.display())),

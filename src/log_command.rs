@@ -1,4 +1,4 @@
-//! `squall log`: what a recorded game tells afterwards.
+//! `squall log`: analyses a recorded game.
 
 use crate::plot::game as plot;
 use crate::style::Names;
@@ -90,7 +90,7 @@ fn look_at(args: &Args, file: &Path) -> Result<()> {
     if let Some(topic) = &args.csv {
         csv(args, file, (recording.bag(), Some(recording.scenario())), topic)?;
     }
-    // Every reading finds the same damage.
+    // Every pass over the file finds the same damage.
     let mut remarks = vec![];
     if wants_page || args.events || args.json.is_some() {
         let damaged = summary(args, &recording, wants_page)?;
@@ -119,7 +119,7 @@ fn look_at(args: &Args, file: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Prints the summary, or what happened, and writes all of it as JSON.
+/// Prints the summary or the events, and writes all of it as JSON.
 fn summary(args: &Args, recording: &Recording, wants_page: bool) -> Result<Damaged> {
     let summary = Summary::of(recording);
     let names = Names::of(recording.scenario());

@@ -1,4 +1,4 @@
-//! `squall`: one program, a table of subcommands.
+//! `squall`: one program with many subcommands.
 
 mod both_sides;
 mod check_command;
@@ -37,7 +37,7 @@ use command_line::program::{self, Program};
 use command_line::{clock, explain, output_file, recording_file, scenario_files, stop, style};
 use std::process::ExitCode;
 
-/// The version, and the commit it was built from.
+/// The version, and the commit that it was built from.
 const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (", env!("SQUALL_COMMIT"), ")");
 
 /// A simulator for unmanned surface vehicles that play capture the flag.

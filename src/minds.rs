@@ -1,4 +1,5 @@
-//! Helm reports of a recorded game: minds are shown the recorded pictures again, and decide the same.
+//! Helm reports of a recorded game: minds receive the recorded pictures again and reach the same
+//! decisions.
 
 use agent::{Mind, MindRunner, mind_of};
 use messages::helm::HelmReport;
@@ -14,14 +15,14 @@ use std::sync::Arc;
 pub(crate) struct Minds {
     recording: Arc<Recording>,
     teams: Vec<Team>,
-    /// What was proposed for each vehicle, and when it came.
+    /// The proposals for each vehicle, and their times of arrival.
     proposals: BTreeMap<VehicleId, Vec<(SimTime, PolicyProposal)>>,
 }
 
-/// The minds of one team, as far as they have decided.
+/// The minds of one team, up to their last decision.
 struct Team {
     runner: MindRunner,
-    /// The places of the pictures, by decision.
+    /// Index of the picture for each decision.
     pictures: BTreeMap<u64, usize>,
 }
 
@@ -38,27 +39,28 @@ impl Minds {
         Minds { teams, proposals: proposals.collect(), recording: Arc::clone(&recording) }
     }
 
-    /// What the vehicle's mind tells of itself when it decides again, and what it orders, if it can.
+    /// The helm report and the order of the vehicle's mind when it repeats this decision, if it
+    /// can.
     pub(crate) fn report_of(&mut self, vehicle: VehicleId, decision: u64) -> Option<(HelmReport, Order)> {
         let order = self.decide(vehicle, decision)?;
         Some((self.report(vehicle)?, order))
     }
 
-    /// What the vehicle's mind tells of the decision that it made last.
+    /// The helm report of the vehicle's mind for its last decision.
     pub(crate) fn report(&self, vehicle: VehicleId) -> Option<HelmReport> {
         let team = &self.teams[self.recording.scenario().team_of(vehicle).index()];
         team.runner.mind(vehicle).and_then(Mind::report)
     }
 
-    /// What the vehicle's mind orders when it decides again, if it can.
+    /// The order of the vehicle's mind when it repeats this decision, if it can.
     pub(crate) fn decide(&mut self, vehicle: VehicleId, decision: u64) -> Option<Order> {
         let index = self.recording.scenario().team_of(vehicle).index();
         if self.teams[index].runner.decided() > Some(decision) {
-            // Minds do not decide backwards.
+            // Minds cannot go backwards: start again.
             self.teams[index] = Team::new(&self.recording, TeamId(index as u8));
         }
         let Team { runner, pictures } = &mut self.teams[index];
-        // A mate may be asked about the decision that the team made last: then nothing is ahead.
+        // If a teammate has already caused this decision, there is nothing to advance.
         let next = runner.decided().map_or(0, |last| last + 1);
         for (seq, place) in pictures.range(next..).take_while(|(seq, _)| **seq <= decision) {
             let picture: Picture = self.recording.bag().message(*place).read().ok()?;

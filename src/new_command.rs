@@ -1,4 +1,4 @@
-//! `squall new` and `squall copy`: a scenario file on the disk to change.
+//! `squall new` and `squall copy`: create a scenario file for editing.
 
 use crate::kinds::KINDS;
 use crate::{output_file, scenario_files, screen};
@@ -9,7 +9,7 @@ use scenario::{Kind, did_you_mean};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// What begins from a template.
+/// The kinds of files that have a template.
 const TEMPLATES: [(Kind, &str); 7] = [
     (Kind::STRATEGY, include_str!("templates/strategy.toml")),
     (Kind::BOAT, include_str!("templates/boat.toml")),
@@ -81,7 +81,7 @@ pub(crate) fn copy(args: &CopyArgs) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Writes a file where its name is found, unless there is one.
+/// Writes a file where its name will be found; never overwrites one.
 fn write(kind: Kind, name: &str, content: &[u8]) -> Result<PathBuf> {
     let path = Path::new("scenarios").join(kind.folder()).join(format!("{name}.toml"));
     if path.exists() {
@@ -94,7 +94,7 @@ fn write(kind: Kind, name: &str, content: &[u8]) -> Result<PathBuf> {
     Ok(path)
 }
 
-/// Lists what is inside of the program, by kind.
+/// Lists the built-in files by kind.
 pub(crate) fn files() -> ExitCode {
     for &kind in KINDS {
         let names: Vec<String> = scenario_files::names(kind).into_iter().collect();

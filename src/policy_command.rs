@@ -1,4 +1,4 @@
-//! `squall policy`: what a trained model is, and why it chose what it chose in a recorded game.
+//! `squall policy`: describes a trained model and explains its choices in a recorded game.
 
 use crate::minds::Minds;
 use crate::{helm_text, recording_file, screen};
@@ -33,11 +33,11 @@ pub(crate) struct Args {
     inputs: usize,
 }
 
-/// So many actions are listed.
+/// Number of listed actions.
 const LIKELIEST: usize = 5;
-/// Evaluations that are timed.
+/// Number of evaluations for the timing.
 const EVALUATIONS: u32 = 1000;
-/// How the names of our own entries of the metadata begin.
+/// Prefix of our own metadata entries.
 const OWN: &str = "squall.";
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
@@ -55,7 +55,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What a model is.
+/// The description of a model.
 fn about(name: &str, bytes: usize, network: &Network, spec: Result<PolicySpec, String>) -> String {
     let ports = |ports: &[onnx::Port]| {
         let ports: Vec<String> = ports.iter().map(|port| format!("{} ({})", port.name, port.size)).collect();
@@ -83,7 +83,7 @@ fn about(name: &str, bytes: usize, network: &Network, spec: Result<PolicySpec, S
     text
 }
 
-/// The median time of an evaluation, us.
+/// The median time of an evaluation, µs.
 #[expect(clippy::disallowed_methods, reason = "it measures this machine")]
 fn evaluation_us(mut network: Network) -> f64 {
     let input = vec![0.1; network.input_size()];
@@ -117,12 +117,12 @@ fn action_text(space: ActionSpace) -> String {
     }
 }
 
-/// What a model chooses where a boat of a recorded game had to, and which of its inputs that depends on.
+/// The model's choice at a moment of a recorded game, and the inputs that it depends on.
 fn explained(model: &PolicyModel, game: &Path, vehicle: &str, at_s: f64, inputs: usize) -> Result<String> {
     let recording = Arc::new(recording_file::open(game, "look at")?);
     let scenario = recording.scenario();
     let of = scenario.vehicle_named(vehicle)?;
-    // Beyond the numbers there are it is a decision that nobody made.
+    // The cast saturates: a time out of range becomes a decision that does not exist.
     let decision = (at_s / scenario.decision().as_s() + 1e-9).floor() as u64;
     let found = Minds::new(Arc::clone(&recording)).report_of(of, decision).filter(|_| at_s >= 0.0);
     let Some((report, _)) = found else {
@@ -143,7 +143,7 @@ fn explained(model: &PolicyModel, game: &Path, vehicle: &str, at_s: f64, inputs:
     Ok(text)
 }
 
-/// The likeliest actions, and what becomes of the choice without each input.
+/// The likeliest actions, and how the choice changes without each input.
 fn choices(model: &PolicyModel, observed: &[f32], names: &[String], inputs: usize) -> String {
     let chosen = choice(model, observed);
     let mut text = String::new();
@@ -152,7 +152,7 @@ fn choices(model: &PolicyModel, observed: &[f32], names: &[String], inputs: usiz
         let asks = model.words(action);
         let _ = writeln!(text, "  {:>5.1} %  {asks}", 100.0 * chosen.numbers[action]);
     }
-    // An input that is 0 adds nothing to any sum of the network.
+    // An input of 0 adds nothing to any sum of the network.
     let mut rows: Vec<(usize, f32, Choice)> = (0..observed.len())
         .map(|i| {
             let mut observed = observed.to_vec();
@@ -173,9 +173,9 @@ fn choices(model: &PolicyModel, observed: &[f32], names: &[String], inputs: usiz
     text
 }
 
-/// What a model makes of an observation.
+/// The output of a model for an observation.
 struct Choice {
-    /// The probabilities of discrete actions, or the numbers of a continuous one.
+    /// The probabilities of discrete actions, or the values of continuous ones.
     numbers: Vec<f32>,
     is_discrete: bool,
 }
@@ -189,19 +189,19 @@ fn choice(model: &PolicyModel, observed: &[f32]) -> Choice {
 }
 
 impl Choice {
-    /// The discrete actions, the likeliest first.
+    /// The discrete actions in order of decreasing probability.
     fn likeliest(&self) -> Vec<usize> {
         let mut actions: Vec<usize> = (0..self.numbers.len()).filter(|_| self.is_discrete).collect();
         actions.sort_by(|a, b| self.numbers[*b].total_cmp(&self.numbers[*a]));
         actions
     }
 
-    /// How different another choice is.
+    /// The difference from another choice.
     fn distance(&self, other: &Choice) -> f32 {
         self.numbers.iter().zip(&other.numbers).map(|(a, b)| (a - b).abs()).sum()
     }
 
-    /// The probability of one action, or all numbers.
+    /// The probability of one action, or all values.
     fn text(&self, action: Option<usize>) -> String {
         match action {
             Some(action) => format!("{:.1} %", 100.0 * self.numbers[action]),

@@ -1,25 +1,25 @@
-//! How far something is that takes a while: a bar on a terminal, a line now and then elsewhere. On standard error.
+//! Progress of a long task on standard error: a bar on a terminal, otherwise an occasional line.
 
 use crate::{clock, screen};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::time::{Duration, Instant};
 
-/// How far it is.
+/// The progress of a task.
 pub(crate) struct Progress {
-    /// Hidden where there is no terminal.
+    /// Hidden if there is no terminal.
     bar: ProgressBar,
-    /// What is counted.
+    /// The name of the counted items.
     noun: &'static str,
     told: Instant,
 }
 
-/// How often a line is written where there is no terminal.
+/// Interval of progress lines without a terminal.
 const LINE_EVERY: Duration = Duration::from_secs(30);
-/// How often a bar without an end moves.
+/// Interval at which a bar without a known end moves.
 const TURN_EVERY: Duration = Duration::from_millis(200);
 
 impl Progress {
-    /// Of so many games none is played yet.
+    /// Progress of this many games, none played yet.
     pub(crate) fn of_games(games: u64) -> Progress {
         let progress = Progress::of(games, "games");
         if progress.bar.is_hidden() {
@@ -28,14 +28,14 @@ impl Progress {
         progress
     }
 
-    /// Of so many of these none is done yet.
+    /// Progress of this many items, none done yet.
     pub(crate) fn of(count: u64, noun: &'static str) -> Progress {
         let style = format!("{{wide_bar}} {{human_pos}}/{{human_len}} {noun}  {{per_sec}}  {{eta}} left");
         let style = ProgressStyle::with_template(&style).expect("the template is sound").progress_chars("=> ");
         Progress { bar: ProgressBar::new(count).with_style(style), noun, told: clock::now() }
     }
 
-    /// Nobody knows how many of these there will be.
+    /// Progress of an unknown number of items.
     pub(crate) fn without_end(noun: &'static str) -> Progress {
         let style = format!("{{spinner}} {{pos}} {noun} in {{elapsed}}  {{msg}}");
         let style = ProgressStyle::with_template(&style).expect("the template is sound");
@@ -44,28 +44,28 @@ impl Progress {
         Progress { bar, noun, told: clock::now() }
     }
 
-    /// So many were done before.
+    /// Sets the number of items done in an earlier run.
     pub(crate) fn begin_at(&self, done: u64) {
         self.bar.set_position(done);
         self.bar.reset_eta();
     }
 
-    /// So many are done.
+    /// Sets the number of items done.
     pub(crate) fn set(&self, done: u64) {
         self.bar.set_position(done);
     }
 
-    /// Prints a line of the results, above the bar.
+    /// Prints a result line above the bar.
     pub(crate) fn print(&self, line: &str) {
         self.bar.suspend(|| screen::print(&format!("{line}\n")));
     }
 
-    /// One more is done.
+    /// Counts one more item.
     pub(crate) fn add(&mut self) {
         self.add_with(String::new);
     }
 
-    /// One more is done, of which there is something to say.
+    /// Counts one more item, with a remark about it.
     pub(crate) fn add_with(&mut self, words: impl FnOnce() -> String) {
         self.bar.inc(1);
         if !self.bar.is_hidden() {
@@ -79,17 +79,17 @@ impl Progress {
         }
     }
 
-    /// How many a second so far.
+    /// Items per second so far.
     fn rate(&self) -> f64 {
         self.bar.position() as f64 / self.bar.elapsed().as_secs_f64().max(1e-9)
     }
 
-    /// Takes the bar away.
+    /// Removes the bar.
     pub(crate) fn end(&self) {
         self.bar.finish_and_clear();
     }
 
-    /// Takes the bar of games away and says how fast it went on so many threads; returns the games a second.
+    /// Removes the bar and prints the rate with this many threads; returns the games per second.
     pub(crate) fn end_of_games(&self, jobs: usize) -> f64 {
         let (played, rate, wall_s) = (self.bar.position(), self.rate(), self.bar.elapsed().as_secs_f64());
         self.end();

@@ -1,4 +1,4 @@
-//! Whether and where a game is recorded.
+//! Command line arguments that define whether and where a game is recorded.
 
 use crate::output_file;
 use anyhow::{Context, Result};
@@ -17,13 +17,13 @@ pub(crate) struct RecordArgs {
 }
 
 impl RecordArgs {
-    /// A new file for a game of this scenario, in a folder that is there.
+    /// A free file name for a game of this scenario, in a folder that exists.
     pub(crate) fn file(&self, scenario: &Scenario, seed: u64) -> Result<Option<PathBuf>> {
         if self.no_record {
             return Ok(None);
         }
         output_file::make_folder(&self.record).context("nowhere to record")?;
-        // Made by whoever records, and not before; whether it can be is told before the game.
+        // The recorder creates the file. Whether it can be created is checked before the game.
         let file = recording::free_path(&self.record, &scenario.name, seed);
         output_file::check(&file, "the recording")?;
         Ok(Some(file))

@@ -1,4 +1,4 @@
-//! `squall replay`: a recorded game again.
+//! `squall replay`: replays a recorded game.
 
 use crate::progress::Progress;
 use crate::{recording_file, screen};
@@ -19,7 +19,7 @@ pub(crate) struct Args {
     pub(crate) check: bool,
 }
 
-/// Plays a recorded game again from its inputs, and says whether the same comes of it.
+/// Reruns a recorded game from its inputs, and prints whether the rerun reproduces it.
 pub(crate) fn check(file: &Path) -> Result<ExitCode> {
     let recording = open(file)?;
     let frames = recording.bag().messages().filter(|message| message.topic == FRAME).count();
@@ -31,7 +31,7 @@ pub(crate) fn check(file: &Path) -> Result<ExitCode> {
     Ok(if verdict.is_same { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// The recording in a file.
+/// Opens the recording in a file.
 pub(crate) fn open(file: &Path) -> Result<Recording> {
     recording_file::open(file, "replay")
 }

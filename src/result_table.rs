@@ -3,7 +3,7 @@
 use rules::count::Counts;
 use sim::Report;
 
-/// The table with what stands below it.
+/// The table, with the remarks below it.
 pub(crate) fn text(report: &Report) -> String {
     let outcome = &report.outcome;
     let width = outcome.counts.boats.keys().map(String::len).max().unwrap_or(0).max(8) + 2;

@@ -1,4 +1,4 @@
-//! `squall run`: a whole game from one command, by whatever [`Player`] plays it.
+//! `squall run`: runs a whole game with one command, using any [`Player`].
 
 use crate::both_sides::BothSides;
 use crate::game_args::GameArgs;
@@ -34,17 +34,17 @@ pub(crate) struct Args {
     pub(crate) in_process: bool,
 }
 
-/// What shows a recorded game, or tells of it in a build without the page.
+/// The command that shows a recorded game; in a build without the page, the one that analyses it.
 const LOOK: &str = if cfg!(feature = "network") { "squall replay" } else { "squall log" };
 
-/// The request to stop, and where everything is shown.
+/// The stop flag and the screen.
 pub(crate) type Shell<'a> = (&'a AtomicBool, &'a mut Screen);
 
-/// What plays games.
+/// A way of playing games.
 pub(crate) trait Player {
-    /// Whether it can play this game, to be asked before it begins.
+    /// Checks, before a game begins, whether this player can play it.
     fn check(&self, scenario: &Scenario) -> Result<()>;
-    /// Plays a game and shows it, and records it into this file; no result if it was stopped before.
+    /// Plays, shows and optionally records a game; returns no result if it was stopped early.
     fn play(
         &mut self,
         args: &GameArgs,
@@ -52,14 +52,14 @@ pub(crate) trait Player {
         file: Option<&Path>,
         shell: Shell,
     ) -> Result<Option<Report>>;
-    /// What is left to do when a game is over: it is recorded in this file, and these problems were met.
+    /// Cleans up after a game, which is recorded in this file and had these problems.
     fn end(&mut self, file: Option<&Path>, problems: &[String], shell: Shell);
 }
 
 /// Plays games in this process.
 pub(crate) struct InProcess;
 
-/// Plays as it is asked for.
+/// Plays the game that the arguments describe.
 pub(crate) fn run(args: &Args, player: &mut dyn Player) -> Result<ExitCode> {
     if args.watch_files {
         return play_when_saved(args, player);
@@ -69,13 +69,14 @@ pub(crate) fn run(args: &Args, player: &mut dyn Player) -> Result<ExitCode> {
     play_once(args, player, &scenario, &stop)
 }
 
-/// Plays, and plays again when a file of the game has changed. A file with mistakes is no reason to end.
+/// Plays, and plays again whenever a file of the game changes. A file with mistakes does not end
+/// the loop.
 fn play_when_saved(args: &Args, player: &mut dyn Player) -> Result<ExitCode> {
     let stop = stop::on_ctrl_c()?;
     loop {
         let files = Arc::default();
         let scenario = args.play.load_from(&files);
-        // As they are before it is played: what is saved meanwhile counts.
+        // Take the stamps before playing, so that a change saved during the game counts.
         let read = files.list().into_iter().map(|(path, _)| path);
         let watched = WatchedFiles::new(read.chain([args.play.file().to_owned()]));
         if let Err(error) = scenario.and_then(|scenario| play_once(args, player, &scenario, &stop)) {
@@ -105,7 +106,7 @@ fn play_once(args: &Args, player: &mut dyn Player, scenario: &Scenario, stop: &A
     Ok(if report.run.cut_short { stop::interrupted() } else { ExitCode::SUCCESS })
 }
 
-/// The game, and where it is recorded.
+/// Plays the game and records it if requested.
 fn play(
     args: &Args,
     player: &mut dyn Player,
@@ -123,7 +124,7 @@ fn play(
     Ok((file, report))
 }
 
-/// The game as it is, and with the strategies exchanged.
+/// Plays the game as it is and with swapped strategies.
 fn both_sides(args: &Args, player: &mut dyn Player, scenario: &Scenario, (stop, screen): Shell) -> Result<ExitCode> {
     let mut exchanged_args = args.clone();
     exchanged_args.play.exchange_strategies = true;
@@ -157,7 +158,7 @@ impl Player for InProcess {
         let mut reporter = Reporter::default();
         let mut shown = (clock::now(), 0.0);
         let report = in_process::play(scenario, args.seed(scenario), file, stop, |contest| {
-            // The clock is slower than a decision: look at it now and then.
+            // Reading the clock takes longer than a decision: read it only now and then.
             if contest.decision().is_multiple_of(64) && shown.0.elapsed() >= SHOW_EVERY {
                 let now_s = contest.now().as_s();
                 let rate = (now_s - shown.1) / shown.0.elapsed().as_secs_f64();

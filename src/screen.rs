@@ -1,4 +1,4 @@
-//! The terminal: events as lines, how the game stands as one line that is written over.
+//! The terminal: events as lines, the state of the game as one line that is overwritten.
 
 use crate::result_table;
 use crate::style::Names;
@@ -6,26 +6,26 @@ pub(crate) use command_line::terminal::*;
 use sim::{Progress, ProgressMessage};
 use std::io::IsTerminal;
 
-/// Shows the progress of a game to a person.
+/// Shows the progress of a game to the user.
 pub(crate) struct Screen {
-    /// Whether a line can be written over.
+    /// Whether a line can be overwritten.
     live: bool,
     status: String,
     names: Names,
-    /// Simulated time of the last status line on a screen that scrolls, s.
+    /// Simulated time of the last status line on a scrolling screen, s.
     last_s: f64,
 }
 
-/// Where nothing can be written over, a status line is printed this often, simulated seconds.
+/// Interval of status lines if they cannot be overwritten, simulated seconds.
 const PRINT_EVERY_S: f64 = 60.0;
 
 impl Screen {
-    /// The screen of this process, for a game with these names.
+    /// The screen of this process for a game with these names.
     pub(crate) fn new(names: Names) -> Screen {
         Screen { live: std::io::stdout().is_terminal(), status: String::new(), names, last_s: 0.0 }
     }
 
-    /// Shows one thing.
+    /// Shows one progress message.
     pub(crate) fn show(&mut self, message: &ProgressMessage) {
         match message {
             ProgressMessage::Open { game, endpoint } => {
@@ -68,14 +68,14 @@ impl Screen {
         }
     }
 
-    /// A line that stays.
+    /// Prints a permanent line.
     pub(crate) fn line(&mut self, text: &str) {
         self.clear();
         let status = if self.live { self.status.as_str() } else { "" };
         show(&self.names.paint(&format!("{text}\n{status}")));
     }
 
-    /// A line that the next one is written over.
+    /// Prints a line that the next one overwrites.
     fn status(&mut self, text: &str) {
         if !self.live {
             show(&self.names.paint(&format!("{text}\n")));
@@ -93,7 +93,7 @@ impl Screen {
     }
 }
 
-/// For whom a game waits, if for anybody.
+/// The agents and gateways that a game waits for, if any.
 fn waiting(agents: &[String], gateways: &[String]) -> Option<String> {
     const SHOWN: usize = 6;
     let parts = [("agents", agents), ("gateways", gateways)].into_iter().filter(|(_, names)| !names.is_empty());
@@ -106,7 +106,7 @@ fn waiting(agents: &[String], gateways: &[String]) -> Option<String> {
     (!parts.is_empty()).then(|| format!("waiting for {}", parts.join(" and ")))
 }
 
-/// The columns of the terminal; a width that most have where there is none.
+/// The width of the terminal, columns; a common width if there is no terminal.
 pub(crate) fn columns() -> usize {
     terminal_size::terminal_size()
         .map_or(experiment::tournament::WIDTH, |(terminal_size::Width(columns), _)| usize::from(columns))

@@ -1,4 +1,4 @@
-//! `squall sea`: what a sea means for a boat, in numbers and as a plot.
+//! `squall sea`: describes what a sea means for a boat, in numbers and as a plot.
 
 use crate::trial_command::usual_tick_s;
 use crate::{plot, screen, water_args};
@@ -49,7 +49,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The track of the boat, released at rest at the datum, pointing north: that of `squall trial --manoeuvre drift`.
+/// The track of the boat, released at rest at the datum, pointing north: that of `squall trial
+/// --manoeuvre drift`.
 fn drifted(boat: &Boat, sea: &Sea, tick: SimTime, seed: u64) -> Result<Vec<Sample>> {
     let mut trial_boat = TrialBoat::new(boat, sea, tick, seed, &Start::default());
     let plan = Plan {
@@ -65,7 +66,7 @@ fn drifted(boat: &Boat, sea: &Sea, tick: SimTime, seed: u64) -> Result<Vec<Sampl
     Ok(trial::sail(boat, &mut trial_boat, &plan)?.samples)
 }
 
-/// A line of the summary: what, and how much.
+/// A line of the summary: name and value.
 type Line = (&'static str, String);
 
 /// The summary as text.
@@ -113,7 +114,7 @@ fn wind_told(wind: &WindSummary) -> [Line; 4] {
     ]
 }
 
-/// Where the boat went. The speed is that of the second half, the distance that of the whole.
+/// The drift of the boat: its speed over the second half, its distance over the whole time.
 fn drift_told(drifted: &[Sample], boat: &Boat) -> Vec<Line> {
     let (Some(drift), Some(last)) = (Drift::of(drifted), drifted.last()) else { return vec![] };
     let heading_deg = whole_deg(drift.heading_rad);
@@ -127,7 +128,7 @@ fn drift_told(drifted: &[Sample], boat: &Boat) -> Vec<Line> {
     lines
 }
 
-/// A velocity as speed and bearing, with more to say about it; or that there is none.
+/// A velocity as speed and bearing with `more` text; `none` if it is zero.
 fn flow(velocity_m_s: Ned, none: &str, more: &str) -> String {
     let speed_m_s = velocity_m_s.length();
     if speed_m_s < 0.005 {

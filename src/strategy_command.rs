@@ -1,4 +1,4 @@
-//! `squall strategy`: what a strategy file means, as tables or as a graph.
+//! `squall strategy`: explains a strategy file, as tables or as a graph.
 
 use crate::screen;
 use anyhow::{Result, anyhow, bail};
@@ -40,7 +40,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Who follows what, and each program once.
+/// Tables of all roles; a program that several roles share is printed once.
 fn tables(strategy: &Strategy) -> String {
     let mut text = format!("strategy {}{}\n", strategy.name, dash(&strategy.about));
     for (i, role) in strategy.roles.iter().enumerate() {
@@ -85,12 +85,12 @@ fn program(text: &mut String, program: &Program) {
     }
 }
 
-/// How many modes a mode is a part of.
+/// The nesting depth of a mode.
 fn depth(program: &Program, mode: usize) -> usize {
     std::iter::successors(program.modes[mode].parent, |parent| program.modes[*parent].parent).count()
 }
 
-/// When a mode is chosen among the parts of its parent.
+/// The condition that selects a mode among its siblings.
 fn condition(program: &Program, mode: usize) -> String {
     match &program.modes[mode].when {
         Some(when) => format!("when {}", program.condition_text(when)),
@@ -98,7 +98,7 @@ fn condition(program: &Program, mode: usize) -> String {
     }
 }
 
-/// Name, kind, weight, and what else there is to say.
+/// Name, kind, weight, and details.
 fn row(program: &Program, behaviour: &Behaviour) -> [String; 4] {
     let mut notes = vec![];
     if behaviour.is_guard() {
@@ -114,7 +114,8 @@ fn row(program: &Program, behaviour: &Behaviour) -> [String; 4] {
     [behaviour.name.clone(), behaviour.task.kind().to_owned(), weight, notes.join(", ")]
 }
 
-/// A graph for Graphviz: a box for each mode, its condition on the way to it, and what may run in each leaf.
+/// A Graphviz graph: a box for each mode, its condition on the edge to it, and the behaviours of
+/// each leaf.
 fn graph(strategy: &Strategy) -> String {
     let mut text = format!("digraph {:?} {{\n  node [shape=box];\n", strategy.name);
     for (i, role) in strategy.roles.iter().enumerate() {
@@ -135,7 +136,7 @@ fn graph(strategy: &Strategy) -> String {
     text
 }
 
-/// A leaf's name, and below it what may run in it.
+/// A leaf's name, with its possible behaviours below.
 fn leaf_label(program: &Program, leaf: usize) -> String {
     let mut label = program.modes[leaf].name.clone();
     for behaviour in program.behaviours.iter().filter(|behaviour| behaviour.modes[leaf]) {
@@ -146,7 +147,7 @@ fn leaf_label(program: &Program, leaf: usize) -> String {
     label
 }
 
-/// A text as Graphviz reads it.
+/// A text, quoted for Graphviz.
 fn quoted(text: &str) -> String {
     format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\"").replace('\n', "\\n"))
 }

@@ -1,4 +1,4 @@
-//! `squall sweep`: how much sea, noise and failure a team stands.
+//! `squall sweep`: measures how much sea, noise and failure a team tolerates.
 
 use crate::jobs_args::JobsArgs;
 use crate::progress::Progress;
@@ -72,7 +72,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         study.add(&plan, &played)
     });
     progress.end_of_games(jobs.get());
-    // What was played before a disk was full is there, and can be gone on with.
+    // Games played before the disk was full are kept, and the sweep can be resumed.
     played.with_context(|| format!("{} of {} games are kept; --resume goes on", study.done(), plan.games()))?;
     let report = study.report(&plan)?;
     screen::print(&sweep::text(&report));
@@ -84,7 +84,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     Ok(if report.failures.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// Searches for the breaking point.
+/// Searches for the breaking point on one axis.
 fn until(args: &Args, plan: &Plan, text: &str, folder: &Path) -> Result<ExitCode> {
     let condition = Condition::parse(text, plan.sweep())?;
     let stop = stop::on_ctrl_c()?;
@@ -152,7 +152,7 @@ fn find(args: &Args, plan: &Plan, text: &str, folder: &Path) -> Result<ExitCode>
     Ok(ExitCode::SUCCESS)
 }
 
-/// The games of searches over this sweep in its folder.
+/// The journal of earlier searches over this sweep in its folder.
 fn journal(args: &Args, folder: &Path, plan: &Plan) -> Result<Journal> {
     let journal = if args.resume { Journal::resume(folder, plan)? } else { Journal::begin(folder, plan)? };
     if journal.games() > 0 {

@@ -1,4 +1,4 @@
-//! `squall tournament`: every strategy against every other, in this process.
+//! `squall tournament`: plays every strategy against every other, in this process.
 
 use crate::jobs_args::JobsArgs;
 use crate::league_file::LeagueFile;
@@ -48,7 +48,7 @@ pub(crate) struct Args {
     quality: bool,
 }
 
-/// What `--json` writes.
+/// The content of the `--json` file.
 #[derive(Serialize)]
 struct Whole<'a> {
     #[serde(flatten)]
@@ -59,7 +59,7 @@ struct Whole<'a> {
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let plan = planned(args)?;
-    // Better now than after hours of games.
+    // Check now rather than after hours of games.
     for path in args.json.iter().chain(&args.csv) {
         output_file::check(path, "the report")?;
     }
@@ -81,7 +81,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     if let Some(quality) = quality {
         screen::print(&format!("\n{quality}"));
     }
-    // What came of the games is printed even if the disk is full.
+    // Print the results even if the disk is full.
     league.map_or(Ok(()), LeagueFile::end)?;
     Ok(match (report.games_unplayed > 0, report.failures.is_empty()) {
         (true, _) => stop::interrupted(),
@@ -90,15 +90,15 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     })
 }
 
-/// What came of playing.
+/// The games played, and their rate.
 struct Played {
     records: Vec<Record>,
     quality: Option<Quality>,
-    /// Games a second.
+    /// Games per second.
     rate: f64,
 }
 
-/// Plays the games of a plan, of a league only those that it does not know.
+/// Plays the games of a plan; with a league, only those that it does not contain.
 fn play_all(args: &Args, plan: &Plan, stop: &AtomicBool, league: Option<&mut LeagueFile>) -> Played {
     let all = || (0..plan.games()).collect::<Vec<usize>>();
     let pairings = plan.pairings();
@@ -127,7 +127,7 @@ fn play_all(args: &Args, plan: &Plan, stop: &AtomicBool, league: Option<&mut Lea
     Played { records, quality, rate: progress.end_of_games(jobs.get()) }
 }
 
-/// Plays games of a plan and judges how sensibly boats play in them.
+/// Plays games of a plan and judges how sensibly the boats behave.
 fn play_judged(
     plan: &Plan,
     games: &[usize],

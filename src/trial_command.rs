@@ -1,4 +1,5 @@
-//! `squall trial`: one boat in open water, put through a recorded series of commands or a standard manoeuvre.
+//! `squall trial`: puts one boat in open water through a recorded series of commands or a standard
+//! manoeuvre.
 
 use crate::plot::trial as plot;
 use crate::screen;
@@ -70,7 +71,7 @@ pub(crate) struct ManoeuvreArgs {
     differential_pct: Option<f64>,
 }
 
-/// Reads the name of a manoeuvre.
+/// Parses the name of a manoeuvre.
 fn manoeuvre_name() -> impl TypedValueParser<Value = Manoeuvre> {
     PossibleValuesParser::new(Manoeuvre::NAMES).map(|name| name.parse().expect("no other name gets here"))
 }
@@ -112,13 +113,13 @@ impl StartArgs {
     }
 }
 
-/// A physics tick from the command line, s.
+/// Parses a physics tick, s.
 pub(crate) fn tick(text: &str) -> Result<f64, String> {
     let tick_s = within(0.001, 0.1, "s")(text)?;
     trial::ticks_per_row(SimTime::from_s(tick_s)).map(|_| tick_s)
 }
 
-/// The tick that suits a boat: what its reference numbers hold for.
+/// The tick for which a boat's reference numbers hold, s.
 pub(crate) fn usual_tick_s(boat: &Boat) -> f64 {
     match boat.drive {
         Drive::Thrusters { .. } => 0.05,
@@ -164,7 +165,7 @@ fn manoeuvre(args: &Args, named: Manoeuvre, boat: &Boat, trial_boat: &mut TrialB
     Ok(ExitCode::SUCCESS)
 }
 
-/// The results, one a line.
+/// The results, one per line.
 fn table(measures: &[trial::Measure]) -> String {
     let line = |measure: &trial::Measure| {
         let value = if measure.value.is_finite() { format!("{:.2}", measure.value) } else { "not reached".to_owned() };

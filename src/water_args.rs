@@ -1,4 +1,4 @@
-//! Which boat sails on which water: what `trial` and `identify` ask alike.
+//! Command line arguments for the boat and its water; shared by `trial` and `identify`.
 
 pub(crate) use command_line::number::within;
 
@@ -26,7 +26,7 @@ pub(crate) struct WaterArgs {
 }
 
 impl WaterArgs {
-    /// The sea that was asked for.
+    /// The requested sea.
     pub(crate) fn sea(&self) -> Result<Sea> {
         let mut sea = match &self.sea {
             Some(path) => sea(path, self.seed)?,
@@ -39,7 +39,7 @@ impl WaterArgs {
     }
 }
 
-/// The sea in a file; what was drawn of it is told.
+/// Loads the sea in a file and prints its randomised values.
 pub(crate) fn sea(path: &Path, seed: u64) -> Result<Sea> {
     let drawn = scenario::draw_sea(path, seed);
     let (sea, drawn) = drawn.with_context(|| format!("no sea in {}", path.display()))?;
@@ -47,7 +47,8 @@ pub(crate) fn sea(path: &Path, seed: u64) -> Result<Sea> {
     Ok(sea)
 }
 
-/// The boat in a file, or of a name in `scenarios/boats`, the file, and what was drawn of it.
+/// Loads a boat from a file, or by its name in `scenarios/boats`; returns it with its file and its
+/// randomised values.
 pub(crate) fn boat(named: &str, seed: u64) -> Result<(Boat, PathBuf, Vec<Drawn>)> {
     let path = scenario_files::find(named, Kind::BOAT)?;
     let drawn = scenario::draw_boat(&path, seed);
@@ -55,19 +56,19 @@ pub(crate) fn boat(named: &str, seed: u64) -> Result<(Boat, PathBuf, Vec<Drawn>)
     Ok((boat, path, drawn))
 }
 
-/// Says which numbers were drawn.
+/// Prints the randomised values.
 pub(crate) fn tell_drawn(seed: u64, drawn: &[Drawn]) {
     for Drawn { parameter, value } in drawn {
         screen::print(&format!("drawn by seed {seed}: {parameter} = {value}\n"));
     }
 }
 
-/// A speed, m/s.
+/// Parses a speed, m/s.
 pub(crate) fn speed(text: &str) -> Result<f64, String> {
     within(0.0, 60.0, "m/s")(text)
 }
 
-/// An angle, degrees.
+/// Parses an angle, degrees.
 pub(crate) fn degrees(text: &str) -> Result<f64, String> {
     within(-720.0, 720.0, "degrees")(text)
 }

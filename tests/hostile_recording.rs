@@ -1,4 +1,5 @@
-//! Whatever a recording says, and whatever damage it took, everything that looks at it answers or refuses.
+//! Every reader of recordings answers or refuses, whatever a recording contains and however it is
+//! damaged.
 
 use analysis::table::TableError;
 use analysis::{Comparison, GameSeries, Summary, alog, table};
@@ -15,7 +16,7 @@ use std::io::Cursor;
 use std::path::Path;
 use std::sync::Arc;
 
-/// A recording of these decisions, then a line over a link and the status of its gateway.
+/// A recording of these decisions, followed by a line from a link and a gateway's status.
 fn bytes_of(decisions: Vec<Decision>) -> Vec<u8> {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/games/pav01_vs_pav01.toml");
     let scenario = scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
@@ -74,7 +75,8 @@ fn odd_input() -> impl Strategy<Value = Input> {
 }
 
 prop_compose! {
-    /// A decision as no sim tells it: other numbers of boats, flags and teams, any time, any event.
+    /// A decision that no sim would send: other numbers of boats, flags and teams, any time, any
+    /// event.
     fn odd_decision()(
         (at, seq) in prop_oneof![(any::<i64>(), any::<u64>()), (0..5_i64, 0..5_u64)],
         navs in proptest::collection::vec((odd_nav(), -2..9_i16), 0..6),
@@ -103,7 +105,7 @@ prop_compose! {
     }
 }
 
-/// Everything that can be made of a recording.
+/// Applies every reader and analysis to the recording.
 fn look_at_all_of(recording: Recording) -> Recorded {
     let series = GameSeries::of(&recording);
     serde_json::to_string(&Summary::of(&recording)).expect("a summary is JSON");
@@ -114,7 +116,7 @@ fn look_at_all_of(recording: Recording) -> Recorded {
         }
     }
     alog::write(&recording, true, &mut |_| Ok(Box::new(std::io::sink()))).expect("whoever writes nowhere cannot fail");
-    // Whether there is anything to compare is another matter.
+    // There may be nothing to compare.
     Comparison::of([recording.header(); 2], [&series; 2], 0.0).ok();
     let recorded = Recorded::new(Arc::new(recording), "odd.mcap".to_owned());
     for frame in 0..recorded.frame_times().len() {

@@ -1,10 +1,10 @@
-//! Two recorded games beside each other, as text.
+//! Compares two recorded games, as text.
 
 use analysis::{Comparison, Pair, Response, SETTLED_S};
 use primitives::printable::add_line;
 use std::path::Path;
 
-/// The whole page.
+/// The whole comparison.
 pub(super) fn text([a, b]: [&Path; 2], comparison: &Comparison) -> String {
     let mut text = String::new();
     for (name, file, duration_s) in [("A", a, comparison.durations_s[0]), ("B", b, comparison.durations_s[1])] {
@@ -32,7 +32,7 @@ fn tracks(text: &mut String, width: usize, comparison: &Comparison) {
     *text += "as shapes: discrete Fréchet distance (Eiter and Mannila 1994), which forgives being early or late\n";
 }
 
-/// A name of a number of a response, its unit, how many places it has, and where it is.
+/// A response number: its name, unit, decimal places, and accessor.
 type Measure = (&'static str, &'static str, usize, fn(&Response) -> Option<f64>);
 
 const MEASURES: [Measure; 6] = [

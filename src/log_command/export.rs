@@ -1,4 +1,4 @@
-//! A recording, or a topic of it, as files for other programs.
+//! Exports a recording, or one of its topics, to files for other programs.
 
 use crate::output_file;
 use analysis::{alog, table};
@@ -10,12 +10,12 @@ use std::borrow::Cow;
 use std::io::{BufWriter, ErrorKind, IsTerminal, Write};
 use std::path::Path;
 
-/// A recording, and the scenario of its game.
+/// A recording, and its game's scenario.
 type Source<'a> = (&'a Bag, Option<&'a Scenario>);
 
-/// Writes a topic as CSV, into a file or to whoever reads.
+/// Writes a topic as CSV to a file or to standard output.
 pub(super) fn csv(source: Source<'_>, topic: &str, file: Option<&Path>) -> Result<Damaged> {
-    // An unknown topic leaves no empty file behind.
+    // Check first, so that an unknown topic leaves no empty file behind.
     table::check(source.0, topic)?;
     let trying = |path: &Path| format!("cannot write {}", path.display());
     let sink: Box<dyn Write> = match file {
@@ -24,14 +24,14 @@ pub(super) fn csv(source: Source<'_>, topic: &str, file: Option<&Path>) -> Resul
     };
     let is_shown = file.is_none() && std::io::stdout().is_terminal();
     match (rows(source, topic, is_shown, &mut csv::Writer::from_writer(BufWriter::new(sink))), file) {
-        // Who has read enough goes away: that is nothing to complain about.
+        // A reader that closes the pipe early is no error.
         (Err(table::TableError::Sink(e)), None) if e.kind() == ErrorKind::BrokenPipe => Ok(Damaged::default()),
         (Err(table::TableError::Sink(e)), Some(path)) => Err(e).with_context(|| trying(path)),
         (done, _) => Ok(done?),
     }
 }
 
-/// Writes the rows; those that a person sees are spelt so that they do not steer the terminal.
+/// Writes the rows; escapes control characters for a terminal.
 fn rows<W: Write>(
     source: Source<'_>,
     topic: &str,
@@ -51,8 +51,8 @@ fn rows<W: Write>(
     Ok(damaged)
 }
 
-/// Writes MOOS logs: into a folder those of the shoreside and of all boats, into a file that of the shoreside. Says how
-/// many, and what could not be read.
+/// Writes MOOS logs: to a folder those of the shoreside and of all boats, to a file that of the
+/// shoreside. Returns the number of logs and what could not be read.
 pub(super) fn alog(recording: &Recording, path: &Path) -> Result<(usize, Damaged)> {
     let is_alone = path.extension().is_some_and(|ending| ending == "alog") && !path.is_dir();
     if !is_alone {

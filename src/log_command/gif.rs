@@ -1,6 +1,6 @@
-//! A stretch of a recorded game as a GIF file.
+//! Renders part of a recorded game as a GIF file.
 //!
-//! All pictures have one palette, and each has only what changed since the one before it.
+//! All pictures share one palette, and each contains only the changes since the previous one.
 
 use crate::game_args;
 use crate::output_file;
@@ -16,19 +16,19 @@ use std::borrow::Cow;
 use std::collections::{BTreeMap, VecDeque};
 use std::path::Path;
 
-/// Pictures a second of watching.
+/// Pictures per second of playback.
 const PICTURES_HZ: f64 = 10.0;
-/// How long the end stands before it begins again, hundredths of a second.
+/// How long the last picture is shown before the loop restarts, hundredths of a second.
 const END_CS: u16 = 200;
-/// Pictures of a film, at most.
+/// Maximum number of pictures in a film.
 const PICTURES_MAX: f64 = 5000.0;
-/// How far back trails go, s.
+/// Length of the trails, s.
 const TRAIL_S: f64 = 30.0;
-/// Boats have names up to so many.
+/// Boats are labelled only up to this number of boats.
 const NAMES_MAX: usize = 12;
-/// The colour of a pixel that is as before.
+/// The palette index of an unchanged pixel (transparent).
 const UNCHANGED: u8 = 255;
-/// Pictures that the palette is made of.
+/// Number of pictures from which the palette is computed.
 const SAMPLES: usize = 6;
 
 /// Which stretch of a game a film shows, and how.
@@ -48,7 +48,7 @@ pub(super) struct FilmArgs {
     width: u32,
 }
 
-/// Writes a film; gives how many pictures it has, and what of the recording is damaged.
+/// Writes a film; returns the number of pictures and the damage in the recording.
 pub(super) fn write(path: &Path, recording: &Recording, args: &FilmArgs) -> Result<(usize, Damaged)> {
     output_file::check(path, "the film")?;
     let header = recording.header();
@@ -56,7 +56,7 @@ pub(super) fn write(path: &Path, recording: &Recording, args: &FilmArgs) -> Resu
     let teams = scenario.teams.iter().enumerate().map(|(i, team)| (team.name.clone(), colour::of_team(i))).collect();
     let stage = Stage::new(header.game.replace('_', " "), &scenario.field, teams, args.width);
     let mut damaged = Damaged::default();
-    // There is nothing between two decisions.
+    // Nothing changes between two decisions.
     let step_s = f64::max(args.speed / PICTURES_HZ, scenario.decision().as_s());
     let delay_cs = (100.0 * step_s / args.speed).round() as u16;
     let moments = moments(recording, (args, step_s), &stage, &mut damaged)?;
@@ -64,7 +64,8 @@ pub(super) fn write(path: &Path, recording: &Recording, args: &FilmArgs) -> Resu
         bail!("the recording has no frame from {} s on", args.from.unwrap_or(0.0))
     };
     let size = crate::plot::Drawing::size(first);
-    // Moments that are far apart have all colours between them, and the last one has them all in use.
+    // Widely spaced moments cover all colours between them; the last moment uses all of them at
+    // once.
     let step = moments.len().div_ceil(SAMPLES);
     let samples = moments.iter().step_by(step).chain([last]).map(colours).collect::<Result<Vec<_>>>()?;
     let mut palette = Palette::of(&samples);
@@ -77,7 +78,7 @@ pub(super) fn write(path: &Path, recording: &Recording, args: &FilmArgs) -> Resu
     for (i, moment) in moments.iter().enumerate() {
         let indices = palette.indices(&colours(moment)?);
         let mut picture = changes(&indices, before.as_deref(), (size.0 as usize, size.1 as usize));
-        // The end stands for a while before it begins again.
+        // Hold the last picture before the loop restarts.
         picture.delay = if i + 1 == moments.len() { END_CS } else { delay_cs };
         encoder.write_frame(&picture).with_context(what)?;
         before = Some(indices);
@@ -87,7 +88,7 @@ pub(super) fn write(path: &Path, recording: &Recording, args: &FilmArgs) -> Resu
     Ok((moments.len(), damaged))
 }
 
-/// Red, green and blue of each pixel of a moment, one after the other.
+/// Red, green and blue of each pixel in row order.
 fn colours(moment: &Moment<'_>) -> Result<Vec<u8>> {
     let picture = pixels(moment)?;
     Ok(picture.pixels().iter().flat_map(|pixel| [pixel.red(), pixel.green(), pixel.blue()]).collect())
@@ -167,10 +168,10 @@ fn moment<'a>(
     }
 }
 
-/// The colours of a film: those that most pixels have.
+/// The palette of a film: the most frequent colours.
 struct Palette {
     colours: Vec<[u8; 3]>,
-    /// What stands for a colour: itself, or the nearest.
+    /// The palette colour for each colour: itself, or the nearest.
     nearest: BTreeMap<[u8; 3], u8>,
 }
 
@@ -187,14 +188,14 @@ impl Palette {
         Palette { colours, nearest }
     }
 
-    /// As it stands in the file.
+    /// The palette in its file format.
     fn bytes(&self) -> Vec<u8> {
         let mut bytes = self.colours.concat();
         bytes.resize(3 * 256, 0);
         bytes
     }
 
-    /// The number of each pixel's colour.
+    /// The palette index of each pixel.
     fn indices(&mut self, pixels: &[u8]) -> Vec<u8> {
         let Palette { colours, nearest } = self;
         let mut index = |colour: [u8; 3]| {
@@ -210,7 +211,7 @@ impl Palette {
     }
 }
 
-/// The part of a picture that is not as before, in which all else is transparent.
+/// The changed rectangle of a picture, with all unchanged pixels transparent.
 fn changes(indices: &[u8], before: Option<&[u8]>, (wide, high): (usize, usize)) -> gif::Frame<'static> {
     let is_changed = |i: usize| before.is_none_or(|before| before[i] != indices[i]);
     let changed = || (0..indices.len()).filter(|i| is_changed(*i));
@@ -218,7 +219,7 @@ fn changes(indices: &[u8], before: Option<&[u8]>, (wide, high): (usize, usize)) 
         let [left, top, right, bottom] = bounds.unwrap_or([x, y, x, y]);
         Some([left.min(x), top.min(y), right.max(x), bottom.max(y)])
     });
-    // A picture has at least a pixel.
+    // A picture has at least one pixel.
     let [left, top, right, bottom] = bounds.unwrap_or([0; 4]);
     let (right, bottom) = (right.min(wide - 1), bottom.min(high - 1));
     let of_row = |y: usize| (left..=right).map(move |x| y * wide + x);

@@ -5,7 +5,7 @@ use primitives::printable::add_line;
 use recording::{Bag, Damaged, utc};
 use std::collections::BTreeMap;
 
-/// The whole page.
+/// The whole summary.
 pub(super) fn text(summary: &Summary) -> String {
     let mut text = head(summary);
     if !summary.events.is_empty() {
@@ -18,7 +18,7 @@ pub(super) fn text(summary: &Summary) -> String {
     text + &topics(&summary.topics)
 }
 
-/// The page of a gateway's own recording.
+/// The summary of a gateway's own recording.
 pub(super) fn gateway(bag: &Bag) -> String {
     let [boat, version, commit] = ["vehicle", "version", "commit"].map(|key| bag.fact(key));
     let gateway = analysis::gateway_of(bag, boat);
@@ -42,7 +42,7 @@ fn damaged(text: &mut String, damaged: &Damaged) {
     }
 }
 
-/// What happened, one a line.
+/// The events, one per line.
 pub(super) fn events(summary: &Summary) -> String {
     summary.events.iter().map(|event| format!("{:>7.1} s  {}\n", event.at_s, event.sentence())).collect()
 }
@@ -74,7 +74,8 @@ fn head(summary: &Summary) -> String {
     text
 }
 
-/// Three tables, so that each fits a terminal of 80 columns: how it moved, for how long it was what, how well it knew and did.
+/// Three tables, so that each fits a terminal of 80 columns: motion, time in each state, and
+/// accuracy.
 fn boats(boats: &[BoatStatistics]) -> String {
     let width = boats.iter().map(|boat| boat.boat.len()).max().unwrap_or(0).max(8) + 2;
     let mut text = format!("\n{:width$}{:>10}{:>8}{:>7}", "", "distance", "speed", "max");

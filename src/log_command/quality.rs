@@ -1,4 +1,4 @@
-//! How sensibly boats played in recorded games.
+//! How sensibly the boats in recorded games behaved.
 
 use crate::minds::Minds;
 use crate::progress::Progress;
@@ -10,7 +10,7 @@ use primitives::VehicleId;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Prints it of all games together, and writes it as JSON.
+/// Prints the figures for all games together, and writes them as JSON.
 pub(super) fn print(files: &[PathBuf], json: Option<&Path>) -> Result<()> {
     let mut sum = Quality::default();
     let mut progress = Progress::of(files.len() as u64, "recordings");
@@ -37,7 +37,8 @@ fn of_recording(file: &Path) -> Result<Quality> {
     Ok(quality.end())
 }
 
-/// What a boat's mind was at when it gave the order that led to a step: known where that is what the scenario's strategy orders.
+/// The state of a boat's mind when it gave the order for a step; known only if the scenario's
+/// strategy gives the recorded order.
 fn mind_state(minds: &mut Minds, step: &Step, vehicle: usize) -> Option<MindState> {
     let (report, order) = minds.report_of(VehicleId::at(vehicle), step.decision.checked_sub(1)?)?;
     (order == step.samples[vehicle].order).then(|| report.into())

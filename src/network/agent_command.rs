@@ -1,4 +1,4 @@
-//! `squall agent`: decides for boats in a game.
+//! `squall agent`: makes the decisions of boats in a game.
 
 use crate::screen;
 use crate::stop;
@@ -37,7 +37,7 @@ pub(crate) struct Args {
     for_parent: bool,
 }
 
-/// The strategy in a file, with every problem in the error.
+/// Loads the strategy in a file; the error lists every problem.
 fn load_strategy(path: &Path) -> Result<Strategy> {
     scenario::load_strategy(path).with_context(|| format!("cannot play by {}", path.display()))
 }

@@ -1,4 +1,4 @@
-//! `squall gateway`: the commands of the boat's program, and boats emulated for real back seats.
+//! `squall gateway`: the commands of the boat's program, and emulated boats for real back seats.
 
 mod emulate;
 

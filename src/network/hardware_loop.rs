@@ -1,4 +1,5 @@
-//! The hardware loop, closed on one machine: water of its own, an emulated boat and a gateway for every real one.
+//! The hardware loop on one machine: separate water, and an emulated boat and a gateway for every
+//! real one.
 
 use super::child_process::{self, ChildProcess, option};
 use super::hub_args::{free_port, unique_game_name};
@@ -29,17 +30,18 @@ pub(crate) struct LoopArgs {
     record_gateways: Option<PathBuf>,
 }
 
-/// How long an emulator may take to report where it listens.
+/// Timeout for an emulator to report its address.
 const WINDOW: Duration = Duration::from_secs(20);
 /// The processes of the loop.
 pub(crate) struct HardwareLoop {
-    /// Gateways, then emulators: the order in which they are to end.
+    /// Gateways, then emulators: the order of shutdown.
     ends: Vec<ChildProcess>,
     water: ChildProcess,
 }
 
 impl LoopArgs {
-    /// Starts the loop for the boats of a game with this name and endpoint, if it is asked for and there are real boats.
+    /// Starts the loop for the boats of the game with this name and endpoint, if requested and if
+    /// there are real boats.
     pub(crate) fn start(
         &self,
         (args, pace): (&GameArgs, &PaceArgs),
@@ -62,7 +64,7 @@ impl LoopArgs {
         };
         if let Some(folder) = &self.record_gateways {
             output_file::make_folder(folder)?;
-            // A gateway that refuses would leave its boat out of the game.
+            // Check first: a gateway that refuses to record would leave its boat out of the game.
             for file in names.iter().map(|name| folder.join(format!("{name}.mcap"))) {
                 drop(NewFile::create(&file).with_context(|| format!("cannot record into {}", file.display()))?);
             }
@@ -104,20 +106,21 @@ impl LoopArgs {
 }
 
 impl HardwareLoop {
-    /// Ends it all, gateways first: they leave their boats at rest. Says who ended badly.
+    /// Stops everything, gateways first, so that they leave their boats at rest. Returns the
+    /// failures.
     pub(crate) fn end(mut self) -> Vec<String> {
         let badly = self.ends.iter_mut().flat_map(ChildProcess::stop).collect();
-        // The water has no end of its own: it is cut short, and says so.
+        // The water game never ends by itself; stopping it makes it report that it was cut short.
         self.water.stop();
         badly
     }
 }
 
-/// Starts an emulator; gives it and the address of its link.
+/// Starts an emulator; returns it and the address of its link.
 fn start_emulator(name: &str, gateway: &Gateway, (water, endpoint): (&str, &str)) -> Result<(ChildProcess, String)> {
     let listen = "tcp://127.0.0.1:0";
     let mut command = child_process::squall(&["gateway", "emulate", "--game", water, "--connect", endpoint])?;
-    // However long the game: what stops a boat here is to be the game's or the gateway's doing.
+    // The battery must outlast the game: only the game or the gateway may stop a boat here.
     command.args(["--vehicle", name, "--listen", listen, "--charge-pct", "none"]);
     match gateway.protocol {
         BoatProtocol::Surveyor => {

@@ -1,4 +1,4 @@
-//! `squall helm`: one decision of a boat's helm, in a table and as numbers.
+//! `squall helm`: one decision of a boat's helm, as a table and as numbers.
 
 use super::{helm_page, helm_query};
 use crate::screen;
@@ -23,7 +23,7 @@ pub(crate) struct Args {
     csv: Option<PathBuf>,
 }
 
-/// What the sum of all behaviours is called.
+/// The name of the sum of all behaviours.
 const COLLECTIVE: &str = "collective";
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
@@ -51,7 +51,7 @@ fn speed_m_s(report: &HelmReport, j: usize) -> f64 {
     report.speed_max_m_s * j as f64 / (report.speeds - 1) as f64
 }
 
-/// A row for each function, course and speed; then the sums, of which the largest is what the helm takes.
+/// One row for each function, course and speed; then the sums. The helm chooses the largest sum.
 fn write_csv(path: &Path, scenario: &Scenario, report: &HelmReport) -> Result<()> {
     let mut csv = csv::Writer::from_path(path)?;
     csv.write_record(["behaviour", "contact", "weight", "course_deg", "speed_m_s", "utility"])?;

@@ -1,13 +1,13 @@
-//! A helm report as text: a page, or one line.
+//! A helm report as text: in full or as one line.
 
 use crate::helm_text::decision;
 use messages::helm::{FunctionReport, HelmReport, PolicyReport, RunState};
 use scenario::Scenario;
 
-/// So many actions of a policy are listed, the likeliest ones.
+/// How many actions of a policy are listed, the likeliest first.
 const ACTIONS: usize = 4;
 
-/// A page: mode, decision, and what every behaviour wants.
+/// The full report: mode, decision, and the wishes of every behaviour.
 pub(super) fn page(scenario: &Scenario, report: &HelmReport) -> String {
     let name = &scenario.vehicles[report.vehicle.index()].name;
     let mut text = format!("{name}  follows {}  {:.1} s\n", report.program, report.at.as_s());
@@ -36,7 +36,7 @@ pub(super) fn page(scenario: &Scenario, report: &HelmReport) -> String {
     text
 }
 
-/// What a policy proposes, or why it does not.
+/// The proposal of a policy, or the reason why it has none.
 fn proposal(policy: &PolicyReport) -> String {
     match (policy.course_deg, policy.speed_m_s, &policy.fault) {
         (Some(course_deg), Some(speed_m_s), _) => format!("course {course_deg:.0}°, {speed_m_s:.2} m/s"),
@@ -45,7 +45,7 @@ fn proposal(policy: &PolicyReport) -> String {
     }
 }
 
-/// One line: mode, decision, and its utility to each function.
+/// One line: mode, decision, and its utility for each function.
 pub(super) fn line(scenario: &Scenario, report: &HelmReport) -> String {
     let name = &scenario.vehicles[report.vehicle.index()].name;
     let utility = |function: &FunctionReport| {
@@ -66,7 +66,8 @@ pub(super) fn line(scenario: &Scenario, report: &HelmReport) -> String {
     format!("{}\n", line.trim_end())
 }
 
-/// The table of behaviours: name, kind, run state, weight and utility; functions about contacts stand under theirs.
+/// The table of behaviours: name, kind, run state, weight and utility; functions about contacts are
+/// listed below theirs.
 fn rows(scenario: &Scenario, report: &HelmReport) -> Vec<[String; 5]> {
     let mut rows = vec![["behaviour", "kind", "state", "weight", "utility"].map(str::to_owned)];
     for behaviour in &report.behaviours {

@@ -1,4 +1,4 @@
-//! Asks the agent of a boat for a report of its helm.
+//! Queries the agent of a boat for a report of its helm.
 
 use anyhow::{Context, Result, bail};
 use bus::clock;
@@ -9,10 +9,10 @@ use primitives::VehicleId;
 use shore::page::is_sound;
 use std::time::Duration;
 
-/// A boat of which nothing is heard for this long has no agent.
+/// A boat that sends nothing for this long has no agent.
 pub(crate) const SILENCE: Duration = Duration::from_secs(10);
 
-/// The helm report of a vehicle; nothing if it has no agent now.
+/// The helm report of a vehicle; `None` if it has no agent now.
 pub(crate) fn report(observer: &Observer, vehicle: VehicleId, question: HelmQuestion) -> Result<Option<HelmReport>> {
     let question = serde_json::to_vec(&question).context("a question is JSON")?;
     let key = topic::helm(&observer.game, &observer.info.scenario, vehicle);
@@ -27,7 +27,8 @@ pub(crate) fn report(observer: &Observer, vehicle: VehicleId, question: HelmQues
     Ok(Some(report))
 }
 
-/// The helm report of a vehicle that has an agent. An answer that a busy link dropped is asked for again.
+/// The helm report of a vehicle that has an agent. Repeats the query if a busy link dropped the
+/// answer.
 pub(crate) fn report_of_agent(observer: &Observer, vehicle: VehicleId, question: HelmQuestion) -> Result<HelmReport> {
     let start = clock::now();
     loop {
@@ -35,7 +36,7 @@ pub(crate) fn report_of_agent(observer: &Observer, vehicle: VehicleId, question:
         if let Some(report) = report(observer, vehicle, question)? {
             return Ok(report);
         }
-        // Where nobody answers for this boat at all, that is told before the time for an answer is over.
+        // If nothing serves this boat at all, report that before the answer's timeout.
         let is_answered_for = clock::since(asked) >= bus::ANSWER;
         if !is_answered_for || clock::since(start) >= SILENCE {
             bail!("{} has no agent", observer.info.scenario.vehicles[vehicle.index()].name);

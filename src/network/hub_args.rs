@@ -1,4 +1,4 @@
-//! Command line arguments of a process that serves a game: where it listens, its keys and its token.
+//! Command line arguments of a process that serves a game: its endpoint, keys and token.
 
 use anyhow::{Result, anyhow, bail};
 use bus::token::TOKEN_VARIABLE;
@@ -29,7 +29,7 @@ pub(crate) struct HubArgs {
 }
 
 impl HubArgs {
-    /// Where to listen.
+    /// The network settings for serving.
     pub(crate) fn net(&self) -> Result<Net> {
         let mut listen = self.listen.clone();
         if listen.is_empty() && self.lan {
@@ -46,18 +46,18 @@ impl HubArgs {
             ),
             _ => {}
         }
-        // With keys, certificates say who may do what.
+        // With keys, certificates define the rights, so no token is needed.
         let token = self.token.token()?.or_else(|| keys.is_none().then(Token::random));
         Ok(Net { listen, connect: vec![], lan: self.lan, config_file: self.zenoh_config.clone(), token, keys })
     }
 }
 
-/// A port of this machine that nobody listens on.
+/// A free port of this machine.
 pub(crate) fn free_port(prefer_default: bool) -> Result<u16> {
     bus::free_port(prefer_default).map_err(|e| anyhow!("no free port on this machine: {e}"))
 }
 
-/// Port 0 is any that is free: chosen here, so that it is known to whoever is told the endpoint.
+/// Replaces port 0 with a free port, so that the endpoint can be passed to other nodes.
 fn with_port(endpoint: &mut String) -> Result<()> {
     if let Some(rest) = endpoint.strip_suffix(":0") {
         *endpoint = format!("{rest}:{}", free_port(false)?);
@@ -65,7 +65,7 @@ fn with_port(endpoint: &mut String) -> Result<()> {
     Ok(())
 }
 
-/// A name for a game that no other game on the network has.
+/// A game name that is unique on the network.
 pub(crate) fn unique_game_name(scenario: &str) -> Result<GameName> {
     use std::hash::{BuildHasher, Hasher, RandomState};
     let bits = RandomState::new().build_hasher().finish() & 0xff_ffff;
@@ -73,7 +73,7 @@ pub(crate) fn unique_game_name(scenario: &str) -> Result<GameName> {
     GameName::new(&format!("{stem}-{bits:06x}")).map_err(|e| anyhow!(e))
 }
 
-/// What people on other machines, or other users of this one, need for joining and controlling a game.
+/// What users on other machines, or other users of this one, need to join and control a game.
 pub(crate) fn token_text(token: &Token) -> String {
     format!("its token, for agents and operators elsewhere: {TOKEN_VARIABLE}={}", token.hex())
 }

@@ -1,4 +1,4 @@
-//! `squall keys`: makes and shows the keys of a game.
+//! `squall keys`: creates and shows the keys of a game.
 
 use crate::screen;
 use anyhow::{Result, bail};
@@ -118,17 +118,17 @@ fn show(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// This machine's name, where the system tells it.
+/// This machine's name, if the system reports it.
 fn own_name() -> Option<String> {
     let name = std::fs::read_to_string("/proc/sys/kernel/hostname").ok()?.trim().to_owned();
     let is_host = name.chars().all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '.');
     (!name.is_empty() && name != "localhost" && is_host).then_some(name)
 }
 
-/// The address of this machine that others see. Nothing is sent: the system only looks up the way.
+/// This machine's address as others see it. Sends nothing: the system only looks up the route.
 fn own_address() -> Option<String> {
     let socket = UdpSocket::bind(("0.0.0.0", 0)).ok()?;
-    // An address of documentation (RFC 5737), which takes the way to everywhere.
+    // A documentation address (RFC 5737), which takes the default route.
     socket.connect(("192.0.2.1", 9)).ok()?;
     let address = socket.local_addr().ok()?.ip();
     (!address.is_loopback() && !address.is_unspecified()).then(|| address.to_string())

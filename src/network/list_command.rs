@@ -1,4 +1,4 @@
-//! `squall list`: which games there are.
+//! `squall list`: lists the running games.
 
 use crate::screen;
 use anyhow::Result;
@@ -28,7 +28,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         let place = |entry: bus::Entry| Net { connect: vec![entry.endpoint], keys: keys.clone(), ..Net::default() };
         places.extend(bus::local_registry().into_iter().map(place));
     }
-    // Several games on this machine are no error here: all are listed.
+    // Several games on this machine are no error here: list them all.
     places.extend(args.leaf.net().ok().filter(|net| net.lan || !places.iter().any(|p| p.connect == net.connect)));
     let mut games: BTreeMap<GameName, String> = BTreeMap::new();
     for place in &places {
@@ -38,7 +38,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
                 bus.close();
             }
             Err(error @ (BusError::Keys(_) | BusError::NeedsKeys(_))) => screen::remark(&error.to_string()),
-            // Where nobody answers there is no game.
+            // No answer means no game.
             Err(_) => {}
         }
     }
@@ -72,7 +72,7 @@ fn games_at(bus: &Bus, place: &Net) -> Result<BTreeMap<GameName, String>> {
     Ok(games)
 }
 
-/// How a game stands, as its sim says many times a second.
+/// The state of a game, which its sim publishes many times a second.
 fn run_state(bus: &Bus, game: &GameName) -> Result<Option<RunState>> {
     let newest = Arc::new(Watched::new(None));
     let told = Arc::clone(&newest);

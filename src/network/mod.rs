@@ -1,4 +1,4 @@
-//! The commands that need a network or show a page: feature `network`.
+//! Commands that need a network or show a page (feature `network`).
 
 mod agent_command;
 mod child_process;
@@ -67,7 +67,8 @@ pub(crate) enum Command {
 }
 
 pub(crate) fn run(command: &Command) -> Result<ExitCode> {
-    // `run` only hands keys on: what it starts without keys must not have the threads of those with keys.
+    // `run` only passes keys on: its children without keys must not get the thread settings of
+    // those with keys.
     if !matches!(command, Command::Run(_) | Command::Demo(_)) {
         leaf_args::restart_with_threads_for_keys()?;
     }

@@ -1,4 +1,5 @@
-//! How fast a game is served, and for whom it waits: what `run` and `sim` ask alike.
+//! Command line arguments for the pace of a game and the nodes it waits for; shared by `run` and
+//! `sim`.
 
 use super::child_process::{self, option};
 use crate::game_args::{GameArgs, speed};
@@ -23,7 +24,7 @@ pub(crate) struct PaceArgs {
 }
 
 impl PaceArgs {
-    /// A process that serves this game, or something of it, under a name.
+    /// A process that serves this game, or a part of it, under a name.
     pub(crate) fn sim(&self, game: &GameArgs, name: &str, endpoint: &str) -> Result<Command> {
         let runtime = if self.pace == Pace::Lockstep { bus::RUNTIME } else { bus::HUB_RUNTIME };
         let mut command = child_process::squall_with(runtime, &["sim", "--game", name, "--listen", endpoint])?;

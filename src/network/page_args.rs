@@ -1,4 +1,4 @@
-//! The command line's way of saying where the page is served.
+//! Command line arguments that define where the page is served.
 
 use crate::screen;
 use anyhow::{Context, Result, ensure};
@@ -11,11 +11,11 @@ use std::process::Command;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-/// The port of the page, if it is free.
+/// The preferred port of the page.
 const PORT: u16 = 8088;
 /// The environment variable with the page's token.
 const TOKEN_VARIABLE: &str = "SQUALL_PAGE_TOKEN";
-/// A token file is a line of text; what is longer is another file, bytes.
+/// Size limit of a token file, bytes: it has one line; anything longer is another file.
 const TOKEN_FILE_MAX: u64 = 4096;
 
 /// Where the page is served.
@@ -44,7 +44,7 @@ pub(crate) struct PageArgs {
 }
 
 impl PageArgs {
-    /// Whether the page can be served, to be asked before a game begins.
+    /// Checks before a game begins that the page can be served.
     pub(crate) fn check(&self) -> Result<()> {
         let any = SocketAddr::from((Ipv4Addr::LOCALHOST, 0));
         Ok(Page::check(&self.settings(self.listen.unwrap_or(any), &Arc::default())?)?)
@@ -56,11 +56,11 @@ impl PageArgs {
         Ok(PageSettings { listen, token, hosts, background, stop })
     }
 
-    /// Serves a page that shows nothing yet.
+    /// Serves an empty page.
     pub(crate) fn open(&self, stop: &Arc<AtomicBool>) -> Result<Page> {
         let usual = SocketAddr::from((Ipv4Addr::LOCALHOST, PORT));
         let page = match (self.listen, Page::open(self.settings(self.listen.unwrap_or(usual), stop)?)) {
-            // Another page is there already.
+            // Another page uses the port already.
             (None, Err(PageError::Listen { .. })) => {
                 Page::open(self.settings(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)), stop)?)
             }
@@ -69,18 +69,18 @@ impl PageArgs {
         Ok(page?)
     }
 
-    /// Whether anything is said of the page.
+    /// Whether any page argument is given.
     pub(crate) fn is_given(&self) -> bool {
         let has_token = self.token.is_some() || self.page_token_file.is_some();
         self.listen.is_some() || has_token || !self.host.is_empty() || self.chart.is_some() || self.open
     }
 
-    /// Whether pages have to show a token that somebody chose, which the page's address has.
+    /// Whether the user chose a page token, which then is part of the page's address.
     pub(crate) fn has_token(&self) -> bool {
         self.token().is_ok_and(|token| token.is_some())
     }
 
-    /// The token that somebody chose.
+    /// The token that the user chose.
     fn token(&self) -> Result<Option<String>> {
         let (text, place) = match (&self.token, &self.page_token_file, std::env::var(TOKEN_VARIABLE)) {
             (Some(token), ..) => return Ok(Some(token.clone())),
@@ -97,25 +97,27 @@ impl PageArgs {
         Ok(Some(token.to_owned()))
     }
 
-    /// Where a browser finds the page, with its rights.
+    /// The page's address for a browser, with the token.
     pub(crate) fn url(&self, page: &Page) -> String {
-        // It was read before the page was served.
+        // The token was already validated before the page was served.
         address_of(page, self.token().unwrap_or_default().as_deref())
     }
 
-    /// The same, and the page is opened in the browser.
+    /// The same arguments with the browser opened.
     pub(crate) fn opened(&self) -> PageArgs {
         PageArgs { open: true, ..self.clone() }
     }
 
-    /// Opens the page in the browser if that was asked for; where there is none people have its address.
+    /// Opens the page in the browser if requested; without a browser, users have the printed
+    /// address.
     pub(crate) fn open_browser(&self, page: &Page) {
         if self.open && open::that_detached(self.url(page)).is_err() {
             screen::remark("no browser can be opened from here");
         }
     }
 
-    /// Gives the same to another process of this program, the token where no other user can read it.
+    /// Passes these arguments to another process of this program, the token where no other user can
+    /// read it.
     pub(crate) fn give_to(&self, command: &mut Command) {
         let listen = self.listen.iter().map(|listen| ("--listen", listen.to_string()));
         let hosts = self.host.iter().map(|host| ("--host", host.clone()));
@@ -128,7 +130,7 @@ impl PageArgs {
     }
 }
 
-/// Where a browser finds the page, for those who may operate real boats.
+/// The page's address for operators of real boats.
 pub(crate) fn operator_url(page: &Page) -> String {
     address_of(page, Some(page.operator_token()))
 }
@@ -142,15 +144,15 @@ fn address_of(page: &Page, token: Option<&str>) -> String {
     format!("http://{address}/{token}")
 }
 
-/// A text as it may stand in an address.
+/// A text, escaped for a URL.
 fn in_address(text: &str) -> String {
     const SPELLED: &AsciiSet = &NON_ALPHANUMERIC.remove(b'-').remove(b'.').remove(b'_').remove(b'~');
     utf8_percent_encode(text, SPELLED).to_string()
 }
 
-/// The address of this machine on the network, if it is on one. Nothing is sent for it.
+/// This machine's address on the network, if it has one. Sends nothing.
 fn own_ip() -> Option<IpAddr> {
-    // An address that is kept free for documents (RFC 5737): the way there is the way out.
+    // A documentation address (RFC 5737), which takes the default route.
     let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0)).ok()?;
     socket.connect((Ipv4Addr::new(192, 0, 2, 1), 9)).ok()?;
     socket.local_addr().ok().map(|address| address.ip())

@@ -1,4 +1,5 @@
-//! `squall replay` on a page: a recorded game, and the helm reports of minds that are shown its pictures again.
+//! `squall replay` on a page: a recorded game, with helm reports from minds that receive its
+//! pictures again.
 
 use super::page_args::PageArgs;
 use super::replay_helms::ReplayHelms;
@@ -39,12 +40,12 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// A recording as a page shows it.
+/// Opens a recording for a page.
 pub(crate) fn show(file: &Path) -> Result<ReplayView> {
     show_about(file, None)
 }
 
-/// The same with a sentence about where it comes from.
+/// Opens a recording for a page, with a sentence about its origin.
 pub(crate) fn show_about(file: &Path, about: Option<String>) -> Result<ReplayView> {
     let recording = Arc::new(replay_command::open(file)?);
     let recorded = Recorded::new(Arc::clone(&recording), file.display().to_string());

@@ -1,4 +1,5 @@
-//! The helm reports of a replay: minds decide again, and what they order is compared with the recording.
+//! The helm reports of a replay: minds decide again, and their orders are compared with the
+//! recording.
 
 use crate::minds::Minds;
 use messages::Order;
@@ -10,24 +11,24 @@ use shore::page::replay::Helms;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// The minds of a recorded game, and what was recorded of their orders.
+/// The minds of a recorded game, and their recorded orders.
 pub(super) struct ReplayHelms {
     minds: Minds,
     recording: Arc<Recording>,
-    /// The places of the inputs that came of each decision.
+    /// Index of the recorded inputs for each decision.
     inputs: BTreeMap<u64, usize>,
 }
 
 impl ReplayHelms {
     pub(super) fn new(recording: Arc<Recording>) -> ReplayHelms {
-        // Inputs stand with the frame that came of them, one decision later.
+        // Inputs are recorded with the frame that they result in, one decision later.
         let decision =
             |place| Some((recording.bag().message(place).read::<Inputs>().ok()?.stamp.seq.saturating_sub(1), place));
         let inputs = recording.bag().places(INPUTS).filter_map(decision).collect();
         ReplayHelms { minds: Minds::new(Arc::clone(&recording)), inputs, recording }
     }
 
-    /// The order for the vehicle at this decision, as recorded.
+    /// The recorded order for the vehicle at this decision.
     fn recorded(&self, vehicle: VehicleId, decision: u64) -> Option<Order> {
         let inputs: Inputs = self.recording.bag().message(*self.inputs.get(&decision)?).read().ok()?;
         inputs.inputs.iter().rev().find_map(|record| match record.input() {
@@ -39,8 +40,8 @@ impl ReplayHelms {
 
 impl Helms for ReplayHelms {
     fn report(&mut self, vehicle: VehicleId, decision: u64, _functions: bool) -> HelmAnswer {
-        // Decided again: to record all objective functions would be megabytes a second, and
-        // strategies are deterministic. The recorded order says whether that is so.
+        // Decide again: recording all objective functions would take megabytes a second, and
+        // strategies are deterministic. Comparison with the recorded order verifies this.
         let Some(order) = self.minds.decide(vehicle, decision) else {
             let reason = "no picture of this moment was recorded".to_owned();
             return HelmAnswer { reason: Some(reason), computed: true, ..HelmAnswer::default() };
@@ -56,7 +57,7 @@ impl Helms for ReplayHelms {
     fn modes(&mut self, decision: u64) -> Vec<Option<String>> {
         let vehicles = (0..self.recording.scenario().vehicles.len()).map(VehicleId::at);
         let mode = |vehicle: VehicleId| {
-            // Its mates have decided with the first of a team.
+            // The team's first query has already advanced its teammates.
             let (report, _) = self.minds.report_of(vehicle, decision)?;
             Some(report.mode).filter(|mode| !mode.is_empty())
         };

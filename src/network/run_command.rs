@@ -51,14 +51,14 @@ pub(crate) struct DemoArgs {
     page: PageArgs,
 }
 
-/// Plays a game for people who want to see one.
+/// Plays a game for people who want to watch one.
 pub(crate) fn demo(args: &DemoArgs) -> Result<ExitCode> {
     let words = ["run", "surveyor_2v2", "--sea", "fresh_breeze", "--blue", "learned", "--red", "strategy_3", "--view"];
     let matches = Args::augment_args(clap::Command::new("demo")).try_get_matches_from(words)?;
     run(&Args { page: args.page.opened(), ..Args::from_arg_matches(&matches)? })
 }
 
-/// As fast as a person can follow a game, simulated seconds a second.
+/// The fastest speed that a person can follow, simulated seconds per second.
 const SPEED_TO_WATCH: f64 = 10.0;
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
@@ -74,7 +74,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 /// Plays games in a sim process and agent processes.
 struct Processes<'a> {
     args: &'a Args,
-    /// What shows the game, if that is asked for.
+    /// The process that shows the game, if requested.
     page: Option<ChildProcess>,
 }
 
@@ -125,7 +125,7 @@ impl Player for Processes<'_> {
         let Some(mut page) = self.page.take() else { return };
         problems.iter().for_each(|problem| screen::remark(problem));
         screen.line("the game is over; the page stays until Ctrl-C");
-        // The sim has ended, so that the recording is whole.
+        // The sim has ended, so the recording is complete.
         if let (Some(file), false) = (file, stop::is_set_soon(stop))
             && let Err(error) = page.send(&file.display().to_string())
         {
@@ -136,7 +136,7 @@ impl Player for Processes<'_> {
     }
 }
 
-/// Whether the keys of all parts of the game are there.
+/// Checks that the keys of all parts of the game exist.
 fn check_keys(args: &Args, scenario: &Scenario) -> Result<()> {
     let Some(folder) = &args.keys else { return Ok(()) };
     let mut parts = vec![Identity::Sim];
@@ -149,7 +149,7 @@ fn check_keys(args: &Args, scenario: &Scenario) -> Result<()> {
 
 fn start_page(args: &Args, game: &str, endpoint: &str) -> Result<ChildProcess> {
     let mut command = child_process::squall(&["view", "--game", game, "--connect", endpoint])?;
-    // Whoever looks at it may do what the page's own token allows.
+    // The page's viewers have the rights of the page's own token.
     child_process::give_keys(&mut command, args.keys.as_deref(), &Identity::Operator);
     args.page.give_to(&mut command);
     ChildProcess::start("the page", command, Stdio::inherit())
@@ -169,7 +169,7 @@ fn start_sim(
     ChildProcess::start("the sim", command, Stdio::piped())
 }
 
-/// Starts the agent processes. With keys, each is of one team.
+/// Starts the agent processes. With keys, each one serves a single team.
 fn start_agents(args: &Args, scenario: &Scenario, game: &str, endpoint: &str) -> Result<Vec<ChildProcess>> {
     let mut vehicles: Vec<&Vehicle> = scenario.vehicles.iter().collect();
     let is_together = |one: &&Vehicle, other: &&Vehicle| args.keys.is_none() || one.team == other.team;
@@ -188,8 +188,8 @@ fn start_agents(args: &Args, scenario: &Scenario, game: &str, endpoint: &str) ->
     crews.map(start).collect()
 }
 
-/// Shows what the sim reports until it has reported the result, or has ended. Without the page that was asked for no game
-/// begins.
+/// Shows the sim's progress until it reports the result or exits. If the requested page is missing,
+/// no game begins.
 fn follow(
     messages: &Receiver<ProgressMessage>,
     (sim, mut page, token): (&mut ChildProcess, Option<&mut ChildProcess>, Option<&Token>),
@@ -211,14 +211,14 @@ fn follow(
             Err(RecvTimeoutError::Disconnected) => return Ok(None),
             Err(RecvTimeoutError::Timeout) => {}
         }
-        // Its last words stand above.
+        // Its last output is printed above.
         if let Some(problem) = page.as_mut().and_then(|page| page.ended()).flatten() {
             bail!(problem);
         }
         if stop.load(Ordering::Relaxed) {
             sim.ask_to_stop();
             asked += 1;
-            // Three seconds and more at ten looks a second: then it is killed.
+            // After more than three seconds, at ten polls a second, it is killed.
             if asked > 30 {
                 return Ok(None);
             }

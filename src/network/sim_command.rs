@@ -80,8 +80,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         speed: args.pace.speed,
         stop: stop.clone(),
     };
-    // Before the sim answers anybody: whoever finds the game finds its token. Where it cannot be registered, others must be told
-    // where the game is; nothing else is lost.
+    // Register before the sim answers: a node that finds the game also finds its token. If
+    // registration fails, users must pass the game's address; nothing else is lost.
     let registration = bus::register(&entry).ok();
     let tell = &mut |message| printer.print(message);
     let mut report = sim::node::serve(&scenario, seed, &settings, recorder.as_mut(), tell)?;
@@ -91,7 +91,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let (cut_short, problem) = (report.run.cut_short, report.run.recording_problem.clone());
     printer.end(ProgressMessage::Done(Box::new(report)));
     written?;
-    // A parent knows from the report, and says so itself.
+    // The parent reads it from the report and prints it itself.
     if let (Some(problem), false) = (problem, args.for_parent) {
         bail!(problem);
     }

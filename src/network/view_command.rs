@@ -1,4 +1,4 @@
-//! `squall view`: on a page, a running game from any machine, or a report with its games.
+//! `squall view`: shows a running game from any machine, or a report with its games, on a page.
 
 use super::page_args::{self, PageArgs};
 use super::replay_command;
@@ -39,7 +39,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let stop = stop::on_ctrl_c()?;
     let recordings = args.for_parent.then(|| stop::with_parent(&stop));
     let page = args.page.open(&stop)?;
-    // Who started us starts the game as well.
+    // A parent process starts the game itself, so it does not need these remarks.
     let is_told = !args.for_parent;
     let tell = Box::new(move |problem: &str| {
         if is_told {
@@ -67,7 +67,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Shows a report, or a recording, until Ctrl-C.
+/// Shows a report or a recording until Ctrl-C.
 fn show_report(args: &Args, path: &Path) -> Result<ExitCode> {
     if args.for_parent {
         bail!("a report is shown to people");

@@ -1,4 +1,4 @@
-//! `squall watch`: a running game in the terminal, or one boat's helm.
+//! `squall watch`: shows a running game, or one boat's helm, in the terminal.
 
 use crate::screen;
 use crate::stop;
@@ -35,9 +35,9 @@ pub(crate) struct Args {
     rate: u8,
 }
 
-/// After so long without a frame the sim is asked whether it is still there.
+/// After this long without a frame, query whether the sim is still running.
 const SILENCE: Duration = Duration::from_secs(3);
-/// Events that stay on the screen.
+/// How many events stay on the screen.
 const EVENTS: usize = 6;
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
@@ -52,13 +52,13 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What has come since the last picture.
+/// Data received since the last picture.
 #[derive(Default)]
 struct Seen {
     frame: Option<Frame>,
-    /// Frames so far.
+    /// Number of frames so far.
     count: u64,
-    /// The newest events.
+    /// The newest events, oldest first.
     events: VecDeque<Logged>,
 }
 
@@ -73,7 +73,7 @@ impl Seen {
     }
 }
 
-/// Shows the field until the game is over, this often.
+/// Shows the field at this interval until the game is over.
 fn watch_field(observer: &Observer, pause: Duration, stop: &AtomicBool) -> Result<()> {
     let Observer { bus, game, info } = observer;
     let seen = Arc::new(Watched::new(Seen::default()));
@@ -87,7 +87,7 @@ fn watch_field(observer: &Observer, pause: Duration, stop: &AtomicBool) -> Resul
         seen.wait(SILENCE, |seen| seen.frame.is_some());
         let (frame, count, events) = seen.visit(|seen| (seen.frame.take(), seen.count, seen.events.clone()));
         let Some(frame) = frame else {
-            // A game that is paused sends no frames.
+            // A paused game sends no frames.
             if stop.load(Ordering::Relaxed) || observer.is_on()? {
                 continue;
             }
@@ -113,19 +113,19 @@ fn sentence(scenario: &Scenario, logged: &Logged) -> String {
     format!("{:>7.1} s  {}", event.at_s, event.sentence())
 }
 
-/// Frames and simulated seconds a second, since the last reading.
+/// Measures frames and simulated seconds per second since the last reading.
 struct Meter {
     then: Instant,
-    /// Nothing before the first reading.
+    /// Time of the last reading; `None` before the first.
     sim: Option<SimTime>,
     frames: u64,
 }
 
-/// What a meter reads.
+/// The rates that a meter reads.
 pub(crate) struct Rates {
-    /// Frames received a second.
+    /// Frames received per second.
     pub(crate) frames_hz: f64,
-    /// Simulated seconds a second.
+    /// Simulated seconds per second.
     pub(crate) factor: f64,
 }
 

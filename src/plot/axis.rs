@@ -1,14 +1,14 @@
-//! An axis of a panel: where it has labels.
+//! The axis of a panel, with its label positions.
 
 use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
 use std::ops::Range;
 
-/// Labels of an axis, at most.
+/// Maximum number of labels on an axis.
 const LABELS: f64 = 9.0;
-/// Steps between labels of angles, degrees.
+/// Allowed steps between labels of angles, degrees.
 const ANGLES_DEG: [f64; 12] = [1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0, 90.0, 180.0, 360.0, 720.0, 1800.0];
 
-/// An axis with labels at multiples of 1, 2 or 5; of angles at those that a compass has.
+/// An axis with labels at multiples of 1, 2 or 5; for angles, at compass steps.
 pub(crate) struct Axis {
     range: (f64, f64),
     labels: Vec<f64>,
@@ -17,7 +17,7 @@ pub(crate) struct Axis {
 }
 
 impl Axis {
-    /// The axis of this name and unit over a range that is not empty.
+    /// The axis with this name and unit over a non-empty range.
     pub(crate) fn new(name: &str, range: (f64, f64)) -> Axis {
         let wide = range.1 - range.0;
         let is_enough = |step: &f64| wide / step <= LABELS;

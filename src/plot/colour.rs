@@ -1,13 +1,14 @@
-//! The colours of teams: those of the page, read from its style sheet, so that both have one table.
+//! The colours of teams, read from the page's style sheet so that both share one table.
 
 use plotters::style::RGBColor;
 
-/// Declares them as custom properties; of two of a name the first, which is for light ground, counts.
+/// Declares the colours as custom properties. The first declaration of a name, for light
+/// backgrounds, counts.
 const STYLE_SHEET: &str = include_str!("../../crates/shore/web/style.css");
-/// How many colours the page has for teams.
+/// Number of team colours of the page.
 const TEAMS: usize = 4;
 
-/// The colour of a team, the custom property `--team-N: #rrggbb;`.
+/// The colour of a team: the custom property `--team-N: #rrggbb;`.
 pub(crate) fn of_team(team: usize) -> RGBColor {
     let name = format!("--team-{}: #", team % TEAMS);
     let (_, rest) = STYLE_SHEET.split_once(&name).expect("the style sheet has this colour");

@@ -1,4 +1,4 @@
-//! A chart of the field with tracks on it, as SVG and PNG files.
+//! A chart of the field with tracks, as SVG and PNG files.
 
 use crate::plot::{Area, Drawing, Drawn, FONT};
 use plotters::prelude::*;
@@ -6,52 +6,52 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use primitives::{Ned, math};
 use rules::field::{Field, Obstacle};
 
-/// A chart.
+/// A chart of the field.
 pub(crate) struct Chart<'a> {
-    /// What stands on top.
+    /// The title above the chart.
     pub(crate) title: String,
     /// The field.
     pub(crate) field: &'a Field,
-    /// Names and colours of the teams.
+    /// Name and colour of each team.
     pub(crate) teams: Vec<(String, RGBColor)>,
-    /// What boats sailed.
+    /// The tracks of the boats.
     pub(crate) tracks: Vec<Track>,
-    /// Where something happened.
+    /// Places of events.
     pub(crate) spots: Vec<Spot>,
 }
 
-/// What a boat sailed.
+/// The track of a boat.
 pub(crate) struct Track {
-    /// What stands at its start; nothing where it would be too many names.
+    /// The label at its start; empty if there would be too many labels.
     pub(crate) name: String,
     /// Its colour.
     pub(crate) colour: RGBColor,
-    /// From the start on.
+    /// Positions from the start on.
     pub(crate) places: Vec<Ned>,
 }
 
-/// Where something happened.
+/// The place of an event.
 pub(crate) struct Spot {
-    /// What.
+    /// What happened there.
     pub(crate) symbol: Symbol,
-    /// Where.
+    /// Its position.
     pub(crate) at: Ned,
-    /// In the colour of whoever it happened to.
+    /// The colour of the team concerned.
     pub(crate) colour: RGBColor,
 }
 
-/// What a spot looks like.
+/// The symbol of a spot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Symbol {
     /// A ring: a boat's start.
     Start,
-    /// A triangle: a flag was taken.
+    /// A triangle: a flag was grabbed.
     Grab,
-    /// A star: a flag was brought in.
+    /// A star: a flag was captured.
     Capture,
     /// A cross: a boat was tagged.
     Tag,
-    /// A flag on its staff: where one stands.
+    /// A flag on its staff: the position of a flag.
     Flag,
 }
 
@@ -63,29 +63,30 @@ const LEGEND: [(Symbol, &str); 5] = [
     (Symbol::Tag, "tagged"),
 ];
 
-/// What the water may take up at most, pixels.
+/// Maximum size of the water, pixels.
 const WATER_MAX: (f64, f64) = (1100.0, 820.0);
-/// Room for the title, the legend, the labels at the left and below, and around it all, pixels.
+/// Margins for title, legend, labels at the left and below, and the border, pixels.
 const TITLE: u32 = 48;
 const BELOW: u32 = 44;
 const LABELS: (u32, u32) = (64, 42);
 const MARGIN: u32 = 24;
 const GREY: RGBColor = RGBColor(90, 90, 90);
-/// Tracks are drawn no finer than this, pixels.
+/// Resolution of tracks, pixels.
 const FINE: f64 = 0.7;
 
-/// What part of the world is shown, and how large.
+/// The visible part of the world, and its scale.
 pub(super) struct View {
     pub(super) east_m: (f64, f64),
     pub(super) north_m: (f64, f64),
-    /// Pixels.
+    /// Width and height of the water, pixels.
     pub(super) water: (u32, u32),
-    /// Its corner at the top left, pixels.
+    /// The top left corner of the water, pixels.
     pub(super) corner: (u32, u32),
 }
 
 impl View {
-    /// The field and all tracks, with some water around, a metre as long either way.
+    /// A view of the field and all tracks with a margin of water, at the same scale in both
+    /// directions.
     fn of(chart: &Chart<'_>) -> View {
         let corners = chart.field.corners.iter();
         let places = corners.chain(chart.tracks.iter().flat_map(|track| &track.places));
@@ -98,7 +99,7 @@ impl View {
         let margin_m = 0.04 * (high - low).length();
         let (wide_m, high_m) = (high.east - low.east + 2.0 * margin_m, high.north - low.north + 2.0 * margin_m);
         let pixels_per_m = f64::min(WATER_MAX.0 / wide_m, WATER_MAX.1 / high_m);
-        // The legend needs a certain width however narrow the field is.
+        // The legend needs a minimum width, however narrow the field is.
         let wide = (wide_m * pixels_per_m).max(560.0);
         let middle_m = 0.5 * (low.east + high.east);
         let half_m = 0.5 * wide / pixels_per_m;
@@ -114,7 +115,7 @@ impl View {
         (self.water.0 + LABELS.0 + 2 * MARGIN, TITLE + self.water.1 + LABELS.1 + BELOW + MARGIN)
     }
 
-    /// A place in pixels.
+    /// A position in pixels.
     pub(super) fn pixel(&self, at: Ned) -> (i32, i32) {
         let right = (at.east - self.east_m.0) / (self.east_m.1 - self.east_m.0) * f64::from(self.water.0);
         let down = (self.north_m.1 - at.north) / (self.north_m.1 - self.north_m.0) * f64::from(self.water.1);
@@ -147,14 +148,14 @@ impl Drawing for Chart<'_> {
     }
 }
 
-/// The frame of the water with metres beside it.
+/// Draws the frame of the water with its scales in metres.
 fn draw_axes<B: DrawingBackend>(root: &Area<B>, view: &View) -> Drawn<B> {
     let area = root.margin(TITLE, BELOW + MARGIN, MARGIN, MARGIN);
     let mut axes = ChartBuilder::on(&area)
         .x_label_area_size(LABELS.1)
         .y_label_area_size(LABELS.0)
         .build_cartesian_2d(view.east_m.0..view.east_m.1, view.north_m.0..view.north_m.1)?;
-    // What is drawn is placed by the view: the axes must agree with it.
+    // The view places everything that is drawn: the axes must agree with it.
     for (east_m, north_m) in [(view.east_m.0, view.north_m.0), (view.east_m.1, view.north_m.1)] {
         let (on_axes, drawn) =
             (axes.backend_coord(&(east_m, north_m)), view.pixel(Ned { north: north_m, east: east_m }));
@@ -175,7 +176,7 @@ fn draw_axes<B: DrawingBackend>(root: &Area<B>, view: &View) -> Drawn<B> {
         .draw()
 }
 
-/// Zones in their teams' colours, the outline, the scrimmage line, and what stands in the water.
+/// Draws zones in their teams' colours, the outline, the scrimmage line, and obstacles.
 pub(super) fn draw_field<B: DrawingBackend>(
     root: &Area<B>,
     field: &Field,
@@ -202,12 +203,13 @@ pub(super) fn draw_field<B: DrawingBackend>(
     Ok(())
 }
 
-/// Whether a place can be drawn: not what a damaged recording says, or a boat whose numbers went bad.
+/// Whether a position can be drawn: false for positions from a damaged recording or a boat with
+/// non-finite numbers.
 pub(super) fn is_drawn(place: &Ned) -> bool {
     [place.north, place.east].iter().all(|number| number.abs() < 1e6)
 }
 
-/// The places of a track in pixels, without those that change nothing.
+/// The pixels of a track, without points that change nothing.
 pub(super) fn fine(places: &[Ned], view: &View) -> Vec<(i32, i32)> {
     let least_m = FINE * (view.east_m.1 - view.east_m.0) / f64::from(view.water.0);
     let mut kept: Vec<Ned> = vec![];
@@ -255,7 +257,7 @@ pub(super) fn draw_symbol<B: DrawingBackend>(
     }
 }
 
-/// The corners of a star.
+/// The corners of a star, relative to its centre.
 fn star(radius: f64) -> Vec<(i32, i32)> {
     let corner = |i: i32| {
         let (sin, cos) = math::sin_cos_deg(36.0 * f64::from(i));
@@ -265,12 +267,13 @@ fn star(radius: f64) -> Vec<(i32, i32)> {
     (0..10).map(corner).collect()
 }
 
-/// Names beside the starts, on a light ground so that tracks do not hide them.
+/// Draws names beside the starts on a light background, so that tracks do not hide them.
 fn draw_names<B: DrawingBackend>(root: &Area<B>, chart: &Chart<'_>, view: &View) -> Drawn<B> {
     for track in chart.tracks.iter().filter(|track| !track.name.is_empty()) {
         let Some(start) = track.places.first() else { continue };
         let at = view.pixel(*start);
-        // Away from the middle of the field there are fewer tracks, and away from the edge there is room.
+        // Place the name away from the middle of the field, where there are fewer tracks, and away
+        // from the edge, where space ends.
         let is_right = start.east > 0.5 * (view.east_m.0 + view.east_m.1);
         let (side, x) = if is_right { (HPos::Right, at.0 - 11) } else { (HPos::Left, at.0 + 11) };
         let wide = 8 + 7 * track.name.chars().count() as i32;

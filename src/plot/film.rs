@@ -1,4 +1,4 @@
-//! The chart of a moment of a game: a frame of its film.
+//! Draws one moment of a game: a frame of its film.
 
 use crate::plot::field::{Symbol, View, draw_field, draw_symbol, fine, is_drawn};
 use crate::plot::{Area, Drawing, Drawn, FONT};
@@ -7,20 +7,20 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use primitives::{Ned, math};
 use rules::field::Field;
 
-/// The page's water.
+/// The page's water colour.
 const WATER: RGBColor = RGBColor(227, 238, 244);
-/// Room for the score above the water, and around it, pixels.
+/// Height of the score above the water, and the margin around it, pixels.
 const HEAD: u32 = 40;
 const MARGIN_M: f64 = 6.0;
-/// A boat is drawn no smaller than this, pixels.
+/// Minimum length of a drawn boat, pixels.
 const HULL_LEAST: f64 = 13.0;
 
-/// What does not change in a film.
+/// The part of a film that does not change.
 pub(crate) struct Stage<'a> {
     /// The game's name.
     pub(crate) title: String,
     pub(crate) field: &'a Field,
-    /// Names and colours.
+    /// Name and colour of each team.
     pub(crate) teams: Vec<(String, RGBColor)>,
     view: View,
 }
@@ -33,7 +33,7 @@ pub(crate) struct Boat {
     pub(crate) psi_rad: f64,
     pub(crate) length_m: f64,
     pub(crate) tagged: bool,
-    /// Where it was before, up to now.
+    /// Its recent positions, up to now.
     pub(crate) trail: Vec<Ned>,
 }
 
@@ -41,15 +41,15 @@ pub(crate) struct Boat {
 pub(crate) struct Moment<'a> {
     pub(crate) stage: &'a Stage<'a>,
     pub(crate) t_s: f64,
-    /// By team.
+    /// Points by team.
     pub(crate) score: Vec<u32>,
     pub(crate) boats: Vec<Boat>,
-    /// The team of each flag, and where it is.
+    /// The team and position of each flag.
     pub(crate) flags: Vec<(usize, Ned)>,
 }
 
 impl<'a> Stage<'a> {
-    /// A field that is so wide on the picture, pixels.
+    /// A stage with a field of this width, pixels.
     pub(crate) fn new(title: String, field: &'a Field, teams: Vec<(String, RGBColor)>, width: u32) -> Stage<'a> {
         let corners = || field.corners.iter();
         let of = |pick: fn(&Ned) -> f64| {
@@ -59,7 +59,7 @@ impl<'a> Stage<'a> {
         };
         let (east_m, north_m) = (of(|at| at.east), of(|at| at.north));
         let pixels_per_m = f64::from(width) / (east_m.1 - east_m.0);
-        // A field that stands upright is no higher than it would be wide.
+        // Scale a tall field so that it is no higher than the picture is wide.
         let (wide, high) = (f64::from(width), (north_m.1 - north_m.0) * pixels_per_m);
         let scale = f64::min(1.0, wide / high);
         let water = ((wide * scale).round().max(1.0) as u32, (high * scale).round().max(1.0) as u32);
@@ -111,7 +111,7 @@ impl Moment<'_> {
         Ok(())
     }
 
-    /// A hull with a pointed bow; of a tagged boat the outline alone.
+    /// Draws a hull with a pointed bow; for a tagged boat, only the outline.
     fn draw_boat<B: DrawingBackend>(&self, water: &Area<B>, boat: &Boat) -> Drawn<B> {
         let (centre, colour) = (self.stage.view.pixel(boat.at), self.stage.colour(boat.team));
         let half = 0.5 * (boat.length_m * self.stage.pixels_per_m()).max(HULL_LEAST);

@@ -1,4 +1,4 @@
-//! A recorded game in plots: tracks on the field, the score, every boat; and two games over each other.
+//! Plots of recorded games: tracks, score and every boat; or two games overlaid.
 
 use crate::plot::field::{Chart, Spot, Symbol, Track};
 use crate::plot::{self, Line, Page, Panel, colour};
@@ -12,15 +12,15 @@ use recording::Header;
 use rules::event::Event;
 use std::path::Path;
 
-/// More boats than this have no names on the chart: they would hide it.
+/// With more boats than this, the chart has no names: they would hide it.
 const NAMES_MAX: usize = 12;
-/// A panel as wide as a page.
+/// Size of a panel as wide as a page, pixels.
 const WIDE: (u32, u32) = (1120, 300);
-/// What was ordered.
+/// The colour of ordered values.
 const ORDERED: RGBColor = RGBColor(90, 90, 90);
 const TIME: &str = "simulated time in s";
 
-/// Draws a game into files in a folder, and says how many plots there are.
+/// Draws a game into files in a folder; returns the number of plots.
 pub(crate) fn write(dir: &Path, header: &Header, series: &GameSeries) -> Result<usize> {
     plot::write_both(&dir.join("tracks"), &chart(header, series))?;
     plot::write_both(&dir.join("score"), &score(header, series))?;
@@ -30,7 +30,7 @@ pub(crate) fn write(dir: &Path, header: &Header, series: &GameSeries) -> Result<
     Ok(2 + series.boats.len())
 }
 
-/// Draws two games over each other into a file in a folder.
+/// Draws two games overlaid into a file in a folder.
 pub(crate) fn write_comparison(
     dir: &Path,
     [name_a, name_b]: [&Path; 2],
@@ -60,7 +60,7 @@ fn title(header: &Header, what: &str) -> String {
     format!("{}, seed {}: {what}", scenario.name, scenario.seed)
 }
 
-/// The colours of a team's boats: from its own to half of it in white.
+/// The colours of a team's boats: from the team colour to a mix with half white.
 fn shades(series: &GameSeries) -> Vec<RGBColor> {
     let shade = |(i, boat): (usize, &BoatSeries)| {
         let mates = |boats: &[BoatSeries]| boats.iter().filter(|other| other.team == boat.team).count();
@@ -107,7 +107,7 @@ fn chart<'a>(header: &'a Header, series: &GameSeries) -> Chart<'a> {
     }
 }
 
-/// The score as steps.
+/// The score as a step function.
 fn score(header: &Header, series: &GameSeries) -> Page {
     let steps = |team: usize| {
         let points = series.score.iter().map(|score| score.get(team).copied().unwrap_or(0));
@@ -128,7 +128,7 @@ fn score(header: &Header, series: &GameSeries) -> Page {
     Page { title: title(header, "score"), columns: 1, panel: WIDE, panels }
 }
 
-/// Speed, heading and navigation of a boat.
+/// Speed, heading and navigation error of a boat.
 fn boat_page(header: &Header, series: &GameSeries, boat: &BoatSeries) -> Page {
     let series = |of: &dyn Fn(&Sample) -> Option<f64>| -> Vec<(f64, f64)> {
         let samples = series.times_s.iter().zip(&boat.samples);
@@ -161,7 +161,7 @@ fn boat_page(header: &Header, series: &GameSeries, boat: &BoatSeries) -> Page {
     Page { title: title(header, &boat.name), columns: 1, panel: WIDE, panels }
 }
 
-/// Headings with a gap where the compass goes through north, so that no line crosses the panel.
+/// Headings with a gap where they pass north, so that no line crosses the panel.
 fn unwound(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     let mut line: Vec<(f64, f64)> = Vec::with_capacity(points.len());
     for (time_s, heading_deg) in points {

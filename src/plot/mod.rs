@@ -21,69 +21,70 @@ use std::sync::{Arc, OnceLock};
 
 /// A page of panels.
 pub(crate) struct Page {
-    /// What stands on top.
+    /// The title above the page.
     pub(crate) title: String,
     /// Panels per row.
     pub(crate) columns: usize,
-    /// Width and height of a panel, pixels.
+    /// Width and height of one panel, pixels.
     pub(crate) panel: (u32, u32),
-    /// Row by row.
+    /// Panels in row order.
     pub(crate) panels: Vec<Panel>,
 }
 
 /// One diagram with lines.
 pub(crate) struct Panel {
-    /// What it shows.
+    /// The title of the panel.
     pub(crate) title: String,
     /// Name and unit along the horizontal axis.
     pub(crate) x: String,
     /// Name and unit along the vertical axis.
     pub(crate) y: String,
-    /// Whether a metre is as long on both axes: for maps.
+    /// Whether both axes have the same scale, for maps.
     pub(crate) equal: bool,
-    /// What is drawn.
+    /// The lines to draw.
     pub(crate) lines: Vec<Line>,
-    /// What is said where nothing is drawn.
+    /// The text in place of an empty panel.
     pub(crate) absent: &'static str,
-    /// Places that are pointed out.
+    /// Named points in the panel.
     pub(crate) marks: Vec<Mark>,
 }
 
 impl Panel {
-    /// Its lines, each with its colour.
+    /// Its lines with their colours.
     fn coloured(&self) -> impl Iterator<Item = (&Line, RGBColor)> {
         self.lines.iter().zip(COLOURS.iter().cycle()).map(|(line, colour)| (line, line.colour.unwrap_or(*colour)))
     }
 
-    /// A diagram of these lines, with axes of their own and nothing pointed out. Without lines it says what is absent.
+    /// A panel with these lines, independent axes and no marks. Without lines it shows the text
+    /// `absent`.
     pub(crate) fn of(title: &str, [x, y]: [&str; 2], lines: Vec<Line>, absent: &'static str) -> Panel {
         Panel { title: title.into(), x: x.into(), y: y.into(), equal: false, lines, absent, marks: vec![] }
     }
 }
 
-/// A line through points; where a number is not finite it has a gap.
+/// A line through points, with a gap at every non-finite number.
 #[derive(Default)]
 pub(crate) struct Line {
-    /// What the legend calls it; without a name it is not in there.
+    /// Its name in the legend; an unnamed line is not listed.
     pub(crate) name: String,
-    /// Horizontal and vertical.
+    /// Points: horizontal and vertical value.
     pub(crate) points: Vec<(f64, f64)>,
-    /// Whether what lies between it and 0 is filled.
+    /// Whether the area between the line and 0 is filled.
     pub(crate) filled: bool,
-    /// Its colour; none is that of its place among the lines.
+    /// Its colour; by default that of its position among the lines.
     pub(crate) colour: Option<RGBColor>,
 }
 
-/// A dot with a name beside it.
+/// A named dot.
 pub(crate) struct Mark {
-    /// What it is called.
+    /// The text beside the dot.
     pub(crate) name: String,
-    /// Horizontal and vertical.
+    /// Horizontal and vertical value.
     pub(crate) at: (f64, f64),
 }
 
 impl Line {
-    /// A line with nothing under it.
+    /// An unfilled line.
     pub(crate) fn of(name: &str, points: Vec<(f64, f64)>) -> Line {
         Line { name: name.into(), points, ..Line::default() }
     }
@@ -94,11 +95,12 @@ pub(crate) const PANEL: (u32, u32) = (560, 400);
 pub(crate) const TITLE_HEIGHT: u32 = 44;
 pub(crate) const FONT: &str = "sans-serif";
 const CAPTION: (&str, u32) = (FONT, 16);
-/// Where a panel's title begins, the height of a row of it, and the length of a line beside its name, pixels.
+/// Left edge of a panel's title, height of a title row, and length of a line sample in the legend,
+/// pixels.
 const HEADER_LEFT: i32 = 76;
 const HEADER_ROW: i32 = 22;
 const KEY: i32 = 18;
-/// How much of a line's colour is in what it fills.
+/// Opacity of filled areas.
 const FILLING: f64 = 0.25;
 /// Colours that people with any colour vision tell apart (Okabe and Ito 2008).
 pub(crate) const COLOURS: [RGBColor; 6] = [
@@ -110,46 +112,46 @@ pub(crate) const COLOURS: [RGBColor; 6] = [
     RGBColor(90, 90, 90),
 ];
 
-/// Where something is drawn.
+/// A drawing area.
 pub(crate) type Area<B> = DrawingArea<B, Shift>;
 
-/// Something that can be drawn into a file.
+/// A drawing that can be written to a file.
 pub(crate) trait Drawing {
     /// Width and height, pixels.
     fn size(&self) -> (u32, u32);
 
-    /// Draws it onto a white ground of this size.
+    /// Draws it on a white background of this size.
     fn draw<B: DrawingBackend>(&self, root: &Area<B>) -> Drawn<B>;
 }
 
-/// What comes of drawing.
+/// The result of drawing.
 pub(crate) type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
 
-/// Draws as the text of an SVG.
+/// The drawing as SVG text.
 pub(crate) fn svg(drawing: &impl Drawing) -> anyhow::Result<String> {
     let mut svg = String::new();
     draw_on(SVGBackend::with_string(&mut svg, drawing.size()), drawing).context("cannot draw")?;
     Ok(svg)
 }
 
-/// Draws into an SVG file.
+/// Writes the drawing to an SVG file.
 pub(crate) fn write_svg(path: &Path, drawing: &impl Drawing) -> anyhow::Result<()> {
     let svg = svg(drawing).with_context(|| path.display().to_string())?;
     output_file::write(path, "the plot", svg)
 }
 
-/// Draws into a PNG file.
+/// Writes the drawing to a PNG file.
 pub(crate) fn write_png(path: &Path, drawing: &impl Drawing) -> anyhow::Result<()> {
     let picture = pixels(drawing).and_then(|picture| Ok(picture.encode_png()?));
     output_file::write(path, "the plot", picture.with_context(|| format!("cannot draw {}", path.display()))?)
 }
 
-/// Draws as pixels.
+/// The drawing as pixels.
 pub(crate) fn pixels(drawing: &impl Drawing) -> anyhow::Result<Pixmap> {
     pixels_of(&svg(drawing)?)
 }
 
-/// What an SVG shows, each of its pixels one of the picture.
+/// Renders an SVG, one picture pixel for each of its pixels.
 fn pixels_of(svg: &str) -> anyhow::Result<Pixmap> {
     static FONTS: OnceLock<Arc<fontdb::Database>> = OnceLock::new();
     let fonts = FONTS.get_or_init(|| {
@@ -166,7 +168,7 @@ fn pixels_of(svg: &str) -> anyhow::Result<Pixmap> {
     Ok(picture)
 }
 
-/// Draws into an SVG and a PNG file of this name.
+/// Writes the drawing to an SVG and a PNG file with this name.
 pub(crate) fn write_both(stem: &Path, drawing: &impl Drawing) -> anyhow::Result<()> {
     write_svg(&stem.with_extension("svg"), drawing)?;
     write_png(&stem.with_extension("png"), drawing)
@@ -238,7 +240,7 @@ fn draw_lines<B: DrawingBackend>(area: &Area<B>, panel: &Panel) -> Drawn<B> {
     }
     let rises = rises(&panel.marks);
     for mark in panel.marks.iter().filter(|mark| mark.at.0.is_finite() && mark.at.1.is_finite()) {
-        // The name goes where there is room for it, and not onto the line from mark to mark.
+        // Put the name on the side with more room, and off the line between marks.
         let (side, right) = if mark.at.0 > 0.5 * (x0 + x1) { (HPos::Right, -1) } else { (HPos::Left, 1) };
         let style = (FONT, 12).into_font().into_text_style(&area).pos(Pos::new(side, VPos::Center));
         let name = Text::new(mark.name.clone(), (7 * right, if rises { 6 * right } else { -6 * right }), style);
@@ -247,7 +249,8 @@ fn draw_lines<B: DrawingBackend>(area: &Area<B>, panel: &Panel) -> Drawn<B> {
     Ok(())
 }
 
-/// The title and, beside it or in rows below, the names of the lines; gives what is left of the area.
+/// Draws the title and the names of the lines, beside it or in rows below; returns the rest of the
+/// area.
 fn draw_header<B: DrawingBackend>(
     area: &Area<B>,
     panel: &Panel,
@@ -274,7 +277,7 @@ fn draw_header<B: DrawingBackend>(
     Ok(area.split_vertically(HEADER_ROW * (rows + 1) + 12).1)
 }
 
-/// A panel of what there is not.
+/// Draws a panel that has no data.
 fn draw_absent<B: DrawingBackend>(area: &Area<B>, panel: &Panel) -> Drawn<B> {
     let area = area.margin(12, 12, 12, 24).titled(&panel.title, CAPTION)?;
     let (wide, high) = area.dim_in_pixel();
@@ -284,11 +287,11 @@ fn draw_absent<B: DrawingBackend>(area: &Area<B>, panel: &Panel) -> Drawn<B> {
     area.draw(&Text::new(panel.absent, (wide as i32 / 2, high as i32 / 2), style))
 }
 
-/// What a panel shows horizontally and vertically.
+/// The horizontal and vertical range of a panel.
 fn ranges(panel: &Panel, size: (u32, u32)) -> ((f64, f64), (f64, f64)) {
     let ((mut x0, mut x1), (mut y0, mut y1)) = (extent(panel, &panel.x, |p| p.0), extent(panel, &panel.y, |p| p.1));
     if panel.equal {
-        // What labels leave of the panel.
+        // The size of the panel without the labels.
         let (wide, high) = (f64::from(size.0) - 100.0, f64::from(size.1) - 52.0);
         let metres_per_pixel = f64::max((x1 - x0) / wide, (y1 - y0) / high);
         (x0, x1) = about_middle(x0, x1, wide * metres_per_pixel);
@@ -297,25 +300,25 @@ fn ranges(panel: &Panel, size: (u32, u32)) -> ((f64, f64), (f64, f64)) {
     ((x0, x1), (y0, y1))
 }
 
-/// Whether marks go up from left to right.
+/// Whether the marks rise from left to right.
 fn rises(marks: &[Mark]) -> bool {
     let (Some(first), Some(last)) = (marks.first(), marks.last()) else { return true };
     (last.at.0 - first.at.0) * (last.at.1 - first.at.1) >= 0.0
 }
 
-/// The outline of what lies between a line and 0.
+/// The outline of the area between a line and 0.
 fn down_to_0(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let ends = [points.last(), points.first()];
     points.iter().copied().chain(ends.into_iter().flatten().map(|end| (end.0, 0.0))).collect()
 }
 
-/// What can be drawn without gaps.
+/// The runs of a line without gaps.
 fn pieces(points: &[(f64, f64)]) -> Vec<&[(f64, f64)]> {
     points.split(|point| !(point.0.is_finite() && point.1.is_finite())).filter(|piece| !piece.is_empty()).collect()
 }
 
-/// The range of a panel's points in one direction, with a margin, and no narrower than what counts of its unit: a millimetre is no error of
-/// a boat's navigation.
+/// The range of a panel's points in one direction, with a margin, and no narrower than the
+/// meaningful minimum for its unit: a millimetre is not a navigation error.
 fn extent(panel: &Panel, axis: &str, of: impl Fn(&(f64, f64)) -> f64) -> (f64, f64) {
     if axis == COMPASS {
         return (0.0, 360.0);
@@ -326,29 +329,30 @@ fn extent(panel: &Panel, axis: &str, of: impl Fn(&(f64, f64)) -> f64) -> (f64, f
         return (0.0, 1.0);
     }
     let least = LEAST.iter().find(|(unit, _)| axis == *unit).map_or(0.0, |(_, least)| *least);
-    // A constant gets a tenth of itself above and below it, and a line of nothing but rounding is a constant.
+    // A constant gets a margin of a tenth of its value on each side; a line that varies only by
+    // rounding is a constant.
     let constant = 0.2 * if low == 0.0 && high == 0.0 { 1.0 } else { low.abs().max(high.abs()) };
     let is_constant = high - low < 1e-6 * constant;
     let wide = (1.1 * (high - low)).max(if is_constant { constant } else { 0.0 }).max(least);
     about_middle(low, high, wide)
 }
 
-/// What an axis of compass headings is called.
+/// The axis title for compass headings.
 pub(crate) const COMPASS: &str = "compass heading in degrees";
 
-/// The least width of an axis, by its unit.
+/// Minimum range of an axis, by unit.
 const LEAST: [(&str, f64); 5] = [("m", 0.2), ("m/s", 0.2), ("degrees", 2.0), ("degrees per s", 1.0), ("N", 1.0)];
 
-/// The range widened about its middle.
+/// The range, widened around its middle.
 fn about_middle(low: f64, high: f64, width: f64) -> (f64, f64) {
     let middle = 0.5 * (low + high);
     (middle - 0.5 * width, middle + 0.5 * width)
 }
 
-/// Gives the plotting library the letters that it measures texts by and draws into pictures.
+/// Registers the font with which the plotting library measures texts and draws into pictures.
 fn provide_font() {
     let font = epaint_default_fonts::UBUNTU_LIGHT;
-    // It cannot fail with a font that is one; a plot without letters would say so itself.
+    // Registration fails only for an invalid font; a plot would then report it.
     drop(plotters::style::register_font(FONT, FontStyle::Normal, font));
 }
 

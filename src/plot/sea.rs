@@ -1,4 +1,4 @@
-//! A sea on one page: its spectrum, the surface, the wind, and where it takes a boat that nobody steers.
+//! A sea on one page: its spectrum, the surface, the wind, and the drift of an unsteered boat.
 
 use crate::plot::{self, Line, Mark, Page, Panel};
 use anyhow::Result;
@@ -8,28 +8,32 @@ use sim::sea::{Band, SeaModel, band, spectrum};
 use std::path::Path;
 use trial::Sample;
 
-/// Bands of the spectrum: near the peak of a JONSWAP spectrum it takes 0.15 of the peak frequency to tell its shape.
+/// Number of spectrum bands: showing the shape of a JONSWAP peak takes bands of 0.15 of the peak
+/// frequency.
 const BANDS: usize = 30;
-/// Points of the spectrum that was asked for.
+/// Number of points of the nominal spectrum.
 const CURVE: usize = 600;
-/// How long the surface is shown, peak periods, and in how many steps a period: ten of the shortest waves'.
+/// Duration of the surface plot in peak periods, and steps per period: ten per period of the
+/// shortest waves.
 const ELEVATION_PERIODS: u32 = 20;
 const ELEVATION_STEPS: u32 = 50;
-/// How long the wind is shown, and in what steps, s.
+/// Duration and time step of the wind plot, s.
 const WIND_S: u32 = 600;
 const WIND_STEPS_PER_S: u32 = 2;
-/// A mark on the track this often, s.
+/// Interval of marks on the track, s.
 const MARK_S: f64 = 60.0;
 /// A boat that stays within this distance has not drifted, m.
 const STAYS_M: f64 = 0.01;
 
-/// Draws a sea into a file: as its file states it, as it is, and with the track of a boat that nobody steers, from the datum.
+/// Draws a sea into a file: the spectrum specified in its file, the realised sea, and the track of
+/// an unsteered boat from the datum.
 pub(crate) fn write(path: &Path, title: String, sea: &Sea, model: &SeaModel, track: &[Sample]) -> Result<()> {
     let panels = vec![spectrum(sea, model), elevation(sea, model), wind(sea, model), drift(track)];
     plot::write_svg(path, &Page { title, columns: 2, panel: plot::PANEL, panels })
 }
 
-/// Bars and curve are densities alike: the area of a bar is the variance of the components in its band.
+/// Bars and curve are both densities: the area of a bar is the variance of the components in its
+/// band.
 fn spectrum(sea: &Sea, model: &SeaModel) -> Panel {
     let mut lines = vec![];
     let field = model.at_time(SimTime::ZERO);

@@ -1,4 +1,4 @@
-//! A trial on one page: track, speeds, heading and yaw rate, and what drove the boat.
+//! A trial on one page: track, speeds, heading, yaw rate, and thrusts or commands.
 
 use crate::plot::{self, Line, Page, Panel};
 use anyhow::Result;
@@ -27,7 +27,7 @@ pub(crate) fn write(path: &Path, title: &str, samples: &[Sample]) -> Result<()> 
     plot::write_svg(path, &Page { title: title.to_owned(), columns: 2, panel: plot::PANEL, panels })
 }
 
-/// Thrusts where there are thrusters; commands in per cent.
+/// Panels of thrusts if the boat has thrusters; otherwise of commands in per cent.
 fn drive(samples: &[Sample]) -> Vec<Panel> {
     let told = |which: usize| {
         move |sample: &Sample| match sample.command {

@@ -1,4 +1,4 @@
-//! A recorded game played again from what it was given, beside what was recorded.
+//! Reruns a recorded game from its inputs and compares it with the recording.
 
 use anyhow::{Result, bail};
 use messages::Frame;
@@ -10,15 +10,15 @@ use scenario::Scenario;
 use serde_json::Value;
 use sim::Contest;
 
-/// What came of it.
+/// The result of the comparison.
 #[derive(Debug)]
 pub(super) struct Verdict {
     pub(super) is_same: bool,
-    /// A line for people.
+    /// The result in one line.
     pub(super) text: String,
 }
 
-/// Plays the game again, and tells of every frame.
+/// Reruns the game; calls `tell` after every frame.
 pub(super) fn check(recording: &Recording, mut tell: impl FnMut()) -> Result<Verdict> {
     let scenario = recording.scenario();
     let (mut contest, mut shown) = (Contest::new(scenario, scenario.seed)?, EventCursor::default());
@@ -30,7 +30,7 @@ pub(super) fn check(recording: &Recording, mut tell: impl FnMut()) -> Result<Ver
             inputs.push(message.read::<Inputs>()?);
             continue;
         }
-        // A decision that the disk was too slow for is missing with all that it was given.
+        // If the disk was too slow, a decision is missing with all its inputs.
         let seq = frames;
         let [given] = inputs.as_slice() else { bail!("{} inputs before frame {seq}, expected one", inputs.len()) };
         if given.stamp.seq != seq {
@@ -76,11 +76,11 @@ pub(super) fn check(recording: &Recording, mut tell: impl FnMut()) -> Result<Ver
     Ok(Verdict { is_same, text })
 }
 
-/// What differs first between two frames: its name, and both values.
+/// The first difference between two frames: its name and both values.
 fn first_difference(recorded: &Frame, again: &Frame, scenario: &Scenario) -> Result<[String; 3]> {
     let (a, b) = (serde_json::to_value(recorded)?, serde_json::to_value(again)?);
     let [path, a, b] = differing("", &a, &b).unwrap_or_else(|| ["a number's last bit".into(), "?".into(), "?".into()]);
-    // A boat by its name.
+    // Replace a boat's index with its name.
     let name = path.strip_prefix(".vehicles.").and_then(|rest| {
         let (index, rest) = rest.split_once('.').unwrap_or((rest, ""));
         let vehicle = scenario.vehicles.get(index.parse::<usize>().ok()?)?;
@@ -112,7 +112,7 @@ mod tests {
     use rules::event::EventCursor;
     use std::io::Cursor;
 
-    /// The first second of a game with pictures that nobody wrote down; `change` may leave decisions out.
+    /// The first second of a game with unrecorded pictures; `change` may leave out decisions.
     fn recorded(change: impl Fn(Decision) -> Option<Decision>) -> Recording {
         let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/games/attack_1v1.toml");
         let scenario = scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
@@ -141,7 +141,7 @@ mod tests {
         Recording::of(file).unwrap_or_else(|e| panic!("{e}"))
     }
 
-    /// The game with another input at the end of its fifth decision.
+    /// The game with one more input at the end of its fifth decision.
     fn with(input: Input) -> Recording {
         recorded(|mut decision| {
             if decision.frame.stamp.seq == 5 {

@@ -1,4 +1,4 @@
-//! What a training leaves in its folder.
+//! The files that a training writes into its folder.
 
 use crate::output_file;
 use anyhow::{Context, Result};
@@ -10,29 +10,30 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use xxhash_rust::xxh3::xxh3_64;
 
-/// What the table of updates begins with.
+/// The header of the table of updates.
 const UPDATES: &str = "samples,stage,reward,policy_loss,value_loss,entropy,divergence,clipped,epochs\n";
-/// What the table of evaluations begins with.
+/// The header of the table of evaluations.
 const EVALUATIONS: &str = "samples,stage,opponent,won,drawn,lost,points,points_against,left_field\n";
-/// What the table of episodes begins with.
+/// The header of the table of episodes.
 const EPISODES: &str = "samples,stage,seed,team,opponent,points,points_against,steps,cut_off,recording\n";
 
-/// The length and the checksum of each table at every state that was kept: `samples,table,bytes,checksum`.
+/// The length and checksum of each table at every saved state: `samples,table,bytes,checksum`.
 const SUMS: &str = "sums.csv";
-/// The folder of recordings in that of a training.
+/// The subfolder of recordings.
 const GAMES: &str = "games";
 
 /// The folder of a training.
 pub(super) struct Files {
     folder: PathBuf,
-    /// By the file's name.
+    /// Each table's file name and its contents to write.
     tables: [(&'static str, String); 3],
-    /// The strategy through whose helm the policy plays, if there is one.
+    /// The strategy whose helm uses the policy, if there is one.
     base: Option<PathBuf>,
 }
 
 impl Files {
-    /// The folder as it is before a training, or where it is taken up again: what was written of later samples is dropped.
+    /// Opens the folder of a new or resumed training; on resuming, drops everything written after
+    /// the saved state.
     pub(super) fn open(folder: &Path, base: &Path, trainer: &Trainer) -> Result<Files> {
         let (samples, _) = trainer.samples();
         let tables = [("updates.csv", UPDATES), ("evaluations.csv", EVALUATIONS), ("episodes.csv", EPISODES)];
@@ -46,7 +47,7 @@ impl Files {
         if samples > 0 {
             let path = folder.join(SUMS);
             let text = read(&path)?;
-            // A line may have been cut off as it was written.
+            // The last line may have been cut off while it was written.
             let is_kept = |line: &&str| line.ends_with('\n') && first_number(line).is_some_and(|at| at <= samples);
             sums.extend(text.split_inclusive('\n').filter(is_kept));
             for (name, table) in &mut files.tables {
@@ -72,7 +73,7 @@ impl Files {
         Ok(files)
     }
 
-    /// The file that a training is taken up again from.
+    /// The file from which a training resumes.
     pub(super) fn state(folder: &Path) -> PathBuf {
         folder.join("state.bin")
     }
@@ -82,13 +83,13 @@ impl Files {
         folder.join(GAMES)
     }
 
-    /// The recording of an episode as a path in the folder; empty if there is none.
+    /// The path of an episode's recording relative to the folder; empty if there is none.
     fn recording(&self, one: &Finished) -> String {
         let path = format!("{GAMES}/{}", recording_name(one.standing.seed, one.number));
         if self.folder.join(&path).exists() { path } else { String::new() }
     }
 
-    /// Notes an update.
+    /// Adds an update to its table.
     pub(super) fn update(&mut self, trainer: &Trainer, progress: &Progress) -> Result<()> {
         let training = trainer.training();
         let stage = &training.stage[progress.stage].name;
@@ -129,21 +130,21 @@ impl Files {
         Ok(())
     }
 
-    /// Writes the state after so many samples, whole or not at all.
+    /// Writes the state after this many samples atomically.
     pub(super) fn keep_state(&self, samples: u64, state: &[u8]) -> Result<()> {
         let mut sums = String::new();
         for (name, _) in &self.tables {
             let table = read(&self.folder.join(name))?;
             let _ = writeln!(sums, "{samples},{name},{},{}", table.len(), checksum(&table));
         }
-        // Before the state, which needs them.
+        // Write the checksums first: the state depends on them.
         append(&self.folder.join(SUMS), sums)?;
         let (path, new) = (Files::state(&self.folder), self.folder.join("state.new"));
         output_file::write(&new, "the state", state)?;
         std::fs::rename(&new, &path).with_context(|| format!("cannot write the state to {}", path.display()))
     }
 
-    /// Writes the policy as it is, and the best one with a strategy that plays it.
+    /// Writes the current policy, and the best one with a strategy that uses it.
     pub(super) fn models(&self, trainer: &Trainer, is_best: bool) -> Result<()> {
         let model = trainer.model().context("the policy has become none")?;
         output_file::write(&self.folder.join("last.onnx"), "the policy", model)?;
@@ -166,13 +167,14 @@ fn append(path: &Path, bytes: impl AsRef<[u8]>) -> Result<()> {
     written.with_context(|| format!("cannot write to {}", path.display()))
 }
 
-/// How a strategy in any folder names this one; none if it is neither on the disk nor inside of the program.
+/// A path of this strategy that is valid in any folder; `None` if it is neither on the disk nor
+/// built in.
 fn base_for(strategy: &Path) -> Option<PathBuf> {
     let inside = || Some(tidied_path(strategy)).filter(|path| built_in(path).is_some());
     std::fs::canonicalize(strategy).ok().or_else(inside)
 }
 
-/// A text of the folder, as long as it is.
+/// Reads a text file of the folder, without a size limit.
 fn read(path: &Path) -> Result<String> {
     input_file::read_text(path, u64::MAX).with_context(|| format!("cannot read {}", path.display()))
 }

@@ -1,4 +1,4 @@
-//! `squall train`: trains a policy as a training file says.
+//! `squall train`: trains a policy according to a training file.
 
 mod files;
 
@@ -17,7 +17,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-/// The largest state, bytes: networks of the largest size, and a league of them.
+/// Size limit of a state, bytes: networks of the largest size, and a league of them.
 const STATE_BYTES_MAX: u64 = 4 << 30;
 
 /// What is trained, and where it goes.
@@ -49,7 +49,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let mut training = scenario::load_file::<learn::training::Training>(&args.training)?;
     training.seed = args.seed.unwrap_or(training.seed);
     let folder = args.out.clone().unwrap_or_else(|| Path::new("runs/train").join(&training.name));
-    // Learning takes all of them, however few games there are.
+    // Learning uses all threads, however few games there are.
     let jobs = args.jobs.threads(usize::MAX).get();
     let stop = stop::on_ctrl_c()?;
     let mut trainer = begin(args, training, &folder, jobs)?;
@@ -97,7 +97,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     finish(&trainer, &folder)
 }
 
-/// The strategy through whose helm the policy learns last, or that stands beside the training.
+/// The strategy whose helm uses the policy in the last stage, or the one beside the training file.
 fn base(file: &Path, training: &Training) -> PathBuf {
     let helm = training.stage.iter().rev().find_map(|stage| stage.helm.clone());
     let beside = || file.parent().unwrap_or(Path::new("")).join("..").join(Kind::STRATEGY.folder()).join("policy.toml");
@@ -117,7 +117,7 @@ fn begin(args: &Args, training: Training, folder: &Path, jobs: usize) -> Result<
     Ok(Trainer::new(training, jobs)?)
 }
 
-/// Records each so manieth episode; gives what becomes of that.
+/// Records every `every`-th episode; returns the recording errors.
 fn record(trainer: &mut Trainer, folder: &Path, every: NonZeroU64) -> Result<Arc<RecordingLog>> {
     let folder = Files::games(folder);
     let log = Arc::<RecordingLog>::default();
@@ -127,7 +127,7 @@ fn record(trainer: &mut Trainer, folder: &Path, every: NonZeroU64) -> Result<Arc
     Ok(log)
 }
 
-/// What an evaluation says, in a line.
+/// An evaluation in one line.
 fn line(evaluated: &Evaluated, is_best: bool) -> String {
     let against = |(name, played): &(String, Played)| {
         let ([won, drawn, lost], [own, theirs]) = (played.results, played.points);
@@ -143,7 +143,7 @@ fn line(evaluated: &Evaluated, is_best: bool) -> String {
     )
 }
 
-/// The command that plays the best policy, in the game in which it learnt last.
+/// The command that plays the best policy in the game of the last stage.
 fn play_command(trainer: &Trainer, folder: &Path) -> Option<String> {
     let (strategy, stage) = (folder.join("best.toml"), trainer.training().stage.last()?);
     let command = || format!("squall run {} --blue {}", stage.game.display(), strategy.display());

@@ -1,4 +1,4 @@
-//! A stranger on the network of a game that listens to it.
+//! A stranger on the same network as a game that listens on that network.
 
 use crate::attack::ATTACKS;
 use crate::disturbed_game::{DisturbedGame, SPEED};
@@ -10,17 +10,17 @@ use messages::Control;
 use messages::topic::GameName;
 use std::time::{Duration, Instant};
 
-/// By it a process knows that it was started on the other machine.
+/// The variable that marks a process as started on the other machine.
 const THERE: &str = "SQUALL_TEST_OTHER_MACHINE";
 
-/// Another of these tests, as a process on the second machine.
+/// Runs another of these tests in a process on the second machine.
 fn on_the_other(hosts: &Hosts, test: &str) -> Process {
     let mut command = hosts.command(1, std::env::current_exe().expect("this is a process"));
     command.args(["--exact", "--ignored"]).arg(format!("another_machine::{test}")).env(THERE, "");
     Process::start(command)
 }
 
-/// The game, for a process on the second machine; none for any other.
+/// The game, in a process on the second machine; `None` in any other process.
 fn game_there() -> Option<Target> {
     if std::env::var_os(THERE).is_none() {
         eprintln!("skipped: a process on another machine, which a test starts there");
@@ -42,7 +42,7 @@ fn connections_whose_other_end_has_vanished_keep_nobody_out() {
     let _vanished = Process::start(command);
     wait_until("it is connected", || descriptors() >= before + COUNT);
     hosts.cable("down");
-    // Each of them is closed while agents come.
+    // Each vanished connection is closed while agents join.
     std::thread::sleep(Duration::from_secs(6));
     let start = Instant::now();
     let _agents = hosts.agent(0, &FOUR);

@@ -1,4 +1,5 @@
-//! Attacks on whatever a game makes its machine hold: memory, descriptors, tables, and the patience of others.
+//! Attacks on the resources that a game's machine holds: memory, descriptors, tables, and the time
+//! of other nodes.
 
 use crate::crowd::{FILES, is_withstood, squall_with_files};
 use crate::disturbed_game::DisturbedGame;
@@ -12,10 +13,10 @@ use std::net::TcpListener;
 use std::time::{Duration, Instant};
 use zenoh::{Config, Wait};
 
-/// What the sim may hold at most, in kB, whatever is sent to it; it is 25 MB undisturbed.
+/// Upper limit of the sim's memory under any attack, kB; undisturbed it uses 25 MB.
 const MEMORY_MAX_KB: u64 = 400_000;
 
-/// An attack, by name; it stands for as long as what it gives is kept.
+/// A named attack; it lasts until its return value is dropped.
 pub(crate) type Attack = (&'static str, fn(&Target) -> Box<dyn Any>);
 
 pub(crate) const ATTACKS: [Attack; 9] = [
@@ -30,7 +31,7 @@ pub(crate) const ATTACKS: [Attack; 9] = [
     ("as many sessions as there is room for", sessions),
 ];
 
-/// Whatever anybody may publish, and what nobody but the sim hears.
+/// Topics that anybody may publish on, and topics that only the sim receives.
 const PUBLISHED: [&str; 6] = ["control", "order/x", "say/blue", "policy/blue_one", "nav/blue_one", "status/blue_one"];
 const ASKED: [&str; 5] = ["control", "join/agent/blue", "scenario", "events", "water"];
 
@@ -71,7 +72,8 @@ fn nested_json(target: &Target) -> Box<dyn Any> {
     Box::new(intruder)
 }
 
-/// Keys of up to 80 kB, which is more than zenoh can send at once: the hub learns them in two parts, and is to send the whole.
+/// Keys of up to 80 kB, more than zenoh can send at once: the hub receives them in two parts and
+/// must forward the whole.
 fn long_keys(target: &Target) -> Box<dyn Any> {
     let (intruder, listener) = (Intruder::of(target), Intruder::of(target));
     let mut kept: Vec<Box<dyn Any>> = Vec::new();
@@ -82,11 +84,11 @@ fn long_keys(target: &Target) -> Box<dyn Any> {
             let liveliness = listener.session.liveliness();
             kept.push(Box::new(liveliness.declare_subscriber(pattern).callback(drop).wait().ok()));
         }
-        // From here on the hub knows this by a number.
+        // From here on the hub refers to this key by a number.
         let known = intruder.topic(&format!("{topic}/{}", "k".repeat(40_000)));
         kept.push(Box::new(intruder.session.declare_subscriber(known).callback(drop).wait().ok()));
     }
-    // What was declared is sent by another thread.
+    // Another thread sends the declarations.
     std::thread::sleep(Duration::from_millis(500));
     for topic in ["say", "policy", "status", "order", "helm", "operate", "join"] {
         for rest in [10, 25_000, 40_000] {
@@ -114,15 +116,15 @@ fn many_declarations(target: &Target) -> Box<dyn Any> {
         }
         let helm = intruder.topic(&format!("helm/x{i}"));
         kept.push(Box::new(session.declare_queryable(helm).callback(drop).wait().ok()));
-        // The same again and again, which is allowed.
+        // Duplicate subscriptions are allowed.
         kept.push(Box::new(session.declare_subscriber(intruder.topic("frame")).callback(drop).wait().ok()));
     }
-    // What holds the session open goes last.
+    // Drop the session last: it keeps the others open.
     kept.push(Box::new(intruder));
     Box::new(kept)
 }
 
-/// A router hears of what clients only hear if they ask, and may speak for others.
+/// A router receives announcements that clients must request, and may speak for other nodes.
 fn router(target: &Target) -> Box<dyn Any> {
     let intruder = target.open("router").expect("the port is open");
     let answers =
@@ -143,7 +145,7 @@ fn half_handshakes(target: &Target) -> Box<dyn Any> {
     Box::new(target.connections(&first_words(), 1500))
 }
 
-/// What a session says first, as it says it to a listener that does not answer.
+/// The first message of a session, as sent to a listener that does not answer.
 fn first_words() -> Vec<u8> {
     let listener = TcpListener::bind("127.0.0.1:0").expect("a free port");
     let endpoint = format!("tcp/{}", listener.local_addr().expect("bound"));
@@ -174,7 +176,7 @@ fn sessions(target: &Target) -> Box<dyn Any> {
     Box::new(all)
 }
 
-/// A number of `/proc/…/status`, in kB; none where there is no such file.
+/// A value of `/proc/…/status`, kB; `None` on systems without that file.
 fn status_kb(process: &Process, name: &str) -> Option<u64> {
     let status = std::fs::read_to_string(format!("/proc/{}/status", process.0.id())).ok()?;
     status.lines().find_map(|line| line.strip_prefix(name)?.split_whitespace().nth(1)?.parse().ok())
@@ -198,7 +200,7 @@ fn no_attack_changes_the_game_or_fills_the_memory() {
 #[test]
 fn an_e_stop_gets_through_every_attack() {
     let (sim, _agents) = Sim::start_with_agents("long", &["--pace", "20x"]);
-    // Who operates a game is there before it is attacked.
+    // The operator connects before the attack.
     let operator = sim.bus();
     for (what, attack) in ATTACKS {
         let kept = attack(&Target::of(&sim));
@@ -216,7 +218,7 @@ fn an_e_stop_gets_through_every_attack() {
     sim.stop();
 }
 
-/// Who says nothing has five seconds.
+/// A silent connection is closed after five seconds.
 #[test]
 fn connections_that_say_nothing_keep_agents_out_for_seconds_only() {
     let sim = Sim::start("patient", &["--join-s", "600"]);
@@ -243,7 +245,7 @@ fn who_crowds_the_port_keeps_nobody_out_and_disturbs_nobody() {
     }
 }
 
-/// Where there is no room, those who are there go on, and others get in when there is room again.
+/// When the port is full, connected nodes continue and new ones join once there is room.
 #[test]
 fn who_waits_for_room_gets_in_when_there_is_some() {
     let sim = Sim::start("patient", &["--join-s", "600"]);

@@ -1,4 +1,5 @@
-//! A boat at the other end of a gateway's link: it reports that all is well, follows commands, and notes when which came.
+//! A boat at the other end of a gateway's link: it reports no faults, follows commands, and records
+//! their times.
 
 use gateway::emulator::{Emulator, Plan, Port};
 use gateway::nmea::{Framer, Mode, Sentence, date_and_time};
@@ -12,10 +13,10 @@ use std::time::{Duration, Instant};
 
 const TELEMETRY_EVERY: Duration = Duration::from_millis(100);
 
-/// A boat that lies still in the middle of the field.
+/// A boat at rest in the middle of the field.
 pub(crate) struct Boat {
     pub(crate) link: String,
-    /// Modes that it was commanded, and when.
+    /// The commanded modes, with their times of arrival.
     pub(crate) commands: Receiver<(Instant, Mode)>,
 }
 
@@ -30,7 +31,7 @@ impl Boat {
         Boat { link, commands }
     }
 
-    /// When the next command of this mode comes.
+    /// The time of the next command with this mode.
     pub(crate) fn next(&self, wanted: &Mode, limit: Duration) -> Instant {
         let start = Instant::now();
         loop {

@@ -1,4 +1,5 @@
-//! A game with keys: who has none, or not the right ones, does nothing at all; who has some does what is his.
+//! A game with keys: a node with missing or wrong keys can do nothing; a node with valid keys can
+//! do only what its role allows.
 
 use crate::crowd::{FILES, is_withstood, squall_with_files};
 use crate::disturbed_game::DisturbedGame;
@@ -17,7 +18,7 @@ use tempfile::TempDir;
 
 const DAY: Duration = Duration::from_secs(24 * 3600);
 
-/// Keys for everybody, for a sim on this machine.
+/// Keys for all roles, with a sim on this machine.
 fn keys(valid: Duration) -> TempDir {
     bus::restart_for_keys().expect("the tests start again");
     let folder = temporary();
@@ -27,12 +28,12 @@ fn keys(valid: Duration) -> TempDir {
     folder
 }
 
-/// A sim with keys, which needs no token.
+/// Starts a sim with keys, which needs no token.
 fn sim(keys: &TempDir, scenario: &str, args: &[&str]) -> Sim {
     sim_by(squall(&[]), keys, scenario, args)
 }
 
-/// The same by this program.
+/// Starts a sim with keys, using this program.
 fn sim_by(mut program: Command, keys: &TempDir, scenario: &str, args: &[&str]) -> Sim {
     program.env_remove(TOKEN_VARIABLE);
     let (endpoint, folder) = (free_endpoint(), keys.path().join("sim").display().to_string());
@@ -46,19 +47,19 @@ fn agent(endpoint: &str, sim: &Sim, keys: &Path, vehicles: &[&str]) -> Process {
     Process::start(command)
 }
 
-/// An agent for the boats of each team.
+/// Starts an agent for the boats of each team.
 fn agents(sim: &Sim, keys: &TempDir) -> Vec<Process> {
     let team = |name: &str, vehicles| agent(&sim.endpoint, sim, &keys.path().join(name), vehicles);
     vec![team("team-blue", &FOUR[..2]), team("team-red", &FOUR[2..])]
 }
 
-/// A session of our own program with these keys.
+/// Opens a session of our own program with these keys.
 fn node(sim: &Sim, keys: &TempDir, name: &str) -> Result<Bus, BusError> {
     let bundle = Arc::new(Bundle::load(&keys.path().join(name)).expect("good keys"));
     Bus::leaf(&Net { connect: vec![sim.endpoint.clone()], keys: Some(bundle), ..Net::default() })
 }
 
-/// zenoh's settings for TLS: whom to trust, and whose certificate to show.
+/// zenoh's TLS settings: the trusted authority and the node's own certificate.
 fn tls(trusted: &Path, shown: Option<&Path>) -> Value {
     let mut tls = json!({ "root_ca_certificate": trusted.join("authority.pem"), "verify_name_on_connect": false });
     for side in ["connect", "listen"] {
@@ -71,7 +72,7 @@ fn tls(trusted: &Path, shown: Option<&Path>) -> Value {
     tls
 }
 
-/// Who keeps to no rule of ours, but has the keys of one of us.
+/// An intruder that holds valid keys of this role.
 fn traitor(sim: &Sim, keys: &TempDir, name: &str) -> Intruder {
     let folder = keys.path().join(name);
     Target::of(sim).open_with("client", &tls(&folder, Some(&folder))).expect("its keys are good")
@@ -87,7 +88,7 @@ fn who_has_no_certificate_of_the_game_gets_no_session() {
     for mode in ["client", "router"] {
         assert!(target.open_with(mode, &tls(&trusted, None)).is_none(), "no certificate");
         assert!(target.open_with(mode, &tls(&trusted, Some(&forged))).is_none(), "of another authority");
-        // The sim's own certificate is for serving.
+        // The sim's own certificate is valid for serving only.
         assert!(target.open_with(mode, &tls(&trusted, Some(&own.path().join("sim")))).is_none(), "the sim's");
         let plain = Target { endpoint: target.endpoint.replace("tls/", "tcp/"), ..target.clone() };
         assert!(plain.open(mode).is_none(), "without TLS");
@@ -115,7 +116,7 @@ fn who_crowds_the_port_keeps_nobody_with_keys_out_and_disturbs_nobody() {
     }
 }
 
-/// Links that stand are kept: nobody is cut off in the middle of a game.
+/// Existing links are kept: nobody is disconnected in the middle of a game.
 #[test]
 fn whose_certificate_has_expired_is_let_in_no_more_and_who_plays_plays_on() {
     let (valid, start) = (Duration::from_secs(20), Instant::now());
@@ -143,7 +144,7 @@ fn a_red_agent_learns_nothing_of_blue_and_changes_nothing() {
     served.wait_for_kind("started");
     let operator = node(&served, &own, "operator").expect("good keys");
     let red = traitor(&served, &own, "team-red");
-    // Its own session would hear what it publishes.
+    // Forge from a second session: a session receives its own publications.
     let forger = traitor(&served, &own, "team-red");
     let mut game = DisturbedGame::of(served, playing, Some(operator));
     let secret =
@@ -166,7 +167,7 @@ fn a_red_agent_learns_nothing_of_blue_and_changes_nothing() {
     {
         assert_eq!(red.ask(place, request(vehicles)).len(), 0, "{place}");
     }
-    // Where it may ask, it may not ask for this.
+    // Joining is allowed, but not for these boats.
     for vehicles in [json!(["blue_one"]), json!(["red_one", "blue_one"]), json!([])] {
         let answer = red.ask("join/agent/red", request(vehicles.clone()));
         let answer: Value = serde_json::from_slice(&answer[0]).expect("JSON");
@@ -246,10 +247,11 @@ fn a_gateway_speaks_for_its_own_boat_only() {
     };
     assert!(answer("blue_one")["answer"]["Refused"].is_object());
     assert!(answer("red_one")["answer"]["Granted"].is_object());
-    // Nobody but the gateway of a boat answers for it, whatever keys he has; it hears no order to another boat.
+    // Only a boat's own gateway can answer for it, whatever keys others hold; it receives no order
+    // for another boat.
     let others = ["team-blue", "observer", "operator"].map(|name| traitor(&sim, &own, name));
     let _forged: Vec<_> = others.iter().chain([&red_one]).map(|other| other.answer("operate/blue_one")).collect();
-    // A session hears what it publishes itself.
+    // A session receives its own publications, so listen with a second one.
     let listener = traitor(&sim, &own, "gateway-red_one");
     let orders = ["external/blue_one", "**"].map(|word| listener.listen(word));
     let operator = traitor(&sim, &own, "operator");

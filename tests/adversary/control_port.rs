@@ -1,7 +1,7 @@
-//! An E-stop through the gateway's control port, on the boat's wire in time whatever befalls the game; and orders that are
-//! ahead of it.
+//! An E-stop through the gateway's control port reaches the boat's wire in time, whatever happens
+//! to the game; also tests orders ahead of the game's time.
 //!
-//! `SQUALL_TRIES=1000` measures it, and prints the distribution.
+//! `SQUALL_TRIES=1000` measures the delay and prints its distribution.
 
 use crate::boat::Boat;
 use crate::intruder::Intruder;
@@ -16,7 +16,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-/// From the request to the standby sentence on the wire.
+/// Time limit from the request to the standby sentence on the wire.
 const PROMISED: Duration = Duration::from_millis(200);
 
 /// A game, the gateway of its real boat, and the boat.
@@ -54,13 +54,14 @@ impl Rig {
         self.ask(GatewayCommand::Boat { name: "blue_one".to_owned(), command })
     }
 
-    /// Arms the boat, as soon as it can be.
+    /// Arms the boat as soon as it is ready.
     pub(crate) fn arm(&self) {
         self.tell(OperatorCommand::Release);
         wait_until("the boat is armed", || self.tell(OperatorCommand::Arm).refused.is_none());
     }
 
-    /// The boat keeps its station by itself, and is sent nothing: what comes next is meant.
+    /// Delegates station keeping to the boat. The gateway then sends nothing, so the next command
+    /// is a response.
     fn delegate(&self) {
         self.ask(GatewayCommand::Fleet(FleetCommand::Release));
         wait_until("it is fit", || {
@@ -70,7 +71,7 @@ impl Rig {
         self.boat.next(&Mode::StationKeep, LIMIT);
     }
 
-    /// From an E-stop to standby.
+    /// The time from an E-stop to standby.
     fn stops_after(&self, stop: impl FnOnce()) -> Duration {
         self.delegate();
         let asked = Instant::now();
@@ -78,7 +79,7 @@ impl Rig {
         self.boat.next(&Mode::Standby, LIMIT).saturating_duration_since(asked)
     }
 
-    /// Many times, of the boat and of the fleet by turns.
+    /// Repeats the measurement, alternating between the boat and the fleet.
     fn measure(&self, what: &str) {
         let tries: usize = std::env::var("SQUALL_TRIES").map_or(30, |text| text.parse().expect("a number"));
         let one = |i: usize| {
@@ -144,7 +145,7 @@ fn an_e_stop_is_on_the_wire_in_time_whatever_befalls_the_game() {
     flood.end();
     rig.sim.process.signal("STOP");
     rig.measure("with a suspended sim");
-    // As people do it, by the registry of this machine: nothing of the game answers.
+    // As operators do, through this machine's registry: the game itself does not respond.
     rig.delegate();
     for (vehicle, words) in [("blue_one", "an E-stop of this boat"), ("all", "of this boat and of the fleet")] {
         let mut tell = crate::support::squall(&["gateway", "tell", vehicle, "estop", "--game", &rig.sim.game]);
@@ -159,7 +160,7 @@ fn an_e_stop_is_on_the_wire_in_time_whatever_befalls_the_game() {
 
 #[test]
 fn orders_ahead_of_the_game_are_refused_and_those_of_the_sim_are_obeyed_all_the_same() {
-    // A hub that lets everybody do everything, which ours does not.
+    // A hub without access control, unlike ours.
     let dir = temporary();
     let file = dir.path().join("open.json5");
     let rules =

@@ -1,4 +1,5 @@
-//! Connections that crowd the port of a simulation that may open few files: nobody who may come in is kept out, nobody is disturbed.
+//! Crowds the port of a sim that may open few files: no authorised node is kept out, and no
+//! connected node is disturbed.
 
 use crate::intruder::Target;
 use crate::support::{Sim, squall, wait_until, wait_within};
@@ -14,17 +15,18 @@ use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// What a simulation may open; there are half as many connections more.
+/// Limits of open files for the sim; each crowd has half as many connections more.
 pub(crate) const FILES: [usize; 2] = [1024, 128];
-/// The first bytes of a TLS handshake (RFC 8446), of which there are to be 512.
+/// The start of a TLS handshake (RFC 8446) that announces 512 bytes.
 const HALF_HELLO: [u8; 11] = [0x16, 3, 1, 2, 0, 1, 0, 1, 0xfc, 3, 3];
 
-/// Who may come in is in within this time.
+/// Time limit for an authorised node to join.
 const IN: Duration = Duration::from_secs(10);
-/// Frames come ten times a second and more. A link that a busy machine leaves congested is closed, and opened again after a second.
+/// Maximum gap between frames, which come at least ten times a second. A link congested by a busy
+/// machine is closed, and reopened after a second.
 const GAP: Duration = Duration::from_secs(2);
 
-/// A crowd, by name; it is there for as long as what it gives is kept.
+/// A named crowd; it lasts until its return value is dropped.
 type Crowd = (&'static str, fn(&Target, usize) -> Box<dyn Any>);
 
 const CROWDS: [Crowd; 4] = [
@@ -34,7 +36,7 @@ const CROWDS: [Crowd; 4] = [
     ("new ones all the time", |target, count| Box::new(Stream::start(target, count))),
 ];
 
-/// New connections, as fast as the port takes them.
+/// New connections, opened as fast as the port accepts them.
 struct Stream {
     is_over: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
@@ -54,7 +56,7 @@ impl Stream {
             }
         });
         let stream = Stream { is_over, thread: Some(thread) };
-        // Until it fills all that there is to be filled.
+        // Wait until all limits are reached.
         std::thread::sleep(Duration::from_secs(5));
         stream
     }
@@ -67,7 +69,7 @@ impl Drop for Stream {
     }
 }
 
-/// The program, where it may open so many files.
+/// The program with this limit of open files.
 pub(crate) fn squall_with_files(files: usize) -> Command {
     let program = squall(&[]);
     let mut shell = Command::new("sh");
@@ -77,7 +79,7 @@ pub(crate) fn squall_with_files(files: usize) -> Command {
     shell
 }
 
-/// The longest time between two frames, in microseconds, and when the last came.
+/// The longest time between two frames, in microseconds, and when the last one arrived.
 #[derive(Default)]
 struct Gaps {
     longest_us: AtomicU64,
@@ -93,7 +95,8 @@ impl Gaps {
     }
 }
 
-/// Crowds the port of a simulation that may open so many files, in whose game this operator is, and `comes_in` tries to be.
+/// Crowds the port of a sim with this limit of open files. `operator` is connected to the game, and
+/// `comes_in` tries to join.
 pub(crate) fn is_withstood(sim: &Sim, files: usize, operator: &Bus, comes_in: &dyn Fn() -> bool) {
     let gaps = Arc::new(Gaps::default());
     let noted = Arc::clone(&gaps);

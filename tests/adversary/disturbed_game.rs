@@ -1,20 +1,20 @@
-//! Games that are attacked: they must be played, stopped and ended as if nobody were there.
+//! Games under attack: they must be played, stopped and ended as if undisturbed.
 
 use crate::support::{Process, Sim, own, result_of};
 use bus::Bus;
 use messages::Control;
 use serde_json::Value;
 
-/// In lockstep, so that any disturbance shows in the digest.
+/// In lockstep, so that any disturbance changes the digest.
 const SCENARIO: &str = "pav01_600s";
-/// Simulated seconds a second while it is attacked.
+/// Simulated seconds per second during the attack.
 pub(crate) const SPEED: &str = "2";
 
-/// A game in lockstep, slowed down so that it lasts for as long as it is attacked.
+/// A lockstep game, slowed down so that it lasts as long as the attack.
 pub(crate) struct DisturbedGame {
     pub(crate) sim: Sim,
     agents: Vec<Process>,
-    /// Who may let it go on faster, where somebody can.
+    /// A session that may speed the game up again, if there is one.
     operator: Option<Bus>,
 }
 
@@ -29,7 +29,7 @@ impl DisturbedGame {
         DisturbedGame { sim, agents, operator }
     }
 
-    /// Nobody has left, and the game goes on.
+    /// Checks that no node has left and that the game goes on.
     pub(crate) fn check(&mut self) {
         self.sim.newest_progress();
         self.sim.play_on(1.0);
@@ -38,7 +38,7 @@ impl DisturbedGame {
         }
     }
 
-    /// Plays the rest, which must be that of the undisturbed game. Gives the report.
+    /// Plays the rest, which must equal that of the undisturbed game. Returns the report.
     pub(crate) fn ends_as_if_undisturbed(mut self) -> Value {
         let undisturbed = result_of(&[&own(SCENARIO), "--in-process"])["digest"].clone();
         if let Some(operator) = &self.operator {

@@ -1,4 +1,4 @@
-//! Somebody who offers the same game: at the port of the sim, and at one of his own.
+//! An impostor that offers the same game, at the sim's port and at one of its own.
 
 use crate::disturbed_game::DisturbedGame;
 use crate::intruder::{Intruder, Target};
@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use std::sync::{Arc, Mutex};
 use zenoh::{Config, Session, Wait};
 
-/// A router of zenoh's that answers for a game, and notes what it is asked.
+/// A zenoh router that answers for a game and records the requests.
 struct FakeSim {
     _session: Session,
     asked: Arc<Mutex<Vec<String>>>,
@@ -16,7 +16,7 @@ struct FakeSim {
 }
 
 impl FakeSim {
-    /// It shows the game of the true one, and answers requests with a challenge of its own.
+    /// Imitates the true sim's game, and answers requests with its own challenge.
     fn open(endpoint: &str, true_sim: &Intruder) -> FakeSim {
         let mut config = Config::default();
         for (key, value) in [
@@ -82,7 +82,7 @@ fn a_router_that_joins_the_network_does_not_pass_for_the_sim() {
     game.ends_as_if_undisturbed();
 }
 
-/// Without keys an agent cannot know whom it has found. It gives nothing away all the same.
+/// Without keys an agent cannot verify the sim. It still discloses nothing.
 #[test]
 fn who_is_led_to_a_false_sim_tells_it_nothing_that_opens_the_true_one() {
     let sim = Sim::start("patient", &["--join-s", "600"]);
@@ -111,7 +111,7 @@ fn a_second_sim_of_the_same_name_disturbs_nobody() {
     let second = Sim::start_with(squall(&[]), "patient", &["--game", &name, "--listen", &endpoint, "--join-s", "600"]);
     assert_eq!(second.game, name);
     game.check();
-    // Each agent is where it was sent.
+    // Each agent joined at the address it was given.
     let _agents: Vec<Process> = FOUR.iter().map(|vehicle| second.agent(&[vehicle])).collect();
     second.wait_for_kind("started");
     game.check();

@@ -1,4 +1,4 @@
-//! A zenoh session that is none of ours.
+//! A zenoh session outside our own programs.
 
 use crate::support::Sim;
 use messages::topic::{self, GameName};
@@ -10,20 +10,20 @@ use std::time::Duration;
 use zenoh::bytes::ZBytes;
 use zenoh::{Config, Session, Wait};
 
-/// A game that somebody can reach.
+/// A game that an intruder can reach.
 #[derive(Clone, Debug)]
 pub(crate) struct Target {
     pub(crate) endpoint: String,
     pub(crate) game: GameName,
 }
 
-/// Who reaches the port, and knows every topic.
+/// An intruder that reaches the port and knows every topic.
 pub(crate) struct Intruder {
     pub(crate) session: Session,
     game: GameName,
 }
 
-/// What an intruder has heard: the keys.
+/// The keys of the messages that an intruder received.
 pub(crate) struct Heard {
     keys: Arc<Mutex<Vec<String>>>,
     _subscriber: zenoh::pubsub::Subscriber<()>,
@@ -34,16 +34,16 @@ impl Target {
         Target { endpoint: sim.endpoint.clone(), game: sim.name() }
     }
 
-    /// Where it listens, for whoever does not speak zenoh.
+    /// The address, for connections that do not speak zenoh.
     pub(crate) fn address(&self) -> &str {
         self.endpoint.split_once('/').expect("an endpoint").1
     }
 
-    /// Connections that say this much. Where there are no descriptors left for more, there are fewer.
+    /// Opens this many connections and sends these bytes on each; fewer if the descriptors run out.
     pub(crate) fn connections(&self, words: &[u8], count: usize) -> Vec<TcpStream> {
         let connect = |_| {
             let mut stream = TcpStream::connect(self.address()).ok()?;
-            // It may be closed at once.
+            // The server may close it at once.
             drop(stream.write_all(words));
             Some(stream)
         };
@@ -54,12 +54,12 @@ impl Target {
         topic::matching(&self.game, rest)
     }
 
-    /// Opens a session in a mode of zenoh's; none where the hub lets nobody in.
+    /// Opens a session in a zenoh mode; `None` if the hub refuses it.
     pub(crate) fn open(&self, mode: &str) -> Option<Intruder> {
         self.open_with(mode, &json!({}))
     }
 
-    /// The same with these settings for TLS.
+    /// Opens a session in a zenoh mode with these TLS settings.
     pub(crate) fn open_with(&self, mode: &str, tls: &Value) -> Option<Intruder> {
         let mut config = Config::default();
         for (key, value) in [
@@ -91,7 +91,7 @@ impl Intruder {
         topic::matching(&self.game, rest)
     }
 
-    /// Listens to a topic, with wildcards or not.
+    /// Subscribes to a topic, with or without wildcards.
     pub(crate) fn listen(&self, rest: &str) -> Heard {
         self.listen_anywhere(&self.topic(rest))
     }
@@ -121,12 +121,12 @@ impl Intruder {
         sound.map(|sample| sample.payload().to_bytes().into_owned()).collect()
     }
 
-    /// Asks, and waits for no answer.
+    /// Sends a query without waiting for an answer.
     pub(crate) fn ask_in_vain(&self, rest: &str, payload: impl Into<ZBytes>) {
         drop(self.session.get(self.topic(rest)).payload(payload).wait().expect("the session is open"));
     }
 
-    /// Answers a topic with something false, for as long as this is kept.
+    /// Answers a topic with false data until dropped.
     pub(crate) fn answer(&self, rest: &str) -> zenoh::query::Queryable<()> {
         let queryable = self.session.declare_queryable(self.topic(rest)).callback(|query| {
             let key = query.key_expr().clone();

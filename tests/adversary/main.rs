@@ -1,4 +1,5 @@
-//! What somebody can do who reaches a game's port and keeps to no rule of ours: he speaks zenoh by its own API.
+//! What an attacker who reaches a game's port and ignores our rules can do; it uses zenoh's own
+//! API.
 #![allow(
     clippy::disallowed_methods,
     clippy::print_stderr,

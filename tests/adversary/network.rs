@@ -1,4 +1,4 @@
-//! What zenoh's access control keeps an intruder from: hearing, forging and taking the place of the sim.
+//! zenoh's access control stops an intruder from listening, forging, and replacing the sim.
 
 use crate::intruder::Intruder;
 use crate::support::{LIMIT, Sim, wait_until};
@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 use zenoh::Wait;
 
-/// Long enough for what was sent to arrive many times over.
+/// Long enough for a message to arrive many times over.
 const A_WHILE: Duration = Duration::from_secs(2);
 
 #[test]
@@ -22,7 +22,7 @@ fn nobody_but_the_sim_hears_orders_and_navigation() {
     let everything = intruder.listen_anywhere("**");
     let open = intruder.listen("picture/blue");
     wait_until("what everybody may hear is heard", || open.keys().len() > 20);
-    // What comes for one subscription of a session is heard by all of its subscriptions that match.
+    // A message for one subscription of a session reaches all of its matching subscriptions.
     let is_secret = |key: &String| !key.starts_with(&intruder.topic("picture/"));
     for (topic, heard) in secret.iter().map(|(topic, heard)| (*topic, heard)).chain([("everything", &everything)]) {
         assert_eq!(heard.keys().into_iter().find(is_secret), None, "by {topic}");
@@ -63,7 +63,7 @@ fn forged_messages_of_the_sim_reach_nobody() {
     };
     let run = serde_json::to_vec(&RunState { phase: Phase::Over, ..RunState::default() }).expect("JSON");
     for seq in 0..500 {
-        // By its own name, and by expressions that mean it among others.
+        // Use the exact key, and wildcard expressions that match it.
         for key in ["frame", "fram*", "*"] {
             intruder
                 .session
@@ -77,7 +77,7 @@ fn forged_messages_of_the_sim_reach_nobody() {
         intruder.publish("run", run.clone());
     }
     intruder.session.put("**", picture(9)).wait().expect("open");
-    // Whoever believed it has left by now.
+    // A node that had believed the forgery would have left by now.
     sim.play_on(1.0);
     std::thread::sleep(A_WHILE);
     for agent in &mut agents {
@@ -94,7 +94,7 @@ fn nobody_passes_for_the_sim() {
     let observer = sim.bus();
     let intruder = Intruder::at(&sim);
     let watch = SimWatch::open(&observer, &sim.name(), bus::Patience::of_player(LIMIT)).expect("a session");
-    // A token beside the sim's, and answers in its place.
+    // Declare a token beside the sim's, and answer in its place.
     let token = intruder.session.liveliness().declare_token(intruder.topic("alive/sim/zz")).wait();
     let answers: Vec<_> = ["scenario", "join", "events", "water", "*", "**"]
         .map(|rest| {

@@ -1,4 +1,5 @@
-//! A stranger between operators and gateways: he answers in the gateway's place, keeps proofs, and forges what gateways report.
+//! A stranger between operators and gateways: it answers in the gateway's place, keeps proofs, and
+//! forges the gateway's reports.
 
 use crate::control_port::Rig;
 use crate::intruder::Intruder;
@@ -12,7 +13,7 @@ use std::time::Duration;
 use zenoh::Wait;
 use zenoh::query::Query;
 
-/// Longer than a proof counts.
+/// Longer than the validity of a proof.
 const LATER: Duration = Duration::from_secs(2);
 
 fn session(sim: &Sim, token: Option<Token>) -> Bus {
@@ -23,7 +24,7 @@ fn operate(bus: &Bus, sim: &Sim, command: &OperatorCommand) -> Result<Option<Ope
     bus.request_node(&topic::operate(&sim.name(), "blue_one"), command, LIMIT)
 }
 
-/// Answers at the topic of the boat's gateway, as one that claims to be complete, until dropped.
+/// Answers at the topic of the boat's gateway, claiming to be complete, until dropped.
 fn answer(intruder: &Intruder, take: impl Fn(Query) + Send + Sync + 'static) -> zenoh::query::Queryable<()> {
     let queryable = intruder.session.declare_queryable(intruder.topic("operate/blue_one")).complete(true);
     queryable.callback(take).wait().expect("the session is open")
@@ -33,7 +34,7 @@ fn reply(query: &Query, json: &str) {
     drop(query.reply(query.key_expr().clone(), json.to_owned()).wait());
 }
 
-/// What he says in the gateway's place: that the boat is safed.
+/// The stranger's answer in the gateway's place: the boat is safed.
 fn forged_reply() -> String {
     let status =
         GatewayStatus { vehicle: "blue_one".to_owned(), state: "safed".to_owned(), ..GatewayStatus::default() };
@@ -48,7 +49,7 @@ fn a_stranger_who_answers_operators_swallows_no_command() {
     let intruder = Intruder::at(&rig.sim);
     let (forged, asked) = (forged_reply(), Arc::new(Mutex::new(Vec::<Query>::new())));
     let lies = answer(&intruder, move |query| (0..3).for_each(|_| reply(&query, &forged)));
-    // Another keeps each query open, as if he would answer it yet.
+    // A second stranger keeps each query open, as if it were about to answer.
     let (second, kept) = (Intruder::at(&rig.sim), Arc::clone(&asked));
     let silence = answer(&second, move |query| kept.lock().push(query));
     for command in [OperatorCommand::EStop, OperatorCommand::Release, OperatorCommand::Disarm] {
@@ -63,7 +64,7 @@ fn a_stranger_who_answers_operators_swallows_no_command() {
         }
     }
     assert!(!asked.lock().is_empty(), "he was asked as well");
-    // Whoever cannot tell a gateway from him is told so.
+    // An operator who cannot distinguish the gateway from the stranger gets an error.
     assert!(matches!(operate(&session(&rig.sim, None), &rig.sim, &OperatorCommand::Status), Err(BusError::NeedsToken)));
     drop((lies, silence));
 }
@@ -94,7 +95,7 @@ fn a_proof_that_was_intercepted_arms_no_boat_later() {
     });
     wait_until("the boat is armed", || {
         let reply = operate(&operator, &rig.sim, &OperatorCommand::Arm).expect("it is the gateway that answers");
-        // Before the gateway is in the game, nobody answers.
+        // Before the gateway joins the game, nobody answers.
         reply.is_some_and(|reply| reply.refused.is_none())
     });
     rig.tell(OperatorCommand::Disarm);
@@ -127,7 +128,7 @@ fn what_gateways_report_is_forged_by_nobody() {
         observer.subscribe(key, move |bytes| take(bytes)).expect("the session is open")
     });
     let intruder = Intruder::at(&rig.sim);
-    // A session hears what it publishes itself.
+    // A session receives its own publications, so listen with a second one.
     let listener = Intruder::at(&rig.sim);
     let tickets = ["report/**", "report/status/blue_one"].map(|word| listener.listen(word));
     let status =

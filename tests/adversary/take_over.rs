@@ -1,4 +1,5 @@
-//! Who has a boat: several that want the same, those who may not have any, and what is left of one that is dead.
+//! Control of a boat: several agents compete for it, unauthorised ones are refused, and a dead
+//! agent leaves nothing usable.
 
 use crate::disturbed_game::DisturbedGame;
 use crate::intruder::Intruder;
@@ -12,7 +13,7 @@ use serde_json::json;
 use std::time::Duration;
 use zenoh::Wait;
 
-/// The boat that is fought for, and its number.
+/// The contested boat, and its number.
 const BOAT: &str = "red_two";
 const NUMBER: VehicleId = VehicleId(3);
 const FULL_AHEAD: Order = Order::Thrust { port: 1.0, starboard: 1.0 };
@@ -22,7 +23,7 @@ fn node(sim: &Sim, token: Option<Token>) -> Bus {
     Bus::leaf(&Net { connect: vec![sim.endpoint.clone()], token, ..Net::default() }).expect("the port is open")
 }
 
-/// What becomes of a request to have the boat; nothing if it is turned down for the token.
+/// The reply to a request to join as the boat's agent; `None` if the token is refused.
 fn join((game, scenario): (&GameName, &Scenario), bus: &Bus) -> Option<JoinReply> {
     let (version, vehicles) = (primitives::VERSION.to_owned(), vec![BOAT.to_owned()]);
     let request = JoinRequest { version, role: Role::Agent, node: bus.id(), vehicles };
@@ -45,7 +46,7 @@ fn orders(ticket: u64, seq: u64, at: SimTime) -> Orders {
 #[test]
 fn of_many_that_race_for_a_boat_one_has_it_and_the_next_when_that_is_gone() {
     let sim = Sim::start("patient", &["--join-s", "600"]);
-    // Every third without the token, every third with another one.
+    // Every third node has no token, and every third a wrong one.
     let token_of = |i: usize| [Some(token()), None, Some(Token::random())].into_iter().nth(i % 3).flatten();
     let tokens = (0..12).map(token_of);
     let mut racers: Vec<Bus> = tokens.map(|token| node(&sim, token)).collect();
@@ -68,7 +69,7 @@ fn of_many_that_race_for_a_boat_one_has_it_and_the_next_when_that_is_gone() {
         assert_eq!(winner % 3, 0, "it has no token");
         assert!(!seen.contains(&ticket), "a ticket that somebody had");
         seen.push(ticket);
-        // Asking again does no harm to whoever has it, whatever the others do.
+        // A repeated request does not harm the boat's agent, whatever the others do.
         assert_eq!(join(at, &racers[(winner + 3) % 12]), Some(JoinReply::Busy { vehicle: BOAT.to_owned() }));
         racers[winner].close();
         racers[winner] = node(&sim, Some(token()));
@@ -89,7 +90,7 @@ fn the_ticket_of_the_dead_is_void_once_somebody_else_has_the_boat() {
     let second = node(&sim, Some(token()));
     ticket(join((&sim.name(), &scenario), &second)).expect("it is free again");
     sim.wait_for_event("agent_back", BOAT);
-    // Somebody has got hold of the old one, and of the key that its orders came on.
+    // The thief holds the old ticket and the key of its orders.
     let thief = Intruder::at(&sim);
     let refused = || sim.newest_progress()["refused"].as_u64();
     let before = refused();
@@ -101,7 +102,7 @@ fn the_ticket_of_the_dead_is_void_once_somebody_else_has_the_boat() {
     let done = sim.stop();
     assert_eq!(done["run"]["refused"]["ticket"], 100, "{}", done["run"]);
     let boat = &done["outcome"]["counts"]["boats"][BOAT];
-    // The second never gave an order.
+    // The second agent never gave an order.
     assert!(boat["agents_lost"].as_u64() <= Some(2), "{boat}");
 }
 

@@ -1,4 +1,4 @@
-//! What the game's token keeps from somebody who does not have it, and that stopping is free to all.
+//! The game's token keeps strangers out, but anyone may stop boats.
 
 use crate::intruder::Intruder;
 use crate::support::{FOUR, Sim, stderr, token};
@@ -8,7 +8,7 @@ use messages::{Control, JoinReply, JoinRequest, Role, topic};
 use serde_json::{Value, json};
 use std::time::Duration;
 
-/// A session of our own program, with this token or with none.
+/// A session of our own program, with this token or none.
 fn session(sim: &Sim, token: Option<Token>) -> Bus {
     Bus::leaf(&Net { connect: vec![sim.endpoint.clone()], token, ..Net::default() }).expect("the port is open")
 }
@@ -46,13 +46,14 @@ fn what_was_seen_once_cannot_be_used_again() {
     let _agents = sim.agent(&FOUR);
     sim.wait_for_kind("started");
     let intruder = Intruder::at(&sim);
-    // A whole exchange of somebody who knows the token, by hand.
+    // The complete exchange of a node that knows the token, by hand.
     let request = |body: Value| serde_json::to_vec(&body).expect("JSON");
     let answers = intruder.ask("control", request(json!({ "body": "pause" })));
     let challenge: Value = serde_json::from_slice(&answers[0]).expect("JSON");
     assert!(challenge["challenge"].is_string(), "{challenge}");
     bus::control(&session(&sim, Some(token())), &sim.name(), Control::Speed(Some(5.0))).expect("it may");
-    // The same challenge with an invented proof, a proof without a challenge, and the control as it once was published.
+    // The same challenge with an invented proof, a missing challenge and an invalid one; below,
+    // bare controls as in the earlier protocol.
     for forged in [
         json!({ "body": "pause", "proof": { "challenge": challenge["challenge"], "mac": "00".repeat(32) } }),
         json!({ "body": "pause", "proof": { "challenge": "", "mac": "" } }),

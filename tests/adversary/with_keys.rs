@@ -1,4 +1,5 @@
-//! The same for a game with keys: a test program of its own, since zenoh has other threads in a process with keys.
+//! The same tests for a game with keys, in a separate test program: zenoh uses other threads in a
+//! process with keys.
 #![allow(
     clippy::disallowed_methods,
     clippy::print_stderr,

@@ -1,4 +1,5 @@
-//! `squall log` from outside: a short game is recorded, then looked at in every way there is; mistakes are explained.
+//! `squall log` from the command line: records a short game, then examines it in every way;
+//! mistakes are explained.
 
 use crate::program;
 use serde_json::Value;
@@ -6,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use tempfile::TempDir;
 
-/// A recorded game and its result, made once for all tests.
+/// A recorded game and its result, shared by all tests.
 struct Game {
     _dir: TempDir,
     recording: String,
@@ -30,7 +31,7 @@ fn text(path: PathBuf) -> String {
     path.display().to_string()
 }
 
-/// What `squall log` prints of the game, where it must succeed.
+/// The output of `squall log` for the game; it must succeed.
 fn log(args: &[&str]) -> String {
     program::printed(program::project(), &[&["log"], args].concat())
 }
@@ -48,7 +49,7 @@ fn the_summary_agrees_with_the_result_of_the_game() {
     let summary: Value = serde_json::from_str(&std::fs::read_to_string(json).unwrap()).unwrap();
     let outcome = &game.result;
     let outcome = if outcome["outcome"].is_object() { &outcome["outcome"] } else { outcome };
-    // What the frames told is all that happened.
+    // The frames contain every event.
     assert_eq!(summary["events"], outcome["events"]);
     assert_eq!(summary["score"], outcome["score"]["teams"]);
     assert_eq!((&summary["digest"], &summary["winner"]), (&outcome["digest"], &outcome["winner"]));

@@ -1,4 +1,4 @@
-//! Commands of the program from outside: what they print and write, and how they refuse.
+//! Tests the program's commands from outside: output, files and error messages.
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 mod log;

@@ -1,14 +1,14 @@
-//! How much memory it takes to look at a recording: no more for one that is twice as long.
+//! Memory for examining a recording: a recording of twice the length needs no more.
 
 use crate::program;
 use std::path::Path;
 use std::process::{Child, Stdio};
 use std::time::Duration;
 
-/// What may be more of the longer one: what happened in it, and noise.
+/// Allowed growth for the longer recording: more events, and noise.
 const MORE: f64 = 1.2;
 
-/// A game of 40 boats that stay where they are, this long; where its recording is.
+/// Records a game of 40 boats at rest, this long; returns the path.
 fn recorded(dir: &Path, duration_s: u32) -> String {
     let game = dir.join(format!("idle_{duration_s}.toml"));
     let base = program::scenario("games/swarm_20v20.toml");
@@ -21,14 +21,14 @@ fn recorded(dir: &Path, duration_s: u32) -> String {
     file.to_str().unwrap().to_owned()
 }
 
-/// The most memory that a process has had so far, kB (proc(5)).
+/// The peak memory of a process so far, kB (proc(5)).
 fn peak_kb(child: &Child) -> Option<u64> {
     let status = std::fs::read_to_string(format!("/proc/{}/status", child.id())).ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     line.trim().strip_suffix(" kB")?.parse().ok()
 }
 
-/// The most memory that the program takes for this, kB: looked at again and again until it has ended.
+/// The peak memory of the program for these arguments, kB: polled until it exits.
 fn peak_of(dir: &Path, args: &[&str]) -> u64 {
     let mut command = program::command(dir, args);
     let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("the program starts");

@@ -1,4 +1,5 @@
-//! `squall policy` from outside: what it tells of a model, and how it explains a choice whose reason is known.
+//! `squall policy` from the command line: describes a model and explains a choice with a known
+//! reason.
 
 use crate::program::{printed, project, refusal, scenario};
 use messages::helm::{PolicyReport, PolicyWords};
@@ -14,7 +15,7 @@ const SPEC: PolicySpec = PolicySpec {
     action: ActionSpace::Pyquaticus,
     period_s: 0.5,
 };
-/// Straight on at full speed, the action whose logit is 3 and twice the input [`MATTERS`]; all others' are 0.
+/// Straight on at full speed: its logit is 3 plus twice the input [`MATTERS`]; all others are 0.
 const ACTION: usize = 4;
 const MATTERS: &str = "goal_ahead";
 
@@ -36,7 +37,7 @@ fn model() -> Vec<u8> {
     network.onnx().unwrap()
 }
 
-/// The probability of [`ACTION`] in percent.
+/// The probability of [`ACTION`], per cent.
 fn percent(input: f64) -> f64 {
     let part = primitives::math::exp(3.0 + 2.0 * input);
     100.0 * part / (part + 16.0)
@@ -107,7 +108,7 @@ fn what_a_helm_reports_of_a_policy_is_told_in_words() {
     assert_eq!((first, second), (("full speed, straight on", 0.75), ("full speed, about", 0.25)));
     let goal = names.iter().position(|name| name == MATTERS).unwrap();
     assert_eq!(words.observed[goal], (MATTERS.to_owned(), goal as f32));
-    // An agent that names a model that its boat does not have is not believed.
+    // If an agent reports a model that its boat does not have, the report is rejected.
     report.model = "other.onnx".to_owned();
     assert_eq!(report.words(&game, blue), PolicyWords::default());
 }

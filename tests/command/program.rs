@@ -1,38 +1,38 @@
-//! Starts the program and reads what it prints.
+//! Runs the program and captures its output.
 
 use std::path::Path;
 use std::process::{Command, Output};
 
-/// The folder of the project.
+/// The root folder of the project.
 pub(crate) fn project() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// A file among the shipped scenarios, as an argument.
+/// The path of a shipped scenario file, as an argument.
 pub(crate) fn scenario(file: &str) -> String {
     project().join("scenarios").join(file).display().to_string()
 }
 
-/// The program in a folder.
+/// A command that runs the program in a folder.
 pub(crate) fn command(dir: impl AsRef<Path>, args: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_squall"));
     command.current_dir(dir).args(args);
     command
 }
 
-/// Runs it to its end.
+/// Runs the program to its end.
 pub(crate) fn squall(dir: impl AsRef<Path>, args: &[&str]) -> Output {
     command(dir, args).output().expect("the program starts")
 }
 
-/// Runs what must succeed; what it printed.
+/// Runs the program, which must succeed; returns its standard output.
 pub(crate) fn printed(dir: impl AsRef<Path>, args: &[&str]) -> String {
     let output = squall(dir, args);
     assert!(output.status.success(), "{args:?}: {}", String::from_utf8_lossy(&output.stderr));
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// Runs what must be refused; why it was.
+/// Runs the program, which must fail; returns its error text.
 pub(crate) fn refusal(dir: impl AsRef<Path>, args: &[&str]) -> String {
     let output = squall(dir, args);
     assert!(!output.status.success(), "{args:?} is accepted");

@@ -1,8 +1,8 @@
-//! Commands that must be refused: `refusals.txt` has them, and what they must say.
+//! Commands that must be refused: `refusals.txt` lists them with the required messages.
 
 use crate::program::{command, project, refusal, scenario};
 
-/// Runs the commands of one case; what is missing in what they say.
+/// Runs the commands of one case; returns the texts missing from their output.
 fn missing(case: &str) -> Vec<String> {
     let dir = tempfile::tempdir().unwrap();
     let (mut file, mut commands, mut missing, mut looked_for) = (None, vec![], vec![], 0);

@@ -1,9 +1,9 @@
-//! `squall sea` from outside: the numbers it tells, the page it draws.
+//! `squall sea` from the command line: the numbers it prints and the page it draws.
 
 use crate::program::{printed, scenario};
 use tempfile::TempDir;
 
-/// What stands over the panels.
+/// The titles of the panels.
 const TITLES: [&str; 4] = [
     "Wave spectrum",
     "Surface elevation at the datum",
@@ -11,7 +11,7 @@ const TITLES: [&str; 4] = [
     "Track of a free boat",
 ];
 
-/// `squall sea` for the Surveyor, from any folder: what it printed, and the page.
+/// Runs `squall sea` for the Surveyor in a folder; returns its output and the page.
 fn sea(dir: &TempDir, file: &str, more: &[&str]) -> (String, String) {
     let boat = scenario("boats/surveyor_m1_8.toml");
     let text = printed(dir, &[&["sea", file, "--boat", &boat, "--plot", "page.svg"], more].concat());
@@ -19,7 +19,7 @@ fn sea(dir: &TempDir, file: &str, more: &[&str]) -> (String, String) {
     (text, std::fs::read_to_string(dir.path().join("page.svg")).unwrap())
 }
 
-/// What stands behind a name in a text of the program.
+/// The value after a name in the program's output.
 fn value<'a>(text: &'a str, name: &str) -> &'a str {
     let line = text.lines().find_map(|line| line.trim_start().strip_prefix(name));
     line.unwrap_or_else(|| panic!("no {name:?} in\n{text}")).trim()
@@ -30,7 +30,7 @@ fn numbers(text: &str) -> Vec<f64> {
     text.split(|c: char| !(c.is_ascii_digit() || c == '.')).filter_map(|word| word.parse().ok()).collect()
 }
 
-/// Every element that begins ends, the innermost first, and no character stands where it must be escaped.
+/// Checks that elements are closed in order and that special characters are escaped.
 fn assert_well_formed(svg: &str) {
     let mut open = vec![];
     let mut rest = svg;
@@ -59,7 +59,7 @@ fn assert_escaped(text: &str) {
 #[test]
 fn every_sea_has_its_numbers_and_a_page_of_four_panels() {
     let calm = ["no waves", "no waves", "no wind", "it stays where it is"];
-    // Which panels have nothing to show.
+    // The panels without data.
     for (name, absent) in
         [("fresh_breeze", &[][..]), ("bay_gale", &[]), ("calm", &calm), ("tidal", &calm[..3]), ("any", &[])]
     {
@@ -101,7 +101,7 @@ fn the_free_boat_is_that_of_the_trial() {
         let trial = printed(&dir, &["trial", &boat, "--manoeuvre", "drift", "--sea", &file, "--seed", seed]);
         let want = ["drift speed", "drift toward", "mean heading"].map(|name| numbers(value(&trial, name))[0]);
         let got = numbers(value(&text, "free boat, simulated"));
-        // Speeds are told in hundredths, bearings in whole degrees.
+        // Speeds are printed in hundredths, bearings in whole degrees.
         assert!((got[0] - want[0]).abs() < 0.0051, "{name}: {got:?}, the trial {want:?}");
         for i in [1, 2] {
             let off_deg = (got[i] - want[i] + 180.0).rem_euclid(360.0) - 180.0;
@@ -112,7 +112,7 @@ fn the_free_boat_is_that_of_the_trial() {
 
 #[test]
 fn in_a_steady_wind_the_free_boat_drifts_as_the_balance_of_forces_says() {
-    /// Both are told in hundredths.
+    /// Both values are printed in hundredths.
     const TOLERANCE_M_S: f64 = 0.011;
     for wind_m_s in [5.0, 12.0] {
         let dir = tempfile::tempdir().unwrap();

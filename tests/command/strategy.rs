@@ -1,8 +1,9 @@
-//! `squall strategy` from outside: what it shows of good files, and of bad ones.
+//! `squall strategy` from the command line: its output for valid and invalid files.
 
 use crate::program::{printed, project, scenario, squall};
 
-/// What `squall strategy` prints of a file with this text.
+/// The output of `squall strategy` for a file with this text: success, standard output, standard
+/// error.
 fn shown(text: &str, more: &[&str]) -> (bool, String, String) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("x.toml");

@@ -1,4 +1,4 @@
-//! `squall tournament` and strategies from the command line, from outside.
+//! `squall tournament` and strategies, from the command line.
 
 use crate::program::{command, printed, project, squall};
 use serde_json::Value;
@@ -10,12 +10,12 @@ const GAME: &str = "scenarios/games/pav01_vs_pav01.toml";
 const SEA: &str = "scenarios/seas/moderate_breeze.toml";
 const TOURNAMENT: &str = "scenarios/tournaments/simple.toml";
 
-/// Runs it where it is, to its end.
+/// Runs the program in the project folder to its end.
 fn output(args: &[&str]) -> Output {
     squall(project(), args)
 }
 
-/// A file of a temporary folder, as an argument.
+/// A path in a temporary folder, as an argument.
 fn place(dir: &TempDir, name: &str) -> String {
     dir.path().join(name).display().to_string()
 }
@@ -24,7 +24,7 @@ fn json(path: &str) -> Value {
     serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
 }
 
-/// A tournament of the shipped strategies in short games.
+/// Runs a tournament of the shipped strategies in short games.
 fn short_tournament(dir: &TempDir, more: &str) -> String {
     let scenarios = project().join("scenarios");
     let game = format!("base = {:?}\nduration_s = 60\n", scenarios.join("games/pav01_vs_pav01.toml"));
@@ -227,7 +227,7 @@ fn games_that_cannot_start_are_explained() {
     let dir = tempfile::tempdir().unwrap();
     short_tournament(&dir, "");
     let crowd = place(&dir, "crowd.toml");
-    // Two boats lie where a third would have to keep clear of them.
+    // Two boats lie where a third must keep clear of them.
     let game = "[[vehicle]]\nname = \"a\"\nteam = \"blue\"\nat = [20.5, 50]\n\
                 [[vehicle]]\nname = \"b\"\nteam = \"blue\"\nat = [22.4, 50]\n\
                 [[fleet]]\nteam = \"red\"\ncount = 1\n\
@@ -260,22 +260,22 @@ fn who_joins_a_league_plays_its_own_games_alone_and_a_torn_line_is_played_again(
     let [four, pav01, idle] = ["strategy_4", "pav01", "idle"].map(|name| entry(name, name));
     let said = play(&[four.clone(), pav01.clone()], &["--league", &league]);
     assert!(said.contains("0 of 4 games were played before"), "{said}");
-    // The last line was torn off as the machine stopped.
+    // The last line was cut off when the machine stopped.
     let text = std::fs::read_to_string(&results).unwrap();
     std::fs::write(&results, &text[..text.len() - 9]).unwrap();
     let said = play(&[four.clone(), pav01.clone(), idle.clone()], &["--league", &league]);
     assert!(said.contains("3 of 12 games were played before") && said.contains("9 games in"), "{said}");
-    // The same comes of it as of a tournament that plays all of them.
+    // The result equals that of a tournament that plays all games.
     play(&[four.clone(), pav01.clone(), idle], &["--json", &whole]);
     let (mut known, mut anew) = (json(&format!("{league}/report.json")), json(&whole));
     (known["rate"], anew["rate"]) = (Value::Null, Value::Null);
     assert_eq!(known, anew);
-    // Another name is the same player, and another file is not.
+    // A renamed file is the same player; a different file is not.
     let said = play(&[entry("renamed", "strategy_4"), pav01], &["--league", &league]);
     assert!(said.contains("4 of 4 games were played before"), "{said}");
     let said = play(&[four, entry("pav01", "easy_attackers")], &["--league", &league]);
     assert!(said.contains("0 of 4 games were played before"), "{said}");
-    // Of a game that has changed on the disk, nobody knows how it ended.
+    // If a game file has changed on the disk, its earlier results are unusable.
     let changed = text.replacen("\"seed\":1", "\"seed\":7", 1);
     assert_ne!(changed, text);
     for (damaged, expected) in [("{}\n", "missing field"), (changed.as_str(), "its checksum is another")] {
@@ -341,7 +341,7 @@ fn a_game_from_both_sides_is_the_two_games_of_the_tournament_and_their_sum() {
     };
     let (text, both) = run(&["--both-sides"]);
     assert!(text.contains("from both sides: easy_attackers (first as blue) "), "{text}");
-    // A tournament exchanges the strategies of the two teams in the same way.
+    // A tournament swaps the strategies of the two teams in the same way.
     let (_, first) = run(&[]);
     let (_, second) = run(&["--blue", "idle", "--red", "easy_attackers"]);
     assert_eq!([&both["games"][0]["digest"], &both["games"][1]["digest"]], [&first["digest"], &second["digest"]]);

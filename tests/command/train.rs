@@ -1,13 +1,14 @@
-//! `squall train` from outside: the same bytes on any number of threads and resumed, and tables that tell all of it.
+//! `squall train` from the command line: the same bytes on any number of threads and after
+//! resuming, and complete tables.
 
 use crate::program::{printed, refusal, scenario, squall};
 use std::path::Path;
 
-/// Two short stages.
+/// A training with two short stages.
 fn training() -> String {
     let [game, rewards, idle, pav01] =
         ["games/pav01_afloat.toml", "rewards/bold.toml", "strategies/idle.toml", "strategies/pav01.toml"].map(scenario);
-    // Not on the disk here: the one inside of the program.
+    // Not on the disk here: the built-in one.
     let policy = "scenarios/strategies/policy.toml";
     let stage = |name: &str, opponent: &str, samples: u32| {
         format!(
@@ -42,12 +43,12 @@ fn a_training_leaves_the_same_files_on_any_number_of_threads() {
         assert!(read(&one, name) == read(&three, name), "{name} depends on the number of threads");
     }
 
-    // All samples are in the table.
+    // The table contains all samples.
     let updates = String::from_utf8(read(&one, "updates.csv")).unwrap();
     let last: u64 = updates.lines().last().unwrap().split(',').next().unwrap().parse().unwrap();
     assert!((12_000..14_000).contains(&last), "{updates}");
 
-    // A training that is over is not begun again, and what it left is a policy.
+    // A finished training is not started again, and its output is a policy.
     let why = refusal(here, &["train", "short.toml", "--out", "one"]);
     assert!(why.contains("--resume goes on with it"), "{why}");
     let text = printed(here, &["policy", "one/best.onnx"]);
@@ -63,7 +64,7 @@ fn a_training_goes_on_from_its_state_as_if_it_had_not_stopped() {
     let here = dir.path();
     std::fs::write(here.join("short.toml"), training()).unwrap();
     printed(here, &["train", "short.toml", "--out", "whole"]);
-    // A power cut after the first state: later lines are in the files, the state is not.
+    // Simulate a power cut after the first state: the files have later lines, the state does not.
     let why = refusal(here, &["train", "short.toml", "--out", "cut", "--resume"]);
     assert!(why.contains("state.bin"), "{why}");
     let (mut child, cut) = (
@@ -83,7 +84,7 @@ fn a_training_goes_on_from_its_state_as_if_it_had_not_stopped() {
         assert!(read(&here.join("whole"), name) == read(&cut, name), "{name} is another after --resume");
     }
 
-    // What has changed on the disk is named, and nothing is played.
+    // Every changed file is named, and nothing is played.
     for name in ["state.bin", "updates.csv", "evaluations.csv", "episodes.csv", "sums.csv"] {
         let sound = read(&cut, name);
         let mut flipped = sound.clone();
@@ -114,7 +115,7 @@ fn each_nth_episode_of_a_training_is_recorded_and_can_be_replayed() {
         assert!(read(&plain, name) == read(&seen, name), "{name} depends on what is recorded");
     }
 
-    // The tables tell the same episodes, and this one names a recording for each seventh.
+    // The tables list the same episodes, and this one names a recording for every seventh.
     let [plain, episodes] = [&plain, &seen].map(|folder| String::from_utf8(read(folder, "episodes.csv")).unwrap());
     let split =
         |line: &str| line.rsplit_once(',').map(|(episode, file)| (episode.to_owned(), file.to_owned())).unwrap();

@@ -1,4 +1,4 @@
-//! `squall trial` and `squall identify` from outside: references through their CSV door.
+//! `squall trial` and `squall identify` from the command line: reference data as CSV files.
 #![expect(clippy::disallowed_methods, reason = "tolerances are far above the last bit")]
 
 use crate::program::{printed, project, scenario, squall};
@@ -6,14 +6,14 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
-/// Numbers by column.
+/// Numbers by column name.
 type Columns = BTreeMap<String, Vec<f64>>;
 
 fn boat(name: &str) -> String {
     scenario(&format!("boats/{name}.toml"))
 }
 
-/// Runs a trial that must succeed; what it printed.
+/// Runs a trial that must succeed; returns its output.
 fn trial(dir: &TempDir, args: &[&str]) -> String {
     printed(dir, &[&["trial"], args].concat())
 }
@@ -42,7 +42,7 @@ fn write_orders(dir: &TempDir, heads: &str, rows: impl Iterator<Item = [f64; 3]>
     path
 }
 
-/// An Otter reference and the track that its commands give through the door.
+/// An Otter reference, and the track that its commands produce.
 fn otter(name: &str, more: &[&str]) -> (Columns, Columns) {
     let dir = tempfile::tempdir().unwrap();
     let want = reference(&format!("otter/{name}.csv"));
@@ -52,7 +52,7 @@ fn otter(name: &str, more: &[&str]) -> (Columns, Columns) {
     (want, columns(&dir.path().join("out.csv")))
 }
 
-/// The largest distance from the reference over the distance sailed, which counts as a metre at least.
+/// The largest distance from the reference, divided by the distance sailed (at least one metre).
 fn position_error(want: &Columns, got: &Columns) -> f64 {
     assert_eq!(want["t"].len(), got["t_s"].len());
     let (mut sailed_m, mut worst) = (0.0, 0.0_f64);
@@ -100,13 +100,13 @@ fn the_otter_drifts_in_a_current_as_the_reference_does() {
     assert!(error < 0.005, "position is off by {error}");
     assert!((psi_deg + 6.22).abs() < 0.05, "heading {psi_deg}");
     for i in 0..want["t"].len() {
-        // Over the ground, along the boat's axes.
+        // Velocity over the ground, in the boat's axes.
         assert!((want["u"][i] - got["surge_m_s"][i]).abs() < 2e-3, "row {i}: {} {}", want["u"][i], got["surge_m_s"][i]);
         assert!((want["v"][i] - got["sway_m_s"][i]).abs() < 2e-3, "row {i}: {} {}", want["v"][i], got["sway_m_s"][i]);
     }
 }
 
-/// The swings of a zigzag (furthest headings, degrees) and the mean period, s, after 40 s.
+/// The swings of a zigzag (extreme headings, degrees) and the mean period, s, after 40 s.
 fn zigzag(times_s: &[f64], headings_deg: &[f64]) -> (Vec<f64>, f64) {
     let within: Vec<f64> = headings_deg.iter().map(|h| (h + 180.0).rem_euclid(360.0) - 180.0).collect();
     let settled = || (1..times_s.len() - 1).filter(|i| times_s[*i] > 40.0);
@@ -121,8 +121,8 @@ fn mean_size(numbers: &[f64]) -> f64 {
     numbers.iter().map(|number| number.abs()).sum::<f64>() / numbers.len() as f64
 }
 
-/// The reference switched every 0.02 s if it had to, its rows are 0.1 s apart: replayed, a single swing is off by as much as
-/// the boat turns in that time (1°), but not their mean and not the period.
+/// The reference could switch every 0.02 s, but its rows are 0.1 s apart. In the replay a single
+/// swing is therefore off by up to the turn in that time (1°), but not the mean and not the period.
 #[test]
 fn the_otter_zigzags_as_the_reference_does() {
     let (want, got) = otter("zigzag10_n80_d10", &[]);
@@ -133,14 +133,15 @@ fn the_otter_zigzags_as_the_reference_does() {
     assert!((mean_size(&swings_deg) - mean_size(&want_deg)).abs() < 0.1, "{swings_deg:?}, reference {want_deg:?}");
 }
 
-/// With the switches where the recorded shaft speeds show that they were, every swing is right.
+/// With the switching times taken from the recorded shaft speeds, every swing is right.
 #[test]
 fn the_otter_zigzags_swing_by_swing_where_the_switches_are_known() {
     let dir = tempfile::tempdir().unwrap();
     let want = reference("otter/zigzag10_n80_d10.csv");
     let switch = |i: usize| {
         let (told, before, now) = (want["n1_cmd"][i], want["n1"][i - 1], want["n1"][i]);
-        // A first-order lag of 0.1 s has come from `before` towards `told` since the switch, if it has moved at all.
+        // Since the switch, a first-order lag of 0.1 s has moved from `before` towards `told`, if
+        // it has moved at all.
         let left = (now - told) / (before - told);
         want["t"][i] + if now == before { 0.0 } else { 0.1 * left.ln() }
     };
@@ -159,8 +160,9 @@ fn the_otter_zigzags_swing_by_swing_where_the_switches_are_known() {
     assert!(worst_deg < 0.5 && error < 0.005, "{swings_deg:?}, reference {want_deg:?}; position {error}");
 }
 
-/// A kinematic reference through the door, every row and column within a tolerance of 1e-6. A row of the reference is the
-/// state after its command, so the command is given at the time of the row before.
+/// Compares a kinematic reference with a trial; every value must agree within 1e-6. A row of the
+/// reference is the state after its command, so the command is given at the time of the previous
+/// row.
 fn kinematic(name: &str, kind: &str, heads: [&str; 2], more: &[&str]) {
     let dir = tempfile::tempdir().unwrap();
     let want = reference(&format!("kinematic/{kind}_{name}.csv"));
@@ -199,7 +201,7 @@ fn kinematic_boats_accelerate_as_the_reference_does() {
 
 #[test]
 fn kinematic_boats_turn_as_the_reference_does() {
-    // What the reference's first row says.
+    // The first row of the reference.
     let start = ["--start-surge-m-s", "1.999944", "--start-thrust-pct", "99.996694"];
     kinematic("turn90_max", "heron", STEERED, &start);
     kinematic("turn90_max", "surveyor", STEERED, &["--start-surge-m-s", "3"]);
@@ -316,7 +318,7 @@ fn turns_to_both_sides_are_mirror_images() {
     }
 }
 
-/// A log of the Surveyor, and a boat file that starts elsewhere.
+/// Writes a log of the Surveyor, and a boat file with other start values.
 fn log_and_start(dir: &TempDir) {
     let rows = [[90.0, 90.0], [60.0, 20.0], [20.0, 70.0], [-40.0, -40.0], [100.0, 40.0], [0.0, 0.0], [50.0, 80.0]];
     let steps = (0..28).map(|i| [6.0 * f64::from(i), rows[i as usize % 7][0], rows[i as usize % 7][1]]);
@@ -341,7 +343,7 @@ fn identify_writes_a_boat_that_check_accepts() {
         let line = toml.lines().find(|line| line.starts_with(key)).unwrap();
         line.split_whitespace().nth(2).unwrap().parse().unwrap()
     };
-    // A log without noise gives the numbers of the boat that sailed.
+    // A noise-free log yields the numbers of the boat that produced it.
     for (key, want) in [("surge_linear_kg_s", 6.0), ("yaw_linear_kg_m2_s", 16.0)] {
         assert!((number(key) - want).abs() < 0.01, "{key} {}", number(key));
     }

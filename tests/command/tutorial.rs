@@ -1,8 +1,9 @@
-//! The tutorial of strategies: its files are taken from its text, and its commands print what it says they print.
+//! The strategy tutorial: extracts its files from its text, and checks that its commands print the
+//! output that it shows.
 
 use crate::program::{self, project};
 
-/// The blocks of code of a page: their language and text.
+/// The code blocks of a page: language and text.
 fn blocks(page: &str) -> Vec<(&str, String)> {
     let mut blocks = Vec::new();
     let mut lines = page.lines();
@@ -54,14 +55,14 @@ fn the_tutorial_holds_what_it_promises() {
         }
     }
     assert_eq!((files.len(), shown), (6, 2), "{files:?}");
-    // The first lacks safety, and is there to be refused; all others are good.
+    // The first file lacks safety and must be refused; all others are valid.
     for file in &files {
         let (good, said) = squall(&["check", file]);
         assert_eq!(good, !file.ends_with("mine_1.toml"), "{said}");
     }
     let (good, said) = squall(&["tournament", "scenarios/tournaments/mine.toml", "--games", "2"]);
     assert!(good && said.contains("mine_5"), "{said}");
-    // What is said of the mistake in the third.
+    // The error for the mistake in the third file.
     let third = own.join("strategies/mine_3.toml");
     let text = std::fs::read_to_string(&third).unwrap();
     std::fs::write(&third, text.replace("\"has_flag\"", "\"has_flagg\"")).unwrap();

@@ -1,4 +1,4 @@
-//! What must hold of every game, whatever goes wrong.
+//! Conditions that every game must meet, whatever fails.
 
 use crate::plan::{FIRST_AGENT, Plan, SIM};
 use crate::play::Played;
@@ -10,17 +10,18 @@ use simulated_network::{Fault, Verdict};
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-/// Sending again, and what the network takes, where nothing is lost on purpose; and where it is.
+/// Margin for retransmission and transport, without deliberate loss; then with it.
 const SENT_AGAIN: Duration = Duration::from_millis(1000);
 const SENT_OFTEN: Duration = Duration::from_millis(2000);
-/// How late what must happen within patience may show.
+/// Extra delay before an effect with a time limit of patience becomes visible.
 const SHOWS: Duration = Duration::from_millis(1500);
-/// After the last fault, everybody is back within the lease of the network, patience, and this.
+/// All nodes are back within the network's lease, patience and this margin after the last fault.
 const BACK: Duration = Duration::from_secs(8);
-/// After the end of the game everybody has left: who never found it looks for a minute.
+/// All nodes exit within this time after the game: an agent that never found it searches for a
+/// minute.
 const LEFT: Duration = Duration::from_secs(75);
 
-/// What is wrong with a game; nothing if all is well.
+/// The errors of a game; empty if there are none.
 pub(crate) fn faults_of(plan: &Plan, played: &Played) -> Vec<String> {
     let mut wrong = played.monitor.wrong.clone();
     if played.run.verdict != Verdict::Ended {
@@ -46,7 +47,8 @@ impl Plan {
         self.faults.iter().any(|(_, fault)| matches!(fault, Fault::Kill { node: who, .. } if *who == node))
     }
 
-    /// When the real boat must be there again whatever has befallen it; nothing if there is none, or nobody who brings it.
+    /// When the real boat must be back whatever happened to it; `None` without a real boat or if a
+    /// needed node never restarts.
     pub(crate) fn real_boat_is_back(&self) -> Option<Duration> {
         let is_gone = |(_, fault): &(Duration, Fault)| matches!(fault, Fault::Kill { node, restart: None } if [SIM, self.gateway()].contains(node));
         let comes = self.has_real_boat() && !self.faults.iter().any(is_gone);
@@ -59,7 +61,8 @@ impl Plan {
     }
 }
 
-/// The results of undisturbed games in one process, by game, seed and length: orders that are answered in time never expire.
+/// The results of undisturbed games in one process, by game, seed and length. Orders answered in
+/// time never expire.
 static UNDISTURBED: Mutex<BTreeMap<(usize, u64, u32), String>> = Mutex::new(BTreeMap::new());
 
 fn undisturbed(plan: &Plan) -> String {
@@ -77,7 +80,7 @@ fn has_lost_agents(outcome: &Outcome) -> bool {
     outcome.events.iter().any(|event| event.event == "agent_lost")
 }
 
-/// In lockstep it is the game that is played without a network, unless somebody was lost.
+/// A lockstep game must equal the game played without a network, unless an agent was lost.
 fn check_digest(plan: &Plan, played: &Played, report: &Report) -> Option<String> {
     let words_lost = plan.talks() && played.refused.of(Refusal::TeamMessageMissing) > 0;
     let is_other = plan.forges() || has_lost_agents(&report.outcome) || words_lost || report.run.cut_short;
@@ -89,7 +92,7 @@ fn check_digest(plan: &Plan, played: &Played, report: &Report) -> Option<String>
     (*got != want).then(|| format!("digest {got} is not that of the undisturbed game, {want}"))
 }
 
-/// Nobody loses an agent that was there.
+/// No boat may lose an agent that was connected.
 fn unjust_losses(plan: &Plan, played: &Played, outcome: &Outcome) -> Vec<String> {
     if plan.forges() {
         return vec![];
@@ -97,7 +100,7 @@ fn unjust_losses(plan: &Plan, played: &Played, outcome: &Outcome) -> Vec<String>
     let is_lossy = plan.conditions.loss > 0.0 || plan.conditions.damaged.0 > 0.0;
     let margin = if is_lossy { SENT_OFTEN } else { SENT_AGAIN };
     let enough = plan.patience().saturating_sub(margin);
-    // Time that the sim itself loses is nobody's fault; where it is cut off, all the others are.
+    // A suspended sim must not report its agents as lost; a cut of the sim cuts off all the others.
     let is_excused = |node: usize| {
         let absent = if node == SIM { plan.longest_cut(node) } else { plan.longest_absence(node) };
         absent > Duration::ZERO && absent >= enough
@@ -114,7 +117,7 @@ fn unjust_losses(plan: &Plan, played: &Played, outcome: &Outcome) -> Vec<String>
     wrong
 }
 
-/// An agent that is killed is missed within patience, and all are there again after the faults.
+/// A killed agent is reported lost within patience, and all agents are present after the faults.
 fn check_presence(plan: &Plan, played: &Played) -> Vec<String> {
     let mut wrong = Vec::new();
     let Some((first_frame, last_frame)) = played.monitor.frames else { return wrong };
@@ -148,7 +151,7 @@ fn check_presence(plan: &Plan, played: &Played) -> Vec<String> {
     wrong
 }
 
-/// Nobody gives up while the game is played, and everybody leaves when it is over.
+/// No node exits during the game, and all exit after it.
 fn check_ends(plan: &Plan, played: &Played) -> Vec<String> {
     let mut wrong = Vec::new();
     let ended = |name: &str| played.run.ends.iter().rfind(|end| end.node == name).map(|end| end.at);

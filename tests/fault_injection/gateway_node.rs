@@ -1,4 +1,4 @@
-//! The gateway of a game's real boat as it runs everywhere, over a link in memory.
+//! The gateway of a game's real boat, unmodified, over a link in memory.
 
 use crate::play::{WAIT, name, net};
 use crate::real_boat::{DECLINATION_RAD, Wire};
@@ -12,21 +12,21 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, LazyLock};
 use std::time::Duration;
 
-/// After this long without a byte the boat counts as gone.
+/// A boat that sends no byte for this long counts as lost.
 const SILENCE: Duration = Duration::from_secs(3);
-/// How long connecting takes.
+/// Duration of connecting.
 const CONNECT: Duration = Duration::from_millis(100);
-/// How often a link without a boat looks whether it is to end.
+/// How often a link without a boat checks whether to end.
 const LOOK: Duration = Duration::from_millis(500);
 
-/// How the boat is driven.
+/// The gateway's settings.
 static GATEWAY: LazyLock<Gateway> = LazyLock::new(|| {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/gateways/surveyor.toml");
     let gateway = scenario::load_file::<gateway::config::Gateway>(&file).unwrap_or_else(|e| panic!("{e}"));
     Gateway { declination_rad: Some(DECLINATION_RAD), ..gateway }
 });
 
-/// For how long the gateway goes by an order, s.
+/// Time to live of an order in the gateway, s.
 pub(crate) fn order_ttl_s() -> f64 {
     GATEWAY.order_ttl_s
 }
@@ -55,13 +55,13 @@ pub(crate) fn connect(wire: &Arc<Wire>, vehicle: &str, stop: &Arc<AtomicBool>) {
         }
     };
     match serve_over(&settings, open, &mut notify) {
-        // A sim that has died before they met.
+        // The sim died before the gateway found it.
         Ok(()) | Err(NodeError::NotFound(_)) => {}
         Err(e) => panic!("the gateway gives up: {e}"),
     }
 }
 
-/// A link over a wire in memory.
+/// A link over an in-memory wire.
 struct MemoryLink {
     wire: Arc<Wire>,
     on_event: Arc<OnLinkEvent>,
@@ -82,7 +82,7 @@ impl MemoryLink {
     }
 }
 
-/// Connects and reads, again and again, as long as this link is the newest over the wire.
+/// Connects and reads repeatedly, as long as this link is the newest on the wire.
 fn read(wire: &Wire, link: u64, tell: &(dyn Fn(LinkEvent) + Send + Sync)) {
     let is_over = || wire.visit(|state, _| state.links != link);
     let mut peer = 0;
@@ -134,7 +134,7 @@ impl BoatLink for MemoryLink {
 
 impl Drop for MemoryLink {
     fn drop(&mut self) {
-        // The reader is waited for when the fields are dropped.
+        // Dropping the fields joins the reader.
         self.wire.visit(|state, _| state.links += 1);
     }
 }

@@ -1,8 +1,9 @@
-//! Fault injection: whole games between the real nodes, over a simulated network in virtual time, with drawn faults.
+//! Fault injection: whole games between the real nodes, over a simulated network in virtual time,
+//! with random faults.
 //!
-//! Every game follows from one number. `SQUALL_FAULT_SEED=7 cargo test --release --test fault_injection -- --nocapture`
-//! plays game 7 again and shows what happened in it; `SQUALL_FAULT_GAMES=100000` plays so many, from
-//! `SQUALL_FAULT_FROM` on.
+//! A single number determines every game. `SQUALL_FAULT_SEED=7 cargo test --release --test
+//! fault_injection -- --nocapture` repeats game 7 and shows its events; `SQUALL_FAULT_GAMES=100000`
+//! plays that many games, starting with number `SQUALL_FAULT_FROM`.
 #![allow(
     clippy::disallowed_methods,
     clippy::print_stdout,
@@ -30,12 +31,12 @@ use play::{Played, play};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-/// Games that are played where nothing else is asked for.
+/// Default number of games.
 const GAMES: u64 = 400;
-/// Games beside those, in which something happens that is seldom drawn: a gateway loses its game and has to join again, and the
-/// first message to a mate is lost.
+/// Additional games with rare events: a gateway loses its game and must join again, and the first
+/// message to a teammate is lost.
 const SELDOM: [u64; 3] = [3152, 3690, 4172];
-/// After so many failures the rest is not played.
+/// After this many failures the remaining games are skipped.
 const FAILURES: usize = 5;
 
 fn number(variable: &str) -> Option<u64> {
@@ -43,10 +44,11 @@ fn number(variable: &str) -> Option<u64> {
     Some(text.parse().unwrap_or_else(|_| panic!("{variable} is {text:?}, expected a whole number")))
 }
 
-/// Combines the traces of all games, in any order: two builds that print the same played the same games, message by message.
+/// Combines the traces of all games, in any order: two builds that print the same value played the
+/// same games, message by message.
 static TRACES: AtomicU64 = AtomicU64::new(0);
 
-/// What is wrong with the game of a seed.
+/// The error in the game of a seed, if any.
 fn failure(seed: u64) -> Option<String> {
     let plan = Plan::drawn(seed);
     let played = play(&plan, false);
@@ -56,7 +58,7 @@ fn failure(seed: u64) -> Option<String> {
     (!wrong.is_empty()).then(|| format!("seed {seed}:\n  {}\n  again: {again}", wrong.join("\n  ")))
 }
 
-/// Plays one game and shows everything.
+/// Plays one game and prints all events.
 fn show(seed: u64) {
     let plan = Plan::drawn(seed);
     let played = play(&plan, true);

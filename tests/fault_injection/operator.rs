@@ -1,4 +1,5 @@
-//! A person ashore who arms the real boat, stops it and releases it, and sees whether all of that is done.
+//! An operator ashore who arms the real boat, stops it and releases it, and checks that each
+//! command takes effect.
 
 use crate::plan::{Plan, SIM};
 use crate::play::{WAIT, net};
@@ -14,20 +15,20 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// When the operator's node begins.
+/// When the operator's node starts.
 pub(crate) const BEGINS: Duration = Duration::from_millis(300);
-/// From an E-stop to the wire, where nothing is wrong, beside the time on the network.
+/// Time limit from an E-stop to the wire without faults, apart from transport.
 pub(crate) const PROMISED: Duration = Duration::from_millis(200);
-/// How long nodes need, after whatever befell them, to be as they were: the lease of the network and joining again.
+/// Recovery time of nodes after any fault: the network's lease plus joining again.
 pub(crate) const RECOVERS: Duration = Duration::from_secs(25);
-/// For this long a page says again that it wants an E-stop, and a little longer.
+/// How long a page repeats its E-stop request, with a margin.
 const SAID_AGAIN: Duration = Duration::from_secs(3);
-/// A game whose sim sends no orders any more is over within this time.
+/// A game whose sim sends no more orders ends within this time.
 const ENDS: Duration = Duration::from_secs(2);
-/// The last gateway ends this long after the game: until then it is judged.
+/// The last gateway exits this long after the game; until then it is checked.
 const STAYS: Duration = Duration::from_secs(3);
 
-/// What a person at a terminal does.
+/// An operator at a terminal.
 pub(crate) struct Operator<'a> {
     plan: &'a Plan,
     wire: &'a Wire,
@@ -38,13 +39,13 @@ pub(crate) struct Operator<'a> {
     began: Instant,
     /// Whether the gateway has ever answered.
     has_answered: bool,
-    /// Whether it has ever had orders: before the game has begun there are none.
+    /// Whether the gateway has ever had orders: before the game begins there are none.
     has_had_orders: bool,
-    /// Requests to arm that nobody answered: they may get there yet.
+    /// Unanswered requests to arm, which may still arrive.
     unanswered: u32,
 }
 
-/// Ends the gateway and its boat, however the operator's node ends.
+/// Stops the gateway and its boat when the operator's node exits for any reason.
 struct EndsGateway<'a>(&'a AtomicBool);
 
 impl Drop for EndsGateway<'_> {
@@ -53,7 +54,7 @@ impl Drop for EndsGateway<'_> {
     }
 }
 
-/// Acts until the game is over, then ends the gateway and its boat.
+/// Acts as operator until the game is over, then stops the gateway and its boat.
 pub(crate) fn operate(plan: &Plan, wire: &Wire, vehicle: &str, over: &Arc<Watched<bool>>, stop: &AtomicBool) {
     let _ends_gateway = EndsGateway(stop);
     let began = clock::now();
@@ -97,7 +98,8 @@ impl Operator<'_> {
         self.over.visit(|over| *over)
     }
 
-    /// Whether nothing is wrong with anybody who is needed for an answer, and was not for some time before.
+    /// Whether all nodes needed for an answer are free of faults, and have been for the recovery
+    /// time.
     fn is_undisturbed(&self) -> bool {
         self.are_undisturbed(&[SIM, self.plan.gateway(), self.plan.operator()])
     }
@@ -109,7 +111,7 @@ impl Operator<'_> {
 
     fn ask(&mut self, command: &OperatorCommand) -> Option<OperatorReply> {
         let key = topic::operate(&self.game, &self.vehicle);
-        // Who is cut off has no answer either.
+        // A node that is cut off gets no answer either.
         let reply: Option<OperatorReply> = self.bus.request_node(&key, command, ANSWER).ok().flatten();
         let must_answer = self.has_answered && self.is_undisturbed();
         assert!(reply.is_some() || !must_answer, "the gateway does not answer {command:?}");
@@ -135,15 +137,16 @@ impl Operator<'_> {
             state.arms_left = state.arms_left.min(self.unanswered);
             state.update_armed();
         });
-        // Somebody has stopped everything on the page.
+        // The page has stopped all boats.
         if is_stopped {
             self.release_all();
         }
     }
 
-    /// A gateway that lost its game and had time to join again has orders, or the game is just ending.
+    /// Checks that a gateway that had time to join again has orders, unless the game is just
+    /// ending.
     fn check_orders_come(&mut self) {
-        // Without its agent, there are none either.
+        // Without its agent it has no orders either.
         let nodes: Vec<usize> = (SIM..=self.plan.operator()).collect();
         let was_undisturbed = self.has_had_orders && self.are_undisturbed(&nodes);
         clock::rest(ENDS);
@@ -155,7 +158,7 @@ impl Operator<'_> {
         );
     }
 
-    /// Stops everything by way of the sim, for a while.
+    /// Stops all boats through the sim, for a while.
     fn stop_all(&mut self, stream: &mut Stream) {
         let (asked, was_undisturbed) = (clock::now(), self.is_undisturbed());
         if bus::control(&self.bus, &self.game, Control::EStop).is_ok() {
@@ -163,7 +166,7 @@ impl Operator<'_> {
             let since = if was_undisturbed && self.is_undisturbed() {
                 asked + PROMISED + on_its_way
             } else {
-                // A gateway that is cut off goes by its last order until that has expired.
+                // A gateway that is cut off follows its last order until that expires.
                 clock::now() + Duration::from_secs_f64(1.0 + WAITED_S) + on_its_way
             };
             self.rest(stream, since);
@@ -171,10 +174,10 @@ impl Operator<'_> {
         self.release_all();
     }
 
-    /// Ends an E-stop of all, whoever asked for it.
+    /// Ends an E-stop of all boats, whoever requested it.
     fn release_all(&mut self) {
         self.note_release(true);
-        // Somebody who is not answered does not know whether it was done.
+        // Without an answer, the operator does not know whether the release took effect.
         while !self.is_over() {
             let was_undisturbed = self.is_undisturbed();
             let is_released = bus::control(&self.bus, &self.game, Control::Release).is_ok();
@@ -198,7 +201,7 @@ impl Operator<'_> {
         self.wire.visit(|state, _| (state.is_releasing, state.must_rest) = (begins, None));
     }
 
-    /// Stops the boat by its gateway, for a while.
+    /// Stops the boat through its gateway, for a while.
     fn stop_boat(&mut self, stream: &mut Stream) {
         if self.ask(&OperatorCommand::EStop).is_some() {
             self.rest(stream, clock::now());
@@ -212,7 +215,7 @@ impl Operator<'_> {
         }
     }
 
-    /// The boat must rest from `since` on, for a while.
+    /// Requires the boat to rest from `since` on, for a while.
     fn rest(&self, stream: &mut Stream, since: Instant) {
         self.wire.visit(|state, _| state.must_rest = Some(since));
         clock::rest(Duration::from_millis(500 + stream.below(2500)));

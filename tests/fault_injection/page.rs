@@ -1,4 +1,5 @@
-//! A page that shows the game and stops it now and then, as its server runs everywhere; a browser and sockets are left out.
+//! A page that shows the game and sometimes stops it. It uses the real page server, without browser
+//! and sockets.
 
 use crate::operator::{PROMISED, RECOVERS};
 use crate::plan::{Plan, SIM};
@@ -13,12 +14,12 @@ use std::time::{Duration, Instant};
 
 /// When the page is opened.
 pub(crate) const BEGINS: Duration = Duration::from_millis(400);
-/// How often it is looked at.
+/// How often the page is polled.
 const LOOKS: Duration = Duration::from_millis(100);
-/// From the button to the wire, and from frame to frame, nothing takes longer than this.
+/// Upper limit for the time from the button to the wire, and between frames.
 const LATE: Duration = Duration::from_secs(3);
 
-/// Looks at the page until the game is over.
+/// Polls the page until the game is over.
 pub(crate) fn look(plan: &Plan, wire: &Wire, over: &Watched<bool>) {
     let (began, stream) = (clock::now(), &mut Stream::new(plan.seed, "page"));
     let view =
@@ -36,7 +37,7 @@ pub(crate) fn look(plan: &Plan, wire: &Wire, over: &Watched<bool>) {
     }
 }
 
-/// What a page was shown.
+/// What the page has received.
 struct Shown {
     at: Instant,
     frames: u64,
@@ -57,7 +58,8 @@ impl Shown {
     }
 }
 
-/// Presses the button. Where nothing is wrong the boat must rest from then on, until the operator has released it.
+/// Presses the E-stop button. Without faults, the boat must rest from then on until the operator
+/// releases it.
 fn stop(plan: &Plan, wire: &Wire, viewer: &mut dyn Viewer, since: Duration) {
     let asked = clock::now();
     wire.visit(|state, _| state.page_stopped = Some(asked));

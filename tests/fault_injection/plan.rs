@@ -1,43 +1,44 @@
-//! The plan of one game: what is played, over which network, and what goes wrong. All of it is drawn from one seed.
+//! The plan of one game: scenario, network conditions and faults, all drawn from one seed.
 
 use primitives::stream::Stream;
 use sim::node::Pace;
 use simulated_network::{Conditions, Damage, Fault};
 use std::time::Duration;
 
-/// The games that are played, in the folder `games`.
+/// The games that are played, from the folder `games`.
 pub(crate) const GAMES: [&str; 5] = ["point_boats", "surveyors", "duel", "talking", "real_boat"];
 
-/// The numbers of the first nodes; agents come after these, and where there is a real boat its gateway, an operator and itself.
+/// Numbers of the first nodes. Agents follow, then for a real boat its gateway, an operator and the
+/// boat itself.
 pub(crate) const SIM: usize = 0;
 pub(crate) const OBSERVER: usize = 1;
 pub(crate) const FIRST_AGENT: usize = 2;
 
-/// After this long without a sign of the other side zenoh closes a link.
+/// zenoh closes a link after this long without a sign of life from the other side.
 const LEASE: Duration = Duration::from_secs(10);
 
-/// One game.
+/// The plan of one game.
 #[derive(Clone, Debug)]
 pub(crate) struct Plan {
     pub(crate) seed: u64,
-    /// Which of [`GAMES`].
+    /// Index into [`GAMES`].
     pub(crate) game: usize,
-    /// Which game of the file.
+    /// Seed of the scenario's game.
     pub(crate) game_seed: u64,
     pub(crate) duration_s: u32,
     pub(crate) pace: Pace,
-    /// In lockstep: no faster than this.
+    /// Maximum speed in lockstep.
     pub(crate) speed: Option<f64>,
     pub(crate) patience_s: f64,
-    /// How long an order is good for, where it is not as long as in the game's file: longer than patience, so that a boat holds
-    /// because its agent is lost and not because its order has expired.
+    /// Time to live of an order, if it differs from the game file: longer than patience, so that a
+    /// boat holds because its agent is lost and not because its order has expired.
     pub(crate) order_ttl_s: Option<f64>,
-    /// Vehicles by agent process.
+    /// Vehicle indices of each agent process.
     pub(crate) agents: Vec<Vec<usize>>,
     pub(crate) conditions: Conditions,
-    /// When the wire to the real boat is cut.
+    /// Start and end of each cut of the wire to the real boat.
     pub(crate) wire_cuts: Vec<(Duration, Duration)>,
-    /// What goes wrong, and when.
+    /// Each fault with its start.
     pub(crate) faults: Vec<(Duration, Fault)>,
 }
 
@@ -50,14 +51,14 @@ fn one<T: Copy>(stream: &mut Stream, of: &[T]) -> T {
 }
 
 impl Plan {
-    /// The plan that a seed stands for.
+    /// The plan for a seed.
     pub(crate) fn drawn(seed: u64) -> Plan {
         let stream = &mut Stream::new(seed, "plan");
         let game = stream.below(GAMES.len() as u64) as usize;
         let boats = if matches!(GAMES[game], "duel" | "real_boat") { 2 } else { 4 };
         let agents = drawn_agents(stream, boats);
         let pace = match stream.below(5) {
-            // A real boat has a pace of its own.
+            // A real boat runs in real time.
             _ if GAMES[game] == "real_boat" => Pace::Realtime { factor: 1.0 },
             0..3 => Pace::Lockstep,
             _ => Pace::Realtime { factor: one(stream, &[1.0, 2.0, 4.0]) },
@@ -85,7 +86,7 @@ impl Plan {
         plan
     }
 
-    /// Something that goes wrong while the game is likely to be played.
+    /// A random fault, at a time when the game is probably running.
     fn drawn_fault(&self, stream: &mut Stream) -> (Duration, Fault) {
         let expected_s = match (self.pace, self.speed) {
             (Pace::Realtime { factor }, _) => f64::from(self.duration_s) / factor,
@@ -109,10 +110,10 @@ impl Plan {
         let fault = match stream.below(10) {
             0..5 => Fault::Cut { node, time },
             5..8 => Fault::Suspend { node, time },
-            // Nobody would end the others.
+            // The operator ends the gateway and the boat, so it must survive.
             _ if node == self.operator() => Fault::Suspend { node, time },
             _ if node == self.page() => Fault::Kill { node, restart: None },
-            // A sim that dies ends the game; once in a while is enough.
+            // The death of the sim ends the game, so it should be rare.
             _ if node == SIM && stream.below(4) > 0 => Fault::Suspend { node, time },
             _ if node == SIM => Fault::Kill { node, restart: None },
             _ => Fault::Kill { node, restart },
@@ -124,22 +125,22 @@ impl Plan {
         GAMES[self.game] == "real_boat"
     }
 
-    /// Whether somebody without the token is there, who wants to take the real boat.
+    /// Whether a stranger without the token attacks the real boat.
     pub(crate) fn has_stranger(&self) -> bool {
         self.has_real_boat() && self.seed.is_multiple_of(2)
     }
 
-    /// The number of the gateway's node.
+    /// Node number of the gateway.
     pub(crate) fn gateway(&self) -> usize {
         FIRST_AGENT + self.agents.len()
     }
 
-    /// The number of the operator's node.
+    /// Node number of the operator.
     pub(crate) fn operator(&self) -> usize {
         self.gateway() + 1
     }
 
-    /// The number of the node that shows the game to a page.
+    /// Node number of the page server.
     pub(crate) fn page(&self) -> usize {
         self.gateway() + 2
     }
@@ -149,8 +150,8 @@ impl Plan {
         self.conditions.loss == 0.0 && self.conditions.damaged.0 == 0.0
     }
 
-    /// How long it takes at most, where nothing is wrong, for a message to come over two links, be worked on, and come over
-    /// another one.
+    /// Maximum time without faults for a message to cross two links, be processed, and cross
+    /// another link.
     pub(crate) fn on_its_way(&self) -> Duration {
         3 * (self.conditions.delay + self.conditions.jitter + self.conditions.pause)
     }
@@ -166,12 +167,12 @@ impl Plan {
         })
     }
 
-    /// Whether minds talk: those to whom a message of a mate does not get through may decide otherwise.
+    /// Whether minds communicate: a mind that misses a teammate's message may decide differently.
     pub(crate) fn talks(&self) -> bool {
         GAMES[self.game] == "talking"
     }
 
-    /// Whether damage may make another valid message of one.
+    /// Whether damage may turn a message into another valid one.
     pub(crate) fn forges(&self) -> bool {
         self.conditions.damaged.0 > 0.0 && self.conditions.damaged.1 != Damage::Truncated
     }
@@ -180,7 +181,7 @@ impl Plan {
         Duration::from_secs_f64(self.patience_s)
     }
 
-    /// When the last fault is over, and what was killed has been started again.
+    /// When the last fault is over and killed nodes have restarted.
     pub(crate) fn faults_end(&self) -> Duration {
         let ends = self.faults.iter().map(|(at, fault)| match fault {
             Fault::Cut { time, .. } | Fault::Suspend { time, .. } => *at + *time,
@@ -189,12 +190,13 @@ impl Plan {
         ends.chain(self.wire_cuts.iter().map(|(_, end)| *end)).max().unwrap_or_default()
     }
 
-    /// The longest time without a break in which `node` was cut off or suspended; for ever if it was killed.
+    /// The longest continuous period in which `node` was cut off or suspended; unlimited if it was
+    /// killed.
     pub(crate) fn longest_absence(&self, node: usize) -> Duration {
         self.longest(node, |fault| !matches!(fault, Fault::Kill { .. }))
     }
 
-    /// The same of cuts alone.
+    /// The longest continuous cut of `node`.
     pub(crate) fn longest_cut(&self, node: usize) -> Duration {
         self.longest(node, |fault| matches!(fault, Fault::Cut { .. }))
     }
@@ -215,7 +217,7 @@ impl Plan {
         spans.sort();
         let (mut longest, mut open) = (Duration::ZERO, (Duration::ZERO, Duration::ZERO));
         for (from, to) in spans {
-            // What follows soon adds up: the answer may not have got through in between.
+            // Faults in quick succession add up: the answer may not have got through in between.
             open = if from <= open.1 + GAP { (open.0, open.1.max(to)) } else { (from, to) };
             longest = longest.max(open.1 - open.0);
         }
@@ -223,10 +225,10 @@ impl Plan {
     }
 }
 
-/// Two absences with no more than this between them count as one.
+/// Two absences separated by no more than this count as one.
 const GAP: Duration = Duration::from_millis(1500);
 
-/// Which boats share a process.
+/// Random assignment of boats to agent processes.
 fn drawn_agents(stream: &mut Stream, boats: usize) -> Vec<Vec<usize>> {
     let mut agents: Vec<Vec<usize>> = Vec::new();
     let mut order: Vec<usize> = (0..boats).collect();

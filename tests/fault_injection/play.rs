@@ -1,4 +1,4 @@
-//! Plays one plan: the sim, its agents and an observer as they run in processes of their own, on a simulated network.
+//! Plays one plan: the sim, its agents and an observer run unmodified on a simulated network.
 
 use crate::plan::{GAMES, Plan};
 use crate::real_boat::{self, Wire};
@@ -21,24 +21,24 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, LazyLock};
 use std::time::Duration;
 
-/// Virtual time that no game may take.
+/// Limit of virtual time for a game.
 pub(crate) const LIMIT: Duration = Duration::from_secs(300);
-/// How long the sim waits for agents.
+/// How long the sim waits for agents to join.
 const JOIN: Duration = Duration::from_secs(30);
-/// How long agents look for the game.
+/// How long agents search for the game.
 pub(crate) const WAIT: Duration = Duration::from_secs(60);
-/// After this long without a picture agents give up.
+/// Agents exit after this long without a picture.
 const SILENCE: Duration = Duration::from_secs(40);
 
-/// What came of a game.
+/// The results of a game.
 pub(crate) struct Played {
     pub(crate) scenario: Scenario,
     pub(crate) run: Run,
-    /// How the sim ended; nothing if it was killed.
+    /// The sim's result; `None` if it was killed.
     pub(crate) sim: Option<Result<Report, String>>,
-    /// How agents ended that were not killed: which node, and how.
+    /// The node number and result of each agent that was not killed.
     pub(crate) agents: Vec<(usize, Result<(), String>)>,
-    /// What agents refused.
+    /// What the agents refused.
     pub(crate) refused: Refusals,
     pub(crate) monitor: WireMonitor,
 }
@@ -50,7 +50,7 @@ struct Results {
     refused: Refusals,
 }
 
-/// The scenarios, read once.
+/// The scenarios, loaded once.
 static SCENARIOS: LazyLock<Vec<Scenario>> = LazyLock::new(|| {
     let games = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fault_injection/games");
     let read = |game: &&str| scenario::load(&games.join(format!("{game}.toml"))).unwrap_or_else(|e| panic!("{e}"));
@@ -58,7 +58,7 @@ static SCENARIOS: LazyLock<Vec<Scenario>> = LazyLock::new(|| {
 });
 
 impl Plan {
-    /// The scenario that is played.
+    /// The scenario of the plan.
     pub(crate) fn scenario(&self) -> Scenario {
         let drawn = SCENARIOS[self.game].of_seed(self.game_seed);
         let mut scenario = drawn.unwrap_or_else(|e| panic!("{e}"));
@@ -80,7 +80,7 @@ pub(crate) fn net(listens: bool) -> Net {
     Net { listen, connect, token, ..Net::default() }
 }
 
-/// Plays a game; `keeps_lines` keeps what happened line by line.
+/// Plays a game; `keeps_lines` also keeps the event log.
 pub(crate) fn play(plan: &Plan, keeps_lines: bool) -> Played {
     let scenario = plan.scenario();
     let network = SimulatedNetwork::new(plan.seed, plan.conditions.clone());
@@ -108,7 +108,7 @@ pub(crate) fn play(plan: &Plan, keeps_lines: bool) -> Played {
     Played { scenario, run, sim, agents, refused, monitor }
 }
 
-/// Says that the game is over, however it ended.
+/// Signals the end of the game when dropped.
 struct SaysOver(Arc<Watched<bool>>);
 
 impl Drop for SaysOver {
@@ -117,7 +117,7 @@ impl Drop for SaysOver {
     }
 }
 
-/// The boat, its gateway, and somebody who operates it.
+/// Adds the boat, its gateway and an operator.
 fn add_real_boat(network: &SimulatedNetwork, plan: &Plan, scenario: &Scenario, over: &Arc<Watched<bool>>) {
     let vehicle = scenario.externals().next().expect("there is a real boat");
     let vehicle = scenario.vehicles[vehicle.index()].name.clone();
@@ -190,7 +190,7 @@ fn add_agent(network: &SimulatedNetwork, i: usize, vehicles: Vec<String>, result
     });
 }
 
-/// An observer of frames, until the game is over or the sim is gone.
+/// Observes frames until the game is over or the sim is gone.
 fn observe() {
     let stop = AtomicBool::new(false);
     let Ok((bus, game, _)) = GameSearch::new(WAIT, &stop).game(&mut |_| {}, &net(false).into(), None) else { return };

@@ -1,5 +1,5 @@
-//! The real boat of a game, in a node of its own, and the wire between it and its gateway. An oracle judges every sentence on the
-//! wire, and panics where one must not be sent.
+//! The real boat of a game, in a separate node, and the wire to its gateway. An oracle checks every
+//! sentence on the wire, and panics at a forbidden one.
 
 use crate::boat::{Boat, STEP_S, emulated};
 use crate::oracle::Oracle;
@@ -11,46 +11,47 @@ use primitives::frame::{LatLon, Ned};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// How often the boat moves on.
+/// Step interval of the boat.
 const MOVES: Duration = Duration::from_millis(50);
-/// Telemetry is sent at every second move.
+/// Telemetry is sent at every second step.
 const TELEMETRY: u64 = 2;
-/// After this long without a command the boat stops by itself, s.
+/// The boat stops by itself after this long without a command, s.
 const WATCHDOG_S: f64 = 2.0;
 /// Magnetic declination of its waters, east positive, rad.
 pub(crate) const DECLINATION_RAD: f64 = -0.218;
-/// What the gateway does not read is lost beyond this.
+/// Unread bytes for the gateway beyond this are lost.
 const UNREAD_MAX: usize = 1 << 16;
-/// What may wait for the gateway's loop is that much older than the oracle knows, s; more is not used.
+/// An order that waits for the gateway's loop is this much older than the oracle assumes, s; an
+/// older one is not used.
 pub(crate) const WAITED_S: f64 = 0.55;
 
 /// The wire between a boat and its gateway.
 pub(crate) struct Wire {
     state: Watched<State>,
-    /// The newest order that has reached the gateway: when it was made, and when it came.
+    /// The newest order that reached the gateway: when it was made, and when it arrived.
     order: Mutex<(SimTime, SimTime)>,
-    /// Whether damage on the way may give an order another time.
+    /// Whether damage on the way may change the time of an order.
     is_forged: bool,
 }
 
-/// What is on it, and what the oracle knows.
+/// The state of the wire and of the oracle.
 pub(crate) struct State {
     start: Option<Instant>,
-    /// Counts the links that gateways have opened over it: only the newest is served.
+    /// Number of links that gateways have opened on this wire: only the newest is served.
     pub(crate) links: u64,
     pub(crate) is_connected: bool,
     pub(crate) is_whole: bool,
     to_boat: Vec<u8>,
     pub(crate) from_boat: Vec<u8>,
     pub(crate) oracle: Oracle,
-    /// How often somebody has asked the gateway to arm and it may still do so.
+    /// How many requests to arm may still take effect.
     pub(crate) arms_left: u32,
     is_armed: bool,
-    /// From when on no sentence may drive the boat, since somebody has stopped it.
+    /// From this time no sentence may drive the boat, because of a stop.
     pub(crate) must_rest: Option<Instant>,
     /// When the page's E-stop was last pressed.
     pub(crate) page_stopped: Option<Instant>,
-    /// Whether somebody is about to end an E-stop of all.
+    /// Whether a release of all boats is in progress.
     pub(crate) is_releasing: bool,
 }
 
@@ -81,7 +82,8 @@ impl Wire {
         Wire { state: Watched::new(state), order: Mutex::new((SimTime::LONG_AGO, SimTime::LONG_AGO)), is_forged }
     }
 
-    /// Reads or changes what is known, with the time since the wire was first used: the boat does so at the beginning.
+    /// Reads or changes the state, with the time since first use of the wire, which is the boat's
+    /// start.
     pub(crate) fn visit<R>(&self, visit: impl FnOnce(&mut State, SimTime) -> R) -> R {
         self.state.visit(|state| {
             let start = *state.start.get_or_insert_with(clock::now);
@@ -96,7 +98,7 @@ impl Wire {
     /// Carries a gateway's sentences to the boat.
     pub(crate) fn carry(&self, bytes: &[u8]) {
         self.visit(|state, now| {
-            // A process that is killed sends nothing more.
+            // A killed process sends nothing more.
             if !state.is_connected || std::thread::panicking() {
                 return;
             }
@@ -112,16 +114,17 @@ impl Wire {
         });
     }
 
-    /// An order made at this time has reached the gateway. May be called where the network must not be used.
+    /// Records the arrival of an order at the gateway. May be called where the network must not be
+    /// used.
     pub(crate) fn note_order(&self, given: SimTime, at: Duration) {
         let mut order = self.order.lock();
-        // A boat that has joined anew takes the order that is in force, however often it had it before.
+        // After joining again, a boat accepts the order in force even if it already had it.
         if given >= order.0 || self.is_forged {
             *order = (given, SimTime::from_s(at.as_secs_f64()));
         }
     }
 
-    /// A gateway has begun: it drives nobody before it was armed.
+    /// Records the start of a gateway: it drives no boat before it is armed.
     pub(crate) fn note_start(&self) {
         self.visit(|state, _| {
             state.is_armed = false;
@@ -129,7 +132,7 @@ impl Wire {
         });
     }
 
-    /// The gateway went from one state to another.
+    /// Records a state change of the gateway.
     pub(crate) fn note_state(&self, from: &str, to: &str) {
         self.visit(|state, now| {
             if to == "armed" {
@@ -148,7 +151,8 @@ impl State {
     }
 }
 
-/// The boat: it sails by what it is sent, until `stop` is set. The wire is cut in these spans of time.
+/// Runs the boat with the commands that it receives until `stop` is set; `cuts` are the periods in
+/// which the wire is cut.
 pub(crate) fn sail(wire: &Wire, datum: LatLon, cuts: &[(Duration, Duration)], stop: &AtomicBool) {
     let plan = emulated(datum, DECLINATION_RAD);
     let mut emulator = Emulator::new(emulator::Plan { watchdog_s: Some(WATCHDOG_S), ..plan });

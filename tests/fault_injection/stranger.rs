@@ -1,5 +1,5 @@
-//! A stranger who reaches the hub and knows no token: he answers operators in the gateway's place, keeps their proofs and
-//! sends them again later, forges reports, and floods.
+//! A stranger who reaches the hub without a token. It answers operators in the gateway's place,
+//! replays their proofs, forges reports, and floods.
 
 use crate::play::net;
 use bus::{Bus, Net, Query, Watched, clock};
@@ -10,28 +10,28 @@ use primitives::stream::Stream;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// The state that he invents.
+/// The invented state.
 pub(crate) const FORGED: &str = "forged";
-/// When he comes.
+/// When the stranger appears.
 pub(crate) const BEGINS: Duration = Duration::from_millis(500);
-/// How often he does something.
+/// Interval between its actions.
 const ACTS: Duration = Duration::from_millis(50);
-/// Messages of a flood, each time.
+/// Messages per flood.
 const FLOOD: usize = 40;
-/// How late he sends a proof again: longer than it counts, and than any of our networks takes.
+/// Delay of a replayed proof: longer than its validity and than the delay of any network here.
 const LATE: Duration = Duration::from_secs(3);
-/// Proofs and questions that he keeps.
+/// Maximum number of proofs and queries kept.
 const KEPT_MAX: usize = 16;
 
-/// Proofs that he has heard, and when.
+/// Overheard proofs, and when.
 type Proofs = Mutex<Vec<(std::time::Instant, Vec<u8>)>>;
 
-/// Does harm, as far as the hub lets him, until the game is over.
+/// Attacks the game, as far as the hub allows, until it is over.
 pub(crate) fn intrude(seed: u64, game: &GameName, vehicle: &str, over: &Watched<bool>) {
     let stream = &mut Stream::new(seed, "stranger");
     let is_silent = stream.below(2) == 0;
     while !over.wait(ACTS, |over| *over) {
-        // His link may be cut like any other's, and a sim may come later.
+        // The stranger's link may be cut too, and the sim may start later.
         if let Ok(bus) = Bus::leaf(&Net { token: None, ..net(false) }) {
             stay(&bus, (game, vehicle), is_silent, stream, over);
             bus.close();
@@ -42,7 +42,7 @@ pub(crate) fn intrude(seed: u64, game: &GameName, vehicle: &str, over: &Watched<
 fn stay(bus: &Bus, (game, vehicle): (&GameName, &str), is_silent: bool, stream: &mut Stream, over: &Watched<bool>) {
     let (operate, proofs) = (topic::operate(game, vehicle), Arc::new(Proofs::default()));
     let (kept, forged) = (Arc::clone(&proofs), forged_reply(vehicle));
-    // Whoever keeps a question open is waited for.
+    // An unanswered query keeps its sender waiting.
     let open = Mutex::new(Vec::new());
     let take = move |query: Query| {
         if query.payload().windows(7).any(|word| word == b"\"proof\"") && kept.lock().len() < KEPT_MAX {

@@ -1,4 +1,4 @@
-//! What the wire showed of a game, and what must hold of it at every frame.
+//! Monitors the wire of a game and checks it at every frame.
 
 use crate::plan::Plan;
 use messages::external::ExternalOrder;
@@ -9,42 +9,42 @@ use sim::node::Pace;
 use simulated_network::Published;
 use std::time::Duration;
 
-/// A boat that is to hold has stopped its thrusters after this much of the game: they take a fifth of their range a second,
-/// with a lag of 0.25 s.
+/// A boat that must hold has stopped its thrusters after this much simulated time: they change by a
+/// fifth of their range a second, with a lag of 0.25 s.
 const SETTLES_S: f64 = 6.5;
 /// A real boat that has joined is reported at least this often, whatever the pauses.
 const UNREPORTED: Duration = Duration::from_secs(2);
-/// Thrust of a boat that holds, N.
+/// Maximum thrust of a boat that holds, N.
 const RESTS_NEWTON: f64 = 1.0;
 /// After a tag the rules may drive a boat for this long.
 const DRIVEN_S: f64 = 5.0;
 
-/// One boat, as the wire shows it.
+/// One boat as seen on the wire.
 #[derive(Clone, Debug)]
 struct Boat {
     /// The time of the picture that its newest order answers.
     ordered: SimTime,
-    /// Since when its agent has been lost, in the time of the game.
+    /// When its agent was lost, in simulated time.
     lost_since: Option<SimTime>,
     /// When the rules were last seen to drive it.
     driven: SimTime,
 }
 
-/// Everything that the checks need to know.
+/// The state of the checks.
 #[derive(Clone, Debug)]
 pub(crate) struct WireMonitor {
     boats: Vec<Boat>,
     order_ttl_s: f64,
     expires: bool,
-    /// When each boat was seen without an agent, first and last.
+    /// When each boat was first and last seen without an agent.
     pub(crate) lost: Vec<Option<(Duration, Duration)>>,
-    /// When the first frame of the game came, and the last.
+    /// When the first and the last frame of the game arrived.
     pub(crate) frames: Option<(Duration, Duration)>,
-    /// From when on the real boat must be there, if there is one that is not lost for good.
+    /// When the real boat must be back; `None` without one or if it is lost for good.
     is_back: Option<Duration>,
-    /// When it was reported last.
+    /// When the real boat was last reported.
     reported: Duration,
-    /// What must not be.
+    /// The errors found.
     pub(crate) wrong: Vec<String>,
 }
 
@@ -82,11 +82,12 @@ impl WireMonitor {
         }
     }
 
-    /// A real boat never gets an order that has expired.
+    /// A real boat never gets an expired order.
     fn check_external_order(&mut self, external: &ExternalOrder) {
         let ExternalOrder { stamp, given_ns, order } = external;
         let age_s = (stamp.valid_ns - *given_ns).as_s();
-        // The rules drive a boat home by themselves, as long as somebody looks: then too the order must be young.
+        // The rules drive a boat home by themselves while its agent is connected: even then the
+        // order must be fresh.
         if age_s > self.order_ttl_s && order.order() != Some(Order::Hold) {
             self.wrong.push(format!("at {} an order {age_s:.2} s old goes to a real boat", stamp.valid_ns));
         }

@@ -1,8 +1,9 @@
-//! Gateways of real boats in a gale, on the simulated sea in memory, much faster than real time: nothing is a false alarm, and each
-//! fault of a compass, of thrusters or of the boat's hearing is found in its time.
+//! Gateways of real boats in a gale, on the simulated sea in memory, much faster than real time: no
+//! false alarms, and every fault of a compass, of thrusters or of the boat's receiver of commands
+//! is found in time.
 //!
-//! `SQUALL_HOURS=24 cargo test --locked --release --workspace --test gale -- --nocapture` sails a day with four boats; without it, half
-//! an hour.
+//! `SQUALL_HOURS=24 cargo test --locked --release --workspace --test gale -- --nocapture` simulates
+//! a day with four boats; the default is half an hour.
 
 #![expect(clippy::print_stdout, reason = "what was measured is shown to whoever runs it by hand")]
 
@@ -21,23 +22,23 @@ use sim::World;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// A voyage of this length has boats and a sea of its own, s: longer ones would empty the batteries.
+/// Each voyage of this length has its own boats and sea, s: longer ones would empty the batteries.
 const VOYAGE_S: f64 = 1200.0;
-/// Boats sail about places this far from each other, m.
+/// Distance between the boats' areas, m.
 const APART_M: f64 = 500.0;
-/// How far from there they go, m.
+/// How far a boat goes from the middle of its area, m.
 const REACH_M: f64 = 80.0;
 const BOATS: usize = 4;
 
-/// What is done to a boat from a time on.
+/// The fault of a boat from a given time on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Fault {
     None,
-    /// The compass shows this much too little, rad.
+    /// The compass reads this much too low, rad.
     CompassOff(f64),
-    /// The compass always shows the same.
+    /// The compass reading never changes.
     CompassFrozen,
-    /// A thruster gives nothing.
+    /// The port thruster gives no thrust.
     PortLost,
     BothLost,
 }
@@ -46,22 +47,22 @@ enum Fault {
 struct Boat {
     emulator: Emulator,
     bridge: Bridge,
-    /// What it is to do, until when.
+    /// The present order, and its end.
     order: Order,
     until: SimTime,
     toward: Option<(Ned, f64)>,
     home: Ned,
     at: Ned,
     stream: Stream,
-    /// When each failsafe happened, and its cause.
+    /// The time and cause of each failsafe.
     failsafes: Vec<(SimTime, String)>,
     arm_at: SimTime,
 }
 
-/// Four boats of a kind that differ, in a gale.
+/// Four boats of the same kind with individual differences, in a gale.
 struct Voyage {
     world: World,
-    /// Ticks between two readings of the sensors.
+    /// Ticks between two sensor readings.
     ticks: u32,
     boats: Vec<Boat>,
     fault: (SimTime, Fault),
@@ -112,7 +113,7 @@ impl Boat {
         }
     }
 
-    /// The agent: legs between places about its own, holds, and thrust.
+    /// The agent: legs between places in its area, holds, and direct thrust.
     fn decide(&mut self, now: SimTime) {
         if now >= self.until {
             let stream = &mut self.stream;
@@ -167,7 +168,7 @@ impl Voyage {
         Voyage { world, ticks: game.ticks_per_decision, boats, fault: (SimTime::from_s(fault.0), fault.1) }
     }
 
-    /// Sails on to the next reading of the sensors.
+    /// Advances to the next sensor reading.
     fn step(&mut self) {
         let now = self.world.state().now;
         let fault = if now >= self.fault.0 { self.fault.1 } else { Fault::None };
@@ -202,7 +203,7 @@ impl Voyage {
     }
 }
 
-/// What a boat's sensors measure, as its front seat has it.
+/// A boat's sensor readings, as its front seat receives them.
 fn own_boat(world: &World, vehicle: VehicleId, fault: Fault) -> OwnBoat {
     let reading = world.reading(vehicle).expect("the boat has sensors");
     let ([roll, pitch, yaw], [ahead, starboard, down]) = (reading.imu.gyro_rad_s, reading.imu.accelerometer_m_s2);
@@ -221,7 +222,7 @@ fn own_boat(world: &World, vehicle: VehicleId, fault: Fault) -> OwnBoat {
         _ => nav.psi_rad,
     };
     if shown_rad != nav.psi_rad {
-        // The velocity is that over the ground, in the boat's axes: the receiver knows nothing of the compass.
+        // Velocity over the ground in the boat's axes: the receiver does not depend on the compass.
         let velocity = nav.velocity_m_s();
         nav.psi_rad = shown_rad;
         let body = body_from_ned(Rotation::from_heading(nav.psi_rad), velocity);
@@ -230,7 +231,7 @@ fn own_boat(world: &World, vehicle: VehicleId, fault: Fault) -> OwnBoat {
     OwnBoat { fix_ns: reading.fix_at, imu, ..OwnBoat::new(vehicle, nav) }
 }
 
-/// What the thrusters are ordered, as far as they act.
+/// The part of an order that the thrusters carry out.
 fn effective(order: Order, fault: Fault) -> Order {
     match (order, fault) {
         (Order::Thrust { starboard, .. }, Fault::PortLost) => Order::Thrust { port: 0.0, starboard },
@@ -239,7 +240,7 @@ fn effective(order: Order, fault: Fault) -> Order {
     }
 }
 
-/// Failsafes that are right: what the receiver itself tells.
+/// Legitimate failsafes: those that the receiver itself reports.
 fn is_of_receiver(cause: &str) -> bool {
     ["the fix is of quality", "the last fix is", "the position jumped"].iter().any(|words| cause.contains(words))
 }

@@ -1,4 +1,5 @@
-//! A boat with nobody but its gateway, or not even that: it can be stopped without a sim, and a gateway that dies stops it.
+//! A boat with no node but its gateway, or not even that: it can be stopped without a sim, and it
+//! stops when its gateway dies.
 
 use crate::support::{LIMIT, Process, Sim, newest, run, squall, stderr, stdout, wait_until, wait_within};
 use bus::token::TOKEN_VARIABLE;
@@ -13,18 +14,19 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// A thruster that is commanded to stop takes a fifth of its range a second, with a lag of 0.25 s: from 43 % it pushes less than
-/// `STILL_NEWTON` after 2.2 + 1.1 s; and what a busy machine takes beyond that.
+/// A thruster that is commanded to stop changes by a fifth of its range a second, with a lag of
+/// 0.25 s: from 43 % it gives less than `STILL_NEWTON` after 2.2 + 1.1 s. The rest allows for a
+/// busy machine.
 const STOPS: Duration = Duration::from_millis(3300 + 1500);
 const STILL_NEWTON: f64 = 0.5;
 
 /// Water with an emulated boat that has no watchdog: it follows the last command for ever.
 struct Afloat {
-    /// A game of this name there is not.
+    /// The name of a game that does not exist.
     game: &'static str,
     water: Sim,
     _emulator: Process,
-    /// Where a back seat reaches it.
+    /// The address for a back seat.
     back_seat: String,
     frame: Arc<Watched<Frame>>,
     _observer: (Bus, Declaration),
@@ -47,7 +49,7 @@ impl Afloat {
         Afloat { game, water, _emulator: emulator, back_seat, frame, _observer: (bus, frames) }
     }
 
-    /// Sets it going as a back seat does that dies then: it stays at 43 %.
+    /// Sets the boat going like a back seat that then dies: it stays at 43 %.
     fn set_going(&self) {
         let address = self.back_seat.trim_start_matches("tcp://");
         let mut stream = TcpStream::connect(address).expect("it accepts");
@@ -69,13 +71,13 @@ impl Afloat {
         assert!(self.is_still(), "it goes on again");
     }
 
-    /// A gateway in whose game there is nobody.
+    /// Arguments of a gateway whose game has no other node.
     fn gateway_args(&self) -> Vec<String> {
         let args = ["gateway", "surveyor", "--vehicle", "blue_one", "--no-record", "--game", self.game, "--link"];
         args.iter().map(|arg| (*arg).to_owned()).chain([self.back_seat.clone()]).collect()
     }
 
-    /// What an operator types on the machine of the gateway.
+    /// Runs an operator's command on the gateway's machine.
     fn tell(&self, command: &str) -> String {
         let mut tell = squall(&["gateway", "tell", "blue_one", command, "--game", self.game]);
         let output = tell.env_remove(TOKEN_VARIABLE).output().expect("the program starts");
@@ -105,14 +107,14 @@ fn a_gateway_stops_its_boat_and_serves_operators_before_there_is_a_game() {
     assert!(afloat.tell("estop").contains("e-stopped"));
     let released = afloat.tell("release");
     assert!(released.contains("safed"), "by the gateway's own token: {released}");
-    // A second gateway on this machine is refused, and the boat notices nothing.
+    // A second gateway on this machine is refused without any effect on the boat.
     let second = afloat.gateway_args();
     let output = run(&second.iter().map(String::as_str).collect::<Vec<_>>());
     assert!(!output.status.success());
     let said = stderr(&output);
     assert!(said.contains("another gateway on this machine has the link"), "{said}");
     assert!(afloat.tell("status").contains("safed"));
-    // Who stops the link asks its gateway.
+    // A stop over the link goes to the gateway that holds it.
     let output = run(&["gateway", "stop", &afloat.back_seat]);
     assert!(output.status.success() && stdout(&output).contains("the gateway of blue_one has the link: e-stopped"));
     gateway.signal("TERM");
@@ -137,7 +139,7 @@ fn enter_in_the_gateways_own_terminal_is_an_e_stop() {
     let afloat = Afloat::start("alone-key");
     let words: Vec<String> =
         std::iter::once(env!("CARGO_BIN_EXE_squall").to_owned()).chain(afloat.gateway_args()).collect();
-    // A terminal of its own.
+    // Give it a terminal.
     let mut command = Command::new("script");
     command.args(["-qfec", &words.join(" "), "/dev/null"]).current_dir(env!("CARGO_MANIFEST_DIR"));
     command.stdin(Stdio::piped()).stdout(Stdio::null());
@@ -153,10 +155,10 @@ fn enter_in_the_gateways_own_terminal_is_an_e_stop() {
     drop((terminal, afloat.water));
 }
 
-/// What the guard of a gateway promises.
+/// The guard's time limit.
 const GUARD_PROMISES: Duration = Duration::from_millis(500);
 
-/// A boat's end of a link: it reports something and notes what it is sent.
+/// A boat's end of a link: sends reports and records what it receives.
 pub(crate) struct Wire {
     link: Arc<Link>,
     pub(crate) received: Arc<Watched<String>>,
@@ -186,13 +188,13 @@ impl Wire {
         Wire { link, received, stop }
     }
 
-    /// Where a gateway reaches it.
+    /// The address for a gateway.
     pub(crate) fn address(&self) -> String {
         let reach = self.link.reach();
         if reach.starts_with('/') { format!("serial://{reach}?baud=115200") } else { reach }
     }
 
-    /// Waits until this was received, from the last forgetting on.
+    /// Waits until this is received, counting from the last reset.
     pub(crate) fn wait_for(&self, what: &str, limit: Duration) -> Duration {
         let start = Instant::now();
         let came = self.received.wait(limit, |text| text.contains(what));
@@ -213,7 +215,7 @@ impl Drop for Wire {
 
 #[test]
 fn the_guard_stops_a_boat_on_every_kind_of_link_when_its_gateway_is_killed_or_suspended() {
-    // Zero: a gateway that only says standby does not say it.
+    // Thrust zero comes first: a gateway that sends only standby omits it.
     let (zero, standby) = ("$PSEAC,T,0,0,0,*", "$PSEAC,L,0,0,0,*");
     for listen in ["tcp://127.0.0.1:0", "udp://127.0.0.1:0", "pty"] {
         let wire = Wire::listen(listen);

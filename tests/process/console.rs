@@ -1,4 +1,4 @@
-//! The operator console: stops take every path, and are done when the boats report them.
+//! The operator console: stops take every path, and are complete when the boats report them.
 
 use crate::boat_alone::Wire;
 use crate::support::{LIMIT, Process, Sim, stderr, stdout, temporary};
@@ -9,10 +9,10 @@ use std::sync::mpsc::{Receiver, channel};
 use std::time::Instant;
 
 const BOATS: [&str; 2] = ["blue_one", "red_one"];
-/// From a line to the report, on one machine that is busy.
+/// Time limit from an input line to the report, on a busy machine, ms.
 const PROMPT_MS: u128 = 1000;
 
-/// A game with two real boats that say little, and their gateways.
+/// A game with two real boats that send little, and their gateways.
 struct Fleet {
     sim: Sim,
     wires: [Wire; 2],
@@ -36,12 +36,12 @@ impl Fleet {
         self.wires.iter().for_each(Wire::forget);
     }
 
-    /// A console that knows both boats.
+    /// A console that has found both boats.
     fn console(&self) -> Console {
         self.console_of(&["blue_one  safed", "red_one  safed"])
     }
 
-    /// A console, once it has said this.
+    /// A console that has printed these lines.
     fn console_of(&self, beginnings: &[&str]) -> Console {
         let controls = self.controls.map(|at| at.to_string());
         let mut command =
@@ -64,7 +64,7 @@ struct Console {
     process: Process,
     lines: Receiver<String>,
     complaints: Receiver<String>,
-    /// What of them was read.
+    /// The standard error read so far.
     complained: String,
 }
 
@@ -74,7 +74,7 @@ impl Console {
         stdin.write_all(format!("{line}\n").as_bytes()).expect("it reads");
     }
 
-    /// Waits for lines that begin like these, in any order, and gives the times that they tell, ms.
+    /// Waits for lines with these beginnings, in any order; returns their times, ms.
     fn wait_for(&self, beginnings: &[&str]) -> Vec<u128> {
         let (mut left, mut times, mut all) = (beginnings.to_vec(), Vec::new(), Vec::new());
         let start = Instant::now();
@@ -92,14 +92,14 @@ impl Console {
         times
     }
 
-    /// Says a line, and waits for the reports of these boats.
+    /// Enters a line, and waits for the reports of these boats.
     fn ask(&mut self, line: &str, reports: &[&str]) {
         self.say(line);
         let times = self.wait_for(reports);
         assert!(times.len() == reports.len() && times.iter().all(|ms| *ms < PROMPT_MS), "{line}: {times:?} ms");
     }
 
-    /// Waits until it complains of this.
+    /// Waits for a complaint that contains these words.
     fn wait_for_complaint(&mut self, words: &str) {
         let start = Instant::now();
         while !self.complained.contains(words) {
@@ -127,9 +127,9 @@ fn a_console_stops_one_boat_or_all_and_releases_them() {
     console.ask("blue_one estop", &ALL_STOPPED[..1]);
     console.say("status");
     console.wait_for(&["blue_one  e-stopped (by an E-stop of this boat), ", "red_one  safed, "]);
-    // Of both, by Enter alone.
+    // Enter alone stops both boats.
     console.ask("", &ALL_STOPPED);
-    // The stop of one boat alone outlasts the release of all.
+    // A stop of one boat outlasts the release of all.
     console.say("all release");
     console.wait_for(&["red_one  safed"]);
     console.say("blue_one arm");
@@ -173,7 +173,7 @@ fn a_boat_that_does_not_report_its_stop_fails_the_console_and_tell() {
     assert!(!told.status.success() && stderr(&told).contains("red_one"), "{told:?}");
     let (status, said) = console.end();
     assert!(!status.success() && said.contains("red_one does not report that it has stopped: safed"), "{said}");
-    // Its stop was said for as long as the console was there.
+    // Its stop was repeated for as long as the console ran.
     fleet.gateways[1].signal("CONT");
     let mut console = fleet.console_of(&["red_one  e-stopped"]);
     console.ask("all estop", &ALL_STOPPED);
@@ -184,7 +184,7 @@ fn a_boat_that_does_not_report_its_stop_fails_the_console_and_tell() {
 fn tell_stops_boats_by_way_of_the_game_alone_within_its_time() {
     let fleet = Fleet::start();
     let console = fleet.console();
-    // Whoever knows no gateway, as on another machine.
+    // A console that finds no gateway, as on another machine.
     let nothing = temporary();
     for (name, reports) in
         [("red_one", &["red_one: e-stopped"][..]), ("all", &["blue_one: e-stopped", "red_one: e-stopped"])]

@@ -1,4 +1,4 @@
-//! Real boats: a gateway of the test's own brings one, sails it by the orders that come, and falls silent.
+//! Real boats: the test's own gateway adds one, moves it according to its orders, and falls silent.
 
 use crate::support::{LIMIT, Sim, own, refusal_of, result_of, wait_until};
 use bus::{Bus, Declaration, Priority, Publisher};
@@ -13,10 +13,10 @@ use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
 pub(crate) const ME: VehicleId = VehicleId(0);
-/// Simulated seconds a second.
+/// Simulated seconds per second.
 pub(crate) const FACTOR: f64 = 4.0;
 
-/// A gateway with a boat that follows commands at once.
+/// A gateway with a boat that follows commands immediately.
 pub(crate) struct Gateway {
     bus: Bus,
     name: GameName,
@@ -54,7 +54,7 @@ impl Gateway {
         Gateway { bus, name, scenario, _standing: standing, nav, orders, ticket, seq: 0, at, moved: Instant::now() }
     }
 
-    /// The answer to another node that asks for a boat.
+    /// The reply to another node that requests a boat.
     fn join(&self, other: &Bus, vehicle: &str) -> JoinReply {
         join(other, (&self.name, &self.scenario), vehicle)
     }
@@ -93,7 +93,7 @@ impl Gateway {
         self.nav.send(&report).expect("the hub is there");
     }
 
-    /// Sails on until something is so.
+    /// Runs on until a condition is true.
     fn sail_until(&mut self, what: &str, is_so: impl Fn(&Gateway) -> bool) {
         wait_until(what, || {
             is_so(self) || {
@@ -124,7 +124,7 @@ fn a_real_boat_is_driven_by_its_agent_as_far_as_somebody_looks() {
     assert!(orders.iter().any(|order| order.given_ns > orders[0].given_ns), "its agent goes on deciding");
     assert!(orders.iter().all(|order| order.order.vehicle == ME && order.given_ns <= order.stamp.valid_ns));
 
-    // It stops reporting, and reports again.
+    // The gateway stops reporting, then resumes.
     sim.wait_for_event("nav_lost", "blue_one");
     wait_until("a lost boat is sent a hold", || gateway.is_held());
     gateway.sail_until("what is back is driven again", |gateway| !gateway.is_held());
@@ -132,7 +132,7 @@ fn a_real_boat_is_driven_by_its_agent_as_far_as_somebody_looks() {
     let before = gateway.newest().expect("an order").given_ns;
     gateway.sail_until("its agent goes on", |gateway| gateway.newest().is_some_and(|newest| newest.given_ns > before));
 
-    // Its agent dies: it holds, and from now on nobody decides.
+    // Its agent dies: it holds, and from now on gets no orders.
     agent.kill();
     gateway.sail_until("a boat without an agent holds", Gateway::is_held);
     sim.wait_for_event("agent_lost", "blue_one");

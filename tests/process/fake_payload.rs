@@ -1,4 +1,5 @@
-//! Payloads as they are on boats: a camera that streams pictures over HTTP, and an EXO2 sonde, over a serial server or with an HTTP server.
+//! Payloads of real boats: a camera that streams pictures over HTTP, and an EXO2 sonde, over a
+//! serial server or with an HTTP server.
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::{SocketAddr, TcpListener, TcpStream};
@@ -6,18 +7,18 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-/// What the sonde outputs: temperature, pH, oxygen in mg/L.
+/// The sonde's output: temperature, pH, oxygen in mg/L.
 pub(crate) const CODES: &str = "1 18 212";
 pub(crate) const VALUES: [f64; 3] = [20.5, 7.25, -8.125];
 
-/// A payload, and how often it was asked for something.
+/// A payload, and how many requests it has received.
 pub(crate) struct FakePayload {
     pub(crate) address: SocketAddr,
     asked: Arc<AtomicU64>,
 }
 
 impl FakePayload {
-    /// Serves each connection on a thread of its own.
+    /// Serves each connection on a separate thread.
     fn start(serve: impl Fn(TcpStream, &AtomicU64) -> std::io::Result<()> + Send + Sync + 'static) -> FakePayload {
         let listener = TcpListener::bind("127.0.0.1:0").expect("a free port");
         let address = listener.local_addr().expect("an address");
@@ -26,7 +27,7 @@ impl FakePayload {
         std::thread::spawn(move || {
             for stream in listener.incoming().flatten() {
                 let (asked, serve) = (Arc::clone(&counted), Arc::clone(&serve));
-                // A client that goes is no fault.
+                // A client that disconnects is no error.
                 std::thread::spawn(move || drop(serve(stream, &asked)));
             }
         });
@@ -37,7 +38,7 @@ impl FakePayload {
         self.asked.load(Ordering::Relaxed)
     }
 
-    /// Streams pictures for ever, one after the other, with this pause.
+    /// Streams pictures for ever with this pause between them.
     pub(crate) fn camera(pause: Duration) -> FakePayload {
         FakePayload::start(move |mut stream, asked| {
             drop(request(&mut BufReader::new(stream.try_clone()?))?);
@@ -54,7 +55,7 @@ impl FakePayload {
         })
     }
 
-    /// A server at the sonde, of HTTP/1.0.
+    /// An HTTP/1.0 server at the sonde.
     pub(crate) fn http_sonde() -> FakePayload {
         FakePayload::start(|mut stream, asked| {
             let (head, body) = request(&mut BufReader::new(stream.try_clone()?))?;
@@ -68,7 +69,7 @@ impl FakePayload {
         })
     }
 
-    /// The sonde itself: it echoes and prompts, and counts commands.
+    /// The sonde itself: it echoes, prompts and counts commands.
     pub(crate) fn sonde() -> FakePayload {
         FakePayload::start(|mut stream, asked| {
             let mut command = String::new();
@@ -88,7 +89,7 @@ impl FakePayload {
         })
     }
 
-    /// Accepts connections and neither reads nor says anything.
+    /// Accepts connections, but neither reads nor writes.
     pub(crate) fn silent() -> FakePayload {
         FakePayload::start(|stream, _| {
             std::thread::sleep(Duration::from_secs(600));
@@ -106,7 +107,7 @@ fn answer(command: &str) -> String {
     }
 }
 
-/// The first line and the body of a request.
+/// The request line and the body of a request.
 fn request(reader: &mut impl BufRead) -> std::io::Result<(String, String)> {
     let (mut head, mut length) = (String::new(), 0);
     reader.read_line(&mut head)?;

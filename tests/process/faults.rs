@@ -1,4 +1,4 @@
-//! Nodes that die or fall silent: the game goes on, nobody waits forever.
+//! Nodes that die or fall silent: the game goes on, and no node waits for ever.
 
 use crate::support::{FOUR, Process, Sim, squall};
 use std::time::Instant;
@@ -7,7 +7,7 @@ fn game(pace: &str) -> (Sim, Vec<Process>) {
     Sim::start_with_agents("impatient", &["--pace", pace])
 }
 
-/// They end with an error, and say why.
+/// The agents exit with an error that names the cause.
 fn expect_sim_gone(agents: &mut [Process]) {
     for agent in agents {
         let said = agent.refusal();
@@ -23,7 +23,7 @@ fn a_killed_agents_boat_holds_and_a_new_agent_takes_it_on() {
         agents[1].kill();
         let killed = Instant::now();
         sim.wait_for_event("agent_lost", "blue_two");
-        // Patience is 2 s; the rest is room for a busy machine.
+        // Patience is 2 s; the rest allows for a busy machine.
         assert!(killed.elapsed().as_secs_f64() < 12.0, "{pace}: lost after {:?}", killed.elapsed());
         sim.play_on(5.0);
         agents[1] = sim.agent(&["blue_two"]);
@@ -60,7 +60,7 @@ fn agents_report_a_killed_sim_and_fail() {
     sim.process.kill();
     let killed = Instant::now();
     expect_sim_gone(&mut agents);
-    // Five seconds are stated; the rest is room for a busy machine.
+    // The documented limit is five seconds; the rest allows for a busy machine.
     assert!(killed.elapsed().as_secs_f64() < 17.0, "{:?}", killed.elapsed());
 }
 
@@ -71,7 +71,7 @@ fn an_agent_does_not_stay_with_a_sim_that_never_let_it_in() {
     let (endpoint, name) = (sim.endpoint.clone(), sim.game.clone());
     sim.process.kill();
     let next = Sim::start_with(squall(&[]), "impatient", &["--listen", &endpoint, "--game", &name]);
-    // Pictures come again: an agent that goes by them alone would stay.
+    // Pictures resume: an agent that checks nothing else would stay.
     let _others = FOUR.map(|vehicle| next.agent(&[vehicle]));
     next.wait_for_kind("started");
     expect_sim_gone(&mut agents);

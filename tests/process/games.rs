@@ -43,7 +43,7 @@ fn the_first_game_of_the_readme_runs_to_its_end() {
     let events = result["events"].as_array().expect("a list");
     assert_eq!(events.last().map(|event| &event["event"]), Some(&Value::from("ended")));
     assert!(events.iter().all(|event| event["tick"].is_u64() && event["at_s"].is_f64()));
-    // Two mirrored teams: mirrored results.
+    // Mirrored teams give mirrored results.
     assert_eq!(result["counts"]["teams"]["blue"], result["counts"]["teams"]["red"]);
     assert!(result["counts"]["teams"]["blue"]["grabs"].as_u64() > Some(0), "somebody reached a flag");
 }
@@ -114,7 +114,7 @@ fn nothing_is_left_of_a_run_that_is_ended_early() {
     }
 }
 
-/// The children of a process.
+/// The child processes of a process.
 fn children_of(pid: u32) -> Vec<u32> {
     let output = Command::new("ps").args(["-o", "pid=", "--ppid", &pid.to_string()]).output().expect("ps is there");
     stdout(&output).split_whitespace().filter_map(|pid| pid.parse().ok()).collect()

@@ -1,7 +1,8 @@
-//! The hardware loop with real processes and real sockets: whatever dies or is cut, the boat comes to rest in time.
+//! The hardware loop with real processes and real sockets: whatever dies or is cut, the boat comes
+//! to rest in time.
 //!
-//! Water with one boat, its emulator, a proxy that can be cut, the gateway, the game and its agents. The boat is watched
-//! in the water itself, by the truth about its thrusters.
+//! The loop has water with one boat, its emulator, a proxy that can be cut, the gateway, the game
+//! and its agents. The test observes the true thrust in the water game.
 
 use crate::proxy::{PASS, Proxy, REFUSE, SWALLOW};
 use crate::support::{
@@ -18,18 +19,18 @@ use std::process::{Command, Stdio};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// What is allowed on a busy machine beyond the time that is stated.
+/// Margin on a busy machine beyond the documented time.
 const SLACK: Duration = Duration::from_millis(1500);
 
-/// A thruster that is commanded to stop takes a fifth of its range a second, with a lag of 0.25 s: from 70 % it pushes less than
-/// this after 3.5 + 1.1 s.
+/// A thruster that is commanded to stop changes by a fifth of its range a second, with a lag of
+/// 0.25 s: from 70 % it gives less than this after 3.5 + 1.1 s.
 const STILL_NEWTON: f64 = 0.5;
 const LAG: Duration = Duration::from_millis(4600);
 
-/// What a boat is sent first: thrust zero, then standby.
+/// The first sentences to a boat: thrust zero, then standby.
 const STANDBY: &str = "$PSEAC,T,0,0,0,*0C\r\n$PSEAC,L,0,0,0,*14\r\n";
 
-/// All of it.
+/// All processes of the loop.
 pub(crate) struct Loop {
     pub(crate) sim: Sim,
     pub(crate) agents: Process,
@@ -38,25 +39,25 @@ pub(crate) struct Loop {
     pub(crate) proxy: Proxy,
     primary: Option<String>,
     water: Sim,
-    /// The truth about the water.
+    /// The newest true state of the water.
     frame: Arc<Watched<Frame>>,
     _observer: (Bus, Declaration),
 }
 
 impl Loop {
-    /// A boat under way by its agent's orders.
+    /// Starts a boat that is under way on its agent's orders.
     fn under_way(watchdog: &str) -> Loop {
         Loop::of(&["--primary", "tcp://127.0.0.1:0", "--watchdog-s", watchdog], &[])
     }
 
-    /// The same, with these options of emulator and gateway.
+    /// Starts a boat that is under way, with these options of emulator and gateway.
     pub(crate) fn of(emulator: &[&str], gateway: &[&str]) -> Loop {
         let all = Loop::begin(emulator, &[&["--arm"], gateway].concat());
         all.wait(LIMIT, "the boat sails", |boat| boat.0 > 0.6);
         all
     }
 
-    /// A boat that need not be under way.
+    /// Starts a boat that need not be under way.
     pub(crate) fn begin(emulator: &[&str], gateway: &[&str]) -> Loop {
         let sim = Sim::start("real_attacker", &["--pace", "realtime"]);
         let water = Sim::start("real_attacker", &["--pace", "realtime", "--afloat", "blue_one"]);
@@ -70,7 +71,7 @@ impl Loop {
         Loop { sim, agents, gateway, emulator, proxy, primary, water, frame, _observer: (bus, frames) }
     }
 
-    /// The boat's speed, and whether its thrusters stand still.
+    /// The boat's speed, m/s, and whether its thrusters are stopped.
     pub(crate) fn boat(&self) -> (f64, bool) {
         let boat = self.frame.visit(|frame| frame.vehicles.first().cloned());
         boat.map_or((0.0, true), |boat| {
@@ -83,7 +84,7 @@ impl Loop {
         wait_within(limit, what, || is_so(self.boat()))
     }
 
-    /// The thrusters stand still within this time, and from then on.
+    /// Checks that the thrusters stop within this time and stay stopped.
     pub(crate) fn stops_within(&self, stated: Duration) -> Duration {
         let took = self.wait(stated + LAG + SLACK, "the thrusters stand still", |(_, still)| still);
         for _ in 0..20 {
@@ -112,7 +113,7 @@ impl Loop {
         wait_until(words, || self.status().state.contains(words));
     }
 
-    /// An E-stop of all boats stops it, and it cannot be armed before the E-stop is released.
+    /// Checks that an E-stop of all boats stops it, and that it cannot be armed before the release.
     pub(crate) fn e_stop_and_release(&self) {
         let output = self.sim.run(&["gateway", "tell", "all", "estop"]);
         assert!(output.status.success(), "{}", stderr(&output));
@@ -123,7 +124,7 @@ impl Loop {
         self.wait_for_state("safed");
     }
 
-    /// Arms it, as soon as it can be.
+    /// Arms it as soon as it is ready.
     pub(crate) fn arm(&self) {
         wait_until("it can be armed", || self.ask(&OperatorCommand::Arm).refused.is_none());
         self.wait(LIMIT, "it sails again", |boat| boat.0 > 0.6);
@@ -207,7 +208,7 @@ fn a_gateway_that_is_asked_to_end_stops_the_boat_first() {
     }
 }
 
-/// What a gateway says that is to fail within this time, whether it found the boat or not.
+/// The error of a gateway that must fail within this time, whether it found the boat or not.
 fn refusal_within(limit: Duration, mut gateway: Command) -> String {
     let start = Instant::now();
     gateway.stdout(Stdio::null()).stderr(Stdio::piped());
@@ -248,7 +249,7 @@ fn a_gateway_that_fails_sends_its_boat_standby_first_and_ends() {
     let mut words = String::new();
     boat.accept().expect("it was connected to").0.read_to_string(&mut words).expect("text");
     assert!(words.starts_with(STANDBY), "{words:?}");
-    // Nor does it wait for a boat that is not there.
+    // Nor does it wait for a boat that does not exist.
     let nowhere = format!("serial://{}?baud=38400", temporary().path().join("none").display());
     refusal_within(LIMIT / 4, squall(&[&args[..], &["--link", &nowhere]].concat()));
 }
@@ -272,20 +273,21 @@ fn a_link_that_is_cut_half_open_or_comes_and_goes_leaves_the_boat_at_rest() {
     all.stops_within(Duration::from_millis(300));
     all.wait_for_state("the link is lost");
     all.arm();
-    // Half open: nothing goes through though nobody hung up. It is found out after three seconds of silence.
+    // Half open: no data passes, but neither side closed the link. It is detected after three
+    // seconds of silence.
     all.proxy.set(SWALLOW);
     std::thread::sleep(Duration::from_millis(1500));
     all.proxy.set(PASS);
     all.stops_within(Duration::from_secs(3));
     all.arm();
-    // It comes and goes.
+    // The link goes up and down.
     let start = Instant::now();
     while start.elapsed() < Duration::from_secs(4) {
         all.proxy.cut();
         std::thread::sleep(Duration::from_millis(150));
     }
     all.stops_within(Duration::from_millis(300));
-    // Gone for long, it comes back by itself.
+    // After a long outage it reconnects by itself.
     all.proxy.set(REFUSE);
     all.proxy.cut();
     std::thread::sleep(Duration::from_secs(2));

@@ -1,11 +1,11 @@
-//! Helm queries while a game is on, and a boat that is given another strategy.
+//! Helm queries during a game, and a boat that gets another strategy.
 
 use crate::support::{FOUR, LIMIT, Process, Sim, own, run, squall, stderr, stdout, temporary};
 use messages::helm::HelmReport;
 use messages::topic;
 use std::process::Stdio;
 
-/// A game that goes on, with an agent for each boat.
+/// A running game with an agent for each boat.
 fn game() -> (Sim, Vec<Process>) {
     let (sim, agents) = Sim::start_with_agents("long", &[]);
     sim.play_on(1.0);
@@ -33,7 +33,7 @@ fn a_helm_says_what_it_thinks_and_its_functions_if_they_are_asked_for() {
             assert!(report.functions.iter().all(|function| function.utility.is_some()), "asked for or not");
         }
     }
-    // Time goes on from answer to answer.
+    // Time advances from answer to answer.
     let before = ask(b"").at;
     sim.play_on(1.0);
     assert!(ask(b"").at > before);
@@ -66,7 +66,7 @@ fn watch_shows_a_helm_and_helm_writes_its_functions() {
     let collective = csv.lines().filter(|line| line.starts_with("collective,")).count();
     assert_eq!(collective, 360 * 36, "a row for each course and speed");
     sim.stop();
-    // It ends with the game.
+    // The watch ends with the game.
     lines.for_each(drop);
     assert!(watch.wait().success());
 }
@@ -83,7 +83,7 @@ fn a_game_goes_on_while_somebody_takes_a_decision_apart() {
     let ["game", name, "at", endpoint] = words[..] else { panic!("{open}") };
     lines.by_ref().find(|line| line.contains("every boat has an agent")).expect("it starts");
     let csv = dir.path().join("one.csv").display().to_string();
-    // All of them at once: half a megabyte from each goes through the hub.
+    // All at once: half a megabyte from each passes through the hub.
     std::thread::scope(|scope| {
         for vehicle in FOUR {
             let args = ["helm", "--connect", endpoint, "--game", name, "--vehicle", vehicle, "--csv"];
@@ -114,7 +114,7 @@ fn an_agent_plays_by_a_strategy_file_of_its_own() {
 
 #[test]
 fn mistakes_in_a_strategy_file_are_told_before_joining() {
-    // There is no game to join: it does not even look for one.
+    // There is no game to join: the agent does not even search for one.
     let mut command = squall(&["agent", "--vehicle", "blue_one", "--strategy", &own("bad"), "--wait-s", "50"]);
     command.stderr(Stdio::piped());
     let mut agent = Process::start(command);

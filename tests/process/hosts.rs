@@ -1,4 +1,4 @@
-//! Two machines whose cable is cut for a while.
+//! Games on two machines whose cable is cut for a while.
 
 use crate::support::FOUR;
 use crate::two_hosts::Hosts;
@@ -11,11 +11,12 @@ fn two_machines_play_a_game_and_survive_a_cable_that_is_cut() {
     let mut blue = hosts.agent(0, &FOUR[..2]);
     let mut red = hosts.agent(1, &FOUR[2..]);
     sim.wait_for_kind("started");
-    // For a moment, and until both ends have given the link up: zenoh does after ten seconds.
+    // For a moment, then until both ends have closed the link, which zenoh does after ten seconds.
     for cut_s in [2, 15] {
         sim.play_on(5.0);
         hosts.cable("down");
-        // Longer than the sim's patience: the boats over there are without an agent, the game goes on.
+        // Longer than the sim's patience: the boats on the other machine lose their agents, and the
+        // game goes on.
         sim.wait_for_event("agent_lost", "red_one");
         sim.play_on(1.0);
         std::thread::sleep(Duration::from_secs(cut_s));

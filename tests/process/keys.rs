@@ -1,4 +1,4 @@
-//! Games with keys: the same game as without, and who has the wrong keys is told so.
+//! Games with keys: the same game as without; nodes with the wrong keys get an error that says so.
 
 use crate::support::{
     FOUR, LIMIT, Process, Sim, free_endpoint, game_itself, own, result_of, run, squall, stderr, stdout, temporary,
@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use tempfile::TempDir;
 
-/// Keys for everybody.
+/// Keys for all roles.
 fn keys() -> (TempDir, PathBuf) {
     let dir = temporary();
     let folder = dir.path().join("keys");
@@ -27,7 +27,7 @@ fn text(path: &Path) -> &str {
     path.to_str().expect("UTF-8")
 }
 
-/// The program, which knows no token.
+/// The program without a token.
 fn without_token(mut command: Command) -> Command {
     command.env_remove(TOKEN_VARIABLE);
     command
@@ -38,7 +38,7 @@ fn a_game_with_keys_is_the_game_in_one_process_byte_for_byte() {
     let (_dir, folder) = keys();
     let game = own("seeded_3v3");
     let here = game_itself(result_of(&[&game, "--in-process"]));
-    // Four boats a process would be of two teams: with keys each process is of one.
+    // With keys each process serves one team; four boats a process would mix teams.
     let there = game_itself(result_of(&[&game, "--keys", text(&folder), "--agents-per-process", "4"]));
     assert_eq!(here, there);
     std::fs::remove_dir_all(folder.join("team-red")).expect("it was there");

@@ -1,4 +1,4 @@
-//! The program as people use it: whole games across processes, and what happens when parts of them fail.
+//! The program as users run it: whole games across processes, and the failure of parts of them.
 #![allow(
     clippy::disallowed_methods,
     clippy::print_stderr,

@@ -1,4 +1,4 @@
-//! A boat that speaks MAVLink, with real processes and real sockets: it is driven and stopped as a Surveyor is.
+//! A MAVLink boat with real processes and real sockets: it is driven and stopped like a Surveyor.
 
 use crate::gateway::{Loop, start_gateway};
 use crate::support::{result_of, run, stdout, temporary, wait_until};
@@ -20,7 +20,8 @@ fn stale_orders_a_killed_gateway_and_an_e_stop_stop_a_mavlink_boat() {
     all.agents = all.sim.agent(&["blue_one", "red_one"]);
     all.sim.wait_for_event("agent_back", "blue_one");
     all.arm();
-    // Of a killed gateway the guard remains; without it the boat would forget its set-point after three seconds.
+    // The guard survives a killed gateway; without it the boat would drop its set-point only after
+    // three seconds.
     all.gateway.kill();
     all.stops_within(Duration::from_millis(500));
     all.gateway = start_gateway(&all.sim, all.proxy.port, &CONFIG);

@@ -1,4 +1,4 @@
-//! Faults of the network: links that are cut, nodes that are stopped, floods. Whoever is not concerned does not notice.
+//! Network faults: cut links, stopped nodes, floods. Nodes that are not affected notice nothing.
 
 use crate::external::{FACTOR, Gateway, ME};
 use crate::proxy::{Proxy, STALL};
@@ -14,15 +14,15 @@ use std::process::{Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
-/// zenoh gives up a silent link after ten seconds, and would wait for ten more when it closes it.
+/// zenoh closes a silent link after ten seconds, and may take ten more to close it.
 const AFTERMATH: Duration = Duration::from_secs(25);
-/// A game that reports no progress for this long stands still. It reports ten times a second; the rest is room for a busy
-/// machine.
+/// A game that reports no progress for this long has stopped. It reports ten times a second; the
+/// rest allows for a busy machine.
 const STANDSTILL: Duration = Duration::from_millis(1500);
-/// Twice: as fast as can be, and by the clock, where nobody is waited for.
+/// Both paces: as fast as possible, and by the clock, where no node is waited for.
 const PACES: [&str; 2] = ["lockstep", "200x"];
 
-/// A game with an agent for each boat, in a sim with as few threads as those of `squall run`.
+/// A game with an agent for each boat, in a sim with as few threads as under `squall run`.
 fn game(pace: &str) -> (Sim, Vec<Process>) {
     let sim = sim_with_few_threads("impatient", pace);
     let agents = FOUR.iter().map(|name| sim.agent(&[name])).collect();
@@ -43,7 +43,7 @@ fn observer(endpoint: &str, game: &str) -> Process {
     Process::start(command)
 }
 
-/// The game goes on without standing still, and loses no agents any more.
+/// Checks that the game goes on without a pause and loses no more agents.
 fn expect_undisturbed(sim: &Sim, what: &str) {
     let start = Instant::now();
     let mut since = start;
@@ -58,7 +58,7 @@ fn expect_undisturbed(sim: &Sim, what: &str) {
     }
 }
 
-/// Does the same at both paces, at once.
+/// Runs the check at both paces at once.
 fn at_both_paces(check: fn(&str)) {
     std::thread::scope(|scope| {
         for pace in PACES {
@@ -146,7 +146,7 @@ fn a_sim_that_was_suspended_in_real_time_blames_nobody() {
     sim.stop();
 }
 
-/// Longer than zenoh's ten seconds, after which both ends give up a link.
+/// Longer than zenoh's ten seconds, after which both ends close a link.
 fn suspend(sim: &Sim) {
     sim.process.signal("STOP");
     std::thread::sleep(Duration::from_secs(15));
@@ -175,7 +175,7 @@ fn a_sim_whose_output_nobody_reads_plays_on() {
         assert!(now.wait(LIMIT, |now| *now > from + SimTime::from_s(5.0)), "it stands still at {} s", from.as_s());
     };
     play_on();
-    // Whatever an operator asks for is reported at once: more than a pipe of 64 kB takes.
+    // Every operator request is reported at once: in total more than a pipe of 64 kB holds.
     for i in 0..2000 {
         let speed = Control::Speed(Some(if i % 2 == 0 { 900.0 } else { 1000.0 }));
         bus::control(&bus, &name, speed).expect("it goes at that speed");
@@ -184,15 +184,15 @@ fn a_sim_whose_output_nobody_reads_plays_on() {
     play_on();
 }
 
-/// From an E-stop to the order that goes to the boat.
+/// Time limit from an E-stop to the order for the boat.
 const PROMISED_MS: f64 = 200.0;
 
-/// Tries of an E-stop; more of them if the environment says so.
+/// Number of E-stops; the environment can raise it.
 fn tries() -> usize {
     std::env::var("SQUALL_TRIES").ok().and_then(|text| text.parse().ok()).unwrap_or(100)
 }
 
-/// Waits until the boat is ordered to hold, or not to, and gives the moment. It sails on meanwhile.
+/// Waits for an order to hold (or not to) while the boat runs on; returns its time.
 fn ordered(orders: &Receiver<(Instant, bool)>, gateway: &mut Gateway, hold: bool) -> Instant {
     let start = Instant::now();
     loop {
@@ -205,7 +205,7 @@ fn ordered(orders: &Receiver<(Instant, bool)>, gateway: &mut Gateway, hold: bool
     }
 }
 
-/// Waits until the boat is driven again and stays so: a hold that comes next is that of an E-stop.
+/// Waits until the boat is driven again steadily, so that the next hold is that of an E-stop.
 fn driven(orders: &Receiver<(Instant, bool)>, gateway: &mut Gateway) {
     let mut driven = 0;
     while driven < 5 {
@@ -229,7 +229,7 @@ fn an_e_stop_is_obeyed_at_once_under_a_flood_of_garbage() {
     let _orders = bus.subscribe(key, take).expect("the hub is there");
     let stop = operator.publisher(topic::control(&name), Priority::Urgent).expect("the hub is there");
     ordered(&orders, &mut gateway, false);
-    // Each holds a thread that receives.
+    // Each flood occupies a receiving thread.
     let _floods = [flood(&sim), flood(&sim)];
     let refused = |sim: &Sim| sim.newest_progress()["refused"].as_u64().expect("a number");
     let before = refused(&sim);
@@ -259,7 +259,7 @@ fn an_e_stop_is_obeyed_at_once_under_a_flood_of_garbage() {
     sim.stop();
 }
 
-/// A process that publishes garbage for a game, as fast as it can.
+/// A process that publishes garbage for a game as fast as it can.
 fn flood(sim: &Sim) -> Process {
     let mut command = Command::new(std::env::current_exe().expect("this program"));
     command.args(["--ignored", "--exact", "network::floods_a_game"]);
@@ -267,7 +267,7 @@ fn flood(sim: &Sim) -> Process {
     Process::start(command)
 }
 
-/// The variable that says which game is to be flooded.
+/// The variable that names the game to flood.
 const FLOODED: &str = "SQUALL_FLOODED_GAME";
 
 #[test]
@@ -279,6 +279,6 @@ fn floods_a_game() {
     let bus = Bus::leaf(&Net { connect: vec![endpoint.to_owned()], ..Net::default() }).expect("the hub is there");
     let keys = [topic::matching(&name, "order/stranger"), topic::control(&name)];
     let publishers = keys.map(|key| bus.publisher(key, Priority::Normal).expect("the hub is there"));
-    // Until it is killed, or the game is gone.
+    // Until it is killed or the game is gone.
     while publishers.iter().all(|publisher| publisher.send_raw(vec![0xaa; 16]).is_ok()) {}
 }

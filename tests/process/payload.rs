@@ -1,4 +1,4 @@
-//! Payloads of a boat behind its gateway: what goes through, what is recorded of it, and that the boat comes first.
+//! Payloads behind a boat's gateway: traffic, recording, and the priority of the boat.
 
 use crate::boat_alone::Wire;
 use crate::fake_payload::{FakePayload, VALUES};
@@ -14,11 +14,11 @@ use std::process::Stdio;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-/// A gateway without a game, whose boat reads on a wire.
+/// A gateway without a game, whose boat is a test wire.
 struct Gateway {
     process: Process,
     wire: Wire,
-    /// All that it prints.
+    /// All of its output.
     printed: Arc<Mutex<Vec<String>>>,
     game: &'static str,
 }
@@ -48,7 +48,7 @@ impl Gateway {
         printed.iter().filter(|line| line.contains(part)).cloned().collect()
     }
 
-    /// Where clients reach a payload.
+    /// The address of a payload for clients.
     fn reach(&self, payload: &str) -> String {
         let mut reach = None;
         wait_until("it prints where the payload is reached", || {
@@ -65,7 +65,7 @@ impl Gateway {
         stream
     }
 
-    /// What an operator types.
+    /// Runs an operator's command.
     fn tell(&self, command: &str) -> String {
         let mut tell = squall(&["gateway", "tell", "blue_one", command, "--game", self.game]);
         let output = tell.env_remove(TOKEN_VARIABLE).output().expect("the program starts");
@@ -78,7 +78,7 @@ impl Gateway {
     }
 }
 
-/// Sends a request and reads the answer to its end.
+/// Sends a request and reads the whole answer.
 fn asked(mut stream: TcpStream, request: &str) -> String {
     stream.write_all(request.as_bytes()).expect("it is taken");
     let mut answer = String::new();
@@ -86,7 +86,7 @@ fn asked(mut stream: TcpStream, request: &str) -> String {
     answer
 }
 
-/// What went one way over each connection of a payload, in the order of their numbers.
+/// The bytes of one direction over each connection of a payload, in connection order.
 fn recorded(bag: &Bag, topic: &str, outward: bool) -> Vec<Vec<u8>> {
     let mut by_connection = std::collections::BTreeMap::<u32, Vec<u8>>::new();
     for message in bag.on(topic) {
@@ -110,7 +110,7 @@ fn bytes_pass_both_ways_and_are_recorded_with_what_the_sonde_measures() {
         format!("sonde=tcp://{},exo2,listen=127.0.0.1:0", sonde.address),
     ];
     let mut gateway = Gateway::start("payloads", &payloads, &["--record", &file]);
-    // Without any client the sondes are asked for their parameters, and then for values.
+    // Without a client, the gateway queries the sondes for their parameters and then for values.
     wait_until("both sondes are asked", || sonde.asked() >= 4 && http.asked() >= 4);
     let request = "GET /video_feed HTTP/1.1\r\nHost: camera\r\n\r\n";
     let mut stream = gateway.connect("camera");
@@ -123,7 +123,7 @@ fn bytes_pass_both_ways_and_are_recorded_with_what_the_sonde_measures() {
             .ends_with("\r\n\r\n1 18 212")
     );
     assert!(asked(gateway.connect("dac"), "GET /data HTTP/1.0\r\n\r\n").ends_with("\r\n\r\n20.5 7.25 -8.125"));
-    // A client has the sonde for itself, also when it only says half a command.
+    // A client has exclusive use of the sonde, even after half a command.
     let mut client = gateway.connect("sonde");
     client.write_all(b"da").expect("it is taken");
     let mut answer = [0; 4];
@@ -170,7 +170,7 @@ fn bytes_pass_both_ways_and_are_recorded_with_what_the_sonde_measures() {
     }
 }
 
-/// The longest time in which the boat was sent nothing, and how many sentences a second it was sent, over so long.
+/// The longest pause in sentences to the boat, and their rate per second, over this period.
 fn pace(wire: &Wire, over: Duration) -> (Duration, f64) {
     let count = || wire.received.visit(|text| text.matches("$PSEAC").count());
     let (begin, first) = (Instant::now(), count());
@@ -200,7 +200,7 @@ fn whatever_payloads_and_their_clients_do_the_boat_is_told_ten_times_a_second() 
     let mut gateway = Gateway::start("payloads-hostile", &payloads, &["--record", &file]);
     gateway.wire.wait_for("$PSEAC,L", LIMIT);
     let began = Instant::now();
-    // Clients that do not read, and one that writes to a payload that does not.
+    // Clients that do not read, and one that writes to a payload that does not read.
     let mut stopped: Vec<TcpStream> = (0..3).map(|_| gateway.connect("camera")).collect();
     for stream in &mut stopped {
         stream.write_all(b"GET /video_feed HTTP/1.1\r\n\r\n").expect("it is taken");
@@ -208,7 +208,7 @@ fn whatever_payloads_and_their_clients_do_the_boat_is_told_ten_times_a_second() 
     let mut full = gateway.connect("silent");
     full.set_write_timeout(Some(Duration::from_secs(1))).expect("a limit");
     assert!(full.write_all(&vec![b'x'; 50_000_000]).is_err(), "it is held up");
-    // Whoever connects to what is not there is disconnected, however often.
+    // A client of a missing payload is disconnected, however often it connects.
     let (gone, address) = (gateway.connect("gone"), gateway.reach("gone"));
     assert_eq!(asked(gone, ""), "");
     let flood = std::thread::spawn(move || {
@@ -222,7 +222,7 @@ fn whatever_payloads_and_their_clients_do_the_boat_is_told_ten_times_a_second() 
     let start = Instant::now();
     assert!(gateway.tell("estop").contains("e-stopped"));
     assert!(start.elapsed() < Duration::from_secs(3), "an E-stop takes {:?}", start.elapsed());
-    // Another client has its pictures.
+    // Another client receives pictures.
     let mut stream = gateway.connect("camera");
     stream.write_all(b"GET /video_feed HTTP/1.1\r\n\r\n").expect("it is taken");
     stream.read_exact(&mut vec![0; 1_000_000]).expect("pictures");
@@ -283,14 +283,14 @@ fn the_clients_of_a_serial_line_share_it_and_are_disconnected_with_it() {
     }
     drop(payload);
     for client in &mut clients {
-        // Closed, with or without something on its way.
+        // The connection is closed, with or without data in transit.
         let rest = client.read_to_end(&mut vec![]);
         assert!(rest.as_ref().map_or_else(|e| e.kind() != ErrorKind::WouldBlock, |_| true), "{rest:?}");
     }
     wait_until("it says so", || !gateway.printed("payload probe: ").is_empty());
     gateway.end();
     let bag = Bag::open(Path::new(&file)).unwrap_or_else(|e| panic!("{e}"));
-    // Which of them came first is chance.
+    // Their order is random.
     let mut words = recorded(&bag, "payload/probe", true);
     words.sort();
     assert_eq!(words, [b"alpha\r".to_vec(), b"beta\r".to_vec()]);

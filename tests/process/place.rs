@@ -1,4 +1,5 @@
-//! Where a game is and what its token is: nodes that come before their sim, or outlive it, find that out by themselves.
+//! The game's address and token: nodes that start before their sim or outlive it find them by
+//! themselves.
 
 use crate::support::{FOUR, LIMIT, Process, Sim, free_endpoint, squall, stderr, stdout, temporary, wait_until};
 use bus::token::TOKEN_VARIABLE;
@@ -12,7 +13,7 @@ use std::process::{Command, Output, Stdio};
 use std::time::Duration;
 use tempfile::TempDir;
 
-/// Somebody who tells no command where a game is or what its token is.
+/// A user who gives no command an address or a token.
 struct User(TempDir);
 
 impl User {
@@ -37,7 +38,7 @@ impl User {
         Sim::start_with(self.squall(&[]), scenario, &[&place, more].concat())
     }
 
-    /// A session in the game, with its token of now.
+    /// A session in the game, with its present token.
     fn bus(&self, sim: &Sim) -> Bus {
         let file = self.0.path().join("squall").join(format!("{}-{}.json", sim.game, sim.process.0.id()));
         let entry: Value = serde_json::from_slice(&std::fs::read(file).expect("it is registered")).expect("JSON");
@@ -66,7 +67,7 @@ fn a_game_that_does_not_begin_is_waited_for_longer_than_a_silent_sim() {
     let sim = user.sim("impatient", "slow", &free_endpoint(), &[]);
     let mut first = user.agent("slow", &FOUR[..1], &["--silence-s", "1"]);
     sim.wait_for(|message| message["kind"] == "waiting" && message["agents"].as_array().is_some_and(|a| a.len() == 3));
-    // Longer than the silence, and than what a sim without a token is given.
+    // Longer than the silence limit and than the time allowed without a token.
     std::thread::sleep(Duration::from_secs(7));
     assert!(first.0.try_wait().expect("it can be waited for").is_none(), "{}", first.refusal());
     let _others = user.agent("slow", &FOUR[1..], &[]);
@@ -76,7 +77,7 @@ fn a_game_that_does_not_begin_is_waited_for_longer_than_a_silent_sim() {
     assert!(first.wait().success());
 }
 
-/// A gateway of `blue_one` for a boat that says nothing.
+/// A gateway of `blue_one` for a boat that sends nothing.
 fn gateway(user: &User, game: &str, boat: &TcpListener) -> Command {
     let link = format!("tcp://{}", boat.local_addr().expect("it is bound"));
     let args = ["gateway", "surveyor", "--vehicle", "blue_one", "--game", game, "--link", &link, "--no-record"];
@@ -88,7 +89,7 @@ fn a_gateway_that_outlives_its_sim_joins_the_next_and_asks_for_its_token() {
     let (user, endpoint) = (User::new(), free_endpoint());
     let boat = TcpListener::bind("127.0.0.1:0").expect("a port");
     let pace = ["--pace", "realtime"];
-    // It comes before the first one, too.
+    // The gateway starts before the first sim, too.
     let mut command = gateway(&user, "twice", &boat);
     command.stdout(Stdio::piped()).stderr(Stdio::null());
     let mut gateway = Process::start(command);
@@ -101,7 +102,7 @@ fn a_gateway_that_outlives_its_sim_joins_the_next_and_asks_for_its_token() {
     let next = user.sim("real_attacker", "twice", &endpoint, &pace);
     assert!(said.any(|line| line.contains("joined: the sim takes reports")));
     std::thread::spawn(move || said.for_each(drop));
-    // What may be done by nobody without the token of the game that it is in.
+    // Actions that need the token of the present game.
     let release = |bus: &Bus| {
         bus.request_node::<_, OperatorReply>(
             &topic::operate(&next.name(), "blue_one"),
@@ -114,7 +115,7 @@ fn a_gateway_that_outlives_its_sim_joins_the_next_and_asks_for_its_token() {
     });
     let reply = release(&user.bus(&next)).expect("the token is known").expect("an answer");
     assert_eq!(reply.status.vehicle, "blue_one");
-    // At its control port, and by a command that is told neither the token nor the place.
+    // At its control port, and by a command that gets neither token nor address.
     for command in ["estop", "release"] {
         let told = user.squall(&["gateway", "tell", "blue_one", command]).output().expect("the program starts");
         assert!(told.status.success(), "{command}: {}", stderr(&told));
@@ -128,7 +129,7 @@ fn a_gateway_whose_terminal_is_held_obeys_all_the_same() {
     let user = User::new();
     let boat = TcpListener::bind("127.0.0.1:0").expect("a port");
     let _sim = user.sim("real_attacker", "held", &free_endpoint(), &["--pace", "realtime"]);
-    // A pipe that is full, and that nobody reads.
+    // A full pipe without a reader.
     let (_reader, mut pipe) = std::io::pipe().expect("a pipe");
     let full = pipe.try_clone().expect("a handle");
     std::thread::spawn(move || while std::io::Write::write(&mut pipe, &[b'.'; 4096]).is_ok() {});
@@ -136,7 +137,7 @@ fn a_gateway_whose_terminal_is_held_obeys_all_the_same() {
     command.stdout(full.try_clone().expect("a handle")).stderr(full);
     let _gateway = Process::start(command);
     let tell = |command| user.squall(&["gateway", "tell", "blue_one", command]).output().expect("the program starts");
-    // Before it has joined it answers without its loop.
+    // Before it joins, the gateway answers without its main loop.
     let is_running = |told: &Output| told.status.success() && !stdout(told).contains("looking for the game");
     wait_until("its loop answers", || is_running(&tell("status")));
     for command in ["estop", "release"] {

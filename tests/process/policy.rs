@@ -1,4 +1,5 @@
-//! Policies outside of the helm: another program proposes, the helm weighs it against keeping inside of the field.
+//! Policies outside the helm: another program proposes actions, and the helm weighs them against
+//! staying inside the field.
 
 use crate::support::{Sim, own};
 use bus::{Bus, Declaration, Priority};
@@ -10,8 +11,8 @@ use std::time::Duration;
 
 const ME: VehicleId = VehicleId(0);
 
-/// A policy as another program would be: it sees the picture and wants to drive north in a zigzag, whatever happens. Now
-/// and then it is slow.
+/// A policy in another program: it receives the picture and always wants to drive north in a
+/// zigzag. Now and then it is slow.
 fn drive_north(bus: &Bus, name: &GameName, info: &GameInfo) -> Declaration {
     let publisher = bus.publisher(topic::policy(name, &info.scenario, ME), Priority::Normal).expect("the hub is there");
     let answer = move |bytes: &[u8]| {
@@ -22,7 +23,7 @@ fn drive_north(bus: &Bus, name: &GameName, info: &GameInfo) -> Declaration {
         if stamp.seq.is_multiple_of(7) {
             std::thread::sleep(Duration::from_millis(3));
         }
-        // Nonsense in between does no harm.
+        // Nonsense in between has no effect.
         publisher.send(&PolicyProposal { course_rad: f64::NAN, ..proposal }).unwrap_or_default();
         publisher.send(&PolicyProposal { vehicle: VehicleId(1), course_rad: 3.0, ..proposal }).unwrap_or_default();
         publisher.send(&proposal).unwrap_or_default();
@@ -30,7 +31,7 @@ fn drive_north(bus: &Bus, name: &GameName, info: &GameInfo) -> Declaration {
     bus.subscribe(topic::picture(name, &info.scenario, TeamId(0)), answer).expect("the hub is there")
 }
 
-/// Plays a game with the policy, or without one: what happened, and the frames that were seen of it.
+/// Plays a game with or without the policy; returns the result and the frames.
 fn play(is_safe: bool, has_policy: bool) -> (serde_json::Value, Vec<Frame>) {
     let sim = Sim::start("still_1v1", &[]);
     let (bus, name) = (sim.bus(), sim.name());
@@ -40,7 +41,7 @@ fn play(is_safe: bool, has_policy: bool) -> (serde_json::Value, Vec<Frame>) {
     let see = move |bytes: &[u8]| seen.lock().expect("whole").push(codec::decode(bytes).expect("a frame"));
     let _seen = bus.subscribe(topic::frame(&name), see).expect("the hub is there");
     let _policy = has_policy.then(|| drive_north(&bus, &name, &info));
-    // A strategy that lets a policy steer, weighed with keeping inside or not.
+    // A strategy with a policy, with or without the behaviour that keeps the boat inside.
     let strategy = own(if is_safe { "told" } else { "told_unsafe" });
     let wait: &[&str] = if has_policy { &["--policy-wait-s", "2"] } else { &[] };
     let args = ["agent", "--vehicle", "blue_1", "--strategy", &strategy];

@@ -1,4 +1,4 @@
-//! Before a boat sails: the pre-flight check, arming with its report and without, and dry runs.
+//! Before a boat starts: the pre-flight check, arming with and without its report, and dry runs.
 
 use crate::gateway::{Loop, start_gateway};
 use crate::support::{stderr, stdout, temporary, wait_until};
@@ -34,7 +34,7 @@ fn a_boat_is_armed_with_a_passed_report_and_without_one_in_somebodys_name_alone(
     all.gateway.signal("INT");
     all.gateway.wait();
 
-    // A report of another boat is none.
+    // The report of another boat does not count.
     let other = std::fs::read_to_string(&report).expect("it is written").replace("blue_one", "red_one");
     std::fs::write(&report, other).expect("it can be written");
     all.gateway = start_gateway(&all.sim, all.proxy.port, &options);

@@ -1,4 +1,4 @@
-//! A TCP proxy whose links can be cut or come to a standstill.
+//! A TCP proxy whose links can be cut or stalled.
 
 use socket2::SockRef;
 use std::io::{Read, Write};
@@ -7,19 +7,19 @@ use std::sync::atomic::{AtomicU8, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-/// What it does with its links.
+/// Pass bytes on.
 pub(crate) const PASS: u8 = 0;
-/// It takes everything and passes nothing on.
+/// Accept all bytes, but pass none on.
 pub(crate) const SWALLOW: u8 = 1;
-/// It lets nobody in.
+/// Refuse connections.
 pub(crate) const REFUSE: u8 = 2;
-/// It takes nothing any more: what is sent stays with the sender, as with a cable that is cut.
+/// Stop reading: bytes stay with the sender, as with a cut cable.
 pub(crate) const STALL: u8 = 3;
 
-/// Bytes that it takes beyond what it has passed on, about.
+/// Approximate number of bytes read beyond those passed on.
 const BUFFER: usize = 4096;
 
-/// A proxy on a free port of loopback.
+/// A proxy on a free loopback port.
 pub(crate) struct Proxy {
     pub(crate) port: u16,
     state: Arc<AtomicU8>,
@@ -61,7 +61,7 @@ impl Proxy {
     }
 }
 
-/// Carries bytes one way. A connection that has begun to swallow never gives back what it swallowed.
+/// Carries bytes one way. A connection that has begun to swallow never returns the swallowed bytes.
 fn pass(mut from: TcpStream, mut into: TcpStream, state: &AtomicU8) {
     let mut buffer = [0; BUFFER];
     let mut swallowing = false;

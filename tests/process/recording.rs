@@ -1,4 +1,4 @@
-//! Recordings as people make them: of whole games, of games that were killed, of real boats; and games played again.
+//! Recordings of whole games, killed games and real boats; and replays of games.
 
 use crate::support::{
     FOUR, Process, Sim, own, refusal_of, result_of, run, squall, squall_on_a_disk_of, stderr, stdout, temporary,
@@ -25,7 +25,7 @@ fn opened(path: &Path) -> Recording {
     Recording::open(path).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// What playing it again says, and whether it is the same.
+/// The output of the replay check, and whether the rerun reproduced the game.
 fn checked(path: &Path) -> (bool, String) {
     let output = run(&["replay", "--check", &path.display().to_string()]);
     let said = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).concat();
@@ -71,7 +71,7 @@ fn a_killed_sim_leaves_a_recording_up_to_the_last_second() {
     let recording = opened(&path);
     assert!(recording.is_cut() && recording.ending().is_none());
     let last_s = recording.frame(recording.frame_count() - 1).at.as_s();
-    // A second is stated, 20 s of the game; the rest is room for a busy machine.
+    // The documented limit is a second, or 20 s of the game; the rest allows for a busy machine.
     assert!(last_s > now_s - 40.0, "{last_s} s recorded of {now_s} s");
     let (same, said) = checked(&path);
     assert!(same && said.contains("the file ends abruptly there"), "{said}");
@@ -136,7 +136,8 @@ fn what_is_no_recording_is_refused_with_the_reason() {
     }
 }
 
-/// Runs the program on a disk that is full after one or two MiB, as the shell counts.
+/// Runs the program on a disk that is full after one or two MiB, depending on the shell's block
+/// size.
 #[cfg(unix)]
 fn run_on_a_full_disk(args: &[&str]) -> (bool, String) {
     let output = squall_on_a_disk_of(2048, args).output().expect("a shell");
@@ -166,7 +167,7 @@ fn a_recording_that_the_disk_has_no_room_for_is_told_in_the_end() {
 fn what_cannot_be_written_or_shown_is_refused_before_the_game() {
     let taken = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
     let taken = taken.local_addr().expect("it is bound").to_string();
-    // So long that nobody waits for it.
+    // Too long to wait for its end.
     let game = &*own("long");
     for (args, part) in [
         (&["run", game, "--no-record", "--json", "/nope/x"][..], "cannot write the result to /nope/x"),
@@ -191,7 +192,7 @@ fn a_damaged_message_costs_itself_alone() {
     let frame = opened(&path).frame(7).bytes;
     let mut bytes = std::fs::read(&path).expect("it is there");
     let place = bytes.windows(frame.len()).position(|window| window == frame).expect("it is in it");
-    // The encapsulation of a message says that it is CDR.
+    // Corrupt the encapsulation header, which marks a message as CDR.
     bytes[place] = 0xff;
     std::fs::write(&path, bytes).expect("it is written");
     let output = run(&["log", &path.display().to_string()]);
@@ -228,7 +229,7 @@ fn real_boats_are_recorded_with_every_byte_and_their_game_can_be_played_again() 
     for topic in ["nav/blue_one", "external/blue_one", "status/blue_one", "link/blue_one", "link/red_one", "run"] {
         assert!(topics.contains_key(topic), "{topic} is not in {topics:?}");
     }
-    // What the gateway itself recorded, as far as the game went.
+    // The gateway's own recording, up to the end of the game.
     let bytes = |bag: &Bag, outward: bool| -> Vec<u8> {
         let said = bag.on("link/blue_one").map(|said| said.read::<LinkBytes>().expect("bytes"));
         said.filter(|link| link.outward == outward).flat_map(|link| link.data).collect()

@@ -1,4 +1,4 @@
-//! Agents that send what they should not: refused with a counted reason, the game unharmed.
+//! Agents that send invalid data: refused with a counted reason, without effect on the game.
 
 use crate::support::{FOUR, Sim};
 use bus::{Bus, Latest, Priority, Publisher};
@@ -7,7 +7,7 @@ use primitives::{TeamId, VehicleId, codec};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// A session that has joined as a rogue.
+/// A session that has joined as a rogue agent.
 struct Rogue {
     _bus: Bus,
     pictures: Arc<Latest<Picture>>,
@@ -43,7 +43,7 @@ impl Rogue {
         Rogue { _bus: bus, pictures, orders, ticket, _standing: standing.expect("a session") }
     }
 
-    /// Orders for the tick that is open.
+    /// Orders for the open tick.
     fn orders(&self, orders: Vec<VehicleOrder>) -> Orders {
         let picture = self.pictures.take(Duration::from_secs(20)).pop().flatten().expect("a picture");
         let stamp = Stamp { version: Orders::VERSION, ..picture.stamp };
@@ -62,7 +62,7 @@ fn everything_an_agent_can_get_wrong_is_refused_counted_and_harmless() {
     let rogue = Rogue::enter(&sim);
     let send = |orders: &Orders| rogue.orders.send(orders).expect("a session");
 
-    // Garbage, a newer version, a wrong ticket, a tick to come: none of them counts as an answer.
+    // Garbage, a newer version, a wrong ticket, a future tick: none of them counts as an answer.
     let good = rogue.good();
     rogue.orders.send_raw(b"\xff\x00garbage".to_vec()).expect("a session");
     rogue.orders.send_raw(codec::encode(&good)[..20].to_vec()).expect("a session");
@@ -70,7 +70,7 @@ fn everything_an_agent_can_get_wrong_is_refused_counted_and_harmless() {
     send(&Orders { ticket: good.ticket ^ 1, ..good.clone() });
     send(&Orders { stamp: Stamp { seq: good.stamp.seq + 7, ..good.stamp }, ..good.clone() });
     send(&good);
-    // Another's vehicle, with nothing for its own; a vehicle that does not exist.
+    // Another agent's vehicle without its own; a vehicle that does not exist.
     send(&rogue.orders(vec![VehicleOrder::new(VehicleId(0), Order::Thrust { port: 1.0, starboard: 1.0 })]));
     send(
         &rogue.orders(vec![
@@ -83,7 +83,7 @@ fn everything_an_agent_can_get_wrong_is_refused_counted_and_harmless() {
     send(&rogue.orders(vec![VehicleOrder::new(VehicleId(3), nan)]));
     let unknown = VehicleOrder { kind: 77, ..VehicleOrder::new(VehicleId(3), Order::Hold) };
     send(&rogue.orders(vec![unknown]));
-    // Honest for a while, then nothing more: the others play on after the sim's patience.
+    // Valid for a while, then silent: the others continue after the sim's patience.
     for _ in 0..20 {
         send(&rogue.good());
     }

@@ -1,4 +1,4 @@
-//! People on shore control a game: they pause it, step it, slow it down, and make boats hold.
+//! Operators on shore control a game: they pause it, step it, slow it down, and make boats hold.
 
 use crate::support::{FOUR, LIMIT, Sim, newest, own, result_of};
 use bus::{Bus, Declaration, Watched};
@@ -27,7 +27,7 @@ impl Shore {
     }
 
     fn ask(&self, control: Control) {
-        // Some of what is asked here is refused.
+        // Some of these requests are refused.
         drop(bus::control(&self.bus, &self.name, control));
     }
 
@@ -54,7 +54,7 @@ fn a_paused_game_stands_still_is_stepped_and_goes_on_as_if_nothing_had_been() {
     let _agents = [sim.agent(&FOUR[..2]), sim.agent(&FOUR[2..])];
     sim.play_on(2.0);
     let paused_s = shore.pause().now_s;
-    // It is told again that it stands, and that it stands where it stood.
+    // It repeats that it is paused, always at the same time.
     for _ in 0..5 {
         shore.run.visit(|run| run.now_s = -1.0);
         assert_eq!(shore.wait_for_run("it is told", |run| run.now_s >= 0.0).now_s, paused_s);
@@ -113,7 +113,7 @@ fn boats_hold_for_as_long_as_an_operator_wants_it() {
         shore.ask(go);
         sim.wait_for_event(gone_on, Value::Null);
     }
-    // Whoever lets them go on after a halt does not lift an E-stop.
+    // Resuming after a halt does not lift an E-stop.
     for control in [Control::Halt, Control::EStop, Control::GoOn] {
         shore.ask(control);
     }

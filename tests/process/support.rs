@@ -1,4 +1,4 @@
-//! Starting the program, reading what it reports, waiting with a limit.
+//! Helpers that run the program, read its output, and wait with a limit.
 
 use bus::token::TOKEN_VARIABLE;
 use bus::{Bus, Declaration, Net, Token, Watched};
@@ -12,17 +12,18 @@ use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-/// Longer than anything should take on a busy machine; a test that waits this long has failed.
+/// Timeout, generous for a busy machine; a test that waits this long has failed.
 pub(crate) const LIMIT: Duration = Duration::from_secs(60);
 
-/// The program, in the folder of the project.
+/// The program, in the project folder.
 pub(crate) fn squall(args: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_squall"));
     command.current_dir(env!("CARGO_MANIFEST_DIR")).args(args).env(TOKEN_VARIABLE, token().hex());
     command
 }
 
-/// The same where no file may have more blocks, of 512 or 1024 bytes as the shell counts: a disk that is full.
+/// The program with a limit on file sizes, in blocks of 512 or 1024 bytes depending on the shell:
+/// simulates a full disk.
 pub(crate) fn squall_on_a_disk_of(blocks: u32, args: &[&str]) -> Command {
     let mut shell = Command::new("sh");
     let limited = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" \"$@\"");
@@ -30,7 +31,7 @@ pub(crate) fn squall_on_a_disk_of(blocks: u32, args: &[&str]) -> Command {
     shell
 }
 
-/// The token of all games of the tests.
+/// The token of all test games.
 pub(crate) fn token() -> Token {
     "0123456789abcdef".repeat(4).parse().expect("64 digits")
 }
@@ -40,17 +41,17 @@ pub(crate) fn run(args: &[&str]) -> Output {
     squall(args).output().expect("the program starts")
 }
 
-/// What it printed to standard output.
+/// The program's standard output as text.
 pub(crate) fn stdout(output: &Output) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned()
 }
 
-/// What it printed to standard error.
+/// The program's standard error as text.
 pub(crate) fn stderr(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// Runs the program, which is to fail, and gives what it says.
+/// Runs the program, which must fail; returns its error text.
 pub(crate) fn refusal_of(args: &[&str]) -> String {
     refused(squall(args))
 }
@@ -61,17 +62,17 @@ fn refused(mut command: Command) -> String {
     stderr(&output)
 }
 
-/// A folder that is gone with the test.
+/// A folder that is deleted when dropped.
 pub(crate) fn temporary() -> TempDir {
     tempfile::tempdir().expect("a temporary directory")
 }
 
-/// Waits until something is so; for how long it did.
+/// Waits until a condition is true; returns how long it took.
 pub(crate) fn wait_until(what: &str, is_so: impl FnMut() -> bool) -> Duration {
     wait_within(LIMIT, what, is_so)
 }
 
-/// The same, with a limit of its own.
+/// Waits until a condition is true, with its own limit.
 pub(crate) fn wait_within(limit: Duration, what: &str, mut is_so: impl FnMut() -> bool) -> Duration {
     let start = Instant::now();
     while !is_so() {
@@ -81,7 +82,7 @@ pub(crate) fn wait_within(limit: Duration, what: &str, mut is_so: impl FnMut() -
     start.elapsed()
 }
 
-/// The newest of what comes on a key.
+/// Subscribes to a key and keeps the newest message.
 pub(crate) fn newest<T: Default + Send + 'static>(
     bus: &Bus,
     key: String,
@@ -93,7 +94,7 @@ pub(crate) fn newest<T: Default + Send + 'static>(
     (newest, standing.expect("the hub is there"))
 }
 
-/// Runs a game to its end and gives its result.
+/// Runs a game to its end and returns its result.
 pub(crate) fn result_of(args: &[&str]) -> Value {
     let dir = temporary();
     let json = dir.path().join("result.json");
@@ -104,12 +105,13 @@ pub(crate) fn result_of(args: &[&str]) -> Value {
     serde_json::from_str(&std::fs::read_to_string(&json).expect("a result was written")).expect("it is JSON")
 }
 
-/// Each of these seeds gives one game, byte for byte, in one process and across processes, and each another.
+/// Checks that each seed gives one game, byte for byte, in one process and across processes, and
+/// that seeds differ.
 pub(crate) fn assert_a_game_each(game: &str, seeds: &[&str]) {
     let mut digests = Vec::new();
     for seed in seeds {
         let here = game_itself(result_of(&[game, "--seed", seed, "--in-process"]));
-        // With two boats a process one process decides for a boat of each team.
+        // With two boats a process, one process decides for a boat of each team.
         for boats_each in ["1", "2", "6"] {
             let there = result_of(&[game, "--seed", seed, "--agents-per-process", boats_each]);
             assert_eq!(here, game_itself(there), "seed {seed}, {boats_each} boats a process");
@@ -120,18 +122,18 @@ pub(crate) fn assert_a_game_each(game: &str, seeds: &[&str]) {
     assert_eq!(digests.len(), seeds.len(), "each seed is another game");
 }
 
-/// What must not depend on how a game was run.
+/// The part of the result that must not depend on how a game was run.
 pub(crate) fn game_itself(mut result: Value) -> Value {
     result.as_object_mut().expect("an object").remove("run");
     result
 }
 
-/// A file of the tests' own, from the folder of the project.
+/// A test scenario, by its path from the project folder.
 pub(crate) fn own(name: &str) -> String {
     format!("tests/process/scenarios/{name}.toml")
 }
 
-/// A process that is gone with the test.
+/// A process that is killed when dropped.
 pub(crate) struct Process(pub(crate) Child);
 
 impl Process {
@@ -139,13 +141,13 @@ impl Process {
         Process(command.spawn().expect("the program starts"))
     }
 
-    /// kill -9.
+    /// Sends SIGKILL.
     pub(crate) fn kill(&mut self) {
         self.0.kill().expect("it can be killed");
         self.0.wait().expect("it can be collected");
     }
 
-    /// Any signal, by name.
+    /// Sends any signal, by name.
     pub(crate) fn signal(&self, name: &str) {
         let sent = Command::new("kill").args([&format!("-{name}"), &self.0.id().to_string()]).status();
         assert!(sent.expect("kill is there").success());
@@ -160,7 +162,7 @@ impl Process {
         ended.expect("it has ended")
     }
 
-    /// Waits for it to fail, and gives what it said on its piped standard error.
+    /// Waits for it to fail; returns its piped standard error.
     pub(crate) fn refusal(&mut self) -> String {
         assert!(!self.wait().success());
         let mut said = String::new();
@@ -191,13 +193,14 @@ pub(crate) struct Sim {
 }
 
 impl Sim {
-    /// Serves a game of the tests' own on a free port of loopback.
+    /// Serves a test scenario on a free loopback port.
     pub(crate) fn start(name: &str, args: &[&str]) -> Sim {
         let endpoint = free_endpoint();
         Sim::start_with(squall(&[]), name, &[&["--listen", &endpoint], args].concat())
     }
 
-    /// The same, with an agent process for each boat of two against two, when all have joined.
+    /// Starts a sim and an agent process for each boat of a two-against-two game, and waits until
+    /// all have joined.
     pub(crate) fn start_with_agents(name: &str, args: &[&str]) -> (Sim, Vec<Process>) {
         let sim = Sim::start(name, args);
         let agents = FOUR.iter().map(|name| sim.agent(&[name])).collect();
@@ -205,7 +208,7 @@ impl Sim {
         (sim, agents)
     }
 
-    /// Serves such a game by a program that takes the arguments of `squall`.
+    /// Serves a test scenario with a program that accepts the arguments of `squall`.
     pub(crate) fn start_with(mut program: Command, name: &str, args: &[&str]) -> Sim {
         program.args(["sim", &own(name), "--for-parent"]).args(args);
         program.stdin(Stdio::piped()).stdout(Stdio::piped());
@@ -223,7 +226,7 @@ impl Sim {
         sim
     }
 
-    /// The next message like this.
+    /// The next message that matches.
     pub(crate) fn wait_for(&self, is_it: impl Fn(&Value) -> bool) -> Value {
         let start = Instant::now();
         loop {
@@ -235,7 +238,7 @@ impl Sim {
         }
     }
 
-    /// The newest progress that it has reported, or the next.
+    /// The newest reported progress, or else the next.
     pub(crate) fn newest_progress(&self) -> Value {
         let newest = self.messages.try_iter().filter(|message| message["kind"] == "progress").last();
         newest.unwrap_or_else(|| self.wait_for_kind("progress"))
@@ -246,7 +249,7 @@ impl Sim {
         self.wait_for(|message| message["kind"] == kind)
     }
 
-    /// Waits until the game has gone on for a while.
+    /// Waits until the game has advanced by this many seconds.
     pub(crate) fn play_on(&self, seconds: f64) -> f64 {
         let now_s = |message: &Value| message["now_s"].as_f64();
         let from_s = now_s(&self.wait_for_kind("progress")).expect("a time");
@@ -254,7 +257,7 @@ impl Sim {
         now_s(&self.wait_for(there)).expect("a time")
     }
 
-    /// Waits for an event of a boat; `null` is one of the whole game.
+    /// Waits for an event of a boat, or of the whole game for `null`.
     pub(crate) fn wait_for_event(&self, event: &str, vehicle: impl Into<Value>) -> Value {
         let vehicle = vehicle.into();
         self.wait_for(|message| {
@@ -262,7 +265,7 @@ impl Sim {
         })
     }
 
-    /// Ends the game and gives its report.
+    /// Stops the game and returns its report.
     pub(crate) fn stop(mut self) -> Value {
         self.stdin = None;
         let done = self.wait_for_kind("done");
@@ -270,12 +273,12 @@ impl Sim {
         done
     }
 
-    /// An agent for some of its vehicles.
+    /// Starts an agent for some of its vehicles.
     pub(crate) fn agent(&self, vehicles: &[&str]) -> Process {
         agent(&self.endpoint, &self.game, vehicles)
     }
 
-    /// A process with these arguments, and where this game is; nobody reads what it prints.
+    /// Starts a process with these arguments and the game's address; its output is discarded.
     pub(crate) fn quiet(&self, args: &[&str]) -> Process {
         let mut command = self.squall(args);
         command.stdout(Stdio::null()).stderr(Stdio::null());
@@ -287,35 +290,35 @@ impl Sim {
         GameName::new(&self.game).expect("a name")
     }
 
-    /// The program with these arguments, and where this game is.
+    /// The program with these arguments and the game's address.
     pub(crate) fn squall(&self, args: &[&str]) -> Command {
         squall(&[args, &["--connect", &self.endpoint, "--game", &self.game]].concat())
     }
 
-    /// Runs it to its end.
+    /// Runs the program with these arguments to its end.
     pub(crate) fn run(&self, args: &[&str]) -> Output {
         self.squall(args).output().expect("the program starts")
     }
 
-    /// Runs it; it is to fail, and this is what it says.
+    /// Runs the program with these arguments; it must fail. Returns its error text.
     pub(crate) fn refusal_of(&self, args: &[&str]) -> String {
         refused(self.squall(args))
     }
 
-    /// What the game is, as it says itself.
+    /// The game's description of itself.
     pub(crate) fn info(&self, bus: &Bus) -> GameInfo {
         let info = bus.ask(&topic::scenario(&self.name()), Vec::new(), LIMIT).expect("the hub is there");
         serde_json::from_slice(&info.expect("an answer")).expect("a game")
     }
 
-    /// A session of our own at its hub.
+    /// A session at its hub.
     pub(crate) fn bus(&self) -> Bus {
         let net = Net { connect: vec![self.endpoint.clone()], token: Some(token()), ..Net::default() };
         Bus::leaf(&net).expect("the hub is there")
     }
 }
 
-/// An agent process.
+/// Starts an agent process.
 pub(crate) fn agent(endpoint: &str, game: &str, vehicles: &[&str]) -> Process {
     let args = ["agent", "--connect", endpoint, "--game", game, "--vehicle"];
     let mut command = squall(&[&args[..], vehicles].concat());
@@ -323,10 +326,10 @@ pub(crate) fn agent(endpoint: &str, game: &str, vehicles: &[&str]) -> Process {
     Process::start(command)
 }
 
-/// A free port of loopback.
+/// An endpoint with a free loopback port.
 pub(crate) fn free_endpoint() -> String {
     format!("tcp/127.0.0.1:{}", bus::free_port(false).expect("a free port"))
 }
 
-/// All vehicles of the game of two against two.
+/// All vehicles of the two-against-two game.
 pub(crate) const FOUR: [&str; 4] = ["blue_one", "blue_two", "red_one", "red_two"];

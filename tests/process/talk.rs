@@ -1,4 +1,4 @@
-//! Team messages from process to process: received exactly one decision later.
+//! Team messages between processes are received exactly one decision later.
 
 use crate::support::{LIMIT, Process, Sim, assert_a_game_each, own, wait_until};
 use messages::helm::HelmReport;
@@ -13,7 +13,7 @@ fn boats_that_talk_play_the_same_game_across_processes_as_in_one() {
     assert_a_game_each(&own("talking_200s"), &["1", "2", "3"]);
 }
 
-/// A variable of a boat, as its helm tells it.
+/// A variable of a boat, as reported by its helm.
 fn variable(bus: &bus::Bus, name: &GameName, info: &GameInfo, vehicle: &str, variable: &str) -> String {
     let scenario = &info.scenario;
     let key = topic::helm(name, scenario, scenario.vehicle_by_name(vehicle).expect("it is there"));
@@ -48,12 +48,12 @@ fn a_killed_mate_does_not_silence_the_others_and_nonsense_hurts_nobody() {
     let mut speakers = [0, 0, 0];
     while speakers[0] < 20 || speakers[2] < 20 {
         let say = said.recv_timeout(LIMIT).expect("they go on talking");
-        // Our own nonsense comes by too.
+        // Skip our own invalid messages.
         let Ok(say) = say.map_err(drop) else { continue };
         say.words.iter().filter(|word| word.value.is_finite()).for_each(|w| speakers[w.vehicle.index()] += 1);
     }
     assert_eq!(speakers[1], 0, "the dead do not talk");
-    // What the third hears of the first goes on changing; the second's last message stands.
+    // The third boat's view of the first keeps changing; the second's last message stays.
     let high = || variable(&bus, &name, &info, "blue_3", "high");
     let first = high();
     wait_until("it hears something new", || high() != first);

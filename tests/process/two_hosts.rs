@@ -6,11 +6,11 @@ use std::ffi::OsStr;
 use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Where the game on the first host listens.
+/// The game's endpoint on the first host.
 pub(crate) const ENDPOINT: &str = "tcp/10.77.0.1:7447";
 pub(crate) const GAME: &str = "two-hosts";
 
-/// Two hosts and the cable between them; gone with the test.
+/// Two hosts and the cable between them; removed when dropped.
 pub(crate) struct Hosts {
     names: [String; 2],
     id: String,
@@ -22,7 +22,7 @@ fn ip(args: &str) -> Result<(), String> {
 }
 
 impl Hosts {
-    /// None, and says why, where this is not allowed.
+    /// Creates the hosts; prints the reason and returns `None` if this is not permitted.
     pub(crate) fn connect() -> Option<Hosts> {
         let reason = match Hosts::try_connect() {
             Ok(hosts) => return Some(hosts),
@@ -58,7 +58,7 @@ impl Hosts {
         ip(&format!("-n {} link set sqb{} {state}", self.names[1], self.id)).expect("the cable is there");
     }
 
-    /// A program on one of the hosts.
+    /// A command that runs on one of the hosts.
     pub(crate) fn command(&self, host: usize, program: impl AsRef<OsStr>) -> Command {
         let mut command = Command::new("ip");
         command.args(["netns", "exec", &self.names[host]]).arg(program);
@@ -70,7 +70,7 @@ impl Hosts {
         self.command(host, env!("CARGO_BIN_EXE_squall"))
     }
 
-    /// Serves a game on the first of them, which the second can reach.
+    /// Serves a game on the first host, reachable from the second.
     pub(crate) fn sim(&self, scenario: &str, args: &[&str]) -> Sim {
         let args = [&["--game", GAME, "--listen", ENDPOINT, "--insecure"], args].concat();
         Sim::start_with(self.squall(0), scenario, &args)
@@ -87,7 +87,7 @@ impl Hosts {
 impl Drop for Hosts {
     fn drop(&mut self) {
         for name in &self.names {
-            // What was never made cannot be removed.
+            // Ignore the error: the namespace may not exist.
             let _ = ip(&format!("netns del {name}"));
         }
     }

@@ -1,11 +1,11 @@
-//! Nothing that stands in a scenario file brings the program down.
+//! No content of a scenario file crashes the program.
 
 use crate::kinds::KINDS;
 use proptest::prelude::*;
 use scenario::Kind;
 use std::path::{Path, PathBuf};
 
-/// Checks `bytes` as every kind of file. Whatever the answer is, it is an answer, and problems have places.
+/// Checks `bytes` as every kind of file. Any answer is allowed, but problems must have places.
 fn check_as_all_kinds(bytes: &[u8]) {
     let folder = tempfile::tempdir().unwrap();
     let in_folders: Vec<PathBuf> = KINDS.iter().map(|kind| folder.path().join(kind.folder()).join("x.toml")).collect();
@@ -68,7 +68,7 @@ fn deep_and_large_files_are_refused() {
     }
 }
 
-/// Keys of strategy files, and values that may stand there, or not: one a line.
+/// Keys of strategy files, and valid and invalid values for them, one per line.
 const KEYS: &str = include_str!("hostile_keys.txt");
 const VALUES: &str = include_str!("hostile_values.txt");
 

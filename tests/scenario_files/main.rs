@@ -1,4 +1,4 @@
-//! Scenario files of every kind: those that are shipped, broken ones, noise, and the pages that describe them.
+//! Scenario files of every kind: shipped files, broken files, noise, and the reference pages.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 

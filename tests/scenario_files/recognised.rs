@@ -1,4 +1,4 @@
-//! Which kind a file is.
+//! How the program recognises the kind of a file.
 
 use crate::kinds::KINDS;
 use experiment::sweep::Sweep;

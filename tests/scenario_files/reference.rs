@@ -1,4 +1,4 @@
-//! The reference pages of scenario files are those of the program's types.
+//! The reference pages of scenario files match the program's types.
 
 use crate::kinds::KINDS;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! The shipped scenario files: all of them are sound, and say what they are meant to say.
+//! The shipped scenario files are all valid and contain what they should.
 
 use crate::kinds::KINDS;
 use experiment::sweep::Sweep;
@@ -36,7 +36,7 @@ fn stem(path: &Path) -> String {
     path.file_stem().unwrap().to_str().unwrap().to_owned()
 }
 
-/// What a file calls itself where it stands for itself.
+/// The name in a file that must match its file name.
 fn name_of(kind: Kind, path: &Path) -> Option<String> {
     let name = match kind.name() {
         "game" => scenario::load(path).map(|game| game.name),
@@ -71,7 +71,7 @@ fn a_file_is_recognised_wherever_it_lies() {
     let folder = tempfile::tempdir().unwrap();
     for &kind in KINDS {
         if ["game", "tournament", "training", "sweep"].contains(&kind.name()) {
-            continue; // Their references would not follow them.
+            continue; // Relative references would break in another folder.
         }
         for path in files(kind) {
             let text = std::fs::read_to_string(&path).unwrap();
@@ -167,7 +167,7 @@ fn boats_without_a_start_position_lie_in_line_and_mirror_each_other() {
         else {
             panic!("no places");
         };
-        // Half a turn about the middle of the field takes one team to the other.
+        // A half turn about the middle of the field maps one team to the other.
         assert_eq!((blue.at.east, blue.at.north), (160.0 - red.at.east, 80.0 - red.at.north), "{i}");
     }
 }
@@ -218,7 +218,7 @@ fn the_schemas_beside_the_files_are_those_of_the_types() {
     }
 }
 
-/// Every number that a schema gives a range: its path in the file, its type, and the range.
+/// Every number with a range in a schema: its path in the file, its type, and the range.
 fn ranges(at: &Value, path: &str, found: &mut Vec<(String, bool, [Value; 2])>) {
     for (key, about) in at["properties"].as_object().into_iter().flatten() {
         let path = format!("{path}{key}");
@@ -254,7 +254,7 @@ fn a_number_beyond_the_range_of_its_schema_is_refused() {
             let number = |bound: &Value| bound.as_f64().unwrap();
             for value in [number(&low) - 1.0, number(&high) + 1.0] {
                 let value = match (is_whole, value > 1e18) {
-                    (true, true) => continue, // A file cannot say so large a whole number.
+                    (true, true) => continue, // TOML cannot represent such a large integer.
                     (true, false) => format!("{value:.0}"),
                     (false, _) => format!("{value:?}"),
                 };
@@ -269,7 +269,7 @@ fn a_number_beyond_the_range_of_its_schema_is_refused() {
     }
 }
 
-/// The values in lists, whole numbers as all others.
+/// The values in lists; whole numbers like all others.
 fn flat(value: &Value) -> Vec<String> {
     match value {
         Value::Array(values) => values.iter().flat_map(flat).collect(),
@@ -277,7 +277,8 @@ fn flat(value: &Value) -> Vec<String> {
     }
 }
 
-/// Checks that a line of an example gives the default of its key, unless its comment says otherwise.
+/// Checks that a line of an example gives the default of its key, unless its comment says
+/// otherwise.
 fn assert_shows_defaults(schema: &Value, text: &str) {
     let mut table = schema;
     for line in text.lines() {
@@ -296,7 +297,7 @@ fn assert_shows_defaults(schema: &Value, text: &str) {
     }
 }
 
-/// The keys of a table and of all tables in it.
+/// The keys of a table and of all nested tables.
 fn keys(schema: &Value) -> Vec<String> {
     match schema {
         Value::Object(object) => {
@@ -309,7 +310,7 @@ fn keys(schema: &Value) -> Vec<String> {
     }
 }
 
-/// Writes a file below `folder`, and gives its path.
+/// Writes a file below `folder`; returns its path.
 fn written(folder: &Path, name: &str, text: &str) -> PathBuf {
     let path = folder.join(name);
     std::fs::create_dir_all(path.parent().unwrap()).unwrap();
@@ -317,7 +318,7 @@ fn written(folder: &Path, name: &str, text: &str) -> PathBuf {
     path
 }
 
-/// A folder with the files that examples are laid over, and the model that one of them names.
+/// A folder with the files that examples extend, and the model that one of them names.
 fn folder_of_bases() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     for (from, to) in [
@@ -347,7 +348,7 @@ fn the_examples_of_every_key_are_sound_and_show_the_defaults() {
             examples.push((kind, written(folder.path(), &name, &text), text));
         }
     }
-    // All texts of a kind: there are two kinds of boat.
+    // Join all texts of a kind: there are two kinds of boat.
     let mut texts = BTreeMap::<&str, String>::new();
     for (kind, path, text) in &examples {
         let checked = scenario::check_file(KINDS, path).unwrap_or_else(|problems| panic!("{problems}"));
@@ -367,7 +368,7 @@ fn the_examples_of_every_key_are_sound_and_show_the_defaults() {
 #[test]
 fn the_examples_of_the_handbook_are_sound() {
     let handbook = std::fs::read_to_string(shipped("README.md")).unwrap();
-    // Beside the shipped files that they name.
+    // Write them beside the shipped files that they name.
     let folder = tempfile::tempdir().unwrap();
     for path in KINDS.iter().flat_map(|kind| files(*kind)) {
         let text = std::fs::read_to_string(&path).unwrap();

@@ -1,12 +1,12 @@
-//! The language of documents, and where their links lead.
+//! Checks the language of documents and the targets of their links.
 
 use crate::rule::Breaches;
 use crate::tree::Tree;
 
-/// The longest sentence of a document, words. Half of that is better.
+/// Maximum length of a sentence in a document, words. Half of that is better.
 const WORDS_MAX: usize = 40;
 
-/// Phrases that a native engineer would not write, each with what to write in its place.
+/// Phrases that a native engineer would not write, each with its replacement.
 const PHRASES: [(&str, &str); 12] = [
     ("that is none", "invalid, non-finite"),
     ("came of", "the result"),
@@ -22,14 +22,14 @@ const PHRASES: [(&str, &str); 12] = [
     ("nothing would come", "would have no effect"),
 ];
 
-/// Documents that people write. What is generated has its rules where its source is.
+/// Hand-written documents. Generated ones are checked at their source.
 fn documents(tree: &Tree) -> impl Iterator<Item = (&String, &String)> {
     let is_written =
         |path: &str| path.ends_with(".md") && !path.ends_with("REFERENCE.md") && !path.contains("/reference/");
     tree.files.iter().filter(move |(path, _)| is_written(path))
 }
 
-/// Lines outside of fenced blocks, from 1; those inside are empty.
+/// Lines outside fenced blocks, numbered from 1; lines inside are empty.
 fn prose(text: &str) -> impl Iterator<Item = (usize, &str)> {
     let mut is_fenced = false;
     text.lines().enumerate().map(move |(i, line)| {
@@ -43,7 +43,7 @@ pub(crate) fn language(tree: &Tree) -> Breaches {
     let mut breaches = Breaches::new();
     for (path, text) in documents(tree) {
         for (number, line) in prose(text) {
-            // Names of tests and of code are not language.
+            // Ignore names in backticks.
             let words = line.split('`').step_by(2).collect::<Vec<_>>().join(" ").to_lowercase();
             let words = format!(" {} ", words.replace(|c: char| !c.is_alphanumeric(), " "));
             let found = PHRASES.iter().filter(|(phrase, _)| words.contains(&format!(" {phrase} ")));
@@ -60,7 +60,7 @@ pub(crate) fn language(tree: &Tree) -> Breaches {
     breaches
 }
 
-/// The sentences of paragraphs and lists, with the line where each paragraph begins.
+/// The sentences of paragraphs and lists, with the first line number of the paragraph.
 fn sentences(text: &str) -> Vec<(usize, String)> {
     let mut paragraphs: Vec<(usize, String)> = vec![];
     let mut is_open = false;
@@ -103,7 +103,7 @@ pub(crate) fn links(tree: &Tree) -> Breaches {
     breaches
 }
 
-/// The path of a file that is named in the document at `path`.
+/// The path of a file that the document at `path` names.
 fn beside(path: &str, file: &str) -> String {
     let mut parts: Vec<&str> = path.split('/').collect();
     parts.pop();
@@ -117,7 +117,7 @@ fn beside(path: &str, file: &str) -> String {
     parts.join("/")
 }
 
-/// The anchors of a document's headings, as GitHub makes them of different headings.
+/// The anchors that GitHub generates for a document's headings.
 fn headings(text: &str) -> Vec<String> {
     let titles =
         prose(text).filter_map(|(_, line)| Some(line.trim_start_matches('#').trim()).filter(|_| line.starts_with('#')));

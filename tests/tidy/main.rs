@@ -1,7 +1,9 @@
-//! The house rules that a compiler does not check: who imports whom, how long files are, what documents promise.
+//! House rules that a compiler does not check: imports between crates, file lengths, promises in
+//! documents.
 //!
-//! Every rule reads a [`Tree`] of texts and gives its breaches. The first test holds the repository to all
-//! of them; the second breaks each in turn, as `breaches.txt` says, so that a rule which has stopped looking is noticed too.
+//! Every rule reads a [`Tree`] of texts and returns its breaches. The first test checks the
+//! repository against all rules. The second breaks each rule in turn, as listed in `breaches.txt`,
+//! so that a rule that no longer works is detected.
 
 mod language;
 mod rule;
@@ -13,7 +15,7 @@ use rule::{Breaches, LINES_MAX, RULES};
 use std::path::PathBuf;
 use tree::Tree;
 
-/// The files that a text beside this one describes: each begins with a line of its path.
+/// The files described in a text beside this one: each begins with a line with its path.
 fn files_of(text: &str) -> Vec<(String, String)> {
     let text = std::fs::read_to_string(root().join("tests/tidy").join(text)).expect("it can be read");
     let files = text.strip_prefix("---- ").expect("a file").split("\n---- ");
@@ -24,7 +26,7 @@ fn files_of(text: &str) -> Vec<(String, String)> {
     files.map(file).collect()
 }
 
-/// The smallest tree that keeps every rule.
+/// The smallest tree that meets every rule.
 fn sound_tree() -> Tree {
     Tree { root: PathBuf::new(), files: files_of("sound.txt").into_iter().collect() }
 }

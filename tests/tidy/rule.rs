@@ -1,14 +1,14 @@
-//! The rules, and what each finds wrong with a tree.
+//! The rules, each of which finds its breaches in a tree.
 
 use crate::language::{language, links};
 use crate::shown_by::shown_by;
 use crate::text::{is_path, joined, manifest_entries, names, quoted};
 use crate::tree::Tree;
 
-/// The longest file a person may have written, lines.
+/// Maximum length of a hand-written file, lines.
 pub(crate) const LINES_MAX: usize = 500;
 
-/// What each crate of ours may depend on, whatever the section. Folders that are planned are in here already.
+/// The allowed dependencies of each of our crates, in any section, including planned folders.
 const MAY_IMPORT: [(&str, &[&str]); 23] = [
     ("onnx", &[]),
     ("primitives", &[]),
@@ -24,11 +24,11 @@ const MAY_IMPORT: [(&str, &[&str]); 23] = [
     ("agent", &["onnx", "primitives", "rules", "scenario", "messages", "bus"]),
     ("gateway", &["primitives", "rules", "scenario", "messages", "bus", "recording", "agent"]),
     ("command_line", &["primitives", "rules", "scenario", "messages", "bus", "recording"]),
-    // Neither a web server nor anything that plays or learns: what drives a boat is read by itself.
+    // No web server, player or trainer: the program that drives a boat is reviewed separately.
     ("gateway/cli", &["primitives", "rules", "scenario", "messages", "bus", "recording", "gateway", "command-line"]),
     ("gateway/crosscheck", &["primitives", "gateway"]),
     ("fuzz", ALL),
-    // `analysis` for examples: what games in one process tell.
+    // `analysis` for examples: statistics of games in one process.
     ("arena", &["primitives", "rules", "scenario", "messages", "sim", "agent", "analysis"]),
     ("analysis", &["primitives", "rules", "scenario", "messages", "recording"]),
     ("trial", &["primitives", "rules", "scenario", "messages", "sim"]),
@@ -62,16 +62,17 @@ const ALL: &[&str] = &[
     "trial",
 ];
 
-/// Crates whose network shell, `node`, is the only place that may use `bus`; everything else in them is pure.
+/// Crates whose network shell, `node`, is the only place that may use `bus`; everything else in
+/// them is pure.
 const SHELLS: [&str; 3] = ["sim", "agent", "gateway"];
 
-/// Where the questions of readers are.
+/// The file with the readers' questions.
 const QUESTIONS: &str = "tests/tidy/questions.txt";
 
 /// A breach of a rule: `file:line: what is wrong, what is allowed`.
 pub(crate) type Breaches = Vec<String>;
 
-/// A name, and what finds its breaches.
+/// A rule: its name and the function that finds its breaches.
 type Rule = (&'static str, fn(&Tree) -> Breaches);
 
 pub(crate) const RULES: [Rule; 17] = [
@@ -103,7 +104,7 @@ fn dependencies(tree: &Tree) -> Breaches {
             breaches.push(format!("{path}:1: no rule for this crate: say in tests/tidy.rs what it may import"));
             continue;
         };
-        // What the root only offers, nobody imports yet.
+        // The root only offers these dependencies; no crate imports them yet.
         let entries = manifest_entries(text).into_iter().filter(|(_, section, _)| section != "workspace.dependencies");
         for (number, section, name) in entries {
             let place = format!("{path}:{number}");
@@ -126,7 +127,7 @@ fn dependencies(tree: &Tree) -> Breaches {
     breaches
 }
 
-/// What manifests call the crate in a folder: `gateway-cli` that in `gateway/cli`.
+/// The name of a folder's crate in manifests: `gateway-cli` for `gateway/cli`.
 fn dependency(folder: &str) -> String {
     folder.replace(['/', '_'], "-")
 }
@@ -140,7 +141,7 @@ fn bus_in_shells(tree: &Tree) -> Breaches {
 }
 
 fn zenoh_in_bus(tree: &Tree) -> Breaches {
-    // Whoever breaks in does so by zenoh's own interface.
+    // The intruders in these tests use zenoh's own API.
     let allowed = ["crates/bus/src/", "benches/", "tests/adversary/"];
     let elsewhere = |path: &str| !allowed.iter().any(|folder| path.starts_with(folder));
     let word = joined(["zen", "oh::"]);
@@ -208,7 +209,7 @@ fn no_unwrap(tree: &Tree) -> Breaches {
     )
 }
 
-/// What is written for those who change the code, and names its files.
+/// Whether a document is for developers and therefore names source files.
 fn is_for_developers(path: &str) -> bool {
     ["ARCHITECTURE.md", "docs/estop.md"].contains(&path) || path.starts_with("docs/decisions/")
 }
@@ -228,8 +229,8 @@ fn architecture(tree: &Tree) -> Breaches {
     documents.into_iter().flat_map(breaches).collect()
 }
 
-/// The questions that a reader asks, each with the file where they look first and a text that it must contain: a file that is
-/// renamed or loses its subject is found before a reader misses it.
+/// Readers' questions, each with the file in which readers look first and a text that it must
+/// contain. This detects a file that is renamed or loses its subject.
 fn questions(tree: &Tree) -> Breaches {
     let Some(text) = tree.text(QUESTIONS) else { return vec![format!("{QUESTIONS}: is missing")] };
     let guesses = text.lines().enumerate().filter(|(_, line)| line.starts_with(' '));
@@ -246,13 +247,13 @@ fn questions(tree: &Tree) -> Breaches {
     guesses.filter_map(wrong).collect()
 }
 
-/// The terms are the first cells of the table below the heading `Glossary`. Code spells `set-point` as `set_point` or
-/// `SetPoint`, so case and separators do not count.
+/// The terms are the first cells of the table below the heading `Glossary`. Code spells `set-point`
+/// as `set_point` or `SetPoint`, so case and separators do not count.
 fn glossary(tree: &Tree) -> Breaches {
     let text = tree.files.get("docs/glossary.md").map_or("", String::as_str);
     let lines = text.lines().enumerate().skip_while(|(_, line)| *line != "## Glossary").skip(1);
     let rows = lines.take_while(|(_, line)| !line.starts_with("## ")).filter(|(_, line)| line.starts_with('|'));
-    // The heading of the table and the line below it are no terms.
+    // Skip the heading of the table and the line below it.
     let terms = rows.skip(2).filter_map(|(i, line)| Some((i + 1, line.split('|').nth(1)?.trim())));
     let plain = |text: &str| text.to_lowercase().replace(['_', '-', ' ', '`'], "");
     let code: String = tree.sources().filter(|(path, _)| path.contains("src/")).map(|(_, text)| plain(text)).collect();
@@ -299,7 +300,7 @@ fn changelog(tree: &Tree) -> Breaches {
     vec![format!("CHANGELOG.md:1: has no section `{heading}`, the version in Cargo.toml")]
 }
 
-/// A reason is a comment on the entry's line or on the one above it; crates of ours need none.
+/// A reason is a comment on the entry's line or on the line above; our own crates need none.
 fn reasons(tree: &Tree) -> Breaches {
     let manifest = tree.files.get("Cargo.toml").map_or("", String::as_str);
     let lines: Vec<&str> = manifest.lines().map(str::trim).collect();

@@ -1,17 +1,17 @@
-//! Tables that say of each row which test shows it: the tests exist.
+//! Checks tables that name a test in each row: the tests must exist.
 
 use crate::rule::Breaches;
 use crate::text::quoted;
 use crate::tree::Tree;
 
-/// What stands above the column that names tests, as `file::name`.
+/// The heading of the column that names tests, as `file::name`.
 const HEAD: &str = "shown by";
-/// What a row says instead that has no test.
+/// The entry of a row without a test.
 const UNTESTED: &str = "not tested";
-/// Where there is such a table.
+/// The document with such a table.
 const FAULTS: &str = "docs/faults.md";
 
-/// Finds rows that name no test, or one that does not exist.
+/// Finds rows that name no test or a missing one.
 pub(crate) fn shown_by(tree: &Tree) -> Breaches {
     let mut breaches = Breaches::new();
     for (path, text) in tree.files.iter().filter(|(path, _)| path.ends_with(".md")) {
@@ -26,7 +26,7 @@ pub(crate) fn shown_by(tree: &Tree) -> Breaches {
     breaches
 }
 
-/// The last cells of the rows of such tables, with their lines.
+/// The last cells of the rows of such tables, with their line numbers.
 fn rows(text: &str) -> Vec<(usize, &str)> {
     let mut is_inside = false;
     let mut rows = vec![];
@@ -60,7 +60,7 @@ fn exists(tree: &Tree, test: &str) -> bool {
             let Some(at) = lines.iter().position(|line| line.starts_with(&begin)) else { return false };
             lines[..at].iter().rev().take_while(|line| line.starts_with("#[")).any(|line| *line == "#[test]")
         }
-        // A test of the page in a browser, and a scenario in text.
+        // Browser tests of the page, and text scenarios.
         Some("mjs") => lines.iter().any(|line| line.starts_with(&format!("test('{name}',"))),
         Some("txt") => lines.iter().any(|line| line.strip_prefix("## ") == Some(name)),
         _ => false,

@@ -1,4 +1,4 @@
-//! What a line, a manifest or a document says.
+//! Parses lines, manifests and documents.
 
 /// Numbered lines without comments, up to the tests at the end of the file.
 pub(crate) fn code_of(text: &str) -> impl Iterator<Item = (usize, &str)> {
@@ -9,20 +9,20 @@ pub(crate) fn code_of(text: &str) -> impl Iterator<Item = (usize, &str)> {
     numbered.map(|(i, line)| (i + 1, without_comment(line)))
 }
 
-/// The line up to a `//` that begins a comment (and not the slashes of an address such as `http://`).
+/// The line up to a `//` that begins a comment (not the slashes of an address such as `http://`).
 fn without_comment(line: &str) -> &str {
     let comment =
         line.match_indices("//").find(|(at, _)| line[..*at].chars().next_back().is_none_or(char::is_whitespace));
     comment.map_or(line, |(at, _)| &line[..at])
 }
 
-/// Whether `word` stands in the line on its own, not as the end of a longer name.
+/// Whether `word` occurs in the line as a separate word, not as the end of a longer name.
 pub(crate) fn names(line: &str, word: &str) -> bool {
     let alone = |(at, _): (usize, &str)| !line[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_');
     line.match_indices(word).any(alone)
 }
 
-/// Line number, section and name of everything in a manifest's dependency sections.
+/// Line number, section and name of every entry in a manifest's dependency sections.
 pub(crate) fn manifest_entries(text: &str) -> Vec<(usize, String, String)> {
     let mut section = String::new();
     let mut entries = Vec::new();
@@ -43,13 +43,13 @@ pub(crate) fn manifest_entries(text: &str) -> Vec<(usize, String, String)> {
     entries
 }
 
-/// The package behind an entry that was given another name, without our prefix.
+/// The package behind a renamed entry, without our prefix.
 fn package_of(line: &str) -> Option<String> {
     let package = line.split("package = \"").nth(1)?.split('"').next()?;
     Some(package.strip_prefix("squall-").unwrap_or(package).to_owned())
 }
 
-/// Everything in single backticks outside of fenced blocks, with its line.
+/// Every text in single backticks outside fenced blocks, with its line number.
 pub(crate) fn quoted(text: &str) -> Vec<(usize, String)> {
     let mut fenced = false;
     let mut words = Vec::new();
@@ -63,8 +63,8 @@ pub(crate) fn quoted(text: &str) -> Vec<(usize, String)> {
     words
 }
 
-/// Whether a word in backticks is a path of this repository: it has a folder or a file's ending, and nothing
-/// that belongs to commands, keys or Rust.
+/// Whether a word in backticks is a path of this repository: it has a folder or a file extension,
+/// and no character of commands, keys or Rust.
 pub(crate) fn is_path(word: &str) -> bool {
     let foreign = word.starts_with(['/', '-', '.', '~']) && !word.starts_with(".ci/")
         || word.starts_with(&joined(["squ", "all/"]));
@@ -73,7 +73,7 @@ pub(crate) fn is_path(word: &str) -> bool {
     !foreign && !odd && (ending || word.contains('/'))
 }
 
-/// Two halves of a word that must not stand here whole, since this file is looked at too.
+/// Joins two halves of a word that must not occur whole here, since this file is checked too.
 pub(crate) fn joined(halves: [&str; 2]) -> String {
     halves.concat()
 }

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The files of a repository that rules look at: path from the root (with `/`), and text.
+/// The files that rules check: path from the root (with `/`), and text.
 pub(crate) struct Tree {
     pub(crate) root: PathBuf,
     pub(crate) files: BTreeMap<String, String>,
@@ -46,7 +46,7 @@ impl Tree {
         self.files.iter().filter(|(path, _)| *path == "Cargo.toml" || path.ends_with("/Cargo.toml"))
     }
 
-    /// Whether a path exists, as a file, a folder, or a module named without its ending.
+    /// Whether a path exists as a file, a folder, or a module named without its extension.
     pub(crate) fn has(&self, path: &str) -> bool {
         let path = path.trim_end_matches('/');
         let known = |path: &str| {
@@ -55,13 +55,13 @@ impl Tree {
         known(path) || known(&format!("{path}.rs"))
     }
 
-    /// The text of a file, also of one that no other rule looks at.
+    /// The text of a file, including files that no other rule checks.
     pub(crate) fn text(&self, path: &str) -> Option<String> {
         let read = || (!self.root.as_os_str().is_empty()).then(|| fs::read_to_string(self.root.join(path)).ok())?;
         self.files.get(path).cloned().or_else(read)
     }
 
-    /// The lines of code, tests left out, in which `wrong` finds something.
+    /// The lines of code, without tests, in which `wrong` finds something.
     pub(crate) fn find(&self, look: impl Fn(&str) -> bool, wrong: impl Fn(&str) -> bool, said: &str) -> Breaches {
         let mut breaches = Breaches::new();
         for (path, text) in self.sources().filter(|(path, _)| look(path)) {

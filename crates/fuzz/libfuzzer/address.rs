@@ -1,4 +1,4 @@
-//! libFuzzer's way into the target `address`.
+//! libFuzzer entry point for the target `address`.
 
 #![no_main]
 

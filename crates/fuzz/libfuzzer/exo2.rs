@@ -1,4 +1,4 @@
-//! libFuzzer's way into the target `exo2`.
+//! libFuzzer entry point for the target `exo2`.
 
 #![no_main]
 

@@ -1,4 +1,4 @@
-//! libFuzzer's way into the target `mavlink`.
+//! libFuzzer entry point for the target `mavlink`.
 
 #![no_main]
 

@@ -1,4 +1,4 @@
-//! libFuzzer's way into the target `message`.
+//! libFuzzer entry point for the target `message`.
 
 #![no_main]
 

@@ -1,4 +1,4 @@
-//! libFuzzer's way into the target `model`.
+//! libFuzzer entry point for the target `model`.
 
 #![no_main]
 

@@ -1,4 +1,4 @@
-//! libFuzzer's way into the target `nmea`.
+//! libFuzzer entry point for the target `nmea`.
 
 #![no_main]
 

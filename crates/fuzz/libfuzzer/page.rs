@@ -1,4 +1,4 @@
-//! libFuzzer's way into the target `page`.
+//! libFuzzer entry point for the target `page`.
 
 #![no_main]
 

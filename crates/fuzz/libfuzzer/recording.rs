@@ -1,4 +1,4 @@
-//! libFuzzer's way into the target `recording`.
+//! libFuzzer entry point for the target `recording`.
 
 #![no_main]
 

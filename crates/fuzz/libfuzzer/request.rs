@@ -1,4 +1,4 @@
-//! libFuzzer's way into the target `request`.
+//! libFuzzer entry point for the target `request`.
 
 #![no_main]
 

@@ -1,4 +1,4 @@
-//! libFuzzer's way into the target `scenario`.
+//! libFuzzer entry point for the target `scenario`.
 
 #![no_main]
 

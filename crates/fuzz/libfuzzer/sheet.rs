@@ -1,4 +1,4 @@
-//! libFuzzer's way into the target `sheet`.
+//! libFuzzer entry point for the target `sheet`.
 
 #![no_main]
 

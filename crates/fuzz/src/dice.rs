@@ -1,17 +1,19 @@
-//! Random numbers for changing inputs (xorshift64*): not good ones, but many, and the same for the same seed.
+//! Random numbers for mutations (xorshift64*): of modest quality, but fast and reproducible from
+//! the seed.
 
-/// A stream of random numbers.
+/// A random number stream.
 pub struct Dice(u64);
 
 impl Dice {
-    /// The stream of this seed.
+    /// The stream for this seed.
     #[must_use]
     pub fn new(seed: u64) -> Dice {
-        // Seeds that differ in a few bits are to differ in all; none may be 0.
+        // Seeds that differ in a few bits must give states that differ in all; a state must not be
+        // 0.
         Dice(seed.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15).max(1))
     }
 
-    /// 0 to `sides - 1`; of no sides 0.
+    /// A number from 0 to `sides - 1`; 0 if there are no sides.
     pub fn roll(&mut self, sides: usize) -> usize {
         (self.number() >> 33) as usize % sides.max(1)
     }
@@ -24,12 +26,12 @@ impl Dice {
         self.0.wrapping_mul(0x2545_F491_4F6C_DD1D)
     }
 
-    /// One of them; there must be one.
+    /// A random element of a non-empty slice.
     pub fn one_of<'a, T>(&mut self, all: &'a [T]) -> &'a T {
         &all[self.roll(all.len())]
     }
 
-    /// A part of something this long, of at most `most`.
+    /// A random range of at most `most` elements within this length.
     pub fn range(&mut self, length: usize, most: usize) -> std::ops::Range<usize> {
         let from = self.roll(length + 1);
         from..(from + 1 + self.roll(most)).min(length).max(from)

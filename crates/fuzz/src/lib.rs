@@ -1,7 +1,7 @@
-//! Arbitrary bytes for everything that takes bytes from outside: what each reader promises, checked on changed real inputs.
+//! Fuzzing of every reader of external data: checks its guarantees on mutated real inputs.
 //!
-//! A [`Target`] is a kind of input. `soak` runs one on stable, with changes that know what such an input looks like;
-//! libFuzzer runs the same checks.
+//! A [`Target`] is a kind of input. `soak` runs one on stable Rust with mutations that respect the
+//! input format; libFuzzer runs the same checks.
 
 pub mod change;
 mod dice;

@@ -1,4 +1,4 @@
-//! Runs the targets for some seconds each, or one of them on a file.
+//! Runs each target for some seconds, or one of them on a file.
 
 use squall_fuzz::{TARGETS, Target, named, soak};
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ squall-fuzz soak [--seconds N] [--seed N] [--jobs N] [TARGET…]   each target, 
 squall-fuzz play TARGET FILE                                     one input
 squall-fuzz seeds FOLDER                                         real inputs, a folder for each target";
 
-/// How to run this program.
+/// The command that runs this program.
 const COMMAND: &str = "cargo run --manifest-path crates/fuzz/Cargo.toml --target-dir target/outside --";
 
 fn main() -> ExitCode {
@@ -19,7 +19,7 @@ fn main() -> ExitCode {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match words.as_slice() {
         ["soak", options @ ..] => soak_all(options),
-        // What `soak` starts: a process that an input may bring down.
+        // A child process of `soak`, which an input may crash.
         ["child", target, seconds, seed, current] => child(target, seconds, seed, Path::new(current)),
         ["play", target, file] => {
             soak::check(&target_of(target), &std::fs::read(file).unwrap_or_else(|e| give_up(&format!("{file}: {e}"))));
@@ -63,7 +63,7 @@ fn soak_all(options: &[&str]) -> ExitCode {
     if is_sound.into_inner() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-/// Runs a target in a process of its own; says whether there was no fault.
+/// Runs a target in a separate process; returns whether it found no fault.
 fn soak_one(target: &Target, seconds: u64, seed: u64) -> bool {
     let folder = failures();
     let current = folder.join(format!("{}-{}-current", target.name, std::process::id()));
@@ -77,7 +77,7 @@ fn soak_one(target: &Target, seconds: u64, seed: u64) -> bool {
         std::fs::write(&file, &input).unwrap_or_else(|e| give_up(&format!("{}: {e}", file.display())));
         println!("{}: FAILED ({status}). Again: {COMMAND} play {} {}", target.name, target.name, file.display());
     }
-    // There is none if the process did not begin.
+    // The file is missing if the process did not start.
     drop(std::fs::remove_file(&current));
     status.success()
 }
@@ -94,7 +94,7 @@ fn child(target: &str, seconds: &str, seed: &str, current: &Path) -> ExitCode {
     }
 }
 
-/// No input is worth more than 4 GiB: a process that wants more ends.
+/// Limits memory to 4 GiB; a process that needs more ends.
 fn limit_memory() {
     use rustix::process::{Resource, Rlimit, setrlimit};
     let most = Some(4 << 30);
@@ -113,7 +113,7 @@ fn seeds(folder: &Path) -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// Where failing inputs are put.
+/// The folder for failing inputs.
 fn failures() -> PathBuf {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("artifacts");
     std::fs::create_dir_all(&folder).unwrap_or_else(|e| give_up(&format!("{}: {e}", folder.display())));

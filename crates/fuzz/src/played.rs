@@ -1,4 +1,4 @@
-//! Real inputs: scenario files of the tree, and a short game with everything that was sent in it.
+//! Real inputs: scenario files of the tree, and a short game with all its messages.
 
 use messages::water::{PlaneWave, Water};
 use messages::{Frame, GameInfo, Message, Orders, Picture, PolicyProposal, Say, Stamp, VehicleOrder, Word};
@@ -9,7 +9,7 @@ use scenario::Scenario;
 use std::io::Cursor;
 use std::path::PathBuf;
 
-/// Where the scenario files are.
+/// The folder of the scenario files.
 #[must_use]
 pub fn scenarios() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../scenarios")
@@ -18,30 +18,30 @@ pub fn scenarios() -> PathBuf {
 /// A game of the tree.
 ///
 /// # Panics
-/// If there is none of this name.
+/// If no game has this name.
 #[must_use]
 pub fn scenario(name: &str) -> Scenario {
     let file = scenarios().join("games").join(name).with_extension("toml");
     scenario::load(&file).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// A game with two teams of two, of which a boat of each is real.
+/// A game of two teams with two boats each, one of them real.
 #[must_use]
 pub fn mixed() -> Scenario {
     scenario("mixed_2v2")
 }
 
-/// A played second.
+/// The results of a short game.
 pub struct Played {
-    /// What was played.
+    /// The scenario.
     pub scenario: Scenario,
-    /// What observers and minds saw.
+    /// The decisions, as observers and minds receive them.
     pub decisions: Vec<Decision>,
-    /// What the minds ordered, as one agent sends it.
+    /// The minds' orders, as one agent sends them.
     pub orders: Vec<Orders>,
-    /// What they said.
+    /// The boats' team messages.
     pub says: Vec<Say>,
-    /// How it ended.
+    /// The end of the game.
     pub ending: Ending,
 }
 
@@ -72,7 +72,7 @@ pub fn played(scenario: Scenario, decisions: u64) -> Played {
 }
 
 impl Played {
-    /// What a sim says of the game.
+    /// The sim's description of the game.
     #[must_use]
     pub fn info(&self) -> GameInfo {
         GameInfo {
@@ -82,7 +82,7 @@ impl Played {
         }
     }
 
-    /// Its recording.
+    /// The recording of the game, with these other entries.
     ///
     /// # Panics
     /// If it cannot be written.
@@ -105,14 +105,14 @@ impl Played {
     }
 }
 
-/// A proposal for a boat.
+/// A policy proposal for a boat.
 #[must_use]
 pub fn proposal() -> PolicyProposal {
     let stamp = Stamp { version: PolicyProposal::VERSION, ..Stamp::default() };
     PolicyProposal { stamp, vehicle: VehicleId(0), course_rad: 1.0, speed_m_s: 1.5 }
 }
 
-/// An order of each kind for a boat.
+/// One order of each kind.
 #[must_use]
 pub fn orders() -> [VehicleOrder; 3] {
     let thrust = messages::Order::Thrust { port: 0.5, starboard: -0.5 };

@@ -1,4 +1,4 @@
-//! Runs one target for some seconds with changes of real inputs; what fails is left in a file.
+//! Runs one target for some seconds with mutated real inputs; saves a failing input to a file.
 
 use crate::{Dice, Target};
 use rustix::time::{ClockId, clock_gettime};
@@ -11,40 +11,40 @@ use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-/// Counts what is allocated.
+/// Counts allocations.
 #[global_allocator]
 static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-/// The longest that a check may take of the processor: an input is small.
+/// CPU time limit of a check: inputs are small.
 const CPU_MAX: Duration = Duration::from_secs(5);
-/// The longest that it may take by the clock, on a machine that does much else.
+/// Wall-clock limit of a check, on a busy machine.
 const HUNG: Duration = Duration::from_secs(120);
-/// The length of an input stands before it in the file, as 64 bits, little-endian.
+/// Size of the length field before the input in the file: 64 bits, little-endian.
 const LENGTH: u64 = 8;
 
-/// Checks an input, and what checking it costs.
+/// Checks an input, and the memory and CPU time that checking takes.
 ///
 /// # Panics
-/// Where a promise is broken.
+/// If a guarantee is violated.
 pub fn check(target: &Target, input: &[u8]) {
     let (base, times) = target.allocated_max;
     let is_within = |(allocated, cpu): (usize, Duration)| allocated <= base + times * input.len() && cpu < CPU_MAX;
-    // What is made once and kept is not the input's fault: it is looked at again.
+    // Data created once and cached do not count against the input: measure again.
     if !is_within(cost(target, input)) {
         let (allocated, cpu) = cost(target, input);
         assert!(is_within((allocated, cpu)), "{allocated} bytes and {cpu:?} for {} bytes of input", input.len());
     }
 }
 
-/// What a check allocates in all, bytes, and how long it takes of the processor.
+/// Total allocations of a check, bytes, and its CPU time.
 fn cost(target: &Target, input: &[u8]) -> (usize, Duration) {
     let (allocated, cpu) = (ALLOCATOR.stats().bytes_allocated, cpu_time());
     (target.check)(input);
     (ALLOCATOR.stats().bytes_allocated - allocated, cpu_time() - cpu)
 }
 
-/// Runs a target for so long; gives how many inputs there were. Each stands in the file `current` while it is checked, so that it is
-/// there if the process does not survive it.
+/// Runs a target for this long; returns the number of inputs. The file `current` contains each
+/// input while it is checked, so that it survives a crash.
 ///
 /// # Errors
 /// The input that failed.
@@ -62,7 +62,7 @@ pub fn soak(target: &Target, time: Duration, seed: u64, current: &Path) -> Resul
         runs.fetch_add(1, Ordering::Relaxed);
         catch_unwind(AssertUnwindSafe(|| check(target, &input))).map_err(|_| input)
     };
-    // What was real is to pass, too.
+    // The unchanged real inputs must pass, too.
     seeds.iter().try_for_each(|seed| run(seed.clone()))?;
     let (change, mut dice, begin) = ((target.change)(seeds), Dice::new(seed), Instant::now());
     while begin.elapsed() < time {
@@ -79,7 +79,7 @@ pub fn left_in(current: &Path) -> Option<Vec<u8>> {
     rest.get(..usize::try_from(u64::from_le_bytes(*length)).ok()?).map(<[u8]>::to_vec)
 }
 
-/// A count of runs; the process ends if it stands still for too long.
+/// A counter of runs; the process ends if it stops for too long.
 fn watch_dog() -> &'static AtomicU64 {
     static RUNS: AtomicU64 = AtomicU64::new(0);
     std::thread::spawn(|| {
@@ -94,7 +94,7 @@ fn watch_dog() -> &'static AtomicU64 {
     &RUNS
 }
 
-/// The time that this thread has had of the processor.
+/// CPU time used by this thread.
 fn cpu_time() -> Duration {
     let time = clock_gettime(ClockId::ThreadCPUTime);
     Duration::new(time.tv_sec as u64, time.tv_nsec as u32)

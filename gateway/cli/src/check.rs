@@ -1,4 +1,4 @@
-//! `gateway check`: the sensor check of a boat, and with a vehicle the pre-flight check before arming.
+//! `gateway check`: a boat's sensor check; with a vehicle, the pre-flight check before arming.
 
 use super::preflight_report;
 use super::swing_guide::{Guide, guided_checks};
@@ -24,11 +24,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::time::{Duration, Instant};
 
-/// Without and with a pre-flight check it listens for so long, s.
+/// How long it listens without and with a pre-flight check, s.
 const LISTEN_S: [f64; 2] = [10.0, 30.0];
-/// The most letters of a sentence or message that are shown.
+/// Maximum length of a displayed sentence or message, characters.
 const LAST_MAX: usize = 90;
-/// How long the game is looked for.
+/// Timeout for finding the game.
 const GAME_WAIT: Duration = Duration::from_secs(5);
 
 /// Which boat.
@@ -61,7 +61,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let gateway = super::gateway_file(args.config.as_deref())?;
     let stop = stop::on_ctrl_c()?;
     let (sender, events) = sync_channel(4096);
-    // A full queue drops events: this only listens.
+    // A full queue drops events: harmless, since this only listens.
     let take = move |event| drop(sender.try_send(event));
     let link = Link::open(&address, LinkSettings { silence: None, ..LinkSettings::default() }, take)?;
     let for_s = args.for_s.unwrap_or(LISTEN_S[usize::from(args.vehicle.is_some())]);
@@ -96,7 +96,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     Ok(if made.faults().is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// Where the game plays, if there is one now.
+/// The boat's site in the running game, if there is one.
 fn water(args: &Args, vehicle: &str, gateway: &Gateway, stop: &AtomicBool) -> Result<Option<Water>> {
     let mut tell = |reason: &str| terminal::remark(&format!("looking for the game: {reason}"));
     let place = args.leaf.place()?;
@@ -115,16 +115,16 @@ fn water(args: &Args, vehicle: &str, gateway: &Gateway, stop: &AtomicBool) -> Re
     Ok(Some(Water { field: info.scenario.field, area }))
 }
 
-/// Listens to a boat.
+/// Listens to a boat and counts its messages.
 pub(super) struct Listener {
     pub(super) check: SensorCheck,
     link: Link,
     events: Receiver<LinkEvent>,
     start: Instant,
     stop: Arc<AtomicBool>,
-    /// Why nothing comes.
+    /// Why no data arrive.
     reason: String,
-    /// What is said when it connects.
+    /// Message printed when it connects.
     hello: String,
 }
 
@@ -134,7 +134,7 @@ impl Listener {
         Listener { check: SensorCheck::new(gateway), link, events, start, stop, reason, hello: String::new() }
     }
 
-    /// Asks the boat for what it has to be asked for.
+    /// Sends the queries for data that the boat sends only on request.
     fn ask(&mut self) {
         let (now, mut bytes) = (self.now(), vec![]);
         self.check.write_questions(now, &mut bytes);
@@ -147,12 +147,12 @@ impl Listener {
         SimTime::from_s(moment.saturating_duration_since(self.start).as_secs_f64())
     }
 
-    /// Time since it began.
+    /// Time since the start.
     pub(super) fn now(&self) -> SimTime {
         self.at(bus::clock::now())
     }
 
-    /// Listens until `is_enough`, which is asked after everything that comes, and ten times a second.
+    /// Listens until `is_enough` returns true; calls it after every event and ten times a second.
     pub(super) fn listen(&mut self, is_enough: &mut dyn FnMut(&Listener) -> bool) {
         while !self.stop.load(Ordering::Relaxed) {
             self.ask();
@@ -175,7 +175,7 @@ impl Listener {
     }
 }
 
-/// What was counted on the link.
+/// The message counts of the link, as text.
 fn counted(check: &SensorCheck) -> String {
     check.counts().iter().map(|(name, count)| format!("{count} {name}")).collect::<Vec<_>>().join(", ")
 }

@@ -1,4 +1,4 @@
-//! `gateway console`: operator commands, line by line, over paths that stay open.
+//! `gateway console`: operator commands, line by line, over connections that stay open.
 
 use super::log_line::full;
 use super::tell::{ALL, CommandArg, Port, Words, release_all, to_boat};
@@ -18,16 +18,16 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// How often the registry of this machine is read, and a game that is not there looked for.
+/// Interval for reading this machine's registry and for looking for a missing game.
 const LOOK_AGAIN: Duration = Duration::from_millis(250);
-/// After so many attempts the session may be what is wrong.
+/// After this many attempts the session itself may be broken.
 const ATTEMPTS: u64 = 20;
-/// As for the page.
+/// The same timeouts as the page.
 const PATIENCE: Patience =
     Patience { silence: Duration::from_secs(5), missing: Duration::from_secs(1), unheard: Duration::from_secs(1) };
-/// When input ends, stops that are not done yet are waited for so long.
+/// When input ends, wait this long for unfinished stops.
 const LAST: Duration = Duration::from_secs(5);
-/// How often it is looked at whether it is over.
+/// Polling interval for the end of the program.
 const LOOK: Duration = Duration::from_millis(100);
 
 const HELP: &str = "\
@@ -69,10 +69,10 @@ struct Line {
     words: Words,
 }
 
-/// The session in a game, if there is one.
+/// The session in a game, with the game's name; `None` without a game.
 type Session = Arc<Watched<Option<(Bus, GameName)>>>;
 
-/// What all threads share.
+/// State shared by all threads.
 #[derive(Clone)]
 struct Console {
     client: Arc<StopClient>,
@@ -102,7 +102,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     console.read_lines();
     let left = console.client.finish(LAST);
     console.is_over.store(true, Ordering::Relaxed);
-    // A thread that panicked prints no more.
+    // Ignore the error: a thread that panicked prints no more.
     drop(printing.join());
     console.client.visit(StopOrders::take_news).iter().for_each(show);
     left.iter().for_each(|left| terminal::remark(left));
@@ -110,11 +110,11 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 }
 
 impl Console {
-    /// Obeys until the input ends, somebody wants to quit, or Ctrl-C.
+    /// Runs commands until the input ends, the operator quits, or Ctrl-C.
     fn read_lines(&self) {
         let is_terminal = std::io::stdin().is_terminal();
         let (sender, lines) = std::sync::mpsc::channel();
-        // A thread that waits for a key can not be ended; the process is.
+        // A thread waiting for a key cannot be ended; the process exits.
         std::thread::spawn(move || {
             for line in std::io::stdin().lock().split(b'\n').map_while(Result::ok) {
                 if sender.send(String::from_utf8_lossy(&line).trim().to_owned()).is_err() {
@@ -158,7 +158,7 @@ impl Console {
             self.client.stop(target, stop);
             return Ok(());
         }
-        // What is asked last counts.
+        // The latest request takes precedence.
         if words.command != CommandArg::Status {
             self.client.cancel(target);
         }
@@ -173,7 +173,7 @@ impl Console {
             };
         };
         let (console, asked) = (self.clone(), clock::now());
-        // An answer that takes its time keeps nothing waiting.
+        // A separate thread: a slow answer must not delay other commands.
         std::thread::spawn(move || {
             let ports = console.ports();
             let session = console.session.visit(|session| session.clone());
@@ -209,7 +209,7 @@ impl Console {
         known.into_iter().map(|(at, vehicle, token)| Port { vehicle, at, token }).collect()
     }
 
-    /// Keeps a session in the game, and knows the gateways of this machine.
+    /// Keeps a session in the game and tracks this machine's gateways.
     fn keep_game(&self, place: &bus::Place) {
         let (mut session, mut said, mut attempts) = (None, String::new(), 0_u64);
         while !self.is_over.load(Ordering::Relaxed) {
@@ -229,7 +229,7 @@ impl Console {
                     session = None;
                 }
                 Err(missing) => {
-                    // What will never be there may yet be replaced by something else.
+                    // A permanent error may still end when something replaces the game.
                     let reason = missing.to_string();
                     if reason != said {
                         terminal::remark(&format!("no game: {reason}"));
@@ -245,7 +245,7 @@ impl Console {
         }
     }
 
-    /// Stays in a game until it is gone.
+    /// Stays in a game until it ends.
     fn stay(&self, bus: &Bus, game: &GameName, boats: &[String]) -> Result<(), bus::BusError> {
         let sim = SimWatch::open(bus, game, PATIENCE)?;
         self.client.join(bus, game, boats)?;
@@ -265,7 +265,7 @@ impl Console {
         let given = self.leaf.token().ok().flatten();
         for entry in self.leaf.local_gateways(true) {
             let token = given.clone().or_else(|| entry.token?.parse().ok());
-            // It is tried again.
+            // On failure the next round retries.
             drop(self.client.add_gateway(entry.control, Some(&entry.vehicle), token));
         }
     }
@@ -277,7 +277,7 @@ impl Console {
     }
 }
 
-/// A line with the time since it was asked for.
+/// Prints a line with the time since the request.
 fn tell(name: &str, what: &str, asked: Instant) {
     terminal::print(&format!("{name}  {what}  after {} ms\n", clock::since(asked).as_millis()));
 }
@@ -297,7 +297,7 @@ fn show(news: &StopNews) {
     });
 }
 
-/// A state without what is in brackets.
+/// A state without the text in brackets.
 fn brief(state: &str) -> &str {
     state.split(" (").next().unwrap_or(state)
 }

@@ -1,4 +1,4 @@
-//! `gateway guard`: the process that stops the boat when its gateway cannot; the gateway starts it by itself.
+//! `gateway guard`: the process that stops the boat when its gateway cannot. The gateway starts it.
 
 use anyhow::{Context, Result};
 use command_line::{program, terminal};
@@ -6,13 +6,13 @@ use gateway::node::GuardCommand;
 use std::process::ExitCode;
 
 pub(crate) fn run() -> Result<ExitCode> {
-    // Whatever ends the gateway must not end this: it ends by itself, soon after.
+    // A signal that ends the gateway must not end its guard; the guard exits by itself soon after.
     ctrlc::set_handler(|| ()).context("cannot ignore signals")?;
     gateway::node::guard(std::io::stdin(), &mut terminal::remark).context("the guard of a gateway")?;
     Ok(ExitCode::SUCCESS)
 }
 
-/// The command that starts a guard: this program, with its own command for that.
+/// The command line that starts the guard: this program with its `guard` subcommand.
 pub(crate) fn own_command() -> Result<GuardCommand> {
     let program = std::env::current_exe().context("cannot find this program's own file")?;
     // The first word is the program itself.

@@ -1,4 +1,4 @@
-//! The commands of the boat's program: a real boat in a game, its checks, and how operators stop and command it.
+//! The commands of the boat's program: run a real boat in a game, check it, stop and command it.
 //!
 //! `squall gateway` has the same commands. Open `surveyor.rs` first: it drives a boat.
 
@@ -23,7 +23,7 @@ use scenario::Kind;
 use std::path::Path;
 use std::process::ExitCode;
 
-/// The kinds of scenario files that the boat's program knows.
+/// The kinds of scenario files that the boat's program supports.
 pub const KINDS: &[Kind] =
     &[Kind::of::<Gateway>(), Kind::GAME, Kind::FIELD, Kind::RULES, Kind::BOAT, Kind::SEA, Kind::STRATEGY];
 
@@ -47,7 +47,7 @@ pub enum Command {
     Replay(replay::Args),
 }
 
-/// How a boat is driven and stopped, by this file, or by the defaults.
+/// The gateway settings from this file, or the defaults.
 fn gateway_file(path: Option<&Path>) -> Result<Gateway> {
     let load = |path: &Path| {
         scenario::load_file::<Gateway>(path).with_context(|| format!("cannot drive by {}", path.display()))
@@ -55,15 +55,15 @@ fn gateway_file(path: Option<&Path>) -> Result<Gateway> {
     path.map_or_else(|| Ok(gateway::config::default_gateway()), load)
 }
 
-/// The mission in the text of a mission file, or what is wrong with it.
+/// Parses the text of a mission file; the error describes the mistake.
 pub fn read_mission(text: &str) -> Result<Mission, String> {
     mission_file::parse(text)
 }
 
-/// Does it. The recording of a gateway names the commit of the program.
+/// Runs the command. The gateway's recording names the program's `commit`.
 ///
 /// # Errors
-/// What went wrong.
+/// The command's failure.
 pub fn run(command: &Command, commit: &'static str) -> Result<ExitCode> {
     match command {
         Command::Surveyor(args) => surveyor::run(args, commit),

@@ -1,4 +1,5 @@
-//! The log of a gateway on the terminal: events line by line, the status as one line that is overwritten.
+//! The gateway's log on the terminal: events line by line, the status as one line that is
+//! overwritten.
 
 use command_line::printer::Printer;
 use command_line::{style, terminal};
@@ -6,7 +7,7 @@ use gateway::bridge::Event;
 use messages::external::{GatewayStatus, GeofenceReport};
 use std::io::IsTerminal;
 
-/// Prints a gateway's log. The gateway waits for none of it.
+/// Prints a gateway's log on its own thread, so that the gateway never waits for the terminal.
 pub struct Log {
     is_live: bool,
     is_quiet: bool,
@@ -14,16 +15,16 @@ pub struct Log {
 }
 
 enum Line {
-    /// It stays.
+    /// A permanent line.
     Lasting(String),
-    /// The next one overwrites it.
+    /// A line that the next one overwrites.
     Status(String),
-    /// To standard error.
+    /// A line for standard error.
     Remark(String),
 }
 
 impl Log {
-    /// A log; a quiet one prints errors only.
+    /// A new log; a quiet one prints errors only.
     pub fn new(is_quiet: bool) -> Log {
         let is_live = std::io::stdout().is_terminal();
         let mut status = String::new();
@@ -39,39 +40,39 @@ impl Log {
         Log { is_live, is_quiet, printer }
     }
 
-    /// A line that stays.
+    /// Prints a permanent line.
     pub fn event(&self, at_s: f64, event: &Event) {
         if !self.is_quiet {
             self.print(format!("{at_s:>8.1} s  {}\n", text_of(event)));
         }
     }
 
-    /// A line that the next one overwrites; only on a terminal.
+    /// Prints a status line that the next one overwrites; only on a terminal.
     pub fn status(&self, status: &GatewayStatus) {
         if self.is_live && !self.is_quiet {
             self.printer.print(Line::Status(brief(status)));
         }
     }
 
-    /// Something that is not of the log.
+    /// Prints a message that is not part of the log.
     pub fn remark(&self, text: String) {
         if !self.is_quiet {
             self.printer.print(Line::Remark(text));
         }
     }
 
-    /// Lines that stay, of a quiet log too.
+    /// Prints permanent lines, even in a quiet log.
     pub fn print(&self, lines: String) {
         self.printer.print(Line::Lasting(lines));
     }
 
-    /// Prints the last lines, after all that wait.
+    /// Prints the last lines after all queued ones.
     pub fn end(self, lines: String) {
         self.printer.end(Line::Lasting(lines));
     }
 }
 
-/// A state, in red where the boat was stopped.
+/// A state, in red if the boat was stopped.
 pub fn state(text: &str) -> String {
     if ["failsafe", "e-stopped"].iter().any(|stopped| text.starts_with(stopped)) {
         style::bad(text)
@@ -80,7 +81,7 @@ pub fn state(text: &str) -> String {
     }
 }
 
-/// An event in words.
+/// An event as text.
 pub fn text_of(event: &Event) -> String {
     match event {
         Event::State { from, to } => format!("{} (was {from})", state(to)),
@@ -112,7 +113,7 @@ fn brief(status: &GatewayStatus) -> String {
     text.chars().take(150).collect()
 }
 
-/// A value with its age, where that is known.
+/// A value with its age, if known.
 fn with_age(text: String, age_s: Option<f64>) -> String {
     match age_s {
         Some(age_s) => format!("{text}, {age_s:.1} s old"),
@@ -130,7 +131,7 @@ fn geofence(report: &GeofenceReport) -> Option<String> {
     Some(format!("{is_inside}, {:.1} m to the nearest edge, {stopping_m:.1} m to stop", clearance_m.abs()))
 }
 
-/// The full status of a gateway.
+/// The full status of a gateway as text.
 pub fn full(status: &GatewayStatus) -> String {
     let or_none = |text: Option<String>| text.unwrap_or_else(|| "unknown".to_owned());
     let nav = status.nav.map(|nav| {

@@ -1,11 +1,11 @@
-//! `squall-gateway`: the gateway commands as a program of their own, for the small computer on a boat.
+//! `squall-gateway`: the gateway commands as a separate program, for the small computer on a boat.
 
 use clap::{ColorChoice, Parser};
 use command_line::program::{self, Program};
 use command_line::{explain, leaf_args, scenario_files, terminal};
 use std::process::ExitCode;
 
-/// The commit it was built from.
+/// The commit that the program was built from.
 const COMMIT: &str = env!("SQUALL_COMMIT");
 const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (", env!("SQUALL_COMMIT"), ")");
 

@@ -1,14 +1,14 @@
-//! Missions in `.sea` files: the lines that a boat receives.
+//! Missions in `.sea` files: the lines that are sent to a boat.
 
 use anyhow::{Context, Result, anyhow};
 use gateway::nmea::{Command, Framer, Mode, Sentence, checksum};
 use messages::external::Mission;
 use std::path::Path;
 
-/// The longest mission file, bytes: many times what a boat takes.
+/// Size limit of a mission file, bytes: far more than a boat accepts.
 const BYTES_MAX: u64 = 1 << 20;
 
-/// The mission in a `.sea` file.
+/// Reads the mission in a `.sea` file.
 pub(super) fn read(path: &Path) -> Result<Mission> {
     let bytes =
         primitives::input_file::read(path, BYTES_MAX).with_context(|| format!("cannot read {}", path.display()))?;
@@ -18,29 +18,29 @@ pub(super) fn read(path: &Path) -> Result<Mission> {
     })
 }
 
-/// The mission in the text of such a file, or in which line is what mistake.
+/// Parses the text of a mission file; the error names the line and the mistake.
 pub(super) fn parse(text: &str) -> Result<Mission, String> {
     mission_of(text).map_err(|(line, why)| line.map_or(why.clone(), |line| format!("line {line}: {why}")))
 }
 
-/// A mistake: in which line, if in one, and what it is.
+/// A mistake: its line, if it has one, and a description.
 type Mistake = (Option<usize>, String);
 
-/// What a mission's lines have told so far.
+/// What the lines of a mission have defined so far.
 #[derive(Default)]
 struct Lines {
     throttle_pct: Option<f64>,
     places: Vec<[f64; 2]>,
-    /// How many lines of the mission itself there were: settings and places.
+    /// Number of mission lines so far: settings and places.
     count: usize,
-    /// In which line the boat is told how many will come, and how many.
+    /// The line that announces the number of mission lines to the boat, and that number.
     announced: Option<(usize, f64)>,
 }
 
 fn mission_of(text: &str) -> Result<Mission, Mistake> {
     let mut lines = Lines::default();
     for (i, line) in text.lines().enumerate() {
-        // Sentences may follow one another without a line's end between them.
+        // Sentences may follow one another without a line break.
         let mut sentences = line.trim().split('$');
         let before = sentences.next().unwrap_or_default();
         let wrong = |why: String| (Some(i + 1), why);
@@ -54,7 +54,7 @@ fn mission_of(text: &str) -> Result<Mission, Mistake> {
     lines.mission()
 }
 
-/// The sentence in the text behind a `$`.
+/// Parses the sentence after a `$`.
 fn sentence_of(text: &str) -> Result<Sentence, String> {
     let mut found = None;
     Framer::new().push(format!("${text}\r\n").as_bytes(), &mut |body| found = Some(Sentence::parse(body)));
@@ -120,7 +120,7 @@ impl Lines {
 mod tests {
     use super::*;
 
-    /// A line of a mission with its checksum.
+    /// A mission line with its checksum.
     fn line(body: &str) -> String {
         format!("${body}*{:02X}\r\n", checksum(body.as_bytes()))
     }

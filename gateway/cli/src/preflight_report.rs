@@ -1,13 +1,13 @@
-//! The report of a pre-flight check as a file: JSON for the gateway, and the same as text beside it.
+//! The report of a pre-flight check on disk: JSON for the gateway, with a text copy beside it.
 
 use anyhow::{Context, Result};
 use gateway::preflight::Report;
 use std::path::Path;
 
-/// The longest report that is read, bytes.
+/// Size limit of a report, bytes.
 const BYTES_MAX: u64 = 1 << 20;
 
-/// Writes a report, and its text beside it.
+/// Writes a report and its text copy.
 pub(super) fn write(path: &Path, report: &Report) -> Result<()> {
     let write = |path: &Path, text: &str| {
         std::fs::write(path, text).with_context(|| format!("cannot write {}", path.display()))

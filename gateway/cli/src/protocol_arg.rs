@@ -1,4 +1,4 @@
-//! What a boat speaks, on the command line.
+//! The boat's protocol as a command line argument.
 
 use clap::ValueEnum;
 use gateway::config::BoatProtocol;
@@ -13,7 +13,7 @@ pub enum ProtocolArg {
 }
 
 impl ProtocolArg {
-    /// The protocol.
+    /// The protocol that this argument selects.
     pub fn protocol(self) -> BoatProtocol {
         match self {
             ProtocolArg::Surveyor => BoatProtocol::Surveyor,

@@ -1,4 +1,4 @@
-//! `gateway replay`: a recording through the codec and the supervisor again.
+//! `gateway replay`: reruns a recording through the codec and the supervisor.
 
 use super::log_line::{full, text_of};
 use anyhow::{Context, Result};

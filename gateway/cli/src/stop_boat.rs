@@ -1,4 +1,4 @@
-//! `gateway stop`: stops a boat with nothing else running, straight over its link.
+//! `gateway stop`: stops a boat directly over its link; nothing else needs to run.
 
 use crate::protocol_arg::ProtocolArg;
 use anyhow::{Result, anyhow, bail};
@@ -16,13 +16,13 @@ use std::process::ExitCode;
 use std::sync::mpsc::sync_channel;
 use std::time::Duration;
 
-/// How often it is said.
+/// Interval between stop commands.
 const AGAIN: Duration = Duration::from_millis(100);
-/// For how long it is said at least: one sentence may be lost.
+/// Minimum duration of sending: one sentence may be lost.
 const SAY: Duration = Duration::from_millis(500);
-/// How long a gateway that has the link may take to answer.
+/// Timeout for a gateway that holds the link.
 const ANSWER: Duration = Duration::from_secs(1);
-/// The most events that wait to be read.
+/// Capacity of the event queue.
 const EVENTS_MAX: usize = 4096;
 
 /// Which boat.
@@ -40,7 +40,7 @@ pub struct Args {
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let address = LinkAddress::to_connect(&args.link).map_err(|e| anyhow!("LINK: {e}"))?;
-    // A gateway that has the link would send its boat on.
+    // A gateway that holds the link would drive its boat on.
     if stopped_by_its_gateway(&address) {
         return Ok(ExitCode::SUCCESS);
     }
@@ -95,7 +95,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     }
 }
 
-/// Whether a gateway on this machine has the link, and has stopped its boat.
+/// Whether a gateway on this machine holds the link and has stopped its boat.
 fn stopped_by_its_gateway(address: &LinkAddress) -> bool {
     let Some(pid) = LinkLock::holder(&address.to_string()) else { return false };
     let Some(entry) = bus::local_gateways().into_iter().find(|entry| entry.pid == pid) else { return false };

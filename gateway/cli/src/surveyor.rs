@@ -1,4 +1,4 @@
-//! `gateway surveyor`: a real boat in a game.
+//! `gateway surveyor`: connects a real boat to a game.
 
 use super::log_line::{Log, full};
 use super::{guard, preflight_report};
@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
-/// How long the gateway may take to answer to its own terminal.
+/// Timeout for the gateway's answer to a key on its own terminal.
 const KEY_ANSWER: Duration = Duration::from_secs(2);
 
 /// Which boat, and where.
@@ -106,7 +106,7 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
         stop: stop.clone(),
     };
     let silence = Duration::from_secs_f64(args.silence_s);
-    // An emulated boat in a hurry is stopped by nobody: a busy machine would look like a gateway that hangs.
+    // No guard for an emulated boat at game pace: a busy machine would look like a hung gateway.
     let guard = if args.at_game_pace { None } else { Some(guard::own_command()?) };
     let payloads = args.payload.clone();
     let outside = Outside { link, silence, control: args.control_listen, guard, payloads };
@@ -118,7 +118,7 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
         NodeEvent::ControlPort { address: control, token } => {
             let (vehicle, pid, token) = (args.vehicle.clone(), std::process::id(), token.as_ref().map(Token::hex));
             let entry = bus::GatewayEntry { vehicle, game: game.clone(), control, pid, token };
-            // Where it cannot be registered, operators must be told where it is; nothing else is lost.
+            // If registration fails, operators must be given the address; nothing else is lost.
             if let Some(registration) = &registration {
                 drop(registration.update(&entry));
                 return;
@@ -129,7 +129,7 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
                 log.remark("Enter, in this terminal, is an E-stop of this boat".to_owned());
                 let stop = OperatorCommand::EStop;
                 let stop = GatewayCommand::Boat { name: args.vehicle.clone(), command: stop };
-                // Whether it was carried out shows in the log.
+                // The log shows whether the command was carried out.
                 on_enter(move || drop(bus::ask_gateway(control, None, &stop, KEY_ANSWER)));
             }
         }
@@ -144,7 +144,8 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Where the control port may listen. Others are told this address, so it must be one.
+/// Parses the address of the control port. Others are given this address, so it must be a valid
+/// one.
 fn control_address(text: &str) -> Result<SocketAddr, String> {
     let address: SocketAddr =
         text.parse().map_err(|_| "expected an address and a port, as 127.0.0.1:8100".to_owned())?;
@@ -154,7 +155,7 @@ fn control_address(text: &str) -> Result<SocketAddr, String> {
     Ok(address)
 }
 
-/// Whether the boat's pre-flight check lets it be armed.
+/// Whether the boat's pre-flight check allows arming.
 fn preflight(args: &Args, link: &LinkAddress, gateway: &Gateway) -> Result<Preflight> {
     if let Some(person) = &args.without_preflight {
         return Ok(Preflight::WaivedBy(person.clone()));
@@ -173,7 +174,7 @@ fn preflight(args: &Args, link: &LinkAddress, gateway: &Gateway) -> Result<Prefl
     })
 }
 
-/// Where to record.
+/// The path of the recording.
 fn recording(args: &Args) -> Result<Option<PathBuf>> {
     if args.no_record {
         return Ok(None);

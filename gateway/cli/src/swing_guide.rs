@@ -1,4 +1,5 @@
-//! The parts of a pre-flight check for which somebody moves the boat: compass swing and propeller test, by remote control.
+//! The guided parts of a pre-flight check: compass swing and propeller test, driven by remote
+//! control.
 
 use super::check::Listener;
 use command_line::terminal;
@@ -10,21 +11,21 @@ use recording::utc;
 use std::io::BufRead;
 use std::sync::mpsc::{Receiver, TryRecvError, sync_channel};
 
-/// A part that takes longer is over, s.
+/// Timeout of a guided part, s.
 const LONGEST_S: f64 = 600.0;
-/// A larger deviation is one to correct the compass for first, degrees.
+/// Above this deviation the compass should be corrected first, degrees.
 const DEVIATION_MAX_DEG: f64 = 14.0;
-/// Thrust that is one, per cent.
+/// Smallest thrust that counts, per cent.
 const THRUST_MIN_PCT: f64 = 10.0;
 
-/// Asks at the terminal.
+/// Asks questions at the terminal.
 pub(super) struct Guide {
-    /// The lines that are typed; none without a guide.
+    /// Typed lines; `None` without a guide.
     lines: Option<Receiver<String>>,
 }
 
 impl Guide {
-    /// One that asks, or nobody.
+    /// A guide; it asks only if `is_wanted`.
     pub(super) fn new(is_wanted: bool) -> Guide {
         let begin = || {
             let (sender, lines) = sync_channel(16);
@@ -37,7 +38,7 @@ impl Guide {
         Guide { lines: is_wanted.then(begin) }
     }
 
-    /// Whether a line was typed, or none ever will be.
+    /// The next typed line, if any; an empty line after the end of input.
     fn typed(&self) -> Option<String> {
         match self.lines.as_ref()?.try_recv() {
             Ok(line) => Some(line),
@@ -46,7 +47,7 @@ impl Guide {
         }
     }
 
-    /// Asks, and listens on to the boat until there is an answer.
+    /// Asks a question and keeps listening to the boat until it is answered.
     fn is_agreed(&self, question: &str, listener: &mut Listener) -> bool {
         terminal::remark(&format!("{question} [y/N]"));
         let (start, mut answer) = (listener.now(), None);
@@ -57,7 +58,7 @@ impl Guide {
         answer.is_some_and(|answer| matches!(answer.trim(), "y" | "Y" | "yes"))
     }
 
-    /// Says what to do, and listens until Enter is pressed.
+    /// Prints an instruction and listens until Enter is pressed.
     fn until_enter(&self, what: &str, listener: &mut Listener, take: &mut dyn FnMut(&Listener)) {
         terminal::remark(&format!("{what} Press Enter when it is done."));
         let start = listener.now();
@@ -68,7 +69,7 @@ impl Guide {
     }
 }
 
-/// The checks for which somebody moves the boat.
+/// Runs the guided checks.
 pub(super) fn guided_checks(guide: &mut Guide, listener: &mut Listener, gateway: &Gateway) -> Vec<Check> {
     if guide.lines.is_none() {
         return ["compass swing", "propellers"].map(|name| Check::not_done(name, "--guided does it")).to_vec();
@@ -108,7 +109,7 @@ fn swing(guide: &Guide, listener: &mut Listener, gateway: &Gateway) -> Check {
     }
 }
 
-/// What has to be added to the compass, rad.
+/// The declination to add to the compass, rad.
 fn declination_rad(listener: &Listener, gateway: &Gateway) -> Result<f64, String> {
     match (gateway.compass, gateway.declination_rad, listener.check.fixes().last()) {
         (CompassFrame::True, ..) => Ok(0.0),
@@ -127,7 +128,8 @@ fn propellers(guide: &Guide, listener: &mut Listener) -> Check {
     {
         return Check::not_done(name, "not wanted");
     }
-    // Whether the boat says who commands it, that it is the remote control, and thrust ahead and astern.
+    // Whether the boat reports its operator, whether that is the remote control, and thrust ahead
+    // and astern.
     let (mut tells, mut by_remote, mut seen) = (false, false, [false; 2]);
     let what = "Run both propellers ahead and astern by remote control, 20 per cent for two seconds each.";
     guide.until_enter(what, listener, &mut |listener| {

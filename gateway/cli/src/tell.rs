@@ -1,7 +1,7 @@
-//! `gateway tell`: an operator command to a boat's gateway.
+//! `gateway tell`: sends an operator command to a boat's gateway.
 //!
-//! What stops boats takes every path at once. The rest goes straight to the gateway's control port where that is known, and over
-//! the network of the game otherwise; to all boats it goes both ways.
+//! Stop commands take every path at once. Other commands go straight to the gateway's control port
+//! if it is known, and otherwise over the game's network. Those for all boats go both ways.
 
 use super::log_line::full;
 use super::mission_file;
@@ -24,13 +24,13 @@ use std::sync::OnceLock;
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 
-/// All boats at once.
+/// The name that addresses all boats at once.
 pub(super) const ALL: &str = "all";
-/// How long a gateway's control port may take to answer.
+/// Timeout for a gateway's control port.
 const PORT_ANSWER: Duration = Duration::from_secs(3);
-/// How long to wait for the next answer of all.
+/// Timeout for the next answer of all.
 const NEXT_ANSWER: Duration = Duration::from_secs(10);
-/// How long boats may take to report that they have stopped.
+/// Timeout for boats to report that they have stopped.
 const STOP_MAX: Duration = Duration::from_secs(10);
 
 /// Whom, and what.
@@ -111,7 +111,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 }
 
 impl Words {
-    /// The command to a boat.
+    /// The command for a boat.
     pub(super) fn command(&self) -> Result<OperatorCommand> {
         Ok(match (self.command, &self.file) {
             (CommandArg::Mission, None) => bail!("mission needs a .sea file"),
@@ -142,9 +142,9 @@ impl Words {
     }
 }
 
-/// A control port, and the token of the game of its gateway.
+/// A control port, with the token of its gateway's game.
 pub(super) struct Port {
-    /// The boat, where it is known.
+    /// The boat, if known.
     pub(super) vehicle: Option<String>,
     pub(super) at: SocketAddr,
     pub(super) token: Option<Token>,
@@ -156,7 +156,7 @@ impl Port {
     }
 }
 
-/// The control ports that are known.
+/// The known control ports.
 fn ports(args: &Args) -> Result<Vec<Port>> {
     let given = args.leaf.token()?;
     let mut ports: Vec<Port> = Vec::new();
@@ -168,14 +168,14 @@ fn ports(args: &Args) -> Result<Vec<Port>> {
     if let Some(at) = args.gateway
         && !ports.iter().any(|port| port.at == at)
     {
-        // The game on this machine, if there is one.
+        // The token of the game on this machine, if there is one.
         let token = given.or_else(|| args.leaf.net().ok()?.token);
         ports.push(Port { vehicle: None, at, token });
     }
     Ok(ports)
 }
 
-/// The control ports that are meant, of those that are known.
+/// The known control ports that the arguments select.
 fn ports_meant(args: &Args) -> Result<Vec<Port>> {
     let vehicle = &args.words.vehicle;
     let is_meant = |port: &Port| match args.gateway {
@@ -196,7 +196,7 @@ fn tell(args: &Args, command: &OperatorCommand) -> Result<OperatorReply> {
     let vehicle = &args.words.vehicle;
     if let Some(port) = ports_meant(args)?.first() {
         match port.ask(&GatewayCommand::Boat { name: vehicle.clone(), command: command.clone() }) {
-            // It may be ending; the one that comes after it is found by way of the game.
+            // That gateway may be ending; its successor is found through the game.
             Err(error @ BusError::Use { .. }) if args.gateway.is_none() => terminal::remark(&error.to_string()),
             reply => return Ok(reply?),
         }
@@ -213,7 +213,8 @@ fn ask(bus: &Bus, game: &GameName, vehicle: &str, command: &OperatorCommand) -> 
     answer.with_context(|| format!("no gateway of {vehicle} answers"))
 }
 
-/// Sends a command to a boat: to its control port if that is among these, or else over the game's network.
+/// Sends a command to a boat: to its control port if that is among `ports`, otherwise over the
+/// game's network.
 pub(super) fn to_boat(
     ports: &[Port],
     game: Option<(&Bus, &GameName)>,
@@ -230,7 +231,7 @@ pub(super) fn to_boat(
     }
 }
 
-/// Ends an E-stop of all boats, in the game and at these ports; gives what has failed.
+/// Ends an E-stop of all boats in the game and at these ports; returns the failures.
 pub(super) fn release_all(ports: &[Port], game: Option<(&Bus, &GameName)>) -> Vec<String> {
     std::thread::scope(|scope| {
         let release = |port: &Port| match port.ask(&GatewayCommand::Fleet(FleetCommand::Release)) {
@@ -247,7 +248,7 @@ pub(super) fn release_all(ports: &[Port], game: Option<(&Bus, &GameName)>) -> Ve
     })
 }
 
-/// Stops a boat or all of them on every path that is known, and prints what they report.
+/// Stops one boat or all on every known path, and prints what they report.
 fn tell_stop(args: &Args, command: StopCommand) -> Result<ExitCode> {
     let target = (args.words.vehicle != ALL).then_some(args.words.vehicle.as_str());
     let ports = ports_meant(args)?;
@@ -257,7 +258,7 @@ fn tell_stop(args: &Args, command: StopCommand) -> Result<ExitCode> {
         client.add_gateway(port.at, port.vehicle.as_deref(), port.token.clone())?;
     }
     let no_game = Arc::new(OnceLock::new());
-    // A gateway that is named needs no game.
+    // A gateway given by address needs no game.
     if target.is_none() || args.gateway.is_none() {
         if let Ok(net) = args.leaf.net()
             && net.keys.is_none()
@@ -273,7 +274,7 @@ fn tell_stop(args: &Args, command: StopCommand) -> Result<ExitCode> {
             }
         });
     }
-    // Where there is nothing but a game, and that is not there, nothing is waited for.
+    // If the game is the only path and does not exist, do not wait.
     client.wait(STOP_MAX, |orders| orders.is_done(clock::now()) || no_game.get().is_some());
     let is_alone = ports.is_empty() && no_game.get().is_some();
     let left = client.finish(if is_alone { Duration::ZERO } else { STOP_MAX });
@@ -292,7 +293,7 @@ fn tell_stop(args: &Args, command: StopCommand) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Adds the topics of the game to the paths, if it has this boat.
+/// Adds the game's topics to the paths if the game has this boat.
 fn join(leaf: &LeafArgs, target: Option<&str>, client: &StopClient) -> Result<()> {
     let observer = Observer::connect(leaf)?;
     let scenario = &observer.info.scenario;
@@ -306,18 +307,18 @@ fn join(leaf: &LeafArgs, target: Option<&str>, client: &StopClient) -> Result<()
     Ok(client.join(&observer.bus, &observer.game, &boats)?)
 }
 
-/// What came of a part of a command to all.
+/// The result of one part of a command to all.
 enum Outcome {
-    /// The game was told, and with it all boats in it.
+    /// The game accepted the command, and with it all boats in it.
     Told,
-    /// There is no game to tell.
+    /// No game exists.
     NoGame(Error),
     Reply(Box<OperatorReply>),
     Failed(Error),
 }
 
-/// Sends a command to all boats: over the game's network and straight to every gateway that is known, at once. None waits for
-/// another, and the status of every real boat is printed as it comes.
+/// Sends a command to all boats at once: over the game's network and straight to every known
+/// gateway. No path waits for another, and the status of every real boat is printed as it arrives.
 fn tell_all(args: &Args) -> Result<ExitCode> {
     let (control, fleet) = match args.words.command {
         CommandArg::Status => (None, None),
@@ -366,9 +367,9 @@ fn tell_all(args: &Args) -> Result<ExitCode> {
     if failed.is_empty() { Ok(ExitCode::SUCCESS) } else { Err(anyhow!(failed.join("; "))) }
 }
 
-/// Tells the game, then asks for the status of the real boats in it but for `known` ones.
+/// Sends the command to the game, then queries the real boats in it except the `known` ones.
 fn tell_game(leaf: &LeafArgs, control: Option<Control>, known: &[String], outcomes: &Sender<Outcome>) {
-    // Nobody listens any more when the time is up.
+    // Ignore the error: after the timeout nobody listens.
     let say = |outcome| drop(outcomes.send(outcome));
     let observer = match Observer::connect(leaf) {
         Ok(observer) => observer,

@@ -1,4 +1,4 @@
-//! The boat's program as somebody types it: help, a check, a gateway that operators reach, its guard, a replay.
+//! Tests the boat's program from the command line: help, check, operator commands, guard, replay.
 
 #![allow(clippy::disallowed_methods, reason = "processes are waited for by the clock, with a limit")]
 
@@ -9,12 +9,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
-/// Longer than anything should take on a busy machine.
+/// Timeout, generous for a busy machine.
 const LIMIT: Duration = Duration::from_secs(60);
-/// What stops a boat, by its gateway or by the gateway's guard.
+/// The sentence that stops a boat, sent by its gateway or the guard.
 const ZERO: &str = "$PSEAC,T,0,0,0,*";
 
-/// The program in a folder of its own, with a registry of its own.
+/// A temporary folder for the program, with its own registry.
 struct Folder(tempfile::TempDir);
 
 impl Folder {
@@ -34,7 +34,8 @@ impl Folder {
         (output, said.concat())
     }
 
-    /// A gateway of a boat, in whose game there is nobody. It ends when its standard input does.
+    /// Starts a gateway for a boat, in a game without other nodes. It exits when its standard input
+    /// closes.
     fn gateway(&self, boat: &Boat) -> Running {
         let link = boat.link.reach();
         let args = ["surveyor", "--vehicle", "blue_one", "--game", "nowhere", "--link", &link, "--for-parent"];
@@ -43,7 +44,7 @@ impl Folder {
         Running(command.spawn().expect("the program starts"))
     }
 
-    /// Repeats a command until it says this.
+    /// Repeats a command until it prints `what`.
     fn run_until(&self, args: &[&str], what: &str) {
         let start = Instant::now();
         let mut said = String::new();
@@ -54,7 +55,7 @@ impl Folder {
     }
 }
 
-/// A process that is gone with the test.
+/// A process that is killed when dropped.
 struct Running(Child);
 
 impl Drop for Running {
@@ -64,7 +65,7 @@ impl Drop for Running {
     }
 }
 
-/// A boat's end of a link: it reports that it stands by, and notes what it is sent.
+/// A boat's end of a link: reports standby and records what it receives.
 struct Boat {
     link: Arc<Link>,
     received: Receiver<String>,
@@ -93,7 +94,7 @@ impl Boat {
         Boat { link, received, is_gone }
     }
 
-    /// Waits until this was received, from the last time on.
+    /// Waits until this is received, starting after the previous match.
     fn wait_for(&self, what: &str) {
         let (start, mut text) = (Instant::now(), String::new());
         while !text.contains(what) {
@@ -120,7 +121,7 @@ fn help_and_hints_name_this_program() {
         assert!(output.status.success() && help.contains(&format!("squall-gateway {command}")), "{help}");
         assert!(!help.contains("squall gateway"), "{help}");
     }
-    // Only a simulation needs an emulated boat.
+    // Emulated boats exist only in the simulator.
     assert!(!folder.run(&["emulate", "--help"]).0.status.success());
     assert!(folder.run(&["replay", "nothing.mcap"]).1.starts_with("squall-gateway: cannot replay nothing.mcap"));
 }

@@ -1,6 +1,6 @@
-//! What is wrong in the boat itself, by its own report: its error code, a leak, the currents of its thrusters.
+//! Faults that the boat itself reports: its error code, a leak, and abnormal thruster currents.
 //!
-//! Nothing of this stops the boat: people should see it, and decide.
+//! None of these stops the boat: operators should see the alarm and decide.
 
 use super::Event;
 use crate::config::CurrentWatch;
@@ -8,21 +8,21 @@ use crate::protocol::{Command, Power};
 use crate::set_point::SetPoint;
 use primitives::SimTime;
 
-/// A thruster that is ordered this much draws a current, per cent.
+/// A thruster ordered to at least this thrust must draw a current, per cent.
 const ORDERED_MIN_PCT: f64 = 20.0;
-/// Port comes first everywhere.
+/// Index order of sides: port comes first everywhere.
 const SIDES: [&str; 2] = ["port", "starboard"];
 
-/// A current that is no good.
+/// An abnormal thruster current.
 #[derive(Clone, Copy, Debug, Default)]
 struct CurrentAlarm {
-    /// Since when it has been so without a break, and how much it is now, A.
+    /// Start of the unbroken fault, and the newest current, A.
     since: Option<(SimTime, f64)>,
-    /// Whether it has lasted for long enough to be told.
+    /// Whether the fault has outlasted the debounce and has been reported.
     is_told: bool,
 }
 
-/// What a current is no good for.
+/// What is wrong with a current.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Wrong {
     Bilge,
@@ -33,7 +33,7 @@ enum Wrong {
 const WRONGS: [Wrong; 3] = [Wrong::Bilge, Wrong::TooMuch, Wrong::TooLittle];
 
 impl Wrong {
-    /// What is wrong on a side, and what that means.
+    /// Text for operators: the fault on a side, and its meaning.
     fn words(self) -> [&'static str; 2] {
         match self {
             Wrong::Bilge => ["bilge pump runs", "the boat takes in water"],
@@ -43,30 +43,30 @@ impl Wrong {
     }
 }
 
-/// The alarms of a boat.
+/// The active alarms of a boat.
 #[derive(Clone, Debug)]
 pub(super) struct Alarms {
     watch: CurrentWatch,
-    /// The error that it reports now.
+    /// The error that the boat reports now.
     error: Option<String>,
-    /// The last notice.
+    /// The last notice from the boat.
     notice: Option<String>,
-    /// By what is wrong, and side.
+    /// Current alarms by fault (order of `WRONGS`), then side (port first).
     currents: [[CurrentAlarm; 2]; 3],
 }
 
 impl Alarms {
-    /// Nothing is known yet.
+    /// No alarms: nothing has been received yet.
     pub(super) fn new(watch: CurrentWatch) -> Alarms {
         Alarms { watch, error: None, notice: None, currents: Default::default() }
     }
 
-    /// Forgets everything: the boat may be another one now.
+    /// Clears everything: another boat may be on the link now.
     pub(super) fn forget(&mut self) {
         *self = Alarms::new(self.watch);
     }
 
-    /// The boat's error code; `None` is none.
+    /// Records the boat's error code; `None` means no error.
     pub(super) fn take_error(&mut self, error: Option<String>, events: &mut Vec<Event>) {
         if error != self.error {
             events.extend(error.as_deref().map(error_text).map(Event::Warning));
@@ -74,7 +74,7 @@ impl Alarms {
         }
     }
 
-    /// Something that the boat says once. The same again is not repeated.
+    /// Records a one-off notice from the boat. A repeated text is not reported again.
     pub(super) fn take_notice(&mut self, text: String, events: &mut Vec<Event>) {
         if self.notice.as_ref() != Some(&text) {
             events.push(Event::Warning(format!("the boat says {text:?}")));
@@ -82,7 +82,7 @@ impl Alarms {
         }
     }
 
-    /// What the boat's currents are while it follows this command.
+    /// Checks the measured currents against the command that the boat follows.
     pub(super) fn take_power(
         &mut self,
         now: SimTime,
@@ -91,15 +91,15 @@ impl Alarms {
         events: &mut Vec<Event>,
     ) {
         let ordered = command.and_then(ordered_pct);
-        // An alarm and no failsafe: how exact these currents are is not published, and a boat
-        // that is stopped for a wrong sensor drifts. They can become failsafes when boats have
-        // shown what is normal.
+        // An alarm, not a failsafe: the accuracy of these currents is not published, and a boat
+        // stopped for a faulty sensor drifts. They can become failsafes when boats have shown what
+        // is normal.
         for wrong in WRONGS {
             for side in [0, 1] {
                 let amps = self.found(wrong, side, power, ordered);
                 let alarm = &mut self.currents[wrong as usize][side];
-                // The time of the first report is kept and the current of the newest, so that
-                // the text follows the pump while the debounce runs.
+                // Keep the time of the first report and the current of the newest, so that the text
+                // follows the pump during the debounce.
                 alarm.since = amps.map(|amps| (alarm.since.map_or(now, |(since, _)| since), amps));
                 let lasts = alarm.since.is_some_and(|(since, _)| (now - since).as_s() >= self.watch.debounce_s);
                 match (std::mem::replace(&mut alarm.is_told, lasts), alarm.since) {
@@ -112,24 +112,25 @@ impl Alarms {
         }
     }
 
-    /// The current that is no good, A, if it is so.
+    /// The current, A, if it shows this fault.
     fn found(&self, wrong: Wrong, side: usize, power: &Power, ordered: Option<[f64; 2]>) -> Option<f64> {
         let (watch, [here, there]) = (&self.watch, [power.thruster_a[side], power.thruster_a[1 - side]]);
         match wrong {
             Wrong::Bilge => power.bilge_a[side].filter(|amps| watch.bilge_a > 0.0 && *amps >= watch.bilge_a),
             Wrong::TooMuch => here.filter(|amps| watch.thruster_max_a > 0.0 && amps.abs() > watch.thruster_max_a),
             Wrong::TooLittle => {
-                // Boats that measure nothing report zeros: the other side shows that this one does.
+                // Boats without current sensors report zeros; a current on the other side proves
+                // that this boat measures.
                 let is_measured = there.is_some_and(|amps| amps.abs() > watch.thruster_min_a);
-                // In a turn one side may be ordered nothing, which draws nothing; only with
-                // both ordered does a silent side mean something.
+                // In a turn one side may have zero thrust and draw nothing, so a silent side means
+                // something only if both are ordered.
                 let is_ordered = ordered.is_some_and(|sides| sides.iter().all(|pct| pct.abs() >= ORDERED_MIN_PCT));
                 here.filter(|amps| amps.abs() < watch.thruster_min_a && is_measured && is_ordered)
             }
         }
     }
 
-    /// What is wrong now, in words.
+    /// The active alarms as texts.
     pub(super) fn texts(&self) -> Vec<String> {
         let error = self.error.as_deref().map(error_text).into_iter();
         let currents = WRONGS.into_iter().flat_map(|wrong| [0, 1].map(|side| (wrong, side)));
@@ -141,7 +142,7 @@ impl Alarms {
     }
 }
 
-/// What both thrusters are ordered, port first, per cent; nothing where the boat steers by itself.
+/// Ordered thrust of both sides, port first, per cent; `None` if the boat steers itself.
 fn ordered_pct(command: Command) -> Option<[f64; 2]> {
     match command {
         Command::SetPoint(SetPoint::Thrust { thrust_pct, difference_pct }) => {
@@ -180,7 +181,7 @@ mod tests {
         Some(Command::SetPoint(SetPoint::Thrust { thrust_pct, difference_pct }))
     }
 
-    /// What is told after so many seconds of the same, and the events until then.
+    /// Alarm texts after this many seconds of the same input, and the events until then.
     fn after(watch: CurrentWatch, seconds: u32, power: &Power, command: Option<Command>) -> (Vec<String>, usize) {
         let (mut alarms, mut events) = (Alarms::new(watch), vec![]);
         (0..=seconds).for_each(|s| alarms.take_power(SimTime::from_s(f64::from(s)), power, command, &mut events));
@@ -197,7 +198,8 @@ mod tests {
             (power([52.0, 10.0], none), None, "the port thruster draws too much, 52.0 A"),
             (power([10.0, -52.0], none), None, "the starboard thruster draws too much, -52.0 A"),
             (power([0.0, 10.0], none), ahead(40.0, 0.0), "the port thruster draws no current, 0.0 A"),
-            // The boat turns about a thruster that stands still, or steers by itself, or measures nothing.
+            // No alarm: one thruster is stopped in a turn, the boat steers itself, or it has no
+            // current sensor.
             (power([0.0, 10.0], none), ahead(15.0, -15.0), ""),
             (power([0.0, 10.0], none), None, ""),
             (power([0.0, 0.0], none), ahead(40.0, 0.0), ""),

@@ -1,48 +1,48 @@
-//! The boat's battery, by its own report.
+//! The boat's battery, according to its own reports.
 
 use crate::config::BatteryWatch;
 use primitives::SimTime;
 
-/// A battery that is not reported for this long is worth a warning, s.
+/// Warn if the boat has not reported its battery for this long, s.
 pub(super) const SILENCE_S: f64 = 10.0;
 
-/// What the boat last reported.
+/// The latest battery reports.
 #[derive(Clone, Debug)]
 pub(super) struct BatteryLog {
     watch: BatteryWatch,
-    /// The voltage, and when it came.
+    /// The voltage, V, and when it was received.
     volts: Option<(SimTime, f64)>,
-    /// Since when it has been low.
+    /// Start of the current low-voltage period.
     low_since: Option<SimTime>,
-    /// Since when nothing has come, and whether that was said.
+    /// Time of the last battery sentence, and whether the silence has been reported.
     silence: (SimTime, bool),
 }
 
 impl BatteryLog {
-    /// Nothing is known yet: there is a new link.
+    /// No data yet, on a new link.
     pub(super) fn new(watch: BatteryWatch, now: SimTime) -> BatteryLog {
         BatteryLog { watch, volts: None, low_since: None, silence: (now, false) }
     }
 
-    /// Forgets everything: the boat may be another one now.
+    /// Clears everything: another boat may be on the link now.
     pub(super) fn forget(&mut self, now: SimTime) {
         *self = BatteryLog::new(self.watch, now);
     }
 
     pub(super) fn observe(&mut self, now: SimTime, volts: Option<f64>) {
-        // Any battery sentence ends the silence, even one without a voltage: the boat reports,
-        // and that is what the warning is about.
+        // Any battery sentence ends the silence, even without a voltage: the warning is about a
+        // boat that does not report.
         self.silence = (now, false);
         if let Some(volts) = volts {
             self.volts = Some((now, volts));
             let low = volts < self.watch.volts_min;
-            // Voltage sags under thrust: the debounce keeps a burst of full power from ending
-            // the game.
+            // Voltage sags under thrust: the debounce keeps a burst of full power from ending the
+            // game.
             self.low_since = low.then(|| self.low_since.unwrap_or(now));
         }
     }
 
-    /// The voltage, and its age, s.
+    /// The voltage, V, and its age, s.
     pub(super) fn volts(&self, now: SimTime) -> Option<(f64, f64)> {
         self.volts.map(|(at, volts)| (volts, (now - at).as_s()))
     }
@@ -51,11 +51,10 @@ impl BatteryLog {
         self.low_since.is_some_and(|since| (now - since).as_s() >= self.watch.debounce_s)
     }
 
-    /// Whether a battery that is watched has become silent: once.
+    /// Returns true once when a monitored battery falls silent.
     pub(super) fn falls_silent(&mut self, now: SimTime) -> bool {
         let (since, said) = self.silence;
-        // Who has switched the watch off by a limit of zero need not hear that nothing is
-        // watched.
+        // A limit of zero switches the monitor off, and this warning with it.
         let silent = self.watch.volts_min > 0.0 && (now - since).as_s() > SILENCE_S;
         self.silence.1 |= silent;
         silent && !said

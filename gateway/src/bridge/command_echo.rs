@@ -1,7 +1,7 @@
-//! What a boat shows of the commands that it follows, against what it was sent.
+//! Compares the commands that a boat echoes with those that it was sent.
 //!
-//! A boat that shows an older command than it should does not listen any more. One that shows a command that it was never sent, after it
-//! has shown ours, gets orders from somebody else at the same port.
+//! A boat that keeps echoing an outdated command no longer listens. If it has echoed our commands
+//! and then echoes one that it was never sent, somebody else sends it orders at the same port.
 
 use crate::config::ControlWatch;
 use crate::nmea::Mode;
@@ -10,21 +10,23 @@ use primitives::SimTime;
 use primitives::angle::wrap_pi;
 use std::collections::VecDeque;
 
-/// In mode G speeds and headings are the same if they are as near as this, kn and degrees: ArduPilot leaves out all after the comma.
+/// Tolerances for equal speeds and headings in mode G, kn and degrees: ArduPilot drops all
+/// decimals.
 const SAME_SPEED_KN: f64 = 0.1;
 const SAME_HEADING_DEG: f64 = 1.1;
-/// A boat that leaves our commands for standby so often within this time, s, and comes back in between, is sent standby by another.
+/// If the boat drops from our commands to standby this many times within this period, s, and
+/// recovers in between, somebody else sends it standby.
 const DEPARTURES: usize = 2;
 const DEPARTURES_S: f64 = 5.0;
-/// Orders of others count for this long after they were seen, s.
+/// Foreign orders count for this long after they were seen, s.
 const FOREIGN_MEMORY_S: f64 = 5.0;
-/// The most commands that are remembered: 20 a second for as long as a boat may take to show one.
+/// Capacity for sent commands: 20 a second for the longest echo delay of a boat.
 const SENT_MAX: usize = 640;
 
 impl Shown {
-    /// Whether a boat that was sent this would show that. What a boat does not show cannot differ.
+    /// Whether the boat's report is consistent with this sent command.
     fn agrees(&self, shown: &Shown, thrust_pct: f64) -> bool {
-        // What is not shown cannot disagree: stand-ins and ArduPilot show fewer fields than a
+        // A missing field cannot disagree: emulators and ArduPilot report fewer fields than a
         // Surveyor.
         let within = |sent: Option<f64>, shown: Option<f64>, apart: f64| {
             sent.zip(shown).is_none_or(|(sent, shown)| (sent - shown).abs() <= apart)
@@ -34,30 +36,31 @@ impl Shown {
         self.mode == shown.mode
             && match self.mode {
                 Mode::Thruster => {
-                    // The heading does not count in mode T: a boat that steers no heading
-                    // reports the one it has.
+                    // The heading does not count in mode T: a boat that steers no heading reports
+                    // its actual one.
                     within(self.thrust, shown.thrust, thrust_pct)
                         && within(self.difference, shown.difference, thrust_pct)
                 }
                 Mode::Speed => within(self.thrust, shown.thrust, SAME_SPEED_KN) && turned_deg.abs() <= SAME_HEADING_DEG,
-                // What the boat's own controller asks of its thrusters is its own affair.
+                // In other modes the boat's own controller chooses the thrust.
                 _ => true,
             }
     }
 }
 
-/// What was sent lately, and how the boat showed it.
+/// Recently sent commands, and how the boat echoed them.
 #[derive(Clone, Debug)]
 pub(super) struct CommandEcho {
     watch: ControlWatch,
-    /// Commands that the boat may still show, and when each was first sent; the newest last.
+    /// Commands that the boat may still echo, and when each was first sent; newest last.
     sent: VecDeque<(SimTime, Shown)>,
     last: Option<Shown>,
-    /// Whether the boat's last report showed a command of ours; whether any has, and any with a set-point.
+    /// Whether the boat's last report echoed one of our commands; whether any report has, and any
+    /// with a set-point.
     is_ours: bool,
     has_shown: bool,
     has_shown_set_point: bool,
-    /// Since when it has shown a set-point that is none of those.
+    /// Start of the period in which it has echoed a set-point that matches none of them.
     unlike_since: Option<SimTime>,
     departures: VecDeque<SimTime>,
     foreign_at: Option<SimTime>,
@@ -78,28 +81,28 @@ impl CommandEcho {
         }
     }
 
-    /// The boat was sent what it should show as this.
+    /// Records a sent command in the form in which the boat should echo it.
     pub(super) fn note_sent(&mut self, now: SimTime, shown: Shown) {
-        // Repeats of the same command are one: sent at 10 Hz for a minute they would displace
-        // the change that the boat may still be showing.
+        // Store repeats of the same command once: a minute of them at 10 Hz would displace the
+        // change that the boat may still be echoing.
         if self.sent.back().is_none_or(|(_, last)| *last != shown) {
             self.sent.push_back((now, shown));
         }
-        // A command counts until the next one has been out for as long as the boat may take to show it.
+        // A command counts until its successor has been out for the longest echo delay.
         let is_over = |(next, _): &(SimTime, Shown)| (now - *next).as_s() > self.watch.echo_s;
         while self.sent.get(1).is_some_and(is_over) || self.sent.len() > SENT_MAX {
             self.sent.pop_front();
         }
     }
 
-    /// Somebody else was heard to order the boat about.
+    /// Records that another sender was heard commanding the boat.
     pub(super) fn note_foreign(&mut self, now: SimTime) {
         self.foreign_at = Some(now);
     }
 
-    /// The boat's report, while we command it.
+    /// Checks a report of the boat; called only while we command it.
     pub(super) fn observe(&mut self, now: SimTime, mut shown: Shown) {
-        // A boat that has never shown another heading of ours may show 0 for all of them.
+        // A boat that has never echoed a nonzero heading of ours may report 0 for all of them.
         shown.heading_deg = shown.heading_deg.filter(|deg| *deg != 0.0 || self.has_shown_set_point);
         let is_new = self.last.replace(shown).is_none_or(|last| !last.agrees(&shown, self.watch.echo_thrust_pct));
         let was_ours = std::mem::take(&mut self.is_ours);
@@ -113,11 +116,11 @@ impl CommandEcho {
         if is_same_mode {
             self.unlike_since.get_or_insert(now);
         }
-        // How a boat shows set-points must have been seen before one of them can be called foreign.
+        // Only a boat that has echoed our set-points can be found to echo a foreign one.
         let knows = if is_same_mode { self.has_shown_set_point } else { self.has_shown };
-        // A set-point of others moves the boat, so one is enough. Standby that we did not send
-        // may be the boat's own doing (a button, a failsafe), so it takes a repetition: a boat
-        // that falls back to standby once is found by the mode that it does not show.
+        // A foreign set-point moves the boat, so one is enough. Standby that we did not send may be
+        // the boat's own doing (a button, a failsafe), so it must repeat: a single fallback to
+        // standby is caught by the mode mismatch.
         if shown.mode.is_set_point() {
             if is_new && knows {
                 self.foreign_at = Some(now);
@@ -131,14 +134,14 @@ impl CommandEcho {
         }
     }
 
-    /// Whether the boat has shown a command lately that we have not sent.
+    /// Whether the boat has recently echoed a command that we have not sent.
     pub(super) fn is_foreign(&self, now: SimTime) -> bool {
         self.foreign_at.is_some_and(|at| (now - at).as_s() <= FOREIGN_MEMORY_S)
     }
 
-    /// Whether the boat shows thrust that it should not show any more.
+    /// Whether the boat echoes thrust that it should no longer apply.
     pub(super) fn is_deaf(&self, now: SimTime) -> bool {
-        // One that has shown ours has had its time already.
+        // A boat that has echoed our set-points has used up its grace period.
         let patience_s = if self.has_shown_set_point { 0.0 } else { self.watch.echo_s };
         self.unlike_since.is_some_and(|since| (now - since).as_s() >= patience_s)
     }

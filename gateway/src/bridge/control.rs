@@ -1,4 +1,4 @@
-//! Who commands the boat, and whether it follows its commands: by its own report.
+//! Who commands the boat, and whether it follows its commands, according to its own reports.
 
 use super::command_echo::CommandEcho;
 use crate::config::ControlWatch;
@@ -7,7 +7,7 @@ use crate::protocol::{ControlReport, Shown};
 use crate::supervisor::Control;
 use primitives::SimTime;
 
-/// The boat's last control state.
+/// The last control state that the boat reported.
 #[derive(Clone, Copy, Debug)]
 struct Report {
     at: SimTime,
@@ -15,14 +15,14 @@ struct Report {
     operator: Option<Operator>,
 }
 
-/// What the boat last reported, and what it should report.
+/// The boat's last control report, and the one expected of it.
 #[derive(Clone, Debug)]
 pub(super) struct ControlLog {
     watch: ControlWatch,
     reported: Option<Report>,
-    /// The mode that the boat was last sent.
+    /// The mode last sent to the boat.
     sent: Option<Mode>,
-    /// Since when it has reported another one.
+    /// Start of the period in which it has reported a different mode.
     mismatch_since: Option<SimTime>,
     echo: CommandEcho,
 }
@@ -32,7 +32,7 @@ impl ControlLog {
         ControlLog { watch, reported: None, sent: None, mismatch_since: None, echo: CommandEcho::new(watch) }
     }
 
-    /// Forgets everything: the boat may be another one now.
+    /// Clears everything: another boat may be on the link now.
     pub(super) fn forget(&mut self) {
         *self = ControlLog::new(self.watch);
     }
@@ -43,29 +43,28 @@ impl ControlLog {
         if operator.is_none_or(|operator| operator == Operator::Secondary) {
             self.echo.observe(now, shown);
         } else {
-            // Under another operator the boat shows that one's commands, rightly; what was
-            // learned about ours ends.
+            // Under another operator the boat correctly echoes that operator's commands; discard
+            // what was learned about ours.
             self.echo = CommandEcho::new(self.watch);
         }
         let mismatch = self.sent.is_some_and(|sent| sent != shown.mode);
         self.mismatch_since = mismatch.then(|| self.mismatch_since.unwrap_or(now));
     }
 
-    /// The boat was sent what it should show as this.
+    /// Records a sent command in the form in which the boat should echo it.
     pub(super) fn note_sent(&mut self, now: SimTime, shown: Shown) {
         self.echo.note_sent(now, shown);
         let mode = shown.mode;
         if self.sent != Some(mode) {
             self.sent = Some(mode);
             let matches = self.mode() == Some(mode);
-            // The clock starts when the mode is ordered, not when the boat first shows another
-            // one: a boat that reports once in a while must not get a second echo time for
-            // free.
+            // The clock starts when the mode is ordered, not when the boat first reports a
+            // different one: a boat that reports rarely must not get a second echo time for free.
             self.mismatch_since = (!matches).then_some(now);
         }
     }
 
-    /// Somebody else was heard to order the boat about.
+    /// Records that another sender was heard commanding the boat.
     pub(super) fn note_foreign(&mut self, now: SimTime) {
         self.echo.note_foreign(now);
     }
@@ -75,17 +74,17 @@ impl ControlLog {
         self.reported.map(|report| report.mode)
     }
 
-    /// How old its last report is, s.
+    /// Age of the boat's last report, s.
     pub(super) fn age_s(&self, now: SimTime) -> Option<f64> {
         self.reported.map(|report| (now - report.at).as_s())
     }
 
-    /// Who the boat reports commands it.
+    /// The operator that the boat reports.
     pub(super) fn operator(&self) -> Option<Operator> {
         self.reported.and_then(|report| report.operator)
     }
 
-    /// The mode that the boat has reported in place of the one it was sent for longer than `echo_s`.
+    /// The mode that the boat has reported, in place of the mode sent, for longer than `echo_s`.
     pub(super) fn mode_mismatch(&self, now: SimTime) -> Option<Mode> {
         let since = self.mismatch_since?;
         let report = self.reported?;
@@ -93,20 +92,20 @@ impl ControlLog {
         ((now - since).as_s() > self.watch.echo_s && report.at > since).then_some(report.mode)
     }
 
-    /// Who commands the boat now.
+    /// Who commands the boat now, according to its reports.
     pub(super) fn control(&self, now: SimTime) -> Control {
-        // Some boats report no operator. Their owner says in the file that the gateway commands
-        // them; without that word silence means that somebody else may.
+        // Some boats report no operator. Their owner can declare in the file that the gateway
+        // commands them; otherwise silence means that somebody else may.
         let silent = if self.watch.assumed { Control::Granted } else { Control::Unknown };
         let Some(report) = self.reported else { return silent };
-        // An assumption covers a boat that never reports, not one that has stopped to.
+        // The assumption covers a boat that never reports, not one that has stopped reporting.
         if (now - report.at).as_s() > self.watch.age_max_s {
             return Control::Unknown;
         }
         let is_ours = report.operator.map_or(self.watch.assumed, |operator| operator == Operator::Secondary);
         match (report.operator, self.mode_mismatch(now)) {
-            // Foreign orders come first: a boat with two masters also disobeys and looks deaf,
-            // and the operator has to know that there is another gateway.
+            // Check foreign orders first: a boat with two masters also disobeys and looks deaf, and
+            // the operator must learn that there is another gateway.
             _ if is_ours && self.echo.is_foreign(now) => Control::Foreign,
             (_, None) if is_ours && self.echo.is_deaf(now) => Control::Deaf,
             (Some(Operator::Secondary), None) => Control::Granted,

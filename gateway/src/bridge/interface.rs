@@ -9,62 +9,62 @@ use primitives::frame::Ned;
 use rules::Field;
 use serde::{Deserialize, Serialize};
 
-/// What a bridge is made for; constant.
+/// The fixed configuration of a bridge.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
     /// The boat's name.
     pub vehicle: String,
-    /// How it is driven and stopped.
+    /// How the boat is driven and stopped.
     pub gateway: Gateway,
-    /// Where it plays, if that is known from the beginning; else [`Input::Site`] says so.
+    /// The boat's site, if it is known from the beginning; otherwise [`Input::Site`] supplies it.
     #[serde(flatten)]
     pub site: Option<Site>,
-    /// Whether it arms by itself, once, as soon as it is ready.
+    /// Whether the bridge arms once without a request, as soon as it is ready.
     pub arms_itself: bool,
-    /// Whether the boat is sent nothing but standby, whatever it would be sent.
+    /// Whether to send the boat nothing but standby, whatever the orders.
     #[serde(default)]
     pub dry_run: bool,
-    /// Whether its pre-flight check lets it be armed.
+    /// Whether the pre-flight check allows arming.
     #[serde(default)]
     pub preflight: Preflight,
 }
 
-/// Whether the pre-flight check of a boat lets it be armed.
+/// Whether a boat's pre-flight check allows arming.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Preflight {
-    /// None is asked for.
+    /// No check is required.
     #[default]
     NotRequired,
-    /// There is the report of one that it has passed.
+    /// The report of a passed check is available.
     Passed,
-    /// This person answers for arming without one.
+    /// This person takes responsibility for arming without a report.
     WaivedBy(String),
-    /// There is no such report, and why.
+    /// The report is missing, for this reason.
     Missing(String),
 }
 
 impl Preflight {
-    /// What is missing for arming, if anything.
+    /// What prevents arming, if anything.
     #[must_use]
     pub fn missing(&self) -> Option<&String> {
         if let Preflight::Missing(why) = self { Some(why) } else { None }
     }
 }
 
-/// What only a game says: where a boat plays, and how long it is there.
+/// What only a game defines: the boat's field and properties in it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Site {
-    /// The field.
+    /// The field in which the boat plays.
     pub field: Field,
     /// The boat's length, m.
     pub length_m: f64,
-    /// Declination, east positive, rad.
+    /// Magnetic declination, east positive, rad.
     pub declination_rad: f64,
 }
 
 impl Site {
-    /// What must be added to a heading of a compass that shows this to make it true, rad.
+    /// Correction to add to a heading in this compass frame to make it true, rad.
     #[must_use]
     pub fn compass_to_true_rad(&self, compass: CompassFrame) -> f64 {
         match compass {
@@ -74,7 +74,7 @@ impl Site {
     }
 }
 
-/// An input.
+/// An input of the bridge.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Input {
@@ -83,19 +83,19 @@ pub enum Input {
     /// The link is down.
     LinkDown,
     /// Bytes from the boat.
-    // Recorded apart, as messages of the link with their direction: as JSON numbers they would
-    // take four times the room.
+    // Recorded separately, as messages of the link with their direction: as JSON numbers they would
+    // take four times the space.
     #[serde(skip)]
     Bytes(Vec<u8>),
-    /// The sim has let the boat join: earlier orders do not count.
+    /// The sim has admitted the boat: earlier orders do not count.
     Joined,
     /// An order, and the time of the picture that it answers.
-    // With the time of the picture that it answers: that, and not the message, makes an order
-    // fresh. A sim that repeats itself keeps no boat moving.
+    // The picture's time, not the message's, makes an order fresh: a sim that repeats itself keeps
+    // no boat moving.
     Order(Order, SimTime),
-    /// An order that could not be read.
+    /// An unreadable order.
     BadOrder,
-    /// An order from a time that the game has not come to.
+    /// An order with a time that the game has not reached.
     OrderAhead,
     /// An order from before the boat joined.
     OldOrder,
@@ -105,55 +105,55 @@ pub enum Input {
     Operator(OperatorCommand),
     /// An operator's command for all boats.
     Fleet(FleetCommand),
-    /// A game was found, and says where the boat plays.
+    /// A game was found that defines the boat's site.
     Site(Box<Site>),
-    /// The gateway did not run for so long, s, that its guard may have stopped the boat.
+    /// The gateway did not run for this long, s; its guard may have stopped the boat.
     Hung(f64),
-    /// Time passes.
+    /// Time has passed.
     Tick,
 }
 
-/// What an input results in.
+/// The result of an input.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Output {
-    /// Bytes to the boat, to be written at once.
+    /// Bytes to write to the boat at once.
     pub bytes: Vec<u8>,
-    /// Navigation, if there is news of it.
+    /// Navigation data, if new.
     pub nav: Option<NavOut>,
-    /// What happened.
+    /// Events in order of occurrence.
     pub events: Vec<Event>,
-    /// Why an operator's request is refused.
+    /// Why an operator's request was refused.
     pub refused: Option<String>,
-    /// Whether the bytes carry an order that had not been sent yet.
+    /// Whether the bytes carry an order for the first time.
     pub carries_order: bool,
 }
 
-/// Navigation on its way to the sim.
+/// Navigation data for the sim.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NavOut {
-    /// Where the boat is.
+    /// The boat's position and motion.
     pub nav: Nav,
-    /// Whether it can be relied on.
+    /// Whether the data are reliable.
     pub valid: bool,
-    /// How old the fix is, s.
+    /// Age of the fix, s.
     pub age_s: f64,
 }
 
-/// Something that happened.
+/// An event for the log.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Event {
-    /// The supervisor went from one state to another.
+    /// The supervisor changed its state.
     State {
-        /// Before.
+        /// The previous state.
         from: String,
-        /// Now.
+        /// The new state.
         to: String,
     },
-    /// Another boat is in the way, or is no longer.
+    /// Another boat came into the way (`true`) or left it (`false`).
     Blocked(bool),
-    /// Something that a person should know.
+    /// A warning for the operator.
     Warning(String),
-    /// A log message of the shell.
+    /// A log message of the node around the bridge.
     Remark(String),
 }

@@ -1,7 +1,8 @@
 //! The gateway's core: bytes, orders and operator commands in; bytes, navigation and events out.
 //!
-//! No socket and no clock in here: [`Bridge::process`] gets an [`Input`] with its time, and fills an [`Output`].
-//! The same inputs at the same times give the same outputs, byte for byte: that is how a recording is replayed.
+//! The core has no socket and no clock: [`Bridge::process`] gets an [`Input`] with its time and
+//! fills an [`Output`]. The same inputs at the same times give the same outputs, byte for byte;
+//! replay relies on this.
 
 mod alarms;
 mod battery;
@@ -38,18 +39,18 @@ use recovery_point::RecoveryPoint;
 use status::Counters;
 use std::collections::VecDeque;
 
-/// Two new orders are sent at least this far apart.
+/// Minimum interval between two new orders, s.
 const GAP_MIN_S: f64 = 0.045;
-/// Positions of other boats are used for this long.
+/// Positions of other boats expire after this time, s.
 const OTHERS_AGE_MAX_S: f64 = 2.0;
-/// A task that the boat does not report is sent again after this time.
+/// A task that the boat does not report is sent again after this time, s.
 const TASK_AGAIN_S: f64 = 1.0;
-/// How often invalid navigation is reported.
+/// Interval between reports of invalid navigation, s.
 const INVALID_NAV_EVERY_S: f64 = 0.25;
-/// How many failsafes are kept.
+/// How many failsafes the status keeps.
 const FAILSAFES_MAX: usize = 32;
 
-/// The newest order, when it came, and the time of the picture that it answers.
+/// The newest order, its time of arrival, and the time of the picture that it answers.
 #[derive(Clone, Copy, Debug)]
 struct CurrentOrder {
     order: Order,
@@ -62,11 +63,11 @@ pub struct Bridge {
     plan: Plan,
     protocol: Protocol,
     control: ControlLog,
-    /// Nothing before a game says where the boat plays.
+    /// `None` until a game defines the boat's site.
     on_site: Option<OnSite>,
     supervisor: Supervisor,
     link_up: bool,
-    /// For how long the gateway did not run until this input, s.
+    /// How long the gateway did not run before this input, s.
     hung_s: Option<f64>,
     order: Option<CurrentOrder>,
     /// Whether the order has not been sent yet.
@@ -78,18 +79,18 @@ pub struct Bridge {
     alarms: Alarms,
     clock: ClockWatch,
     recovery_point: RecoveryPoint,
-    /// The command that was sent last, and when.
+    /// The last command sent, and when.
     last_sent: Option<(SimTime, Command)>,
-    /// Start-up words that are still to be sent.
+    /// Start-up words still to send.
     words: VecDeque<SwitchWord>,
-    /// What it would have been sent last if this were no dry run.
+    /// The last command that a dry run would have sent.
     would_send: Option<Command>,
-    /// Whether the boat may be moving by what it was sent.
+    /// Whether the boat may be moving because of a command of ours.
     under_way: bool,
     /// The conditions of the last step.
     conditions: Conditions,
     nav_is_new: bool,
-    /// When navigation was reported last, and whether as valid.
+    /// When navigation was last reported, and whether it was valid.
     nav_reported: (SimTime, bool),
     standby_ignored: bool,
     failsafes: Vec<FailsafeReport>,
@@ -97,7 +98,7 @@ pub struct Bridge {
 }
 
 impl Bridge {
-    /// A bridge without a link, safed.
+    /// A safed bridge without a link.
     #[must_use]
     pub fn new(plan: Plan) -> Bridge {
         let Gateway { control, battery, currents, failsafe, .. } = &plan.gateway;
@@ -136,7 +137,7 @@ impl Bridge {
         self.supervisor.state()
     }
 
-    /// Takes an input, and does what is due.
+    /// Processes one input and performs what is due.
     pub fn process(&mut self, now: SimTime, input: &Input, out: &mut Output) {
         let mut request = None;
         self.hung_s = None;
@@ -146,8 +147,8 @@ impl Bridge {
             Input::Bytes(bytes) => self.read(now, bytes, out),
             Input::Site(site) => self.on_site = Some(OnSite::new(&self.plan.gateway, site)),
             Input::Hung(seconds) => self.hung_s = Some(*seconds),
-            // The order of the sim before may answer a picture of another game; the boat stops
-            // until the new one orders something.
+            // The previous sim's order may answer a picture of another game. The boat stops until
+            // the new sim sends an order.
             Input::Joined => self.order = None,
             Input::Order(order, given) => self.take_order(now, *order, *given),
             Input::BadOrder => self.counters.bad_orders += 1,
@@ -168,8 +169,8 @@ impl Bridge {
             Input::Tick => {}
         }
         if request.is_some() && !matches!(input, Input::Operator(OperatorCommand::Mission(_))) {
-            // Anything else that is asked ends an upload, an E-stop above all: a boat that
-            // waits for more lines might take the next command for one.
+            // Any other request ends an upload, above all an E-stop: a boat that waits for more
+            // lines might take the next command for one.
             self.cancel_upload(now, out);
         }
         self.advance(now, request, out);
@@ -179,7 +180,7 @@ impl Bridge {
         self.report_nav(now, out);
     }
 
-    /// When it has to be called again at the latest.
+    /// The latest time of the next call.
     #[must_use]
     pub fn due(&self, now: SimTime) -> SimTime {
         let period = self.period();
@@ -197,12 +198,12 @@ impl Bridge {
     /// Whether a command is due now.
     fn is_due(&self, now: SimTime) -> bool {
         let fresh = self.order_is_new && self.supervisor.state() == State::Armed;
-        // A new order does not wait for the period of repetitions.
+        // A new order does not wait for the repetition period.
         let regular = self.last_sent.as_ref().is_none_or(|(at, _)| now >= *at + self.period());
         regular || (fresh && now >= self.order_sent + SimTime::from_s(GAP_MIN_S))
     }
 
-    /// A new link: nothing is known of the boat at its end, and it is sent standby first.
+    /// Resets everything known about the boat for a new link, and sends standby first.
     fn take_link_up(&mut self, now: SimTime) {
         self.link_up = true;
         self.protocol.begin_link();
@@ -214,8 +215,8 @@ impl Bridge {
         self.alarms.forget();
         self.recovery_point = RecoveryPoint::default();
         self.last_sent = None;
-        // The boat may be under way on the last command of whoever was connected before: the
-        // first thing it is sent is thrust zero, and then standby.
+        // The boat may still follow its previous master's last command: send thrust zero first,
+        // then standby.
         self.under_way = true;
     }
 
@@ -256,16 +257,16 @@ impl Bridge {
             self.counters.bad_orders += 1;
             return;
         };
-        // No order can answer a picture before the first.
-        // Fresh is what answers a newer picture, not what arrives: a sim that repeats itself
-        // must keep no boat moving.
+        // No order can answer a picture before the first. A newer picture makes an order fresh, not
+        // its arrival: a sim that repeats itself must keep no boat moving.
         let newer = given > self.order.map_or(SimTime::ZERO, |current| current.given);
         if newer {
             self.counters.orders += 1;
             self.order_is_new = true;
             self.order = Some(CurrentOrder { order, given, came: now });
         } else if order == Order::Hold {
-            // The sim replaces the order when the agent is lost. That does not make the order fresh.
+            // The sim replaces the order when it loses the agent. That does not make the order
+            // fresh.
             self.order = self.order.map(|current| CurrentOrder { order, ..current });
             self.order_is_new = true;
         } else if self.order.is_some_and(|current| given < current.given) {
@@ -273,7 +274,7 @@ impl Bridge {
         }
     }
 
-    /// Begins the upload of a mission, or refuses it.
+    /// Starts the upload of a mission, or refuses it.
     fn take_mission(&mut self, now: SimTime, mission: &Mission, out: &mut Output) -> Option<OperatorRequest> {
         let unfit = self.conditions_at(now).unfit(Task::Mission);
         let outside = self.on_site.as_ref().and_then(|site| site.outside(now, mission));
@@ -282,8 +283,8 @@ impl Bridge {
             _ if self.plan.dry_run => Err("a dry run sends the boat nothing but standby, and so no mission".to_owned()),
             _ if !unfit.is_empty() => Err(Refusal::NotReady(unfit).to_string()),
             (_, Some(outside)) => Err(outside),
-            // The state is left to the supervisor by a disarm: an upload takes seconds, in
-            // which the boat must rest.
+            // A disarm request leaves the change of state to the supervisor: the boat must rest
+            // during the upload, which takes seconds.
             _ => self.protocol.begin_upload(now, mission),
         };
         match begun {
@@ -302,7 +303,7 @@ impl Bridge {
         format!("an E-stop of {} is in force: release it first", self.supervisor.stopped_by())
     }
 
-    /// One step of the supervisor, and the command that follows.
+    /// Advances the supervisor by one step and sends the resulting command.
     fn advance(&mut self, now: SimTime, request: Option<OperatorRequest>, out: &mut Output) {
         let conditions = self.conditions_at(now);
         let Step { action, refusal, before } = self.supervisor.step(&conditions, request);
@@ -324,8 +325,8 @@ impl Bridge {
         if matches!(conditions.control, Control::Foreign | Control::Other(_)) {
             self.recovery_point = RecoveryPoint::default();
         }
-        // A change goes out at once, between two repetitions: at 10 Hz a stop would wait 100 ms
-        // otherwise.
+        // Send a change at once, between two repetitions: at 10 Hz a stop would otherwise wait 100
+        // ms.
         let urgent = before.is_some() || request.is_some() || self.last_sent.is_none() || changed;
         if !self.link_up {
             self.protocol.abort_upload();
@@ -362,7 +363,7 @@ impl Bridge {
         }
     }
 
-    /// Sends the command of an action.
+    /// Sends the command for an action.
     fn send_action(&mut self, now: SimTime, action: Action, out: &mut Output) {
         let command =
             match action {
@@ -371,7 +372,7 @@ impl Bridge {
                 Action::Task(task) => {
                     let command = Command::Task(self.on_site.as_ref().map_or(task, |site| site.by_compass(task)));
                     let is_reported = self.control.mode() == Some(self.protocol.shown(command).mode);
-                    // Sent again, it would begin anew.
+                    // Sent again, this task would start anew.
                     if self.last_sent.as_ref().is_some_and(|(at, last)| {
                         *last == command && (is_reported || (now - *at).as_s() < TASK_AGAIN_S)
                     }) {
@@ -390,8 +391,8 @@ impl Bridge {
         } else {
             command
         };
-        // Thrust goes to zero before any command that is not our own set-point.
-        // What a Surveyor does with its last thrust when it leaves mode T is not published.
+        // Thrust goes to zero before any command that is not our own set-point. What a Surveyor
+        // does with its last thrust when it leaves mode T is not published.
         let is_set_point = matches!(action, Action::Follow | Action::Zero);
         if !is_set_point && std::mem::replace(&mut self.under_way, false) && !self.plan.dry_run {
             self.protocol.write(now, Command::Zero, &mut out.bytes);
@@ -417,7 +418,7 @@ impl Bridge {
         let (nav, _) = site.estimator.nav(now)?;
         let order = self.order?.order;
         let set_point = site.set_points.map(now, order, &nav);
-        // In a dry run the boat need not move as it is not told to.
+        // In a dry run the boat receives no set-points, so it need not move.
         if !self.plan.dry_run {
             site.estimator.note_order(now, site.set_points.ordered(order, set_point));
         }
@@ -436,9 +437,9 @@ impl Bridge {
         }
     }
 
-    /// Warns once when a boat that is sent standby reports that it is driven.
+    /// Warns once if a boat that is sent standby reports that it is driven.
     fn watch_standby(&mut self, now: SimTime, action: Action, out: &mut Output) {
-        // Under another operator's control that is right.
+        // Under another operator's control this is correct.
         let ours = matches!(self.control.control(now), Control::Granted | Control::Disobeys(_) | Control::Foreign);
         let ignored =
             action == Action::Standby && ours && self.control.mode_mismatch(now).is_some_and(Mode::is_set_point);
@@ -452,8 +453,8 @@ impl Bridge {
         let Some(site) = &self.on_site else { return };
         let Some((nav, age_s)) = site.estimator.nav(now) else { return };
         let is_new = std::mem::take(&mut self.nav_is_new);
-        // Invalid navigation is reported too: the sim must learn at once that the position is
-        // not to be extrapolated, and operators see where the boat was last.
+        // Report invalid navigation too: the sim must learn at once that the position must not be
+        // extrapolated, and operators see the boat's last position.
         let valid = self.link_up && site.estimator.fault(now).is_none();
         let (reported_at, reported_valid) = self.nav_reported;
         let overdue = !valid && (now - reported_at).as_s() >= INVALID_NAV_EVERY_S;
@@ -473,9 +474,8 @@ impl Bridge {
             let OnSite { estimator, geofence, bow, .. } = site;
             (nav_fault, thrust_fault) = (estimator.fault(now), estimator.thrust_fault(now));
             if let Some((nav, _)) = estimator.nav(now) {
-                // By the faster of the reported and the measured speed, at once: a log that
-                // sticks at zero would otherwise let the boat run into the fence before the
-                // check of instruments finds it.
+                // Use the faster of reported and measured speed at once: a log stuck at zero would
+                // otherwise let the boat run into the fence before the instrument check finds it.
                 inside = geofence.is_inside(now, nav.at(), estimator.fastest_velocity_m_s());
                 blocked = bow.is_blocked(now, &nav, known);
             }
@@ -491,8 +491,8 @@ impl Bridge {
             inside,
             battery_low: self.battery.is_low(now),
             blocked,
-            // The age counts from arrival by our own clock, since the clocks of sim and gateway
-            // are not synchronised.
+            // The age counts from arrival by our own clock: the clocks of sim and gateway are not
+            // synchronised.
             order_fresh: self.order.is_some_and(|current| (now - current.came).as_s() <= ttl_s),
         }
     }

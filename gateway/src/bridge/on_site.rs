@@ -1,4 +1,5 @@
-//! The part of a bridge that needs the field: navigation, geofence, the box about the bow, set-points.
+//! The part of a bridge that needs the field: navigation, geofence, the box around the bow,
+//! set-points.
 
 use super::Site;
 use crate::bow_watch::BowWatch;
@@ -12,7 +13,7 @@ use messages::external::{BoatMode, GeofenceReport, Mission};
 use primitives::SimTime;
 use primitives::frame::Ned;
 
-/// What only works where the field is known.
+/// The parts that work only with a known field.
 pub(super) struct OnSite {
     pub(super) estimator: NavEstimator,
     pub(super) geofence: GeofenceWatch,
@@ -26,7 +27,7 @@ impl OnSite {
         let frame = LocalFrame::new(site.field.plan.datum);
         let compass_to_true_rad = match protocol {
             BoatProtocol::Surveyor => site.compass_to_true_rad(*compass),
-            // Its headings are true, and so are those that it is sent.
+            // MAVLink boats report and receive true headings.
             BoatProtocol::Mavlink => 0.0,
         };
         OnSite {
@@ -37,9 +38,10 @@ impl OnSite {
         }
     }
 
-    /// What of a mission is outside of the geofence, if anything: a place, a leg, or the way to the first waypoint.
+    /// The first part of a mission outside the geofence, if any: a waypoint, a leg, or the way to
+    /// the first waypoint.
     pub(super) fn outside(&self, now: SimTime, mission: &Mission) -> Option<String> {
-        // The upload refuses invalid positions with a better reason.
+        // The upload rejects invalid positions with a better reason.
         let on_globe = |[lat_deg, lon_deg]: &&[f64; 2]| lat_deg.abs() <= 90.0 && lon_deg.abs() <= 180.0;
         let place = |[lat_deg, lon_deg]: &[f64; 2]| self.estimator.place(*lat_deg, *lon_deg);
         let area = self.geofence.area();
@@ -57,7 +59,7 @@ impl OnSite {
         Some(format!("the leg from {from} to waypoint {} leaves the geofence or crosses a keep-out", leg + 1))
     }
 
-    /// Whether the boat can go straight to its recovery point, as far as the geofence goes.
+    /// Whether the geofence allows the straight way from the boat to its recovery point.
     pub(super) fn is_way_to(&self, now: SimTime, [lat_deg, lon_deg]: [f64; 2]) -> bool {
         let erp = self.estimator.place(lat_deg, lon_deg);
         let from = self.estimator.nav(now).map_or(erp, |(nav, _)| nav.at());
@@ -66,7 +68,7 @@ impl OnSite {
         self.geofence.area().leads_in(from, erp)
     }
 
-    /// A task with its heading as the boat's compass counts it.
+    /// A task with its heading converted to the boat's compass frame.
     pub(super) fn by_compass(&self, task: Task) -> Task {
         match task {
             Task::Mode(BoatMode::Heading { heading_deg, thrust_pct }) => {
@@ -77,7 +79,7 @@ impl OnSite {
         }
     }
 
-    /// The geofence, for people to look at.
+    /// The geofence, for display.
     pub(super) fn geofence_report(&self, now: SimTime) -> GeofenceReport {
         let area = self.geofence.area();
         let at = self.estimator.nav(now).map(|(nav, _)| nav.at());

@@ -1,10 +1,11 @@
-//! What an operator's command asks of the supervisor.
+//! Translates an operator's command into a request to the supervisor.
 
 use super::Bridge;
 use crate::supervisor::{OperatorRequest, Scope, Task};
 use messages::external::{BoatMode, OperatorCommand};
 
-/// The request in a command; `None` where it asks nothing of the supervisor, or that depends on the boat.
+/// The supervisor request in a command; `None` if it has none or if the request depends on the
+/// boat.
 pub(super) fn request_from(command: &OperatorCommand) -> Option<OperatorRequest> {
     match command {
         OperatorCommand::Arm => Some(OperatorRequest::Arm),
@@ -13,14 +14,14 @@ pub(super) fn request_from(command: &OperatorCommand) -> Option<OperatorRequest>
         OperatorCommand::Release => Some(OperatorRequest::Release(Scope::Boat)),
         OperatorCommand::StationKeep => Some(OperatorRequest::Delegate(Task::StationKeep)),
         OperatorCommand::GoToErp => Some(OperatorRequest::Delegate(Task::GoToErp)),
-        // A mission arms nothing until its upload has ended, and a mode has numbers to be
+        // A mission arms nothing until its upload has ended; a mode has numbers that must be
         // checked against the file's limits.
         OperatorCommand::Status | OperatorCommand::Mission(_) | OperatorCommand::Mode(_) => None,
     }
 }
 
 impl Bridge {
-    /// The request for another mode of the boat's own controller, or why there is none.
+    /// The request for another mode of the boat's own controller, or the reason for its refusal.
     pub(super) fn request_mode(&self, mode: BoatMode) -> Result<OperatorRequest, String> {
         let limit_pct = self.plan.gateway.limits.thrust_max_pct;
         match mode {

@@ -1,4 +1,4 @@
-//! The status of a gateway, in numbers and words.
+//! The status of a gateway, in numbers and text.
 
 use super::Bridge;
 use crate::nmea::Operator;
@@ -7,7 +7,7 @@ use crate::supervisor::{Cause, State};
 use messages::external::GatewayStatus;
 use primitives::SimTime;
 
-/// How often each thing happened.
+/// Event counters.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Counters {
     pub(super) orders: u64,
@@ -18,8 +18,8 @@ pub(super) struct Counters {
 }
 
 impl Bridge {
-    /// The status now, with what was missing at the last step. It changes nothing, so that how often it is queried makes
-    /// no difference to a replay. What only the shell knows (the link's name, the control port, latencies) is left to the shell.
+    /// The status now, with the conditions missing at the last step. Changes nothing, so queries do
+    /// not affect a replay. The shell adds what only it knows: link name, control port, latencies.
     #[must_use]
     pub fn status(&self, now: SimTime) -> GatewayStatus {
         let known = self.on_site.as_ref().and_then(|site| site.estimator.nav(now));
@@ -50,18 +50,19 @@ impl Bridge {
         }
     }
 
-    /// The supervisor's state.
+    /// The supervisor's state as text.
     #[must_use]
     pub fn state_in_words(&self) -> String {
         match self.supervisor.state() {
             State::EStopped => format!("e-stopped (by an E-stop of {})", self.supervisor.stopped_by()),
-            // The state keeps its first word: stops go by it, and readers outside may.
+            // Keep the first word of the state: the stop commands and possibly external readers
+            // parse it.
             state if self.protocol.is_uploading() => format!("{state}, uploading a mission"),
             state => state.to_string(),
         }
     }
 
-    /// What was counted, by name.
+    /// All counters by name.
     fn counts(&self) -> Vec<(String, u64)> {
         let counters = &self.counters;
         let [received, unknown] = self.protocol.counts();

@@ -6,43 +6,43 @@ use crate::thrust_check::ThrustFault;
 use std::fmt;
 use thiserror::Error;
 
-/// The cause of a failsafe; for a boat that is not driven, of a refusal to arm.
+/// The cause of a failsafe or, for a boat that is not driven, of a refusal to arm.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum Cause {
-    /// No order came for longer than its time to live.
+    /// No order arrived within the time to live of the last one.
     #[error("no fresh order")]
     OrderStale,
-    /// Navigation cannot be relied on.
+    /// Navigation is unreliable.
     #[error("navigation: {0}")]
     Nav(NavFault),
-    /// The boat was outside of the geofence, or could not have stopped inside.
+    /// The boat was outside the geofence, or could not have stopped inside it.
     #[error("outside of the geofence, or unable to stop inside")]
     Geofence,
-    /// It did not do what the orders that it was sent should have done.
+    /// The boat did not respond to its orders as expected.
     #[error("{0}")]
     Thrust(ThrustFault),
-    /// The battery was low.
+    /// The battery voltage was low.
     #[error("the battery is low")]
     BatteryLow,
-    /// Another operator took it over: PSEAD's number.
+    /// Another operator took over: PSEAD's operator number.
     #[error("{} has taken over", operator(*.0))]
     TakenOver(u8),
-    /// It no longer reported who commands it.
+    /// The boat no longer reported who commands it.
     #[error("the boat no longer reports who commands it")]
     ControlUnknown,
-    /// It did not take up the mode that it was sent: this is the one it reported.
+    /// The boat did not enter the mode that it was sent; it reported this one.
     #[error("the boat does not follow the commands it is sent: it is in mode {0}")]
     Disobeyed(char),
-    /// It shows a command that others have followed since: it talks and does not listen.
+    /// The boat still echoes an outdated command: it transmits but does not listen.
     #[error("the boat does not follow the commands it is sent: it shows older ones")]
     Deaf,
-    /// It shows a command that we have not sent.
+    /// The boat echoes a command that we have not sent.
     #[error("the boat gets orders that are not ours: another gateway may be at work")]
     ForeignOrders,
-    /// The boat has no recovery point that we know of.
+    /// The boat has no known recovery point.
     #[error("the boat has no recovery point that was uploaded here, seen taken, and lies inside of the geofence")]
     NoRecoveryPoint,
-    /// The gateway itself did not run for this long, s, and its guard may have stopped the boat.
+    /// The gateway did not run for this long, s, and its guard may have stopped the boat.
     #[error("the gateway hung for {0:.1} s, and its guard may have stopped the boat")]
     Hung(f64),
     /// The link broke.
@@ -50,60 +50,61 @@ pub enum Cause {
     LinkLost,
 }
 
-/// What is wrong with navigation.
+/// A navigation fault.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum NavFault {
-    /// No game has said where the field is.
+    /// No game has defined the field yet.
     #[error("no game yet, and so no field and no geofence")]
     NoField,
-    /// There was no fix yet.
+    /// No fix received yet.
     #[error("no fix yet")]
     NoFix,
-    /// There was no heading yet.
+    /// No heading received yet.
     #[error("no heading yet")]
     NoHeading,
-    /// The last fix is this old, s.
+    /// Age of the last fix, s.
     #[error("the last fix is {0:.1} s old")]
     FixStale(f64),
-    /// The last heading is this old, s.
+    /// Age of the last heading, s.
     #[error("the last heading is {0:.1} s old")]
     HeadingStale(f64),
-    /// The receiver says that its fix is of this quality.
+    /// The fix quality that the receiver reports.
     #[error("the fix is of quality {0}")]
     Quality(FixQuality),
-    /// The dilution of precision is this large.
+    /// The dilution of precision.
     #[error("the horizontal dilution of precision is {0}")]
     Dilution(f64),
-    /// The position is 0° N, 0° E: what receivers send that know nothing.
+    /// The position is 0° N, 0° E, which receivers without a fix send.
     #[error("the position is 0 N 0 E")]
     ZeroZero,
     /// The position jumped this far, m.
     #[error("the position jumped by {0:.0} m")]
     Jump(f64),
-    /// The position has been the same to the last digit for this long though the boat is driven, s.
+    /// The position has not changed in any digit for this long while the boat was driven, s.
     #[error("the position has not changed for {0:.1} s under thrust")]
     Frozen(f64),
-    /// The compass has shown the same to the last digit while the course turned this far, degrees.
+    /// The compass has not changed in any digit while the course turned by this much, degrees.
     #[error("the compass shows the same while the course turned by {0:.0} degrees")]
     CompassFrozen(f64),
-    /// The compass is off by this much, degrees, by the course over the ground on several headings.
+    /// The compass deviates by this much from the course over ground on several headings, degrees.
     #[error("the compass is off by {:.0} degrees, by the course over the ground", .0.abs())]
     CompassOff(f64),
-    /// The reported speed is less than that of the positions, which is this, m/s.
+    /// The reported speed is below the one computed from positions, which is this, m/s.
     #[error("the reported speed is less than that of the positions, {0:.1} m/s")]
     SpeedTooLow(f64),
 }
 
 impl Cause {
-    /// Whether the boat can still be told what to do, knows where it is and points, and is moved by its thrusters.
+    /// Whether the boat still receives commands, knows its position and heading, and responds to
+    /// thrust.
     #[must_use]
     pub fn leaves_control(self) -> bool {
-        // Only for these may a file name a task after a failsafe. A table of every cause with
-        // every action would let somebody keep station on a lost fix.
+        // Only for these may a file name a task after a failsafe. A table of every cause with every
+        // action would let somebody keep station on a lost fix.
         matches!(self, Cause::OrderStale | Cause::BatteryLow | Cause::Geofence | Cause::Hung(_))
     }
 
-    /// Of the causes that leave control, the graver one decides what the boat does.
+    /// Rank among the causes that leave control: the gravest decides what the boat does.
     pub(super) fn gravity(self) -> u8 {
         match self {
             Cause::Geofence => 2,
@@ -112,7 +113,7 @@ impl Cause {
         }
     }
 
-    /// What is missing for arming while this is so, in words.
+    /// The condition that is missing for arming, as text.
     #[must_use]
     pub fn missing(self) -> String {
         match self {
@@ -136,7 +137,7 @@ impl Cause {
     }
 }
 
-/// PSEAD's number of the operator in words.
+/// The text for PSEAD's operator number.
 fn operator(number: u8) -> String {
     match number {
         1 => "the primary operator".to_owned(),

@@ -1,4 +1,4 @@
-//! When a boat may be driven, and when it is stopped: a pure state machine.
+//! Decides when a boat may be driven and when it is stopped: a pure state machine.
 //!
 //! ```text
 //!                    arm [ready]                       any condition fails
@@ -18,11 +18,13 @@
 //!     └──────────┘
 //! ```
 //!
-//! *Ready* is: link up, control granted, navigation sound, inside the geofence, battery not low, order fresh. *Fit* is the
-//! same without an order. Only in `Armed` does anything that moves the boat come from us, and only while it is ready in
-//! this very step and no other boat is in the way. After a failsafe the boat stops, or its own controller takes over if the gateway's
-//! file says so for that cause and nothing that this needs has failed. There is no clock in here: [`Conditions`] say what is fresh, sound or
-//! granted now, so that a test can try every state with every input.
+//! *Ready* means: link up, control granted, navigation sound, inside the geofence, battery not low,
+//! order fresh. *Fit* is the same without an order. Only in `Armed` do we send anything that moves
+//! the boat, and only while it is ready in this very step and no other boat is in the way. After a
+//! failsafe the boat stops. Its own controller takes over instead if the gateway's file says so for
+//! that cause and nothing that the task needs has failed. The state machine has no clock:
+//! [`Conditions`] state what is fresh, sound or granted now, so that a test can try every state
+//! with every input.
 
 mod cause;
 
@@ -33,33 +35,34 @@ use crate::thrust_check::ThrustFault;
 use messages::external::BoatMode;
 use thiserror::Error;
 
-/// What is true now.
+/// The present conditions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conditions {
     /// Whether bytes can reach the boat.
     pub link: bool,
-    /// For how long the gateway itself did not run until now, s, if its guard may have stopped the boat meanwhile.
+    /// How long the gateway itself has just not run, s, if its guard may have stopped the boat
+    /// meanwhile.
     pub hung_s: Option<f64>,
-    /// Who commands the boat, by its own report.
+    /// Who commands the boat, according to its own reports.
     pub control: Control,
-    /// What is wrong with navigation.
+    /// The navigation fault, if any.
     pub nav: Option<NavFault>,
-    /// What the boat does not do though it is ordered to.
+    /// How the boat fails to respond to its orders, if it does.
     pub thrust: Option<ThrustFault>,
-    /// Whether the boat has a recovery point that we uploaded, and that is inside of the geofence.
+    /// Whether the boat has a recovery point that we uploaded and that is inside the geofence.
     pub recovery_point: bool,
     /// Whether the boat is inside the geofence and can stop there.
     pub inside: bool,
     /// Whether the battery is low.
     pub battery_low: bool,
-    /// Whether another real boat is in the way.
+    /// Whether another real boat is in the box around the bow.
     pub blocked: bool,
-    /// Whether there is a sound order that is not older than its time to live.
+    /// Whether there is a valid order within its time to live.
     pub order_fresh: bool,
 }
 
 impl Conditions {
-    /// Before anything was received.
+    /// The conditions before anything was received.
     pub const UNKNOWN: Conditions = Conditions {
         link: false,
         hung_s: None,
@@ -74,97 +77,97 @@ impl Conditions {
     };
 }
 
-/// Who commands the boat, by its own report.
+/// Who commands the boat, according to its own reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Control {
-    /// We do.
+    /// This gateway.
     Granted,
-    /// It has not reported so lately.
+    /// Unknown: no recent report.
     Unknown,
-    /// Another operator: PSEAD's number.
+    /// Another operator: PSEAD's operator number.
     Other(u8),
-    /// We do, and it reports another mode than the one it was sent.
+    /// This gateway, but the boat reports this mode in place of the one it was sent.
     Disobeys(char),
-    /// We do, and it reports thrust of a command that others have followed since.
+    /// This gateway, but the boat echoes the thrust of an outdated command.
     Deaf,
-    /// We do, and it reports a command that we have not sent.
+    /// This gateway, but the boat echoes a command that we have not sent.
     Foreign,
 }
 
-/// What an operator requests.
+/// A request by an operator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum OperatorRequest {
     /// Follow orders.
     Arm,
-    /// Stop following them.
+    /// Stop following orders.
     Disarm,
-    /// Stop, and stay stopped: this boat, or the whole fleet.
+    /// Stop, and stay stopped: this boat or the whole fleet.
     EStop(Scope),
-    /// The E-stop is over.
+    /// End the E-stop.
     Release(Scope),
-    /// The boat's own controller takes over with a task.
+    /// Hand the boat to its own controller with this task.
     Delegate(Task),
 }
 
-/// What an E-stop is for. One is released without the other.
+/// The scope of an E-stop. Each scope is released separately.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scope {
-    /// This boat.
+    /// This boat alone.
     Boat,
-    /// All boats.
+    /// The whole fleet.
     Fleet,
 }
 
-/// What the boat's own controller does.
+/// A task of the boat's own controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Task {
-    /// Keeps its station.
+    /// Keep station.
     StationKeep,
-    /// Goes to its emergency recovery point.
+    /// Go to the emergency recovery point.
     GoToErp,
-    /// Sails the mission that was uploaded.
+    /// Run the uploaded mission.
     Mission,
-    /// Is in another mode.
+    /// Run another mode of the boat.
     Mode(BoatMode),
 }
 
 /// The state of the supervisor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum State {
-    /// Standby, waiting to be armed.
+    /// Standby; waiting to be armed.
     Safed,
-    /// Following orders.
+    /// Following orders from agents.
     Armed,
-    /// A failsafe, until it is armed anew.
+    /// Stopped by a failsafe until it is armed again.
     Failsafe {
-        /// Why.
+        /// Why it was stopped.
         cause: Cause,
-        /// What the boat's own controller does meanwhile; with nothing, standby.
+        /// The task of the boat's own controller meanwhile; `None` means standby.
         task: Option<Task>,
     },
-    /// The boat's own controller takes over with a task.
+    /// The boat's own controller runs this task.
     Delegated(Task),
     /// Standby until the E-stop is released.
     EStopped,
 }
 
-/// What the boat is sent now.
+/// What to send the boat now.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Action {
-    /// Standby; after thrust, thrust zero before it.
+    /// Standby; after thrust, thrust zero comes first.
     Standby,
     /// Thrust zero.
     Zero,
-    /// What the order says.
+    /// The order's set-point.
     Follow,
-    /// A task for its own controller.
+    /// A task for the boat's own controller.
     Task(Task),
 }
 
-/// Why a request is refused.
+/// The reason for refusing a request.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum Refusal {
-    /// These things are missing.
+    /// These conditions are missing.
     #[error("missing: {}", .0.iter().map(|cause| cause.missing()).collect::<Vec<_>>().join("; "))]
     NotReady(Vec<Cause>),
     /// An E-stop is in force.
@@ -172,14 +175,14 @@ pub enum Refusal {
     EStopped,
 }
 
-/// The result of a step.
+/// The result of one step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step {
-    /// What the boat is sent.
+    /// What to send the boat.
     pub action: Action,
-    /// Why the request was refused.
+    /// Why the request was refused, if it was.
     pub refusal: Option<Refusal>,
-    /// The state before, if it changed.
+    /// The previous state, if it changed.
     pub before: Option<State>,
 }
 
@@ -187,28 +190,28 @@ pub struct Step {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Supervisor {
     state: State,
-    /// E-stops in force: of the boat, of the fleet.
+    /// E-stops in force: boat, fleet.
     stops: [bool; 2],
-    /// Whether to arm by itself as soon as everything is there, once.
+    /// Whether to arm once without a request, as soon as the boat is ready.
     arms_itself: bool,
     actions: FailsafeActions,
 }
 
 impl Supervisor {
-    /// A safed supervisor. With `arms_itself` it arms when it is ready for the first time, unless an operator requests
-    /// anything before; after whatever stops it then, it has to be armed by request.
+    /// A safed supervisor. With `arms_itself` it arms when it is ready for the first time, unless
+    /// an operator makes a request before. After any later stop it must be armed by request.
     #[must_use]
     pub fn new(arms_itself: bool, actions: FailsafeActions) -> Supervisor {
         Supervisor { state: State::Safed, stops: [false; 2], arms_itself, actions }
     }
 
-    /// The state.
+    /// The current state.
     #[must_use]
     pub fn state(&self) -> State {
         self.state
     }
 
-    /// Which E-stops are in force, in words.
+    /// The E-stops in force, as text.
     #[must_use]
     pub fn stopped_by(&self) -> &'static str {
         match self.stops {
@@ -219,17 +222,17 @@ impl Supervisor {
         }
     }
 
-    /// Makes one step.
+    /// Advances the state machine by one step.
     pub fn step(&mut self, now: &Conditions, request: Option<OperatorRequest>) -> Step {
         let before = self.state;
         let refusal = request.and_then(|request| self.take_request(now, request));
         if self.arms_itself && self.state == State::Safed && now.missing().is_empty() {
             self.state = State::Armed;
         }
-        // After the request: an arming that is granted and fails in the same step ends in the
-        // failsafe, with its cause.
+        // After the request: if arming is granted and fails in the same step, it ends in the
+        // failsafe with its cause.
         self.check_failsafes(now);
-        // Arming by itself is used up by the first change of state.
+        // Any change of state or request uses up self-arming.
         self.arms_itself &= self.state == State::Safed && request.is_none();
         let changed = (self.state != before).then_some(before);
         Step { action: self.action(now), refusal, before: changed }
@@ -263,7 +266,7 @@ impl Supervisor {
     fn check_failsafes(&mut self, now: &Conditions) {
         self.state = match self.state {
             _ if self.is_stopped() => State::EStopped,
-            // Released, it is safed and not what it was before: somebody has to arm it.
+            // After release the boat is safed, whatever its state before: somebody has to arm it.
             State::EStopped => State::Safed,
             State::Armed => now.failsafe().map_or(State::Armed, |cause| self.failsafe(now, cause)),
             State::Delegated(task) => now.unfit_failsafe(task).map_or(self.state, |cause| self.failsafe(now, cause)),
@@ -272,37 +275,38 @@ impl Supervisor {
         };
     }
 
-    /// The failsafe of this cause, with what the boat does after it, if it still can.
+    /// The failsafe of this cause, with its configured task if the boat can still do it.
     fn failsafe(&self, now: &Conditions, cause: Cause) -> State {
         let task = self.task_after(cause).filter(|task| now.hindrance(*task).is_none());
         State::Failsafe { cause, task }
     }
 
-    /// A task after a failsafe goes on until the boat cannot do it, or something graver happens.
+    /// Continues a task after a failsafe until the boat cannot do it or a graver cause occurs.
     fn watch_task(&self, now: &Conditions, cause: Cause, task: Task) -> State {
         if let Some(cause) = now.hindrance(task) {
             return State::Failsafe { cause, task: None };
         }
-        // Of two causes the geofence decides before the battery: a boat that leaves its water
-        // endangers others, one that runs empty only itself.
+        // The geofence takes precedence over the battery: a boat that leaves its water endangers
+        // others, one that runs empty only itself.
         let graver = now.causes().find(|other| other.gravity() > cause.gravity());
         graver.map_or(self.state, |graver| self.failsafe(now, graver))
     }
 
-    /// What the boat does after a failsafe of this cause.
+    /// The configured task after a failsafe of this cause.
     fn task_after(&self, cause: Cause) -> Option<Task> {
         let action = match cause {
             Cause::OrderStale => self.actions.order_stale,
             Cause::Geofence => self.actions.geofence,
             Cause::BatteryLow => self.actions.battery_low,
             Cause::Hung(_) => self.actions.hung,
-            // It hears nothing or obeys nobody, does not know where it is or points, or is not moved by its thrusters.
+            // The boat has no link or another master, lost its position or heading, or does not
+            // respond to thrust.
             _ => FailsafeAction::Standby,
         };
         match action {
             FailsafeAction::Standby => None,
-            // For four causes only. With an action for each, somebody would let a boat keep
-            // station on a lost fix.
+            // For four causes only. With an action for each, somebody would let a boat keep station
+            // on a lost fix.
             FailsafeAction::StationKeep => Some(Task::StationKeep),
             FailsafeAction::GoToErp => Some(Task::GoToErp),
         }
@@ -310,8 +314,8 @@ impl Supervisor {
 
     fn action(&self, now: &Conditions) -> Action {
         match self.state {
-            // Thrust zero in mode T and not standby: it goes on by itself when the box is
-            // clear.
+            // Thrust zero in mode T rather than standby: the boat continues by itself when the box
+            // is clear.
             State::Armed if now.blocked => Action::Zero,
             State::Armed => Action::Follow,
             State::Delegated(task) => Action::Task(task),
@@ -322,7 +326,7 @@ impl Supervisor {
 }
 
 impl Conditions {
-    /// What speaks against driving the boat, the gravest first.
+    /// Reasons against driving the boat, gravest first.
     fn causes(&self) -> impl Iterator<Item = Cause> {
         let control = match self.control {
             Control::Granted => None,
@@ -333,46 +337,45 @@ impl Conditions {
             Control::Foreign => Some(Cause::ForeignOrders),
         };
         let link = (!self.link).then_some(Cause::LinkLost);
-        // Without navigation nobody knows.
+        // Unknown without navigation.
         let geofence = (!self.inside && self.nav.is_none()).then_some(Cause::Geofence);
         let battery = self.battery_low.then_some(Cause::BatteryLow);
         let order = (!self.order_fresh).then_some(Cause::OrderStale);
         let hung = self.hung_s.map(Cause::Hung);
         let (nav, thrust) = (self.nav.map(Cause::Nav), self.thrust.map(Cause::Thrust));
-        // The order in which they are shown to operators: what makes the others meaningless
-        // comes first.
+        // The order in which operators see them: a cause that makes others meaningless comes first.
         [link, hung, control, nav, thrust, geofence, battery, order].into_iter().flatten()
     }
 
-    /// The failsafe of an armed boat.
+    /// The failsafe cause of an armed boat.
     #[must_use]
     pub fn failsafe(&self) -> Option<Cause> {
         self.causes().next()
     }
 
-    /// The same for a delegated boat, which needs no order, and for some tasks more.
+    /// The failsafe cause of a delegated boat: no order is needed, but some tasks need more.
     fn unfit_failsafe(&self, task: Task) -> Option<Cause> {
         self.causes().find(|cause| *cause != Cause::OrderStale).or(self.missing_for(task))
     }
 
-    /// What makes a task impossible after a failsafe, whatever caused that.
+    /// What makes a task impossible after a failsafe of any cause.
     fn hindrance(&self, task: Task) -> Option<Cause> {
         self.causes().find(|cause| !cause.leaves_control()).or(self.missing_for(task))
     }
 
-    /// What a task needs beside what all of them do.
+    /// What this task needs beyond the common conditions.
     fn missing_for(&self, task: Task) -> Option<Cause> {
         (task == Task::GoToErp && !self.recovery_point).then_some(Cause::NoRecoveryPoint)
     }
 
-    /// Everything that is missing for arming.
+    /// All conditions that are missing for arming.
     #[must_use]
     pub fn missing(&self) -> Vec<Cause> {
-        // The mode of a boat that is not commanded means nothing.
+        // The reported mode means nothing while we do not command the boat.
         self.causes().filter(|cause| !matches!(cause, Cause::Disobeyed(_) | Cause::Deaf)).collect()
     }
 
-    /// Everything that is missing for delegating a task to the boat's own controller.
+    /// All conditions that are missing for delegating this task to the boat's own controller.
     #[must_use]
     pub fn unfit(&self, task: Task) -> Vec<Cause> {
         let general = self.missing().into_iter().filter(|cause| *cause != Cause::OrderStale);

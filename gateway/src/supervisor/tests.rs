@@ -1,4 +1,4 @@
-//! Every state the supervisor can reach, with every input: nothing leads to thrust that should not.
+//! Tests every reachable state of the supervisor with every input: none leads to unintended thrust.
 
 use super::*;
 
@@ -15,7 +15,7 @@ const GOOD: Conditions = Conditions {
     order_fresh: true,
 };
 
-/// What is done after each cause that can be followed by anything: all the same, and all unlike.
+/// Failsafe actions for the causes that allow one: all the same, and all different.
 fn all_actions() -> Vec<FailsafeActions> {
     use FailsafeAction::{GoToErp, Standby, StationKeep};
     let of = |[order_stale, geofence, battery_low, hung]: [FailsafeAction; 4]| FailsafeActions {
@@ -80,7 +80,8 @@ fn all_requests() -> Vec<Option<OperatorRequest>> {
         .collect()
 }
 
-/// Calls `check` with every step from every supervisor that can be reached: before, inputs, after, result.
+/// Calls `check` with every step from every reachable supervisor. Arguments: supervisor before,
+/// conditions, request, supervisor after, step.
 fn explore(mut check: impl FnMut(&Supervisor, &Conditions, Option<OperatorRequest>, &Supervisor, &Step)) -> usize {
     let (conditions, requests) = (all_conditions(), all_requests());
     let starts = all_actions().into_iter().flat_map(|actions| [true, false].map(|by_itself| (by_itself, actions)));
@@ -101,7 +102,8 @@ fn explore(mut check: impl FnMut(&Supervisor, &Conditions, Option<OperatorReques
     known.len()
 }
 
-/// What the boat's own controller needs for a task, whatever else is wrong: to be told, to know where it is, and thrusters.
+/// Whether the boat's own controller can do a task, apart from other faults: link, control,
+/// position, thrusters.
 fn can_do(now: &Conditions, task: Task) -> bool {
     let granted = matches!(now.control, Control::Granted);
     let has_place = task != Task::GoToErp || now.recovery_point;
@@ -175,7 +177,8 @@ fn after_a_failsafe_a_task_is_what_the_file_says_for_its_cause_and_needs_nothing
         };
         let Some(task) = task else {
             assert_eq!(step.action, Action::Standby, "{case}");
-            // It stops for want of a task that was asked for only if the boat cannot do that now, or could not before.
+            // A requested task that lacks a condition stops only if the boat cannot do it now or
+            // could not before.
             let stays = before.state == after.state;
             assert!(stays || wanted.is_none_or(|task| !can_do(now, task)), "{case}");
             return;
@@ -183,12 +186,12 @@ fn after_a_failsafe_a_task_is_what_the_file_says_for_its_cause_and_needs_nothing
         tasks += 1;
         assert_eq!((step.action, wanted), (Action::Task(task), Some(task)), "{case}");
         assert!(can_do(now, task) && !after.is_stopped(), "{case}");
-        // Nobody is sent anywhere who was not driven or delegated before.
+        // A task after a failsafe starts only from a boat that was driven or delegated.
         let was_driven =
             matches!(before.state, State::Armed | State::Delegated(_) | State::Failsafe { task: Some(_), .. });
         let asked = matches!(request, Some(OperatorRequest::Arm | OperatorRequest::Delegate(_)));
         assert!(was_driven || asked || before.arms_itself, "{case}");
-        // Outside of the geofence that is the cause.
+        // Outside the geofence, that is the cause.
         assert!(
             now.inside || cause == Cause::Geofence || step.before.is_none_or(|_| matches!(cause, Cause::Hung(_))),
             "{case}"

@@ -7,10 +7,10 @@ use messages::picture::{Imu, Nav, OwnBoat};
 use primitives::frame::{LatLon, Ned, Rotation};
 use primitives::{SimTime, VehicleId};
 
-/// The time of a step.
+/// Duration of a step, s.
 pub(crate) const STEP_S: f64 = 0.01;
 
-/// A boat that takes up thrust with a lag.
+/// A boat that responds to thrust with a lag.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Boat {
     pub(crate) at: Ned,
@@ -20,7 +20,8 @@ pub(crate) struct Boat {
 }
 
 impl Boat {
-    /// Moves on by one step: thrust and speed with a lag of two seconds, difference and turn with one of half a second.
+    /// Advances by one step: thrust and speed have a lag of two seconds, thrust difference and turn
+    /// rate one of half a second.
     pub(crate) fn step(&mut self, order: Order) {
         let (speed_m_s, turn_rad_s) = match order {
             Order::Hold => (0.0, 0.0),
@@ -37,7 +38,7 @@ impl Boat {
         self.at = self.at + Rotation::from_heading(self.psi_rad).ahead().scaled(self.speed_m_s * STEP_S);
     }
 
-    /// What its sensors measure, if its receiver says that it is at `place`.
+    /// Its sensor readings if its receiver reports `place`.
     pub(crate) fn measured(&self, now: SimTime, place: Ned) -> OwnBoat {
         let nav = Nav {
             north_m: place.north,

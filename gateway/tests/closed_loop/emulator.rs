@@ -1,4 +1,5 @@
-//! The emulated boat alone: what it does not follow, and what it sends. The rest is in `scenarios/emulator.txt`.
+//! The emulated boat alone: what it ignores and what it sends. `scenarios/emulator.txt` has the
+//! rest.
 
 use crate::boat::emulated;
 use crate::rig::{Rig, plan};
@@ -17,7 +18,7 @@ fn boat(change: impl FnOnce(&mut emulator::Plan)) -> Emulator {
 
 fn send(boat: &mut Emulator, body: &str) {
     boat.receive(SimTime::ZERO, Port::Secondary, with_checksum(body).as_bytes());
-    // It has to know where it is to do anything.
+    // It does nothing without a position.
     let own = messages::picture::OwnBoat::new(primitives::VehicleId(0), messages::picture::Nav::default());
     boat.observe(SimTime::ZERO, &own);
 }

@@ -1,6 +1,7 @@
-//! The gateway and the emulated boat in a closed loop in memory: the test controls time and injects faults.
+//! The gateway and the emulated boat in a closed loop in memory: the test controls time and injects
+//! faults.
 //!
-//! Most of it is text: `scenarios/README.md`.
+//! Most tests are text files: see `scenarios/README.md`.
 
 mod boat;
 mod emulator;

@@ -1,30 +1,32 @@
-//! The test oracle: checks every sentence that is sent against the safety rules, independent of the implementation.
+//! The test oracle: checks every sent sentence against the safety rules, independently of the
+//! implementation.
 
 use gateway::nmea::{FixQuality, Operator, Sentence};
 use primitives::SimTime;
 
-/// The state as seen from outside of the gateway.
+/// The state as seen from outside the gateway.
 #[derive(Debug)]
 pub(crate) struct Oracle {
     pub(crate) ttl_s: f64,
     pub(crate) nav_age_max_s: f64,
     pub(crate) control_age_max_s: f64,
-    /// When an order came that was sound and newer than all before.
+    /// When the last valid and newer order arrived.
     pub(crate) ordered: SimTime,
-    /// When the last sound fix came through, a heading, and the boat's report that we command it.
+    /// When the last valid fix, the last heading, and the boat's last report that we command it
+    /// arrived.
     pub(crate) fixed: SimTime,
     pub(crate) headed: SimTime,
     pub(crate) granted: SimTime,
     pub(crate) other_operator: bool,
-    /// E-stops in force: of the boat, of the fleet.
+    /// E-stops in force: boat, fleet.
     pub(crate) stops: [bool; 2],
     pub(crate) armed: bool,
     pub(crate) link_up: bool,
-    /// Sentences that drive, and all.
+    /// Number of driving sentences, and of all sentences.
     pub(crate) driving: u64,
     pub(crate) all: u64,
     pub(crate) last: String,
-    /// The beginning of a sentence from the boat.
+    /// An incomplete sentence from the boat.
     pub(crate) partial: String,
 }
 
@@ -50,13 +52,13 @@ impl Oracle {
         }
     }
 
-    /// A new link: nothing is known of the boat at its end.
+    /// Resets what is known about the boat, for a new link.
     pub(crate) fn forget(&mut self) {
         self.partial.clear();
         (self.fixed, self.headed, self.granted) = (SimTime::LONG_AGO, SimTime::LONG_AGO, SimTime::LONG_AGO);
     }
 
-    /// Takes bytes from the boat: whole sentences with right checksums count.
+    /// Records bytes from the boat: only complete sentences with valid checksums count.
     pub(crate) fn note(&mut self, now: SimTime, piece: &[u8]) {
         self.partial += &String::from_utf8_lossy(piece);
         while let Some((line, rest)) = self.partial.split_once(['\r', '\n']) {
@@ -107,7 +109,7 @@ impl Oracle {
             "T" => number(4) != 0.0 || number(5) != 0.0,
             "G" => number(4) != 0.0,
             "L" | "F" => false,
-            // The boat's own controller, at an operator's request.
+            // The boat's own controller, requested by an operator.
             "R" | "H" | "W" | "C" | "N" | "I" | "3" | "D" | "S" => {
                 self.is_fit(now, line);
                 assert!((0.0..=70.0).contains(&number(4)), "at {now}: {line:?}");

@@ -1,4 +1,4 @@
-//! Random scenarios, in which anything may happen in any order: the oracle looks at every sentence.
+//! Random scenarios with any events in any order: the oracle checks every sentence.
 
 use crate::script::{play, played};
 use proptest::prelude::*;
@@ -28,14 +28,14 @@ fn lines() -> impl Strategy<Value = Vec<String>> {
     proptest::collection::vec(one, 1..60)
 }
 
-/// When everything is quiet again, the boat can be set going.
+/// With all disturbances over, the boat can be armed.
 const QUIET: &str = "open both\ntamper none\nother none\nfixes live\nvolts 25\ncontrol Secondary\nlink up\norder hold
 appear 60 40\noperator release\nfleet release\nrun 12\noperator arm\nexpect refused =\nexpect state = armed";
 
 /// The only sentence of a dry run.
 const STANDBY: &str = "$PSEAC,L,0,0,0,*14\r\n";
 
-/// Then orders are followed and tasks delegated as on the water.
+/// In a dry run, orders and tasks are processed as usual.
 const DRIVEN: &str = "order steer 90 2\nrun 60\nexpect state = armed\nexpect would-send ^ $PSEAC,T,0,\nexpect mode = L
 operator mission 80,60\nexpect refused ~ a dry run\noperator station_keep\nrun 20\nexpect state = delegated: station keeping
 expect would-send ^ $PSEAC,R\nfleet e_stop\nrun 1\nexpect state = e-stopped";

@@ -1,4 +1,4 @@
-//! How often orders become sentences, and sentences reports.
+//! The rates at which orders become sentences and sentences become reports.
 
 use crate::script::played;
 use gateway::bridge::Input;
@@ -31,7 +31,7 @@ fn ten_thousand_orders_a_second_come_out_as_twenty_sentences() {
 fn a_new_order_does_not_wait_for_the_period_of_repetitions() {
     let mut rig = played("under-way\norder none");
     for i in 0..30 {
-        // Orders come at ten a second, but at no fixed place between the repetitions.
+        // Orders come ten times a second, at varying times between the repetitions.
         rig.run(0.1 + 0.01 * f64::from(i % 3));
         let (order, given) = (steer(f64::from(90 + i), 1.5), rig.now + SimTime(1));
         let before = rig.sent.len();
@@ -47,7 +47,7 @@ fn navigation_reports_agree_with_the_boat() {
     let apart_m = report.nav.at().distance(rig.boat.at);
     // Minutes have five decimals: 18.5 mm in latitude.
     assert!(apart_m < 0.05 && report.valid, "{apart_m} m, {report:?}");
-    // The compass is magnetic, the sim's heading true.
+    // The compass is magnetic, the sim's heading is true.
     assert!((report.nav.psi_rad - rig.boat.psi_rad).abs() < 0.002, "{report:?} {:?}", rig.boat);
     assert!((report.nav.surge_m_s - rig.boat.speed_m_s).abs() < 0.02, "{report:?} {:?}", rig.boat);
     let reports_per_s = rig.navs.len() as f64 / rig.now.as_s();

@@ -1,4 +1,4 @@
-//! What is recorded plays again just so, whole or cut.
+//! A recording, complete or cut off, is reproduced exactly by its replay.
 
 use crate::script::played;
 use gateway::bridge::Event;
@@ -8,11 +8,11 @@ use primitives::SimTime;
 use recording::{Bag, Facts, Kind, Opening, RecordingError, Writer};
 use std::io::Cursor;
 
-/// A drive by orders of odd numbers, a failsafe, a cut of the link, and armed again.
+/// A drive with unrounded orders, a failsafe, a link failure, and arming again.
 const DRIVE: &str = "boat\norder steer 33.333333333333336 1.1\nrun 1\noperator arm\nrun 5\norder none\nrun 3
 order steer 200 0.7\nrun 1\nlink down\nrun 1\nlink up\nrun 2\noperator arm\nrun 2";
 
-/// A recording of a drive.
+/// A recording of the drive.
 fn recording(end_well: bool) -> (Vec<u8>, usize, usize) {
     let rig = played(DRIVE);
     let opening = opening(&crate::rig::plan("surveyor.toml", false), 1_700_000_000_000_000_000, "c0ffee");
@@ -24,7 +24,7 @@ fn recording(end_well: bool) -> (Vec<u8>, usize, usize) {
     entries.iter().for_each(|entry| writer.write(entry, 1_700_000_000_000_000_000).expect("memory"));
     let mut file = writer.end(Facts::new()).expect("memory").into_inner();
     if !end_well {
-        // All of the messages, and nothing of what follows them.
+        // Keep all messages and nothing after them.
         let end = file.windows(7).rposition(|window| window == b"the end").expect("it is there");
         file.truncate(end + b"the end\"}}\0".len());
     }
@@ -85,7 +85,7 @@ fn what_is_no_recording_is_refused() {
     assert!(refused(version).contains("recorded by Squall 9.1.0"));
     assert!(refused(|opening| opening.kind = Kind::Game).contains("not a recording of a gateway: it is of a game"));
     assert!(refused(|opening| opening.facts.clear()).contains("its plan is not understood"));
-    // Before gateways recorded bags, their headers had no checksum.
+    // Headers had no checksum before gateways recorded bags.
     let mut writer = mcap::Writer::new(Cursor::new(Vec::new())).expect("memory");
     let metadata = [("version".to_owned(), primitives::VERSION.to_owned())].into();
     writer.write_metadata(&mcap::records::Metadata { name: "gateway".to_owned(), metadata }).expect("memory");

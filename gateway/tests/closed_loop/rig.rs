@@ -1,4 +1,5 @@
-//! The test rig: a boat with simple dynamics, its emulated front seat, the gateway, and a link with injectable faults.
+//! The test rig: a boat with simple dynamics, its emulated front seat, the gateway, and a faulty
+//! link.
 
 use crate::boat::{Boat, STEP_S, emulated};
 use crate::oracle::Oracle;
@@ -18,22 +19,22 @@ pub(crate) struct Rig {
     steps: u64,
     pub(crate) boat: Boat,
     pub(crate) emulator: Emulator,
-    /// What its thrusters are ordered.
+    /// The order for the boat's thrusters.
     pub(crate) boat_order: Order,
     pub(crate) bridge: Bridge,
     pub(crate) oracle: Oracle,
-    /// Whether bytes go through: to the boat, and from it.
+    /// Whether bytes pass to the boat and from it.
     pub(crate) open: (bool, bool),
     pub(crate) tamper: Option<Tamper>,
     /// The agent's order, ten times a second; `None` without an agent.
     pub(crate) order: Option<Order>,
-    /// An agent that hangs repeats the time of its last picture.
+    /// Whether the agent hangs and repeats the time of its last picture.
     pub(crate) hangs: bool,
     given: SimTime,
     pub(crate) others: Option<Vec<Ned>>,
-    /// A receiver that measures nothing new.
+    /// Whether the receiver measures nothing new.
     pub(crate) frozen: bool,
-    /// The place that the receiver reports as new again and again.
+    /// The position that a stuck receiver keeps reporting as new.
     pub(crate) pinned: Option<Ned>,
     pub(crate) offset: Ned,
     pub(crate) events: Vec<(SimTime, Event)>,
@@ -45,13 +46,13 @@ pub(crate) struct Rig {
     pub(crate) remark: String,
     /// How long the last wait took, s.
     pub(crate) after_s: f64,
-    /// Where the boat was and what had been counted at the last mark.
+    /// The boat's position and the counts at the last mark.
     pub(crate) marked: (Ned, Vec<(String, u64)>),
-    /// All inputs of the gateway, and its outputs.
+    /// All inputs of the gateway with their outputs.
     pub(crate) turns: Vec<(SimTime, Input, Output)>,
 }
 
-/// The plan of a gateway with this file's settings, on the field of the first game.
+/// The plan of a gateway with the settings of this file, on the field of the first game.
 pub(crate) fn plan(file: &str, arms_itself: bool) -> Plan {
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios");
     let game = scenario::load(&scenarios.join("games/pav01_vs_pav01.toml")).unwrap_or_else(|e| panic!("{e}"));
@@ -67,7 +68,7 @@ pub(crate) fn plan(file: &str, arms_itself: bool) -> Plan {
 }
 
 impl Rig {
-    /// A boat of this plan, whose emulated front seat is as `change` makes it.
+    /// A rig with this plan, whose emulated front seat is modified by `change`.
     pub(crate) fn of(plan: Plan, change: impl FnOnce(&mut emulator::Plan)) -> Rig {
         let Site { field, declination_rad, .. } = plan.site.as_ref().expect("the rig has one");
         let mut emulator = emulated(field.plan.datum, *declination_rad);
@@ -124,7 +125,7 @@ impl Rig {
 
     fn take_out(&mut self, out: Output) {
         for event in out.events {
-            // Whatever state it goes to from armed, it has to be armed anew.
+            // Any state change from armed requires arming again.
             if matches!(&event, Event::State { from, .. } if from == "armed") {
                 self.oracle.armed = false;
             }
@@ -158,7 +159,7 @@ impl Rig {
         }
     }
 
-    /// Runs until `is_so`, no longer than `limit_s`; returns after how many seconds.
+    /// Runs until `is_so`, at most `limit_s`; returns the elapsed seconds.
     pub(crate) fn run_until(&mut self, limit_s: f64, mut is_so: impl FnMut(&Rig) -> bool) -> f64 {
         let start = self.now;
         while !is_so(self) {
@@ -194,7 +195,7 @@ impl Rig {
         self.remark = self.emulator.take_remark().unwrap_or_else(|| std::mem::take(&mut self.remark));
     }
 
-    /// The boat's sensors measure, and it sends telemetry.
+    /// Measures the boat and sends telemetry.
     fn send_telemetry(&mut self) {
         let place = self.pinned.unwrap_or(self.boat.at + self.offset);
         let own = self.boat.measured(self.now, place);
@@ -215,7 +216,7 @@ impl Rig {
         }
     }
 
-    /// Telemetry that was held up, all of it in one packet.
+    /// Delivers delayed telemetry in one packet.
     pub(crate) fn deliver_late(&mut self, bytes: usize) {
         let mut late = Vec::new();
         while late.len() < bytes {
@@ -224,20 +225,20 @@ impl Rig {
         self.give(&Input::Bytes(late));
     }
 
-    /// A back seat or an operator sends this body.
+    /// Sends a sentence with this body from a back seat or an operator.
     pub(crate) fn send(&mut self, port: Port, body: &str) {
         self.emulator.receive(self.now, port, with_checksum(body).as_bytes());
         self.boat_order = self.emulator.order(self.now);
     }
 
-    /// What the gateway counted, and the commands that the boat followed and ignored.
+    /// The gateway's counters, and how many commands the boat followed and ignored.
     pub(crate) fn counts(&self) -> Vec<(String, u64)> {
         let (followed, ignored) = self.emulator.counters();
         let boat = [("followed".to_owned(), followed), ("ignored".to_owned(), ignored)];
         self.bridge.status(self.now).counts.into_iter().chain(boat).collect()
     }
 
-    /// From here on places, sentences, reports and events are counted anew.
+    /// Starts counting positions, sentences, reports and events anew.
     pub(crate) fn mark(&mut self) {
         self.marked = (self.boat.at, self.counts());
         (self.sent, self.navs, self.events) = (vec![], vec![], vec![]);

@@ -1,4 +1,4 @@
-//! Scenarios in text: what happens to a boat and its gateway, line by line, and what is expected of them.
+//! Text scenarios: events for a boat and its gateway, line by line, with the expected results.
 //!
 //! The language is described in `scenarios/README.md`.
 
@@ -16,7 +16,7 @@ use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
-/// A boat that sails east at 1.5 m/s, ten seconds on.
+/// A boat ten seconds into sailing east at 1.5 m/s.
 const UNDER_WAY: &str = "order steer 90 1.5\nrun 1\noperator arm\nexpect state = armed\nexpect refused =\nrun 9
 expect speed > 1.2";
 
@@ -39,7 +39,8 @@ fn every_scenario_goes_as_it_is_written() {
     assert!(count > 70, "only {count} scenarios were found");
 }
 
-/// The scripts of a scenario: one for each row of its table, or the only one. The first line is the title.
+/// The scripts of a scenario: one for each row of its table, or a single one. The first line is the
+/// title.
 fn cases(scenario: &str) -> Vec<String> {
     let lines = scenario.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'));
     let (rows, script): (Vec<&str>, Vec<&str>) = lines.partition(|line| line.starts_with('|'));
@@ -52,14 +53,14 @@ fn cases(scenario: &str) -> Vec<String> {
     rows.iter().map(filled).collect()
 }
 
-/// The line at which a script fails, if it does.
+/// The line at which a script fails, if any.
 fn failure(script: &str) -> Option<&str> {
     let mut rig = played("boat");
     let fails = |line: &&str| catch_unwind(AssertUnwindSafe(|| play(&mut rig, line))).is_err();
     script.lines().skip(1).find(fails)
 }
 
-/// What a script leads to.
+/// Runs a script and returns the rig.
 pub(crate) fn played(script: &str) -> Rig {
     let mut rig = Rig::of(plan("surveyor.toml", false), |_| {});
     play_all(&mut rig, script);
@@ -70,7 +71,7 @@ fn play_all(rig: &mut Rig, script: &str) {
     script.lines().for_each(|line| play(rig, line));
 }
 
-/// Plays one line.
+/// Runs one line.
 pub(crate) fn play(rig: &mut Rig, line: &str) {
     let words: Vec<&str> = line.split_whitespace().collect();
     let rest = |from: usize| words[from..].join(" ");
@@ -139,7 +140,7 @@ fn named<T: DeserializeOwned>(name: &str) -> T {
     serde_json::from_value(name.into()).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// A boat by its gateway's file and pairs of settings.
+/// A boat from its gateway's file and pairs of settings.
 fn boat(options: &[&str]) -> Rig {
     let (file, options) = match options {
         [file, rest @ ..] if file.ends_with(".toml") => (*file, rest),
@@ -166,7 +167,7 @@ fn boat(options: &[&str]) -> Rig {
     Rig::of(plan, |boat| (boat.watchdog_s, boat.integers, boat.charge) = (watchdog_s, integers, charge))
 }
 
-/// Places of a polygon, `x,y;x,y;…`.
+/// Corners of a polygon from `x,y;x,y;…`.
 fn places_of(text: &str) -> Vec<[f64; 2]> {
     mission_of(&text.split(';').collect::<Vec<_>>()).waypoints
 }
@@ -183,7 +184,7 @@ fn order_of(words: &[&str]) -> Option<Order> {
     })
 }
 
-/// A mission of places `x,y` on the field or `@latitude,longitude`.
+/// A mission with places `x,y` on the field or `@latitude,longitude`.
 fn mission_of(words: &[&str]) -> Mission {
     let frame = LocalFrame::new(plan("surveyor.toml", false).site.expect("the rig has one").field.plan.datum);
     let place = |text: &str| {
@@ -205,7 +206,7 @@ fn mission_of(words: &[&str]) -> Mission {
     mission
 }
 
-/// The value, comparison and wanted value of a condition.
+/// The value, operator and expected value of a condition.
 fn condition_of(condition: &str) -> [String; 3] {
     let words: Vec<&str> = condition.split_whitespace().collect();
     let at = words.iter().position(|word| COMPARISONS.contains(word)).expect("a comparison");
@@ -227,7 +228,7 @@ fn holds(rig: &Rig, condition: &str) -> bool {
     }
 }
 
-/// A value by its name.
+/// The value with this name.
 fn value(rig: &Rig, name: &str) -> String {
     let boat = &rig.boat;
     let texts = || rig.sent.iter().map(|(_, bytes)| String::from_utf8_lossy(bytes).trim_end().replace("\r\n", " "));

@@ -1,14 +1,14 @@
-//! What a link may do to the bytes from a boat, by name.
+//! Named manipulations of the bytes from a boat.
 
-/// Makes packets of a burst of telemetry.
+/// Turns a burst of telemetry into packets.
 pub(crate) type Tamper = Box<dyn FnMut(Vec<u8>) -> Vec<Vec<u8>>>;
 
-/// The sentence of a body.
+/// A sentence with this body.
 pub(crate) fn with_checksum(body: &str) -> String {
     format!("${body}*{:02X}\r\n", body.bytes().fold(0, |a, b| a ^ b))
 }
 
-/// The tampering of this name, with its parameters; `none` leaves the bytes alone.
+/// The manipulation with this name and its parameters; `none` changes nothing.
 pub(crate) fn tamper(words: &[&str]) -> Option<Tamper> {
     Some(match words {
         ["none"] => return None,
@@ -48,7 +48,7 @@ fn replacing(pairs: &[&str]) -> impl Fn(&str) -> String + use<> {
     move |text| pairs.iter().fold(text.to_owned(), |text, [from, to]| text.replace(from, to))
 }
 
-/// Changes the body of each sentence, with right checksums.
+/// Changes the body of each sentence, with valid checksums.
 fn rewritten(mut change: impl FnMut(&str) -> String + 'static) -> Tamper {
     let mut line = move |line: &str| {
         let body = line.trim_start_matches('$').split('*').next().unwrap_or_default();
@@ -57,7 +57,7 @@ fn rewritten(mut change: impl FnMut(&str) -> String + 'static) -> Tamper {
     Box::new(move |bytes| vec![String::from_utf8_lossy(&bytes).lines().map(&mut line).collect::<String>().into_bytes()])
 }
 
-/// Changes the fields of fixes alone.
+/// Changes the fields of fixes only.
 fn refixed(change: impl Fn(&mut Vec<String>) + 'static) -> Tamper {
     rewritten(move |body| {
         let mut fields: Vec<String> = body.split(',').map(str::to_owned).collect();
@@ -68,7 +68,7 @@ fn refixed(change: impl Fn(&mut Vec<String>) + 'static) -> Tamper {
     })
 }
 
-/// Fields of `PSEAB` by number, each with what it says.
+/// Replaces fields of `PSEAB`, given by number.
 fn battery_fields(pairs: &[&str]) -> Tamper {
     let said = |two: &[&str]| (two[0].parse::<usize>().expect("a field's number"), two[1].to_owned());
     let pairs: Vec<_> = pairs.chunks(2).map(said).collect();
@@ -81,7 +81,7 @@ fn battery_fields(pairs: &[&str]) -> Tamper {
     })
 }
 
-/// A receiver that repeats its first fix, time and all, and still calls it good.
+/// A receiver that repeats its first fix with its time, and still reports it as good.
 fn first_fix_again() -> Tamper {
     let mut first = None;
     Box::new(move |bytes| {
@@ -92,7 +92,7 @@ fn first_fix_again() -> Tamper {
     })
 }
 
-/// A compass that shows for ever what it showed first.
+/// A compass that always shows its first reading.
 fn frozen_compass() -> Tamper {
     let mut first = None;
     rewritten(move |body| {
@@ -105,7 +105,7 @@ fn frozen_compass() -> Tamper {
     })
 }
 
-/// A compass that shows this much more than it should, degrees.
+/// A compass that reads this much too high, degrees.
 fn turned_compass(by_deg: f64) -> Tamper {
     rewritten(move |body| {
         let mut fields: Vec<String> = body.split(',').map(str::to_owned).collect();
@@ -117,7 +117,7 @@ fn turned_compass(by_deg: f64) -> Tamper {
     })
 }
 
-/// Garbage between and within sentences.
+/// Adds garbage between and within sentences.
 fn noise() -> Tamper {
     let mut count = 0_u8;
     Box::new(move |bytes| {

@@ -1,4 +1,4 @@
-//! Addresses as people type them, listed in `addresses.txt`.
+//! Link addresses as users type them, listed in `addresses.txt`.
 
 use gateway::link::LinkAddress::{self, Pty, Serial, Tcp, Udp, UdpListen};
 use gateway::link::Side::{self, Connects, Listens};

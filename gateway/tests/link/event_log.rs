@@ -1,11 +1,11 @@
-//! The log of a link's events, for tests that wait for one of them.
+//! A log of a link's events, for tests that wait for one of them.
 
 use gateway::link::{Link, LinkAddress, LinkEvent, LinkSettings};
 use std::io::Read;
 use std::sync::{Arc, Condvar, Mutex};
 use std::time::{Duration, Instant};
 
-/// Anything takes less, unless it never comes.
+/// Timeout of every wait.
 pub(crate) const LIMIT: Duration = Duration::from_secs(10);
 
 /// All events of a link so far.
@@ -15,12 +15,12 @@ pub(crate) struct EventLog {
     news: Condvar,
 }
 
-/// Settings for tests: short waits, no limit of silence.
+/// Settings for tests: short waits, no silence limit.
 pub(crate) fn patient() -> LinkSettings {
     retrying(Duration::from_millis(20), Duration::from_millis(100))
 }
 
-/// Settings with these waits between attempts, and no limit of silence.
+/// Settings with these waits between attempts and no silence limit.
 pub(crate) fn retrying(retry_first: Duration, retry_max: Duration) -> LinkSettings {
     LinkSettings { silence: None, retry_first, retry_max }
 }
@@ -40,7 +40,7 @@ pub(crate) fn open(address: &LinkAddress, settings: LinkSettings) -> (Link, Arc<
     (link, log)
 }
 
-/// Drops a link, which takes less than 200 ms.
+/// Drops a link; this must take less than 200 ms.
 pub(crate) fn close(link: Link) {
     let start = Instant::now();
     drop(link);
@@ -59,12 +59,12 @@ impl EventLog {
         self.news.notify_all();
     }
 
-    /// All so far, with their times.
+    /// All events so far, with their times.
     pub(crate) fn all(&self) -> Vec<(Instant, LinkEvent)> {
         self.events.lock().unwrap().clone()
     }
 
-    /// Waits until `find` finds what it looks for in all events.
+    /// Waits until `find` returns a result from all events.
     pub(crate) fn until<T>(&self, what: &str, mut find: impl FnMut(&[(Instant, LinkEvent)]) -> Option<T>) -> T {
         let start = Instant::now();
         let mut events = self.events.lock().unwrap();
@@ -78,12 +78,12 @@ impl EventLog {
         }
     }
 
-    /// Waits for the `nth` peer (from 0) to come up; gives its number and when.
+    /// Waits for the `nth` peer (from 0) to connect; returns its number and the time.
     pub(crate) fn up(&self, nth: usize) -> (u32, Instant) {
         self.until("peer up", |events| events.iter().filter_map(up).nth(nth))
     }
 
-    /// Waits for the `nth` peer (from 0) to go; gives why and when.
+    /// Waits for the `nth` peer (from 0) to disconnect; returns the reason and the time.
     pub(crate) fn down(&self, nth: usize) -> (String, Instant) {
         let down = |(at, event): &(Instant, LinkEvent)| match event {
             LinkEvent::Down { reason, .. } => Some((reason.clone(), *at)),
@@ -92,18 +92,18 @@ impl EventLog {
         self.until("peer down", |events| events.iter().filter_map(down).nth(nth))
     }
 
-    /// Waits for an attempt that fails; gives the wait after it.
+    /// Waits for a failed attempt; returns the wait after it.
     pub(crate) fn failure(&self) -> Duration {
         self.until("failure", |events| events.iter().find_map(wait))
     }
 
-    /// Waits until a tag is written.
+    /// Waits until the data with this tag are written.
     pub(crate) fn written(&self, wanted: u64) {
         let is_it = |event: &LinkEvent| matches!(event, LinkEvent::Written { tag, .. } if *tag == wanted);
         self.until("tag written", |events| events.iter().any(|(_, event)| is_it(event)).then_some(()));
     }
 
-    /// Waits until all bytes, of all peers, are these.
+    /// Waits until the bytes from all peers together equal `wanted`.
     pub(crate) fn received(&self, wanted: &[u8]) {
         self.until("the bytes", |events| {
             let received: Vec<u8> = events.iter().flat_map(bytes).collect();
@@ -117,7 +117,7 @@ pub(crate) fn up((at, event): &(Instant, LinkEvent)) -> Option<(u32, Instant)> {
     if let LinkEvent::Up { peer, .. } = event { Some((*peer, *at)) } else { None }
 }
 
-/// The wait after an attempt that failed.
+/// The wait after a failed attempt.
 pub(crate) fn wait((_, event): &(Instant, LinkEvent)) -> Option<Duration> {
     if let LinkEvent::Failed { retry_in, .. } = event { Some(*retry_in) } else { None }
 }

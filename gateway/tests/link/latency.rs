@@ -1,5 +1,5 @@
-//! How long a command takes from `send` to the boat's socket. Run by hand, alone, and in release:
-//! `cargo test --release -p squall-gateway --test link latency -- --ignored --nocapture`.
+//! The latency of a command from `send` to the boat's socket. Run it by hand, alone, and in release
+//! mode: `cargo test --release -p squall-gateway --test link latency -- --ignored --nocapture`.
 
 use crate::event_log::patient;
 use crate::tcp_client::joined;
@@ -23,7 +23,7 @@ fn a_command_reaches_the_system_and_the_boat_soon() {
         link.send(b"$PSEAC,T,0,20,-10,*22\r\n".to_vec(), tag);
         boat.read_exact(&mut [0; 23]).unwrap();
         to_boat.push(start.elapsed());
-        // Asleep in between, as at 10 Hz.
+        // Sleep in between, as at 10 Hz.
         std::thread::sleep(Duration::from_micros(500));
     }
     log.written(COMMANDS - 1);

@@ -1,4 +1,4 @@
-//! A link that is a pseudo-terminal.
+//! Links that provide a pseudo-terminal.
 
 use crate::event_log::{LIMIT, close, listen, patient, read};
 use gateway::link::{Link, LinkAddress, LinkError};
@@ -8,7 +8,7 @@ use std::os::unix::fs::symlink;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// A reader that does not touch the settings, as `cat` would.
+/// Opens a terminal without changing its settings, as `cat` would.
 fn attach(path: impl AsRef<Path>) -> SerialPort {
     let mut reader = SerialPort::open(path, KeepSettings).unwrap();
     reader.set_read_timeout(LIMIT).unwrap();
@@ -24,7 +24,7 @@ fn bytes_go_both_ways_unchanged() {
     let (link, log) = listen("pty");
     log.up(0);
     let mut reader = attach(link.reach());
-    // Neither line ends nor control characters mean anything here.
+    // Line endings and control characters have no special meaning here.
     let all: Vec<u8> = (0..=255).collect();
     link.send(all.clone(), 1);
     assert_eq!(read(&mut reader, 256), all);
@@ -42,7 +42,7 @@ fn who_comes_late_gets_what_is_new() {
         let number = sent_at.len() as u64;
         sent_at.push(Instant::now());
         link.send(line(number), number);
-        // The pace of a boat that talks a lot.
+        // The rate of a boat that sends a lot.
         pause(Duration::from_millis(5));
     }
     let mut reader = attach(link.reach());
@@ -56,7 +56,7 @@ fn who_comes_late_gets_what_is_new() {
 fn what_nobody_reads_does_not_stay() {
     let (link, log) = listen("pty");
     log.up(0);
-    // Attached, and asleep.
+    // Attached, but not reading.
     let mut reader = attach(link.reach());
     link.send(b"stale".to_vec(), 0);
     log.written(0);

@@ -1,4 +1,4 @@
-//! A link to a serial line, with a pseudo-terminal for the boat's end.
+//! Links to a serial line, with a pseudo-terminal as the boat's end.
 
 use crate::event_log::{close, connect, listen, open, patient, wait};
 use gateway::link::{Link, LinkAddress, LinkError, LinkEvent};
@@ -24,7 +24,7 @@ fn bytes_go_both_ways_and_a_hang_up_is_survived() {
 
     drop(boat);
     log.down(0);
-    // The symlink went with the terminal.
+    // The symlink was removed with the terminal.
     let reason = log.until("failure", |events| {
         events.iter().find_map(|(_, event)| match event {
             LinkEvent::Failed { reason, .. } => Some(reason.clone()),
@@ -65,7 +65,7 @@ fn a_speed_that_no_line_has_is_refused() {
     let refused = Link::open(&address, patient(), drop).err().expect("it is no speed");
     assert!(matches!(refused, LinkError::Baud { baud: 1234, .. }), "{refused}");
     assert!(refused.to_string().contains("allowed: [4800, 9600"), "{refused}");
-    // The same with a speed that they do have begins, though no such device is there.
+    // The same with a valid baud rate starts, even though the device does not exist.
     let (_link, log) = open(&LinkAddress::Serial { path: "/dev/none".into(), baud: 9600 }, patient());
     log.failure();
 }
@@ -75,7 +75,7 @@ fn a_slow_line_gets_the_newest_rather_than_all_in_order() {
     let (boat, boat_log) = listen("pty");
     let (link, log) = connect(&format!("serial://{}?baud=4800", boat.reach()), patient());
     log.up(0);
-    // Each is 100 ms on the line, and the first is on it.
+    // Each takes 100 ms on the line, and the first is already being sent.
     link.send(vec![0; 48], 0);
     log.written(0);
     for tag in 1..50 {

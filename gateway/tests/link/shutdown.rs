@@ -1,4 +1,4 @@
-//! Shutdown messages: the last bytes that a link sends.
+//! Shutdown messages: the last bytes sent by a link.
 
 use crate::event_log::{LIMIT, listen};
 use crate::tcp_client::joined_narrowly;
@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 const STANDBY: &[u8] = b"$PSEAC,L,0,0,0,*14\r\n";
 
-/// Stops the boat when dropped, however that comes about.
+/// Sends the shutdown message when dropped, even by a panic.
 struct Guard(Link);
 
 impl Drop for Guard {
@@ -76,13 +76,13 @@ fn it_displaces_what_is_queued_and_nothing_displaces_it() {
     assert!(read_until(&mut boat, b"after"), "and then life goes on");
 }
 
-/// More than the buffers hold, begun: from here on, nothing else is written until the boat reads.
+/// Starts to send more than the buffers hold: nothing else is written until the boat reads.
 fn begin_bulk(link: &Link, boat: &mut TcpStream) {
     link.send(vec![b'x'; 8 << 20], 0);
     boat.read_exact(&mut [0]).unwrap();
 }
 
-/// Reads until the last bytes are these; false if a set-point is among them.
+/// Reads until the last bytes equal `end`; returns false if there was a set-point among them.
 fn read_until(boat: &mut TcpStream, end: &[u8]) -> bool {
     let mut got = Vec::new();
     let mut buffer = vec![0; 65536];

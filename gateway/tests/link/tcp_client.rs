@@ -1,4 +1,4 @@
-//! A link that connects by TCP.
+//! Links that connect by TCP.
 
 use crate::event_log::{EventLog, LIMIT, close, connect, patient, read, retrying, up, wait};
 use gateway::link::{Link, LinkSettings};
@@ -15,14 +15,14 @@ fn listener() -> (TcpListener, String) {
     (listener, address)
 }
 
-/// A link and a boat that has accepted it.
+/// A link and the boat that accepted it.
 type Joined = (Link, Arc<EventLog>, TcpStream, TcpListener);
 
 pub(crate) fn joined(settings: LinkSettings) -> Joined {
     joined_at(listener(), settings)
 }
 
-/// The same with a boat whose buffers are small.
+/// A link and a boat with small buffers.
 pub(crate) fn joined_narrowly() -> Joined {
     let (listener, address) = listener();
     SockRef::from(&listener).set_recv_buffer_size(4096).unwrap();
@@ -36,7 +36,7 @@ fn joined_at((listener, address): (TcpListener, String), settings: LinkSettings)
     (link, log, stream, listener)
 }
 
-/// Accepts a connection; what it reads comes within the limit.
+/// Accepts a connection with a read timeout.
 fn accept(listener: &TcpListener) -> TcpStream {
     let (stream, _) = listener.accept().unwrap();
     stream.set_read_timeout(Some(LIMIT)).unwrap();
@@ -106,7 +106,7 @@ fn a_peer_that_accepts_and_closes_at_once_is_not_stormed() {
     let (listener, address) = listener();
     let slam = thread::spawn(move || (0..6).for_each(|_| drop(accept(&listener))));
     let (_link, log) = connect(&address, retrying(Duration::from_millis(100), Duration::from_secs(5)));
-    // After 0, 100, 300, 700, 1500, 3100 ms.
+    // Attempts after 0, 100, 300, 700, 1500 and 3100 ms.
     let (_, sixth) = log.up(5);
     let first = log.up(0).1;
     assert!(sixth - first >= Duration::from_millis(3000), "six attempts in {:?}", sixth - first);
@@ -142,7 +142,7 @@ fn a_link_that_was_good_for_some_time_is_tried_again_quickly() {
     assert!(wait < Duration::from_millis(300), "{wait:?}");
 }
 
-/// Talks until some moment, with pauses in which nobody comes.
+/// Sends until `end`; checks in the pauses that there is no second connection.
 fn chatter(end: Instant, listener: &TcpListener, mut talk: impl FnMut()) {
     SockRef::from(listener).set_read_timeout(Some(Duration::from_millis(50))).unwrap();
     while Instant::now() < end {
@@ -162,7 +162,7 @@ fn a_peer_that_falls_silent_counts_as_gone() {
     assert!(reason.contains("no bytes for 300ms"), "{reason}");
     assert!(down - up >= 3 * silence - Duration::from_millis(60), "chatter was not received: {:?}", down - up);
     assert!(down - up < 3 * silence + Duration::from_millis(500), "{:?}", down - up);
-    // And it is tried again, though this peer still holds the old connection.
+    // The link retries, though this peer still holds the old connection.
     let _second = accept(&listener);
     assert_eq!(log.up(1).0, 1);
 }
@@ -201,7 +201,7 @@ fn a_peer_that_takes_nothing_for_two_seconds_is_dropped_with_what_it_did_not_tak
     let (reason, down) = log.down(0);
     assert!(down - start >= Duration::from_millis(1900), "{:?}: {reason}", down - start);
     assert!(down - start < Duration::from_millis(4500), "{:?}: {reason}", down - start);
-    // A reset, not an end: what was in flight is void.
+    // A reset rather than a close: data in flight are void.
     let mut waste = Vec::new();
     assert!(boat.read_to_end(&mut waste).is_err(), "{} bytes and a graceful close", waste.len());
     assert!(!log.all().iter().any(|(_, event)| matches!(event, gateway::link::LinkEvent::Written { .. })));
@@ -226,7 +226,7 @@ fn a_reconnect_shortens_a_long_wait_to_the_first() {
     let first = Duration::from_millis(50);
     let (link, log) = connect(&address, retrying(first, Duration::from_secs(60)));
     (0..5).for_each(|_| drop(accept(&listener)));
-    // 800 ms would follow.
+    // The next wait would be 800 ms.
     log.down(4);
     let asked = Instant::now();
     link.reconnect();
@@ -240,7 +240,7 @@ fn a_dropped_link_closes_gracefully_within_200_ms() {
     let (link, log, mut boat, listener) = joined(patient());
     link.send(b"last".to_vec(), 0);
     log.written(0);
-    // Bytes that nobody took would turn the close into a reset.
+    // Unread bytes would turn the close into a reset.
     boat.write_all(&[0; 1000]).unwrap();
     close(link);
     let mut got = Vec::new();
@@ -259,8 +259,8 @@ fn a_boat_that_keeps_sending_receives_everything_before_the_close() {
     let mut got = Vec::new();
     boat.read_to_end(&mut got).unwrap();
     assert_eq!(got, b"last");
-    // A boat takes a moment to notice. It must not be reset meanwhile: a reset could make it
-    // forget what it has not read yet.
+    // A boat takes a moment to notice. It must not be reset meanwhile, because a reset could
+    // discard data that it has not read yet.
     for _ in 0..10 {
         boat.write_all(b"$GPGGA").expect("the link listens on for a moment");
         thread::sleep(Duration::from_millis(1));
@@ -269,7 +269,8 @@ fn a_boat_that_keeps_sending_receives_everything_before_the_close() {
     closer.join().unwrap();
 }
 
-/// A listener that is full, nobody answers the next one; with who filled it.
+/// A full listener, which does not answer the next connection; also returns the connection that
+/// fills it.
 fn full() -> (String, socket2::Socket, TcpStream) {
     let listener = socket2::Socket::new(socket2::Domain::IPV4, socket2::Type::STREAM, None).unwrap();
     listener.bind(&"127.0.0.1:0".parse::<std::net::SocketAddr>().unwrap().into()).unwrap();

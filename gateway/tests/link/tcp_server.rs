@@ -1,4 +1,4 @@
-//! A link that listens on a TCP port.
+//! Links that listen on a TCP port.
 
 use crate::event_log::{EventLog, LIMIT, close, listen, open, patient, read};
 use gateway::link::{HostPort, Link, LinkAddress, LinkError, LinkEvent, LinkSettings, Side};
@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 const ANY: &str = "tcp://127.0.0.1:0";
 
-/// A full house, each of which has been let in.
+/// Connects the maximum number of peers.
 fn join_all(link: &Link, log: &EventLog) -> Vec<TcpStream> {
     let all = (0..8).map(|_| join(link)).collect();
     log.up(7);
@@ -68,7 +68,7 @@ fn a_peer_that_does_not_read_holds_up_nobody_and_is_dropped() {
     let start = Instant::now();
     let mut slowest = Duration::ZERO;
     let mut tag = 0;
-    // 64 KiB each, so that the buffers of the slow one are full after some.
+    // 64 KiB each, so that the slow peer's buffers soon fill up.
     while log.all().iter().all(|(_, event)| !matches!(event, LinkEvent::Down { .. })) {
         assert!(start.elapsed() < LIMIT, "the slow one is never dropped");
         let sent_at = Instant::now();

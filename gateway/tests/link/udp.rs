@@ -1,4 +1,4 @@
-//! Links by UDP.
+//! Links over UDP.
 
 use crate::event_log::{LIMIT, close, connect, listen, open, patient, up};
 use gateway::link::{LinkAddress, LinkEvent, LinkSettings};

@@ -16,7 +16,7 @@ use primitives::frame::Ned;
 
 const HOLD: (RoverMode, bool) = (RoverMode::Hold, false);
 
-/// What moves a boat, or makes it ready to be moved.
+/// Whether a message moves a boat or prepares it for motion.
 fn is_driving(message: &MavMessage) -> bool {
     match message {
         MavMessage::SET_POSITION_TARGET_LOCAL_NED(target) => target.vx != 0.0 || target.vy != 0.0,
@@ -58,7 +58,7 @@ fn a_boat_is_armed_driven_on_a_true_heading_and_disarmed() {
     }
 }
 
-/// A boat that is armed with this order, 20 s on.
+/// A boat armed with this order, after 20 s.
 fn ordered(drive: Drive, order: Order) -> Rig {
     let mut plan = plan();
     plan.gateway.drive = drive;
@@ -95,7 +95,7 @@ fn at_speed_zero_a_boat_takes_its_heading_and_makes_no_way() {
     assert!(rig.boat.psi_rad == 0.0 && rig.boat.speed_m_s == 0.0, "{:?}", rig.boat);
 }
 
-/// A set-point of velocity with the yaw that goes with it, as it was sent once.
+/// A velocity set-point with its yaw, in the form that was sent earlier.
 fn with_yaw(message: MavMessage) -> Option<MavMessage> {
     let MavMessage::SET_POSITION_TARGET_LOCAL_NED(target) = message else { return Some(message) };
     Some(MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
@@ -212,7 +212,7 @@ fn who_takes_the_boat_by_remote_control_keeps_it() {
         rig.operator(OperatorCommand::Release);
         rig.operator(OperatorCommand::Arm);
         assert!(rig.refused.take().is_some_and(|reason| reason.contains("secondary control")));
-        // Given back, it is put into standby, and waits to be armed.
+        // When the pilot returns it, it goes to standby and waits to be armed.
         rig.ardupilot.set_mode(RoverMode::Guided);
         rig.run(2.0);
         assert_eq!(rig.mode(), HOLD);
@@ -246,7 +246,7 @@ fn the_first_word_takes_nothing_from_a_pilot_and_stops_a_boat_in_guided() {
     }
 }
 
-/// What the guard of a gateway says to this boat.
+/// Sends the guard's message to this boat.
 fn guarded(rig: &mut Rig) {
     let message = rig.bridge.guard_message();
     rig.ardupilot.receive(rig.now, &message);
@@ -375,7 +375,7 @@ fn arming_that_the_boat_refuses_is_a_failsafe_with_its_own_words() {
     let mut rig = Rig::new();
     rig.order = Some(Order::Hold);
     rig.run(2.0);
-    // From now on it answers, and does not listen.
+    // From now on it replies but receives nothing.
     rig.open.0 = false;
     rig.operator(OperatorCommand::Arm);
     rig.run_until(4.0, |rig| rig.state().contains("does not follow the commands it is sent"));

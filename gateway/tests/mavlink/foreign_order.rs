@@ -1,4 +1,4 @@
-//! Orders of others at an ArduPilot boat: a second gateway, a ground station that steers.
+//! Foreign orders at an ArduPilot boat: from a second gateway, or a ground station that steers.
 
 use crate::rig::{Rig, plan};
 use gateway::bridge::{Bridge, Input};
@@ -12,14 +12,14 @@ use messages::Order;
 use messages::external::OperatorCommand;
 use primitives::frame::Ned;
 
-/// The time in which two gateways find each other, s; it is the motion of the boat that takes long.
+/// Time limit for two gateways to detect each other, s; the boat's motion takes most of it.
 const LIMIT_S: f64 = 15.0;
 
 fn steer(heading_deg: f64) -> Order {
     Order::Steer { heading_rad: heading_deg.to_radians(), speed_m_s: 1.5 }
 }
 
-/// What a boat before version 4.7 sends.
+/// The message of a boat before version 4.7.
 fn without_bearing(message: MavMessage) -> Option<MavMessage> {
     Some(match message {
         MavMessage::NAV_CONTROLLER_OUTPUT(shown) => {
@@ -32,7 +32,7 @@ fn without_bearing(message: MavMessage) -> Option<MavMessage> {
     })
 }
 
-/// Two gateways of one boat that are armed at the same time, with these headings as their orders.
+/// Two gateways of one boat, armed at the same time, with these headings as their orders.
 fn two_gateways(headings_deg: [f64; 2], alter: fn(MavMessage) -> Option<MavMessage>) -> Rig {
     let mut rig = Rig::new();
     (rig.alter, rig.second) = (alter, Some(Bridge::new(plan())));
@@ -64,7 +64,8 @@ fn two_gateways_at_one_boat_find_each_other_and_both_stop() {
     }
 }
 
-/// A ground station sends this so often, 1/s, to a boat under way; after how many seconds the gateway is in failsafe, and which.
+/// A ground station sends this message at this rate, 1/s, to a boat under way; returns the seconds
+/// until the gateway's failsafe, and its cause.
 fn steered_by_another(mut rig: Rig, message: &MavMessage, rate_hz: f64) -> (f64, String) {
     let mut bytes = vec![];
     Writer::new(250, 190).write(message, &mut bytes);

@@ -1,4 +1,5 @@
-//! The framer: frames of another program, any split, damage, and what must not be read.
+//! The MAVLink framer: frames of another program, any split, damage, and frames that must be
+//! rejected.
 
 use gateway::mavlink::dialect::{GpsFixType, HEARTBEAT_DATA, MavMessage, MavModeFlag, MavType, PARAM_VALUE_DATA};
 use gateway::mavlink::{FRAME_MAX, Framer, Received, Writer};
@@ -84,7 +85,7 @@ fn unknown_messages_and_values_are_counted_and_left() {
     let mut framer = Framer::new();
     assert_eq!(read(&mut framer, &[&unknown[..], &golden["heartbeat"]].concat()).len(), 1);
     assert_eq!(framer.counts().unknown, [(163, 1)].into());
-    // A flag that changes the frame's layout must be understood.
+    // An unknown flag may change the frame's layout, so the frame is rejected.
     let mut flagged = golden["heartbeat"].clone();
     flagged[2] = 2;
     let mut framer = Framer::new();

@@ -1,4 +1,5 @@
-//! MAVLink: frames against those of another program, and an ArduPilot boat in a closed loop with its gateway, in memory.
+//! Tests MAVLink: frames against those of another program, and an ArduPilot boat in a closed loop
+//! with its gateway, in memory.
 
 #[path = "../closed_loop/boat.rs"]
 #[allow(dead_code, reason = "what only a Surveyor needs")]

@@ -1,4 +1,4 @@
-//! The pre-flight check of a boat that speaks MAVLink.
+//! The pre-flight check of a MAVLink boat.
 
 use crate::boat::Boat;
 use crate::rig::plan;
@@ -14,7 +14,7 @@ use primitives::frame::Ned;
 
 const BEGAN_UTC_NS: u64 = 1_795_000_000_000_000_000;
 
-/// Listens to a boat at this place for 30 s; what was seen, and its checks.
+/// Listens to a boat at this place for 30 s; returns the sensor check and its results.
 fn checked(place: Ned, change: impl Fn(&mut ArduPilot)) -> (SensorCheck, Vec<Check>) {
     let plan = plan();
     let site = plan.site.as_ref().expect("the rig has one");

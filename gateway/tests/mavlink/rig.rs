@@ -1,4 +1,5 @@
-//! The test rig: a boat with simple dynamics, its emulated ArduPilot, and the gateway. The test owns the time.
+//! The test rig: a boat with simple dynamics, its emulated ArduPilot, and the gateway. The test
+//! controls time.
 
 use crate::boat::{Boat, STEP_S};
 use gateway::bridge::{Bridge, Event, Input, Output, Plan, Preflight, Site};
@@ -21,14 +22,14 @@ pub(crate) struct Rig {
     pub(crate) bridge: Bridge,
     /// The agent's order, ten times a second.
     pub(crate) order: Option<Order>,
-    /// Whether bytes go through: to the boat, and from it.
+    /// Whether bytes pass to the boat and from it.
     pub(crate) open: (bool, bool),
-    /// What becomes of each message on its way, to the boat and from it.
+    /// Changes or drops each message, to the boat and from it.
     pub(crate) alter: fn(MavMessage) -> Option<MavMessage>,
-    /// A second gateway at the same boat.
+    /// A second gateway for the same boat.
     pub(crate) second: Option<Bridge>,
     pub(crate) events: Vec<Event>,
-    /// What the boat was sent, without what is sent in any case.
+    /// Messages sent to the boat, without the routine ones.
     pub(crate) sent: Vec<(SimTime, MavMessage)>,
     sent_framer: Framer,
     pub(crate) refused: Option<String>,
@@ -42,7 +43,7 @@ pub(crate) fn plan() -> Plan {
     Plan {
         vehicle: "blue_one".to_owned(),
         gateway: gateway.unwrap_or_else(|e| panic!("{e}")),
-        // A declination that would be seen if it were used.
+        // A declination large enough to show if it were used.
         site: Some(Site { length_m: 1.2, field: game.field, declination_rad: (-40.0_f64).to_radians() }),
         arms_itself: false,
         dry_run: false,
@@ -78,7 +79,7 @@ impl Rig {
         Rig::of(plan())
     }
 
-    /// A boat that sails east at 1.5 m/s, ten seconds on.
+    /// A boat ten seconds into sailing east at 1.5 m/s.
     pub(crate) fn under_way() -> Rig {
         Rig::new().gets_under_way()
     }
@@ -122,7 +123,7 @@ impl Rig {
         }
     }
 
-    /// The same to the second gateway, which the boat hears too.
+    /// Gives an input to the second gateway, which the boat hears too.
     pub(crate) fn put_second(&mut self, input: &Input) {
         let Some(second) = &mut self.second else { return };
         let mut out = Output::default();
@@ -144,7 +145,7 @@ impl Rig {
         (0..(seconds / STEP_S).round() as u64).for_each(|_| self.step());
     }
 
-    /// Runs until `is_so`, no longer than `limit_s`; returns after how many seconds.
+    /// Runs until `is_so`, at most `limit_s`; returns the elapsed seconds.
     pub(crate) fn run_until(&mut self, limit_s: f64, is_so: impl Fn(&Rig) -> bool) -> f64 {
         let start = self.now;
         while !is_so(self) {

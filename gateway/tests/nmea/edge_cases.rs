@@ -1,4 +1,4 @@
-//! Edge cases: what real peers send beyond their manuals, and what no peer should.
+//! Edge cases: what real peers send beyond their manuals, and what no peer should send.
 
 use crate::written;
 use gateway::nmea::{Command, ControlState, Hdg, Mode, ParseError, Sentence, Talker};

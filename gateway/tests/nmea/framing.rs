@@ -1,4 +1,4 @@
-//! The framer under noise: no sentence lost, none invented, bounded memory.
+//! The NMEA framer under noise: loses no sentence, invents none, and uses bounded memory.
 
 use crate::bodies;
 use gateway::nmea::{ACCEPTED_MAX, Counts, Framer, checksum};
@@ -7,7 +7,8 @@ use proptest::prelude::*;
 const GGA: &str = "$GPGGA,150502.00,4221.50616,N,07105.24688,W,2,11,0.98,5.5,M,-33.2,M,,*62\r\n";
 const COMMAND: &str = "$PSEAC,T,0,20,-10,*22\r\n";
 
-/// What a framer should make of a whole stream, worked out from its end: cut at every `$`, then look at each part.
+/// The expected result of a framer, computed from the whole stream: split at every `$`, then check
+/// each part.
 fn model(bytes: &[u8]) -> (Vec<String>, Counts) {
     let (mut found, mut counts) = (Vec::new(), Counts::default());
     let noise = |bytes: &[u8]| bytes.iter().filter(|byte| !b"\r\n".contains(byte)).count() as u64;
@@ -40,7 +41,7 @@ fn judge(content: &[u8], found: &mut Vec<String>, counts: &mut Counts) {
     }
 }
 
-/// A sentence of `length` bytes with everything.
+/// A valid sentence of `length` bytes.
 fn long(length: usize) -> String {
     let body = "A".repeat(length - 6);
     let sum = checksum(body.as_bytes());
@@ -56,7 +57,7 @@ fn framed(pieces: impl IntoIterator<Item = impl AsRef<[u8]>>) -> (Vec<String>, C
     (found, framer.counts())
 }
 
-/// Streams in which something happens: sentences, their pieces, noise.
+/// Eventful streams: sentences, fragments, noise.
 fn stream() -> impl Strategy<Value = Vec<u8>> {
     let piece = prop_oneof![
         4 => Just(GGA.as_bytes().to_vec()),

@@ -1,11 +1,12 @@
-//! Sentences and what they mean, as `golden.txt` tells them; and what else we write and refuse.
+//! Sentences and their meaning as listed in `golden.txt`; also other sentences that we write or
+//! refuse.
 
 use crate::sentences::values;
 use crate::{bodies, written};
 use gateway::nmea::{BoatError, Command, Mode, Sentence};
 
-/// What a sentence means: its kind, and the fields that have a value. Minutes are no round fraction of a degree, so numbers
-/// are told to ten digits.
+/// The meaning of a sentence: its kind and the fields with a value. Minutes are not a round
+/// fraction of a degree, so numbers have ten digits.
 fn meaning(sentence: &Sentence) -> String {
     let (mut words, mut last) = (Vec::<String>::new(), String::new());
     for (field, value) in values(sentence) {
@@ -29,7 +30,7 @@ fn meaning(sentence: &Sentence) -> String {
     words.join(" ")
 }
 
-/// What is wrong with one sentence of `golden.txt`, line by line.
+/// The errors in one sentence of `golden.txt`, line by line.
 fn wrong(golden: &[&str]) -> Option<String> {
     let line = golden[0];
     let found = if line.starts_with('$') { bodies(format!("{line}\r\n").as_bytes()) } else { vec![line.to_owned()] };
@@ -112,7 +113,7 @@ fn samples_that_circulate_with_a_wrong_checksum_are_refused() {
         "$PSEAB,24.8,15433,1.3,22.3,42308,,,24.8,,1.3,0.0,0.0,,,26*71",
         "$PSEAD,1.5,T,2.5,0.5*7A",
         "$PSEAC,T,0,20,-10,*23",
-        // The sum of a heading of 058.7.
+        // The checksum is that of a heading of 058.7.
         "$HCHDG,58.7,,,14.5,W*01",
     ] {
         assert_eq!(bodies(format!("{line}\r\n").as_bytes()), Vec::<String>::new(), "{line}");

@@ -1,4 +1,4 @@
-//! The NMEA codec against bytes from real boats, against noise, and against itself.
+//! Tests the NMEA codec with bytes from real boats, with noise, and by round trips.
 
 mod edge_cases;
 mod framing;
@@ -8,14 +8,14 @@ mod sentences;
 
 use gateway::nmea::{Framer, Sentence};
 
-/// The bodies that a fresh framer takes from `bytes`.
+/// The bodies that a new framer extracts from `bytes`.
 fn bodies(bytes: &[u8]) -> Vec<String> {
     let mut found = Vec::new();
     Framer::new().push(bytes, &mut |body| found.push(body.to_owned()));
     found
 }
 
-/// The sentence on the wire.
+/// The sentence as sent.
 fn written(sentence: &Sentence) -> String {
     let mut out = Vec::new();
     sentence.write(&mut out);

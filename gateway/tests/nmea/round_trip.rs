@@ -1,4 +1,5 @@
-//! What is written is read back: to its printed resolution where it fits, and as nothing else where it does not.
+//! Written sentences are read back to their printed resolution if they fit, and as nothing else if
+//! they do not.
 
 use crate::sentences::{Domain, boat_sentences, on_the_globe, sentences, values};
 use crate::{bodies, written};
@@ -11,14 +12,14 @@ use proptest::sample::select;
 const FIVE_DECIMALS_DEG: f64 = 0.000_005_01 / 60.0;
 const FOUR_DECIMALS_DEG: f64 = 0.000_050_1 / 60.0;
 
-/// Half of the last digit of numbers, and a little for the arithmetic.
+/// Half of the last digit of a number, plus rounding error.
 const WHOLE: f64 = 0.5 + 1e-9;
 const TENTH: f64 = 0.05 + 1e-9;
 const HUNDREDTH: f64 = 0.005 + 1e-9;
 const THOUSANDTH: f64 = 0.0005 + 1e-9;
 
-/// By how much a number may differ after a round trip, and whether it is an angle, which may come back a turn away. What
-/// is not in here is the same to the bit.
+/// The tolerance of a number after a round trip, and whether it is an angle, which may differ by a
+/// full turn. All other fields must be identical.
 fn tolerance(sentence: &Sentence, field: &str) -> Option<(f64, bool)> {
     let mode = match sentence {
         Sentence::Command(command) => Some(command.mode),
@@ -28,7 +29,7 @@ fn tolerance(sentence: &Sentence, field: &str) -> Option<(f64, bool)> {
     Some(match (field, sentence) {
         ("lat_deg" | "lon_deg", Sentence::Waypoint(_)) => (FOUR_DECIMALS_DEG, false),
         ("lat_deg" | "lon_deg", _) => (FIVE_DECIMALS_DEG, false),
-        // The number of lines of a file is in the heading's place.
+        // This field holds the number of lines of a file.
         ("heading_deg", Sentence::Command(_)) if mode == Some(Mode::FileDownload) => (WHOLE, false),
         ("heading_deg", Sentence::Command(_)) if mode == Some(Mode::Thruster) => (WHOLE, true),
         ("heading_deg" | "heading_true_deg" | "heading_magnetic_deg", _) => (TENTH, true),
@@ -48,11 +49,11 @@ fn tolerance(sentence: &Sentence, field: &str) -> Option<(f64, bool)> {
     })
 }
 
-/// Whether a sentence came back as it was, within half of its last digits.
+/// Whether a sentence came back unchanged, within half of its last digits.
 fn same(sentence: &Sentence, back: &Sentence) -> bool {
     let mut sentence = sentence.clone();
     if let Sentence::Command(command @ Command { mode: Mode::FileDownload, .. }) = &mut sentence {
-        // Nothing there means no lines.
+        // An empty field means no lines.
         for number in [&mut command.heading_deg, &mut command.thrust, &mut command.difference] {
             number.get_or_insert(0.0);
         }
@@ -69,7 +70,7 @@ fn same(sentence: &Sentence, back: &Sentence) -> bool {
     want.len() == got.len() && want.iter().zip(&got).all(|(want, (field, got))| want.0 == *field && close(want, got))
 }
 
-/// The same numbers in all fields, and every date and time that can be written.
+/// A domain with the same numbers in all fields, and every valid date and time.
 fn domain(numbers: impl Strategy<Value = f64> + 'static, texts: BoxedStrategy<String>) -> Domain {
     let numbers = numbers.boxed();
     Domain {
@@ -91,7 +92,7 @@ fn tame() -> BoxedStrategy<Sentence> {
     prop_oneof![3 => wide, 1 => boat_sentences(&domain(0.0..9.9, texts))].boxed()
 }
 
-/// Sentences that somebody filled with anything at all.
+/// Sentences with arbitrary values.
 fn wild() -> BoxedStrategy<Sentence> {
     let number = prop_oneof![proptest::num::f64::ANY, -1e9..1e9, select(vec![1e300, -1e300, 1e17, f64::NAN])];
     let number = number.boxed();
@@ -131,7 +132,7 @@ proptest! {
         }
         match Sentence::parse(&found[0]) {
             Ok(back) => prop_assert_eq!(std::mem::discriminant(&back), std::mem::discriminant(&sentence)),
-            // A waypoint that is nowhere and a throttle that is none cannot be read back, and must not be.
+            // An invalid waypoint and a non-finite throttle must not be readable.
             Err(ParseError::Field { field, .. }) => prop_assert!(
                 matches!((&sentence, field), (Sentence::Waypoint(_), 1) | (Sentence::MissionSettings(_), 3)), "{line}"),
             Err(error) => prop_assert!(false, "{line}: {error}"),
@@ -144,7 +145,7 @@ proptest! {
             let line = written(&sentence);
             let again = Sentence::parse(&line[1..line.len() - 5]);
             prop_assert!(again.is_ok(), "{body} -> {line}: {again:?}");
-            // Sizes that are worked out from others (km/h) are settled after the first time.
+            // Derived values (km/h) are stable only after the first round trip.
             let (second, body) = (written(&again.unwrap()), written(&sentence));
             let settled = Sentence::parse(&second[1..second.len() - 5]).map(|settled| written(&settled));
             prop_assert_eq!(settled, Ok(second), "{}", body);

@@ -1,4 +1,4 @@
-//! Sentences of every kind by chance: for the tests here, and for the comparisons with other people's codecs.
+//! Random sentences of every kind, for the tests here and for comparisons with other codecs.
 
 use gateway::nmea::{
     Attitude, Battery, BoatError, Command, ControlState, Date, Gga, Gll, Hdg, Hdt, MissionSettings, Mode, Mwv,
@@ -10,23 +10,23 @@ use proptest::prelude::*;
 use proptest::sample::select;
 use std::ops::Range;
 
-/// What the fields of a sentence may be.
+/// The value ranges of a sentence's fields.
 pub(crate) struct Domain {
     /// Headings, courses and other bearings, degrees.
     pub(crate) angles: BoxedStrategy<f64>,
-    /// Numbers that have no sign in reality.
+    /// Numbers that are never negative in reality.
     pub(crate) sizes: BoxedStrategy<f64>,
-    /// Numbers that have one.
+    /// Numbers that may be negative.
     pub(crate) signed: BoxedStrategy<f64>,
     pub(crate) texts: BoxedStrategy<String>,
     pub(crate) places: BoxedStrategy<LatLon>,
-    /// Of dates.
+    /// Years of dates.
     pub(crate) years: Range<u16>,
-    /// Of times of day.
+    /// Times of day, ms.
     pub(crate) day_ms: Range<u32>,
 }
 
-/// The values of a sentence as `Debug` prints them, each with the name of its field.
+/// The values of a sentence as `Debug` prints them, each with its field name.
 pub(crate) fn values(sentence: &Sentence) -> Vec<(String, String)> {
     let text = format!("{sentence:?}");
     let mut field = "";

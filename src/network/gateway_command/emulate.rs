@@ -71,7 +71,7 @@ enum ExtraArg {
     Zda,
 }
 
-/// A number, or none.
+/// A number, displayed as "none" if missing.
 #[derive(Clone, Copy, Debug)]
 struct OrNone(Option<f64>);
 
@@ -131,7 +131,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let log = Log::new(args.for_parent);
     let mut notify = |event: NodeEvent<'_>| match event {
         NodeEvent::Looking { reason } => log.remark(format!("{}: looking for the game: {reason}", args.vehicle)),
-        // The parent process may have asked for any free port.
+        // The parent process may have requested any free port.
         NodeEvent::Listening { what, reach } => log.print(format!("{what} at {reach}\n")),
         NodeEvent::Event { at_s, event } => log.event(at_s, event),
         NodeEvent::Recording(_) | NodeEvent::ControlPort { .. } | NodeEvent::Status(_) | NodeEvent::Ended(_) => {}

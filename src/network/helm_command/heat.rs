@@ -1,12 +1,12 @@
-//! The colours of heat maps: those of the page.
+//! The colours of heat maps, as on the page.
 
 use crate::plot::colour::property;
 use plotters::style::RGBColor;
 
-/// How many stops the page's heat map has.
+/// Number of colour stops of the page's heat map.
 const HEAT_STOPS: usize = 9;
 
-/// The colour of a share (0 to 1) on the heat map.
+/// The heat map colour of a share (0 to 1).
 pub(super) fn of_share(share: f64) -> RGBColor {
     let place = share.clamp(0.0, 1.0) * (HEAT_STOPS - 1) as f64;
     let below = (place as usize).min(HEAT_STOPS - 2);

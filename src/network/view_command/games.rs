@@ -1,4 +1,5 @@
-//! The games behind a report: each is played when a page asks for it, into a recording that is not kept, or was recorded before.
+//! The games behind a report. A game is played when a page requests it, into a temporary recording,
+//! unless a recording exists.
 
 use crate::in_process;
 use crate::network::replay_command;
@@ -11,50 +12,50 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use tempfile::TempDir;
 
-/// Games that are there at a time: one that nobody looks at makes room for another.
+/// Maximum number of open games: an unused one makes room for another.
 const OPEN_MAX: usize = 8;
-/// Games that are played at a time.
+/// Maximum number of games played at a time.
 const PLAYED_MAX: usize = 2;
-/// A page is told so often how far a game is, decisions.
+/// Interval of progress messages to a page, decisions.
 const TELL_EVERY: u64 = 100;
 
-/// Where a game comes from.
+/// The source of a game.
 pub(super) enum Source {
-    /// A recording.
+    /// An existing recording.
     Recorded(PathBuf),
-    /// It is played again; the report may say which digest came of it.
+    /// The game is played again; `digest` is the expected result, if the report has it.
     Played { scenario: Box<Scenario>, seed: u64, digest: Option<String> },
 }
 
 /// A game of a report.
 pub(super) struct Game {
-    /// Which it is, in words.
+    /// A description of the game.
     pub(super) about: String,
     pub(super) source: Source,
 }
 
-/// The games that pages look at.
+/// The games that pages show.
 pub(super) struct Games {
     open: Mutex<VecDeque<Open>>,
     folder: TempDir,
-    /// How many recordings there were in it.
+    /// Number of recordings created so far.
     recordings: AtomicU64,
-    /// How many are played now.
+    /// Number of games being played now.
     played: Arc<(Mutex<usize>, Condvar)>,
     stop: Arc<AtomicBool>,
 }
 
-/// A game that is there, or will be.
+/// A game that is open or being prepared.
 struct Open {
     name: String,
     showing: Arc<Showing>,
-    /// The recording that goes with it.
+    /// Its recording.
     file: PathBuf,
 }
 
 impl Drop for Open {
     fn drop(&mut self) {
-        // A recorded one, or one that could not be played, has none.
+        // There is no file if the game was recorded before or could not be played.
         drop(std::fs::remove_file(&self.file));
     }
 }
@@ -71,7 +72,7 @@ impl Games {
         })
     }
 
-    /// What is shown of the game of this name; `find` says which it is.
+    /// The view of the game with this name; `find` returns its source.
     pub(super) fn show(&self, name: &str, find: impl FnOnce() -> Result<Game>) -> Shown {
         let mut open = self.open.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = open.iter().find(|open| open.name == name) {
@@ -108,7 +109,7 @@ impl Games {
     }
 }
 
-/// One of the places for games that are played.
+/// A slot for playing a game.
 struct Place<'a>(&'a (Mutex<usize>, Condvar));
 
 impl Place<'_> {
@@ -128,7 +129,7 @@ impl Drop for Place<'_> {
     }
 }
 
-/// Plays a game if it is not recorded, and opens its recording.
+/// Plays a game unless it is recorded, and opens its recording.
 fn prepare(
     game: &Game,
     file: &Path,

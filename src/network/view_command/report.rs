@@ -1,4 +1,4 @@
-//! Reports that a page shows: of tournaments, leagues, sweeps and trainings.
+//! Reports on the page: tournaments, leagues, sweeps and trainings.
 
 use super::games::{Game, Games, Source};
 use super::training::TrainingReport;
@@ -13,16 +13,16 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-/// The largest file of a report that is read, bytes.
+/// Size limit of a report file, bytes.
 const BYTES_MAX: u64 = 256 << 20;
 
-/// Where the page is on which tournaments and trainings are shown.
+/// The path of the page that shows tournaments and trainings.
 pub(super) const PAGE: &str = "/report.html";
 
-/// The report at a path: a file, or the folder that it is in.
+/// Opens the report at a path: a file, or the folder that contains it.
 pub(super) fn open(path: &Path, stop: &Arc<AtomicBool>) -> Result<Arc<dyn Report>> {
     let games = Games::new(stop)?;
-    // People have the page of a report before them, which is beside it.
+    // For the HTML page of a report, open the data file beside it.
     let is_page = path.extension().is_some_and(|end| end == "html");
     let folder =
         if is_page { path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new(".")) } else { path };
@@ -53,7 +53,7 @@ fn of_file(path: &Path, games: Games) -> Result<Arc<dyn Report>> {
     }
 }
 
-/// A whole file.
+/// Reads a whole file.
 pub(super) fn read(path: &Path) -> Result<Vec<u8>> {
     input_file::read(path, BYTES_MAX).with_context(|| format!("cannot read {}", path.display()))
 }
@@ -61,9 +61,9 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>> {
 /// The report of a tournament or a league.
 struct TournamentReport {
     json: Vec<u8>,
-    /// Why no game can be played again, if that is so.
+    /// The plan, or the reason why its games cannot be replayed.
     plan: Result<tournament::Plan, String>,
-    /// What the report says of each game, by its place.
+    /// The digests in the report, by game index.
     digests: BTreeMap<usize, String>,
     games: Games,
 }
@@ -76,7 +76,7 @@ impl TournamentReport {
         };
         let digests = report.matches.iter().map(|row| (row.game, row.digest.clone())).collect();
         let mut shown = serde_json::to_value(&report).expect("it has names for keys");
-        // Numbers of JavaScript have too few digits for all seeds.
+        // JavaScript numbers cannot represent every seed.
         let spell = |row: &mut Value| row["seed"] = row["seed"].to_string().into();
         spell(&mut shown);
         for list in ["matches", "failures"] {
@@ -103,7 +103,7 @@ impl TournamentReport {
     }
 }
 
-/// A game's place among so many.
+/// Parses a game's index, which must be below `games`.
 fn place_of(name: &str, games: usize) -> Result<usize> {
     name.parse()
         .ok()
@@ -125,18 +125,18 @@ impl Report for TournamentReport {
     }
 }
 
-/// Where the page of a sweep asks for the games of a point, before its number.
+/// The request path for the games of a point; the point's number follows.
 const GAMES_OF_POINT: &str = "/sweep_games/";
-/// So many games of a point are listed.
+/// Maximum number of listed games of a point.
 const LISTED_MAX: usize = 10_000;
 
-/// The report of a sweep: its own page, and its games.
+/// The report of a sweep: its own page and its games.
 struct SweepReport {
     files: [(&'static str, String); 4],
     plan: Result<sweep::Plan, String>,
-    /// What came of the games, from the first on, by the table beside the report.
+    /// The results from the table beside the report, in game order.
     rows: Result<Vec<sweep::Row>, String>,
-    /// What the report says of the worst ones, which stands where there is no table.
+    /// The digests of the worst games in the report, used if there is no table.
     digests: BTreeMap<usize, String>,
     games: Games,
 }
@@ -162,12 +162,12 @@ impl SweepReport {
         Ok(SweepReport { files: sweep::served(value, plan.is_ok()), plan, rows, digests, games })
     }
 
-    /// What came of a game, if the table has it.
+    /// The result of a game, if the table has it.
     fn row(&self, index: usize) -> Option<&sweep::Row> {
         self.rows.as_ref().ok()?.get(index)
     }
 
-    /// The games of a point, for the page.
+    /// The games of a point, as JSON for the page.
     fn games_at(&self, point: usize) -> Option<Value> {
         let plan = self.plan.as_ref().ok().filter(|plan| point < plan.points().len())?;
         let (count, first) = (plan.games_per_point(), point * plan.games_per_point());
@@ -177,7 +177,7 @@ impl SweepReport {
                 "game": index,
                 "entry": job.entry,
                 "team": plan.teams()[job.side],
-                // Numbers of JavaScript have too few digits for all seeds.
+                // JavaScript numbers cannot represent every seed.
                 "seed": job.seed.to_string(),
                 "score": result.and_then(|result| result.as_ref().ok()).map(sweep::Metrics::score),
                 "why": result.and_then(|result| result.as_ref().err()),

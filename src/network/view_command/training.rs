@@ -1,4 +1,4 @@
-//! The folder of a training on the page: its curves, what came of its evaluations, and its recorded episodes.
+//! A training folder on the page: learning curves, evaluation results and recorded episodes.
 
 use super::games::{Game, Games, Source};
 use super::report::{PAGE, read};
@@ -7,17 +7,17 @@ use serde_json::{Value, json};
 use shore::page::{Report, Shown};
 use std::path::{Path, PathBuf};
 
-/// Points of a curve, at most: more are not seen.
+/// Maximum points of a curve: more would not be visible.
 const POINTS_MAX: usize = 1000;
-/// Episodes that are listed, at most: the newest.
+/// Maximum number of listed episodes: the newest.
 const EPISODES_MAX: usize = 1000;
-/// What is said of each update beside its samples and its stage.
+/// Columns of an update besides its samples and stage.
 const UPDATES: [&str; 7] = ["reward", "policy_loss", "value_loss", "entropy", "divergence", "clipped", "epochs"];
-/// What is counted of each evaluation against an opponent.
+/// Columns of an evaluation against an opponent.
 const EVALUATIONS: [&str; 6] = ["won", "drawn", "lost", "points", "points_against", "left_field"];
 const EPISODES: [&str; 3] = ["points", "points_against", "steps"];
 
-/// The folder of a training, which may go on.
+/// The folder of a training, which may still be running.
 pub(super) struct TrainingReport {
     folder: PathBuf,
     name: String,
@@ -25,12 +25,12 @@ pub(super) struct TrainingReport {
 }
 
 impl TrainingReport {
-    /// Whether a folder is one of a training.
+    /// Whether a folder contains a training.
     pub(super) fn is_in(folder: &Path) -> bool {
         folder.join("updates.csv").exists()
     }
 
-    /// The training of a folder, whose tables can be read now.
+    /// Opens the training in a folder; its tables must be readable.
     pub(super) fn open(folder: &Path, games: Games) -> Result<TrainingReport> {
         let folder = std::fs::canonicalize(folder).with_context(|| format!("cannot read {}", folder.display()))?;
         let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -57,11 +57,11 @@ impl TrainingReport {
         }))
     }
 
-    /// The rows of a table as far as they are whole: texts, and numbers, which are null where a cell is empty.
+    /// The complete rows of a table: texts, and numbers (null for an empty cell).
     fn table(&self, name: &str, texts: &[&str], numbers: &[&str]) -> Result<Vec<Value>> {
         let path = self.folder.join(name);
         let bytes = read(&path)?;
-        // The last line may be written just now.
+        // The last line may still be in the middle of being written.
         let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
         let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(&bytes[..whole]);
         let heads = reader.headers().with_context(|| format!("{} is no table", path.display()))?.clone();
@@ -89,7 +89,7 @@ impl TrainingReport {
         Ok(rows)
     }
 
-    /// The recording of this name in the folder of recordings, and no other file.
+    /// The recording with this name in the folder of recordings; no other file is accepted.
     fn find(&self, name: &str) -> Result<Game> {
         let games = self.folder.join("games");
         let is_name = name.ends_with(".mcap") && Path::new(name).file_name().is_some_and(|own| own == name);
@@ -102,7 +102,7 @@ impl TrainingReport {
     }
 }
 
-/// A cell with a number; null where it is empty.
+/// A numeric cell; null if empty.
 fn number(cell: &str) -> Result<Value> {
     if cell.is_empty() {
         return Ok(Value::Null);
@@ -117,7 +117,7 @@ impl Report for TrainingReport {
     }
 
     fn file(&self, path: &str) -> Option<Vec<u8>> {
-        // A table that cannot be read any more is told where the curves were.
+        // If a table can no longer be read, show the error in place of the curves.
         let problem = |why: anyhow::Error| json!({"kind": "training", "problem": format!("{why:#}")});
         (path == "/report.json").then(|| self.json().unwrap_or_else(problem).to_string().into_bytes())
     }

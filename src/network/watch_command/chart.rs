@@ -1,4 +1,4 @@
-//! The field drawn with letters: boats as arrows, flags, the scrimmage line.
+//! The field in characters: boats as arrows, flags, the scrimmage line.
 
 use super::Rates;
 use crate::style;
@@ -8,7 +8,8 @@ use primitives::Ned;
 use primitives::angle::compass_deg_from_rad;
 use scenario::Scenario;
 
-/// Columns and rows of the chart. Letters are twice as high as wide, a field twice as wide as deep.
+/// Columns and rows of the chart. A character is twice as high as wide, a field twice as wide as
+/// deep.
 const COLUMNS: usize = 78;
 const ROWS: usize = 20;
 
@@ -36,7 +37,7 @@ pub(super) fn page(info: &GameInfo, game: &GameName, frame: &Frame, events: &[St
     text
 }
 
-/// How the game stands, in one line.
+/// The state of the game in one line.
 pub(super) fn line(scenario: &Scenario, frame: &Frame, rates: &Rates) -> String {
     let lost = frame.vehicles.iter().filter(|boat| boat.agent_lost).count();
     let lost = if lost > 0 { format!("  {lost} without an agent") } else { String::new() };
@@ -54,7 +55,8 @@ fn score(scenario: &Scenario, frame: &Frame) -> String {
     teams.map(|(team, score)| format!("{} {score}", team.name)).collect::<Vec<_>>().join("  ")
 }
 
-/// The cell of a place; places off the field are on its edge. The field's far side is on top.
+/// The cell of a position; positions off the field are shown at its edge. The field's far side is
+/// at the top.
 fn cell(scenario: &Scenario, at: Ned) -> (usize, usize) {
     let plan = &scenario.field.plan;
     let (along_m, across_m) = scenario.field.along_across(at);
@@ -79,14 +81,14 @@ fn draw_field(scenario: &Scenario, frame: &Frame, cells: &mut [Vec<String>]) {
 fn draw_boats(scenario: &Scenario, frame: &Frame, cells: &mut [Vec<String>]) {
     const ARROWS: [&str; 8] = ["↑", "↗", "→", "↘", "↓", "↙", "←", "↖"];
     for (vehicle, boat) in scenario.vehicles.iter().zip(&frame.vehicles) {
-        // On the chart the field lies level, so headings turn with it.
+        // The chart shows the field level, so headings are rotated with it.
         let heading_deg = boat.nav.psi_rad.to_degrees() + 90.0 - scenario.field.plan.along_deg;
         let eighth = (compass_deg_from_rad(heading_deg.to_radians()) / 45.0).round() as usize % 8;
         paint(cells, cell(scenario, boat.nav.at()), vehicle.team.index(), ARROWS[eighth]);
     }
 }
 
-/// A line for each boat, of small fleets.
+/// One line for each boat, for small fleets.
 fn boats<'a>(scenario: &'a Scenario, frame: &'a Frame) -> impl Iterator<Item = String> + 'a {
     const SHOWN: usize = 12;
     let boats = scenario.vehicles.iter().zip(&frame.vehicles).take(SHOWN);

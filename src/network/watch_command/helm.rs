@@ -1,4 +1,4 @@
-//! One boat's helm, live.
+//! Shows one boat's helm live.
 
 use super::super::helm_page;
 use super::super::helm_query::{self, SILENCE};
@@ -11,7 +11,7 @@ use std::io::IsTerminal;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-/// Shows the helm of the vehicle of this name until the game is over, this often.
+/// Shows the helm of the vehicle with this name, at this interval, until the game is over.
 pub(super) fn watch(observer: &Observer, name: &str, pause: Duration, stop: &AtomicBool) -> Result<()> {
     let vehicle = observer.vehicle(name)?;
     let scenario = &observer.info.scenario;
@@ -22,7 +22,7 @@ pub(super) fn watch(observer: &Observer, name: &str, pause: Duration, stop: &Ato
         match helm_query::report(observer, vehicle, HelmQuestion { functions: false })? {
             Some(report) => {
                 heard = clock::now();
-                // Where nothing can be written over, a decision is printed once.
+                // If output cannot be overwritten, print each decision once.
                 let is_read = match live {
                     true => screen::is_seen(&helm_page::page(scenario, &report)),
                     false if last.replace(report.at) == Some(report.at) => true,

@@ -1,4 +1,4 @@
-//! Broken scenario files: every mistake is reported, at its place, with what is allowed.
+//! Broken scenario files: every mistake is reported at its place with the allowed values.
 //!
 //! The cases are data: `README.md` beside this file says how to read and add them.
 
@@ -17,7 +17,7 @@ fn files_in(folder: &str) -> Vec<PathBuf> {
     files
 }
 
-/// Paths and texts of the sound files, some of which a case replaces.
+/// Paths and texts of the valid files, some of which a case replaces.
 fn sound() -> Vec<(String, String)> {
     let folders = ["boats", "fields", "games", "rules", "seas", "strategies", "tournaments", "rewards"];
     let files = folders.into_iter().flat_map(|folder| files_in(&format!("sound/{folder}")));
@@ -28,7 +28,7 @@ fn sound() -> Vec<(String, String)> {
     files.map(file).collect()
 }
 
-/// What is wrong with `asked` when the files are the sound ones with `files` over them, line by line.
+/// The problems, line by line, of `asked` when `files` override the valid files.
 fn problems(asked: &str, files: &[(String, String)]) -> Vec<String> {
     let folder = tempfile::tempdir().unwrap();
     for (path, text) in sound().iter().chain(files) {
@@ -46,7 +46,7 @@ fn problems(asked: &str, files: &[(String, String)]) -> Vec<String> {
     found.to_string().lines().map(|line| line.replace(&root, "")).collect()
 }
 
-/// Long lists of what is allowed: how they begin and end, and what stands for them in the cases.
+/// Long lists of allowed values: their beginning, end, and short form in the cases.
 const LISTS: [(&str, &str, &str); 10] = [
     ("PPB PPF", "SSBX", "{points}"),
     ("base, boundary", "win_score", "{keys of rules}"),
@@ -60,7 +60,7 @@ const LISTS: [(&str, &str, &str); 10] = [
     ("min(), max(),", "mates_nearer()", "{calls}"),
 ];
 
-/// `line` with the long lists of what is allowed cut short.
+/// `line` with long lists of allowed values shortened.
 fn abridged(line: &str) -> String {
     LISTS.into_iter().fold(line.to_owned(), |line, (first, last, short)| {
         let from = line.find(first);
@@ -72,7 +72,7 @@ fn abridged(line: &str) -> String {
     })
 }
 
-/// Checks the cases in `text`, laid out as `README.md` says: how many there are, and what is wrong with them.
+/// Checks the cases in `text`, laid out as `README.md` says; returns their number and the failures.
 fn check(text: &str) -> (usize, Vec<String>) {
     let mut cases = text.split("\n## ");
     let head = cases.next().unwrap_or_default();
@@ -87,7 +87,7 @@ fn check(text: &str) -> (usize, Vec<String>) {
     (cases.len(), failures.collect())
 }
 
-/// What is wrong with one case: `title`, which may say what must be reported, and its files.
+/// The failure of one case, if any: `title`, which may name the expected problem, and its files.
 fn failure(title: &str, text: &str) -> Option<String> {
     let mut title = title.split(" #~ ");
     let name = title.next().unwrap_or_default();
@@ -116,7 +116,8 @@ fn failure(title: &str, text: &str) -> Option<String> {
     (got != want || want.is_empty()).then(|| format!("{name}\n   is: {got:#?}\n want: {want:#?}"))
 }
 
-/// A problem, from `PATH:LINE:COLUMN: MESSAGE`, or in the file at `path` from `LINE:COLUMN: MESSAGE`.
+/// The expected problem: `PATH:LINE:COLUMN: MESSAGE`, or `LINE:COLUMN: MESSAGE` in the file at
+/// `path`.
 fn expected<'a>(path: &'a str, said: &'a str) -> (&'a str, usize, usize, &'a str) {
     let (path, said) = match said.split_once(".toml:") {
         Some((stem, rest)) if !stem.contains(' ') => (&said[..stem.len() + ".toml".len()], rest),
@@ -158,7 +159,7 @@ fn the_sound_files_are_sound() {
     for (path, _) in sound {
         assert_eq!(problems(&path, &[]), [""; 0], "{path}");
     }
-    // What a base names stays where the base says, wherever the file that builds on it lies.
+    // A path in a base file is relative to the base, wherever the file that extends it is.
     let elsewhere = ("mine/of/today/x.toml".to_owned(), "base = \"../../../games/g.toml\"\nseed = 7\n".to_owned());
     assert_eq!(problems(&elsewhere.0, std::slice::from_ref(&elsewhere)), [""; 0]);
 }

@@ -1,12 +1,12 @@
-//! Changes of binary inputs: numbers where numbers may stand, lengths, and pieces of other inputs.
+//! Mutates binary inputs: numbers at likely positions, lengths, and pieces of other inputs.
 
 use super::count;
 use crate::Dice;
 
-/// No input becomes longer than this by changes.
+/// Maximum length of a mutated input, bytes.
 const LENGTH_MAX: usize = 1 << 20;
 
-/// Whole numbers at which something may happen.
+/// Edge-case integers.
 const EDGES: [u64; 12] = [
     0,
     1,
@@ -22,11 +22,11 @@ const EDGES: [u64; 12] = [
     u64::MAX,
 ];
 
-/// Numbers with a point at which something may happen.
+/// Edge-case floating-point numbers.
 const POINTS: [f64; 10] =
     [0.0, -0.0, 1.0, -1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX, f64::MIN_POSITIVE, 1e-320];
 
-/// One of these inputs with a few changes.
+/// One of these inputs with a few mutations.
 pub fn change(inputs: &[Vec<u8>], dice: &mut Dice) -> Vec<u8> {
     let mut bytes = dice.one_of(inputs).clone();
     for _ in 0..count(dice) {
@@ -36,7 +36,7 @@ pub fn change(inputs: &[Vec<u8>], dice: &mut Dice) -> Vec<u8> {
     bytes
 }
 
-/// One change.
+/// Applies one mutation.
 fn once(bytes: &mut Vec<u8>, inputs: &[Vec<u8>], dice: &mut Dice) {
     match dice.roll(9) {
         0 => {
@@ -48,7 +48,8 @@ fn once(bytes: &mut Vec<u8>, inputs: &[Vec<u8>], dice: &mut Dice) {
             bytes.iter_mut().skip(at).take(1).for_each(|byte| *byte ^= 1 << dice.roll(8));
         }
         2 | 3 => {
-            // Numbers stand at multiples of their size, behind the four bytes of the encapsulation or anywhere.
+            // Numbers are at multiples of their size, after the four bytes of the encapsulation or
+            // anywhere.
             let size = *dice.one_of(&[1, 2, 4, 4, 8, 8]);
             let edge = dice.one_of(&EDGES).wrapping_add(dice.roll(3) as u64).wrapping_sub(1);
             put(bytes, &edge.to_le_bytes()[..size], dice);
@@ -69,7 +70,7 @@ fn once(bytes: &mut Vec<u8>, inputs: &[Vec<u8>], dice: &mut Dice) {
     }
 }
 
-/// Puts a piece over what stands somewhere, as far as there is room.
+/// Overwrites a random place with a piece, as far as it fits.
 fn put(bytes: &mut [u8], piece: &[u8], dice: &mut Dice) {
     let step = if dice.roll(4) == 0 { 1 } else { piece.len().next_power_of_two().min(8) };
     let first = if step == 1 { 0 } else { 4 % step };

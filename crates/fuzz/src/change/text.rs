@@ -1,12 +1,12 @@
-//! Changes of texts (TOML, JSON, CSV, sentences): words for words, numbers for numbers, lines for lines.
+//! Mutates texts (TOML, JSON, CSV, sentences): word for word, number for number, line for line.
 
 use super::count;
 use crate::Dice;
 
-/// No text becomes longer than this by changes.
+/// Maximum length of a mutated text, bytes.
 const LENGTH_MAX: usize = 1 << 17;
 
-/// Numbers at which something may happen, as TOML, JSON or CSV spell them.
+/// Edge-case numbers, as written in TOML, JSON or CSV.
 const NUMBERS: [&str; 24] = [
     "0",
     "-0.0",
@@ -34,15 +34,15 @@ const NUMBERS: [&str; 24] = [
     "999999999999999999999999999999999999999999",
 ];
 
-/// Words that mean something to one of the readers.
+/// Words with a meaning for one of the readers.
 const WORDS: [&str; 13] =
     ["null", "true", "false", "\"\"", "[]", "{}", "\"\\u0000\"", "\"../x\"", "\"é\"", "base", ",", "\n", "[[x]]"];
 
-/// What stands between texts of people and the terminal, or ends a text.
+/// Characters that end a text, or that would control a terminal if a reader printed them.
 const CHARACTERS: [char; 12] =
     ['\0', '\x1b', '\x7f', '\u{9b}', '\u{202e}', '\u{feff}', 'ß', '"', '\\', '\n', '\r', '#'];
 
-/// What a piece of a text is.
+/// The kind of a piece of text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Number,
@@ -51,7 +51,7 @@ enum Kind {
     Other,
 }
 
-/// The pieces of many texts: what a piece may be replaced with.
+/// The pieces of many texts, for use as replacements.
 pub struct Pieces {
     numbers: Vec<String>,
     words: Vec<String>,
@@ -60,7 +60,7 @@ pub struct Pieces {
 }
 
 impl Pieces {
-    /// Those of these texts.
+    /// Collects the pieces of these texts.
     pub fn of(texts: &[Vec<u8>]) -> Pieces {
         let mut pieces = Pieces {
             numbers: NUMBERS.map(str::to_owned).to_vec(),
@@ -90,7 +90,7 @@ impl Pieces {
         }
     }
 
-    /// Another piece of the same kind.
+    /// A random piece of the same kind.
     fn like(&self, kind: Kind, dice: &mut Dice) -> &str {
         let all = match kind {
             Kind::Number if dice.roll(2) == 0 => return NUMBERS[dice.roll(NUMBERS.len())],
@@ -102,7 +102,7 @@ impl Pieces {
         &all[dice.roll(all.len())]
     }
 
-    /// One of these texts with a few changes.
+    /// One of these texts with a few mutations.
     pub fn change(&self, texts: &[Vec<u8>], dice: &mut Dice) -> Vec<u8> {
         let mut text = String::from_utf8_lossy(&texts[dice.roll(texts.len())]).into_owned();
         for _ in 0..count(dice) {
@@ -125,7 +125,7 @@ impl Pieces {
 
     fn change_piece(&self, text: &str, dice: &mut Dice) -> String {
         let mut pieces: Vec<(Kind, &str)> = split(text);
-        // Half of the time something that is a number: of that a program does most.
+        // Half of the time choose a number: numbers affect a program most.
         let numbers: Vec<usize> = (0..pieces.len()).filter(|i| pieces[*i].0 == Kind::Number).collect();
         let at = if numbers.is_empty() || dice.roll(2) == 0 { dice.roll(pieces.len()) } else { *dice.one_of(&numbers) };
         let Some((kind, piece)) = pieces.get(at).copied() else { return dice.one_of(&WORDS).to_string() };
@@ -167,7 +167,7 @@ impl Pieces {
     }
 }
 
-/// The pieces of a text, which together are all of it.
+/// Splits a text into pieces that together are the whole text.
 fn split(text: &str) -> Vec<(Kind, &str)> {
     let mut pieces = Vec::new();
     let mut rest = text;
@@ -190,7 +190,7 @@ fn length_of(text: &str, belongs: impl Fn(char) -> bool) -> usize {
     text.find(|c| !belongs(c)).unwrap_or(text.len())
 }
 
-/// Of a text in quotes with them, or of the quote alone if the line ends before.
+/// Length of a quoted text with its quotes, or of the quote alone if the line ends first.
 fn quoted_length(text: &str, quote: char) -> usize {
     let mut is_escaped = false;
     for (at, c) in text.char_indices().skip(1) {

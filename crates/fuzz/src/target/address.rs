@@ -1,4 +1,4 @@
-//! What people and nodes type in a line: addresses of links, names of games, tokens, keys of nodes.
+//! One-line inputs of users and nodes: link addresses, game names, tokens, node keys.
 
 use super::{Target, check_shown, texts};
 use bus::Token;
@@ -27,7 +27,7 @@ fn check(bytes: &[u8]) {
         }
     }
     match GameName::new(&text) {
-        // It stands in keys, where these mean something.
+        // The name becomes part of keys, in which these characters are special.
         Ok(name) => assert!(name.as_str() == text && !text.contains(['/', '*', '$', '#', '?']) && !text.is_empty()),
         Err(error) => check_shown(&error),
     }

@@ -1,5 +1,5 @@
-//! Keys of a node (PEM): the certificate of the authority, the node's own, and its key, each with its length before it, as they are
-//! within PEM. Real ones are made anew for every run.
+//! Keys of a node (PEM): the authority's certificate, the node's certificate and its key, each
+//! preceded by its length, as decoded from PEM. Real ones are created for every run.
 
 use super::{Target, binaries, check_shown};
 use bus::keys::{Bundle, Identity, make};
@@ -10,7 +10,7 @@ use tempfile::TempDir;
 pub(super) const TARGET: Target =
     Target { name: "keys", seeds, change: binaries, check, allocated_max: (4 << 20, 500) };
 
-/// The files of a bundle, and what is in them.
+/// The files of a bundle and their contents.
 const FILES: [(&str, &str); 3] =
     [("authority.pem", "CERTIFICATE"), ("certificate.pem", "CERTIFICATE"), ("key.pem", "PRIVATE KEY")];
 const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

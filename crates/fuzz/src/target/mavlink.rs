@@ -1,4 +1,4 @@
-//! What boats and ground stations send (MAVLink frames).
+//! Messages from boats and ground stations (MAVLink frames).
 
 use super::{Target, binaries};
 use gateway::config::{BoatProtocol, Gateway};
@@ -10,7 +10,7 @@ use primitives::SimTime;
 pub(super) const TARGET: Target =
     Target { name: "mavlink", seeds, change: binaries, check, allocated_max: (1 << 24, 20_000) };
 
-/// Frames of another program, one by one and all in a row.
+/// Frames written by another program, one by one and all in a row.
 fn seeds() -> Vec<Vec<u8>> {
     let list = include_str!("../../../../gateway/tests/mavlink/golden.txt");
     let lines = list.lines().filter_map(|line| line.split_once(' ')).filter(|(name, _)| *name != "#");
@@ -35,12 +35,13 @@ fn check(bytes: &[u8]) {
 
 fn framed<'a>(pieces: impl IntoIterator<Item = &'a [u8]>) -> (Vec<String>, Counts) {
     let (mut framer, mut received) = (Framer::new(), Vec::new());
-    // Numbers that are none are not equal to themselves.
+    // Compare texts: NaN is not equal to itself.
     pieces.into_iter().for_each(|piece| framer.push(piece, &mut |message| received.push(format!("{message:?}"))));
     (received, framer.counts().clone())
 }
 
-/// Arbitrary payloads of every message that is read, in frames that are right: boat and ground station take them all.
+/// Arbitrary payloads of every supported message in valid frames: boat and ground station must
+/// accept them all.
 fn repaired(bytes: &[u8]) {
     let gateway = Gateway { protocol: BoatProtocol::Mavlink, ..gateway::config::default_gateway() };
     let (mut protocol, mut boat) =

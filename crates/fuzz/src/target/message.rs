@@ -1,4 +1,4 @@
-//! Messages of every tick (CDR): what comes of the bytes, and what the sim, a mind and an observer make of it.
+//! Messages of every tick (CDR): decoding, and their effect on the sim, a mind and an observer.
 
 use super::{Target, binaries, check_shown};
 use crate::played::{self, Played, mixed, played};
@@ -25,7 +25,7 @@ use std::cell::RefCell;
 pub(super) const TARGET: Target =
     Target { name: "message", seeds, change: binaries, check, allocated_max: (32 << 20, 500) };
 
-/// The ticket that all nodes have.
+/// The ticket of all nodes.
 const TICKET: u64 = 7;
 
 fn seeds() -> Vec<Vec<u8>> {
@@ -59,11 +59,11 @@ fn seeds() -> Vec<Vec<u8>> {
     seeds
 }
 
-/// Those who read messages, in the middle of a game.
+/// The readers of messages, in the middle of a game.
 struct Readers {
     scenario: Scenario,
     contest: Contest,
-    /// The game as it is before each message.
+    /// The state of the game before each message.
     snapshot: Vec<u8>,
     agents: Membership,
     gateways: Membership,
@@ -102,7 +102,7 @@ fn check(bytes: &[u8]) {
             let mut refusals = Refusals::default();
             let open = (readers.contest.decision(), Timing::Realtime);
             for (vehicle, order) in agents::accept(&mut readers.agents.clone(), &orders, open, &mut refusals).orders {
-                // A number that is none makes the boat hold.
+                // A non-finite number makes the boat hold.
                 readers.contest.order(vehicle, order, orders.stamp.valid_ns).unwrap_or_default();
             }
             readers.go_on();
@@ -141,7 +141,8 @@ fn check(bytes: &[u8]) {
     });
 }
 
-/// The message in the bytes, which is as long as they are, and stays when it is written and read again.
+/// Decodes a message, whose encoding must have the same length and be stable when decoded and
+/// encoded again.
 fn read<M: Message + Serialize + DeserializeOwned>(bytes: &[u8]) -> Option<M> {
     match codec::decode::<M>(bytes) {
         Ok(message) => {
@@ -159,7 +160,7 @@ fn read<M: Message + Serialize + DeserializeOwned>(bytes: &[u8]) -> Option<M> {
 }
 
 impl Readers {
-    /// After whatever was taken in, the game goes on with boats that are somewhere, and then stands again as it did.
+    /// After any message the game advances with finite positions; then restores its state.
     fn go_on(&mut self) {
         self.contest.advance();
         let frame = self.contest.frame(&mut EventCursor::default());
@@ -171,7 +172,7 @@ impl Readers {
         self.contest.restore(&self.snapshot).expect("its own snapshot");
     }
 
-    /// What minds order after any picture is an order that the sim takes.
+    /// After any picture, the sim must accept the orders of the minds.
     fn decide(&mut self, picture: &Picture) {
         let mind = |i| (VehicleId::at(i), agent::mind_of(&self.scenario, VehicleId::at(i)));
         let mut runner = MindRunner::new([mind(0), mind(2)]);
@@ -186,7 +187,7 @@ impl Readers {
         self.contest.restore(&self.snapshot).expect("its own snapshot");
     }
 
-    /// Mates hear no more than boats say, and nothing that is no number.
+    /// Teammates receive no more words than boats may send, and no non-finite numbers.
     fn hear(&self, bytes: &[u8], seq: u64) {
         for team in 0..self.scenario.teams.len() {
             let mut inbox = self.team_inbox.clone();

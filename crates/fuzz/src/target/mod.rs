@@ -1,4 +1,4 @@
-//! The kinds of input, and what is promised of each.
+//! The kinds of input and their guarantees.
 
 mod address;
 mod exo2;
@@ -15,25 +15,26 @@ mod sheet;
 
 use crate::Dice;
 
-/// Makes another input of real ones.
+/// Generates a new input from real ones.
 pub type Change = Box<dyn Fn(&mut Dice) -> Vec<u8>>;
 
 /// A kind of input.
 #[derive(Clone, Copy)]
 pub struct Target {
-    /// Its name.
+    /// Name of the target on the command line.
     pub name: &'static str,
     /// Real inputs.
     pub seeds: fn() -> Vec<Vec<u8>>,
-    /// What makes others of them.
+    /// Builds the mutator of real inputs.
     pub change: fn(Vec<Vec<u8>>) -> Change,
-    /// Checks every promise on an input; panics where one is broken.
+    /// Checks every guarantee on an input; panics if one is violated.
     pub check: fn(&[u8]),
-    /// What a check may allocate in all, bytes: so much, and so many times the input's length.
+    /// Limit of total allocations of a check, bytes: a constant, and a multiple of the input's
+    /// length.
     pub allocated_max: (usize, usize),
 }
 
-/// All of them.
+/// All targets.
 pub const TARGETS: [Target; 12] = [
     address::TARGET,
     exo2::TARGET,
@@ -49,24 +50,25 @@ pub const TARGETS: [Target; 12] = [
     sheet::TARGET,
 ];
 
-/// The target of this name.
+/// The target with this name.
 #[must_use]
 pub fn named(name: &str) -> Option<Target> {
     TARGETS.into_iter().find(|target| target.name == name)
 }
 
-/// Changes of texts.
+/// The text mutator.
 fn texts(seeds: Vec<Vec<u8>>) -> Change {
     let pieces = crate::change::text::Pieces::of(&seeds);
     Box::new(move |dice| pieces.change(&seeds, dice))
 }
 
-/// Changes of binary inputs.
+/// The binary mutator.
 fn binaries(seeds: Vec<Vec<u8>>) -> Change {
     Box::new(move |dice| crate::change::binary::change(&seeds, dice))
 }
 
-/// Checks what a person is shown: so many lines at most, none of which is endless or steers the terminal.
+/// Checks a displayed error: a limited number of lines, each of limited length and without terminal
+/// control characters.
 fn check_shown(error: &dyn std::fmt::Display) {
     let shown = primitives::printable::message(&error.to_string());
     assert!(!shown.trim().is_empty(), "an error that says nothing");

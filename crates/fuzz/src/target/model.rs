@@ -1,4 +1,5 @@
-//! Trained policies (ONNX): a file is a network that answers whatever it is given, and the same each time, or it is refused.
+//! Trained policies (ONNX): a file is refused, or it is a network that answers any input, and
+//! always in the same way.
 
 use super::{Target, binaries, check_shown};
 use onnx::{Activation, Head, Layer, Network, Perceptron};
@@ -8,18 +9,18 @@ use scenario::policy::{PartialSpec, PolicyModel, PolicySpec};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Limits of weights and of numbers that are worked out are what counts, not the length.
+/// The limits of weights and computed numbers matter here, not the file's length.
 pub(super) const TARGET: Target =
     Target { name: "model", seeds, change: binaries, check, allocated_max: (256 << 20, 1000) };
 
-/// What a strategy says of a model that says nothing of itself.
+/// A strategy's description of a model without metadata.
 const SAID: PartialSpec = PartialSpec {
     observation: Some(ObservationSpace::Pyquaticus),
     action: Some(ActionSpace::Pyquaticus),
     period_s: Some(0.1),
 };
 
-/// Inputs of a network: nothing, and what a sensor that is broken tells.
+/// Inputs of a network: zero, and values from a broken sensor.
 const GIVEN: [f32; 4] = [0.0, -1.0, f32::MAX, f32::NAN];
 
 fn seeds() -> Vec<Vec<u8>> {
@@ -32,7 +33,7 @@ fn seeds() -> Vec<Vec<u8>> {
     names.into_iter().map(read).chain([own()]).collect()
 }
 
-/// A model as a training writes it.
+/// A model as written by a training.
 fn own() -> Vec<u8> {
     let spec = PolicySpec {
         observation: ObservationSpace::Squall { mates: 0, enemies: 1, frames: 1 },

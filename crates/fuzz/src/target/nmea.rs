@@ -1,4 +1,4 @@
-//! What boats send (NMEA sentences).
+//! Messages from boats (NMEA sentences).
 
 use super::{Target, texts};
 use gateway::nmea::{
@@ -7,7 +7,7 @@ use gateway::nmea::{
 };
 use primitives::LatLon;
 
-/// Addresses that the codec reads: arbitrary fields would seldom find one.
+/// Sentence addresses that the codec reads: random fields would seldom match one.
 const ADDRESSES: [&str; 16] = [
     "PSEAC", "PSEAA", "PSEAB", "PSEAD", "PSEAG", "PSEAR", "OIWPL", "GPGGA", "GPRMC", "GPVTG", "GPHDT", "HCHDG",
     "GPZDA", "VCGLL", "WIMWV", "VWVHW",
@@ -15,7 +15,7 @@ const ADDRESSES: [&str; 16] = [
 
 pub(super) const TARGET: Target = Target { name: "nmea", seeds, change: texts, check, allocated_max: (1 << 20, 2000) };
 
-/// Sentences of real programs and manuals, one by one and some in a row.
+/// Sentences from real programs and manuals, one by one and some in a row.
 fn seeds() -> Vec<Vec<u8>> {
     let list = include_str!("../../../../gateway/tests/nmea/golden.txt");
     let sentences = list.lines().filter(|line| line.starts_with(|c: char| c == '$' || c.is_ascii_uppercase()));
@@ -43,7 +43,7 @@ fn check(bytes: &[u8]) {
     numbers(bytes);
 }
 
-/// Bytes as they come: however cut, the same sentences, and every `$` accounted for.
+/// A byte stream gives the same sentences however it is split, and every `$` is counted.
 fn stream(bytes: &[u8]) {
     let (whole, counts) = framed([bytes]);
     let step = 1 + usize::from(bytes.first().copied().unwrap_or_default()) % 97;
@@ -61,7 +61,7 @@ fn stream(bytes: &[u8]) {
     }
 }
 
-/// A line given the checksum that it lacks must come through.
+/// A line with its checksum added must be accepted.
 fn repaired(line: &[u8]) {
     let plain = |byte: &&u8| (b' '..=b'~').contains(*byte) && !b"$*".contains(*byte);
     let body: Vec<u8> = line.iter().filter(plain).take(ACCEPTED_MAX - 6).copied().collect();
@@ -73,7 +73,7 @@ fn repaired(line: &[u8]) {
     read(&found[0]);
 }
 
-/// What can be read can be written and read again, and then it stays.
+/// A parsed sentence can be written and read again, and is then stable.
 fn read(body: &str) {
     let Ok(sentence) = Sentence::parse(body) else { return };
     let Some(again) = reread(&sentence) else { return };
@@ -81,7 +81,7 @@ fn read(body: &str) {
     assert_eq!(written(&settled), written(&again), "{body}");
 }
 
-/// The bytes taken for numbers, finite or not.
+/// Interprets the bytes as numbers, finite or not.
 fn numbers(bytes: &[u8]) {
     let mut eights =
         bytes.chunks_exact(8).map(|eight| f64::from_bits(eight.iter().fold(0, |n, b| n << 8 | u64::from(*b))));
@@ -116,7 +116,7 @@ fn numbers(bytes: &[u8]) {
     }));
 }
 
-/// The sentence after a trip over the wire; nothing where a field that it needs had to be left empty.
+/// The sentence after writing and reading; `None` if a required field had to be left empty.
 fn reread(sentence: &Sentence) -> Option<Sentence> {
     let wire = written(sentence);
     assert!(wire.len() <= EMITTED_MAX, "{} bytes: {wire}", wire.len());

@@ -1,5 +1,5 @@
-//! What a browser sends to a page (JSON in websocket messages), on a recording and on a game: a line is a message, a line that
-//! begins with `~` a pong, one that begins with `!` a binary message.
+//! Browser messages to a page (JSON over websocket), on a recording and on a game. Each line is a
+//! message; a line that begins with `~` is a pong, one that begins with `!` a binary message.
 
 use super::{Target, texts};
 use crate::played::{self, played};
@@ -14,7 +14,8 @@ use std::time::{Duration, Instant};
 
 pub(super) const TARGET: Target = Target { name: "page", seeds, change: texts, check, allocated_max: (16 << 20, 5000) };
 
-/// More messages than a page may be sent at once: a minute of the past in half seconds, events, and what is new.
+/// Maximum number of messages to a page at once: a minute of history in half seconds, events, and
+/// new data.
 const SENT_MAX: usize = 300;
 
 static REPLAY: LazyLock<ReplayView> = LazyLock::new(|| {
@@ -22,7 +23,7 @@ static REPLAY: LazyLock<ReplayView> = LazyLock::new(|| {
     replay_of(recording)
 });
 
-/// It looks for a game and never finds one.
+/// A view that searches for a game and never finds one.
 static LIVE: LazyLock<LiveView> = LazyLock::new(|| {
     let nowhere = Place::new(|_| Err("there is no game".to_owned()));
     LiveView::open(nowhere, None, Box::new(|_| ()), |_| Err(String::new())).expect("a thread")
@@ -51,19 +52,19 @@ fn check(bytes: &[u8]) {
     }
     let access = Access::Watch;
     talk(PageSession::new(LIVE.open_viewer(access), access), &text, |line, said| {
-        // Who may only look gets nothing done.
+        // A viewer without control rights can change nothing.
         let acts = serde_json::from_str::<PageRequest>(line).is_ok_and(|ask| ask.acts());
         let refused = |text: &String| text.starts_with(r#"{"kind":"refused""#) && text.contains("may only look");
         assert!(!acts || said.iter().any(refused), "{line} was answered with {said:?}");
     });
 }
 
-/// A recording, shown.
+/// A view of a recording.
 fn replay_of(recording: Recording) -> ReplayView {
     ReplayView::new(Arc::new(Recorded::new(Arc::new(recording), "fuzz.mcap".to_owned())), None)
 }
 
-/// Shows a recording to a page that looks around in it.
+/// Shows a recording to a page that navigates in it.
 pub(super) fn look_around(recording: Recording) {
     let view = replay_of(recording);
     let access = Access::Watch;
@@ -71,7 +72,8 @@ pub(super) fn look_around(recording: Recording) {
     talk(PageSession::new(view.open_viewer(access), access), &seed, |_, _| ());
 }
 
-/// Sends the lines to a session. Whatever it says is of a kind, there is an end to it, and no more than two frames are under way.
+/// Sends the lines to a session. Every reply has a kind, the replies end, and at most two frames
+/// are in flight.
 fn talk(mut session: PageSession, lines: &str, answered: impl Fn(&str, &[String])) {
     let (mut now, mut under_way) = (clock::now(), 0_usize);
     for line in lines.lines() {
@@ -88,7 +90,7 @@ fn talk(mut session: PageSession, lines: &str, answered: impl Fn(&str, &[String]
     }
 }
 
-/// What the session says now.
+/// The session's pending messages.
 fn said(session: &mut PageSession, now: Instant, under_way: &mut usize) -> Vec<String> {
     let mut texts = Vec::new();
     for _ in 0..SENT_MAX {
@@ -103,7 +105,7 @@ fn said(session: &mut PageSession, now: Instant, under_way: &mut usize) -> Vec<S
             Some(Outgoing::Now(_)) => *under_way += 1,
         }
         assert!(*under_way <= 2, "{under_way} frames that are not drawn");
-        // A page of a browser answers at once.
+        // A browser page answers at once.
         if let Some(ping) = session.ping() {
             session.receive_pong(ping);
         }

@@ -1,4 +1,5 @@
-//! Recordings of games and of gateways (MCAP): everything that opens, shows, plays again or tells of one answers or refuses.
+//! Recordings of games and gateways (MCAP): every reader, viewer, replay and analysis answers or
+//! refuses.
 
 use super::{Change, Target, check_shown, page};
 use crate::Dice;
@@ -21,12 +22,12 @@ use std::sync::LazyLock;
 
 pub(super) const TARGET: Target = Target { name: "recording", seeds, change, check, allocated_max: (1 << 30, 2000) };
 
-/// The games that were recorded.
+/// The recorded games.
 static SCENARIOS: LazyLock<[Scenario; 2]> = LazyLock::new(|| ["attack_1v1", "pav01_popolopen"].map(played::scenario));
 
-/// What MCAP files begin with.
+/// The magic bytes of MCAP files.
 const MAGIC: &[u8] = b"\x89MCAP0\r\n";
-/// The numbers of the kinds of records that are taken apart here.
+/// Opcodes of the records that are parsed here.
 const CHUNK: u8 = 6;
 const METADATA: u8 = 12;
 const DATA_END: u8 = 15;
@@ -95,7 +96,7 @@ fn check(bytes: &[u8]) {
     }
 }
 
-/// Everything that can be made of the recording of a game.
+/// Applies every reader to the recording of a game.
 fn look_at_all_of(recording: Recording, bytes: &[u8]) {
     let series = GameSeries::of(&recording);
     serde_json::to_string(&Summary::of(&recording)).expect("a summary is JSON");
@@ -114,9 +115,9 @@ fn look_at_all_of(recording: Recording, bytes: &[u8]) {
     page::look_around(Recording::of(bytes.to_vec()).expect("it is one"));
 }
 
-/// Plays the game again from what it was given, as `squall replay --check` does.
+/// Replays the game from its inputs, like `squall replay --check`.
 fn play_again(recording: &Recording) {
-    // The numbers of a scenario are believed: only what was given is changed here.
+    // A scenario's numbers are trusted: only the inputs are mutated here.
     if !SCENARIOS.contains(recording.scenario()) {
         return;
     }
@@ -130,10 +131,10 @@ fn play_again(recording: &Recording) {
     assert_eq!(recording.bag().places(FRAME).count(), recording.frame_count());
 }
 
-/// A record of an MCAP file: its kind, and its bytes.
+/// An MCAP record: its opcode and its body.
 type Record = (u8, Vec<u8>);
 
-/// Changes of single records, and of the file as it lies.
+/// Mutates single records, and the file as a whole.
 fn change(seeds: Vec<Vec<u8>>) -> Change {
     let files: Vec<Vec<Record>> = seeds.iter().map(|seed| records(&seed[MAGIC.len()..])).collect();
     let pools: Vec<Vec<Vec<u8>>> =
@@ -180,13 +181,14 @@ fn change_record(file: &mut Vec<Record>, pool: &[Vec<u8>], pieces: &Pieces, dice
     }
 }
 
-/// The records of a file, those in chunks one by one.
+/// The records of a file, including those inside chunks.
 fn records(mut bytes: &[u8]) -> Vec<Record> {
     let mut records = Vec::new();
     while let Some((opcode, length, rest)) = prefix(bytes) {
         let Some((body, rest)) = rest.split_at_checked(length) else { break };
         match opcode {
-            // Two times, a size, a checksum, no compression, and the length of what is in it.
+            // Skip two times, a size, a checksum, the empty compression name, and the length of the
+            // content.
             CHUNK => records.extend(self::records(body.get(8 + 8 + 8 + 4 + 4 + 8..).unwrap_or_default())),
             DATA_END => break,
             _ => records.push((opcode, body.to_vec())),
@@ -202,7 +204,7 @@ fn prefix(bytes: &[u8]) -> Option<(u8, usize, &[u8])> {
     Some((*opcode, usize::try_from(u64::from_le_bytes(*length)).ok()?, rest))
 }
 
-/// The file of these records. The header gets the checksum that belongs to it, everything else has none.
+/// A file of these records. Only the header has a valid checksum.
 fn written(records: &[Record]) -> Vec<u8> {
     let mut bytes = MAGIC.to_vec();
     let end = (DATA_END, vec![0; 4]);
@@ -247,7 +249,7 @@ fn metadata(name: &[u8], facts: &BTreeMap<String, Vec<u8>>) -> Vec<u8> {
     [with_length(name), with_length(&list)].concat()
 }
 
-/// The checksum of a header's other facts, as the recorder makes it.
+/// The checksum of a header's other facts, computed as by the recorder.
 fn checksum_of(facts: &BTreeMap<String, Vec<u8>>) -> String {
     let mut hasher = crc32fast::Hasher::new();
     for (key, value) in facts.iter().filter(|(key, _)| *key != "checksum") {

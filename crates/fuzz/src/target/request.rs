@@ -1,4 +1,5 @@
-//! The control plane (JSON): requests and their proofs, answers, states, and the registry of this machine.
+//! The control plane (JSON): requests and their proofs, replies, states, and this machine's
+//! registry.
 
 use super::{Target, check_shown, texts};
 use crate::played::{self, mixed, played};
@@ -73,7 +74,7 @@ fn bytes_of<T: Serialize>(value: &T) -> Vec<u8> {
     serde_json::to_vec(value).expect("JSON")
 }
 
-/// A request alone, as it travels, and with a proof that is none.
+/// A request alone, in its envelope, and with an invalid proof.
 fn requests<T: Serialize>(body: &T) -> [Vec<u8>; 3] {
     let text = String::from_utf8(bytes_of(body)).expect("JSON");
     let proof = format!(r#"{{"challenge":"{}","mac":"{}"}}"#, "4f0c".repeat(8), "ab".repeat(32));
@@ -114,15 +115,15 @@ fn check(bytes: &[u8]) {
     read::<Water>(bytes);
     read::<Entry>(bytes);
     read::<GatewayEntry>(bytes);
-    // It has no equality: a report holds errors.
+    // Not comparable for equality: a report contains errors.
     drop(serde_json::from_slice::<ProgressMessage>(bytes));
-    // Its numbers are believed: who joins a game trusts its sim with them.
+    // Its numbers are trusted: a node that joins a game trusts its sim.
     if let Some(Err(error)) = read::<GameInfo>(bytes).map(|info| info.scenario.check_references()) {
         check_shown(&error);
     }
 }
 
-/// What is read stays when it is written and read again.
+/// A decoded value must be stable when encoded and decoded again.
 fn read<T: Serialize + DeserializeOwned + PartialEq + Debug>(bytes: &[u8]) -> Option<T> {
     match serde_json::from_slice::<T>(bytes) {
         Ok(value) => {
@@ -138,7 +139,7 @@ fn read<T: Serialize + DeserializeOwned + PartialEq + Debug>(bytes: &[u8]) -> Op
     }
 }
 
-/// Nobody who knows no token gets something done that needs one.
+/// Without the token, no request that needs it is granted.
 fn guarded(bytes: &[u8]) {
     let guard = || Guard::new(Some(TOKEN.clone()));
     match guard().check(GATEWAY_PORT_KEY, bytes, GatewayCommand::needs_token) {

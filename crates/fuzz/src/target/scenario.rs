@@ -1,5 +1,5 @@
-//! Scenario files of every kind (TOML): a line with the folder of the kind, then the file. What it builds on and refers to are the
-//! files of the tree.
+//! Scenario files of every kind (TOML): a line with the folder of the kind, then the file. The
+//! file's bases and references are files of the tree.
 
 use super::{Target, check_shown, texts};
 use crate::played::scenarios;
@@ -13,11 +13,11 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 use tempfile::TempDir;
 
-/// What is accepted is also played for a moment, and a game of eighty boats is much.
+/// Generous limits: an accepted game is also played for a moment, and may have eighty boats.
 pub(super) const TARGET: Target =
     Target { name: "scenario", seeds, change: texts, check, allocated_max: (1 << 30, 10_000) };
 
-/// Every kind there is.
+/// All kinds of files.
 const KINDS: &[Kind] = &[
     Kind::GAME,
     Kind::FIELD,
@@ -32,7 +32,7 @@ const KINDS: &[Kind] = &[
     Kind::of::<Sweep>(),
 ];
 
-/// Copies of the files of the tree, with room for one more.
+/// Copies of the files of the tree, with space for one more.
 static FOLDER: LazyLock<TempDir> = LazyLock::new(|| {
     let folder = tempfile::tempdir().expect("a folder");
     for (path, text) in files() {
@@ -69,7 +69,7 @@ fn seeds() -> Vec<Vec<u8>> {
     files.map(seed).chain([format!("strategies\n# {broken}").into_bytes(), wide_sweep().into_bytes()]).collect()
 }
 
-/// A short file that stands for three thousand games.
+/// A short sweep file that describes three thousand games.
 fn wide_sweep() -> String {
     let axis = |key: &str, range: &str| format!("[[axis]]\nkey = \"{key}\"\nrange = {range}\ncount = 1000\n");
     [
@@ -95,7 +95,7 @@ fn check(bytes: &[u8]) {
     }
 }
 
-/// Every problem has a place in a file that is there, and can be shown.
+/// Every problem has a place in an existing file, and can be shown.
 fn refused(problems: &Problems) {
     assert!(!problems.0.is_empty());
     for problem in &problems.0 {
@@ -107,7 +107,7 @@ fn refused(problems: &Problems) {
     }
 }
 
-/// What was accepted can be used for what it is for.
+/// An accepted file can be used for its purpose.
 fn accepted(kind: Kind, path: &Path) {
     match kind.name() {
         "game" => playable(&scenario::load(path).expect("it was accepted")),
@@ -140,7 +140,7 @@ fn accepted(kind: Kind, path: &Path) {
     }
 }
 
-/// A game that was accepted travels as it is, and begins, or says why not; minds play it.
+/// An accepted game can be sent unchanged and started, or reports why not; minds play it.
 fn playable(scenario: &Scenario) {
     let json = serde_json::to_string(scenario).expect("JSON");
     assert_eq!(serde_json::from_str::<Scenario>(&json).expect("JSON"), *scenario, "it does not travel");

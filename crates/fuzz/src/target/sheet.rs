@@ -1,4 +1,4 @@
-//! Tables of numbers from trials (CSV): commands to be replayed, and logs to be fitted to.
+//! Tables of numbers from trials (CSV): commands for replay, and logs for fitting.
 
 use super::{Target, check_shown, texts};
 use crate::played::scenarios;
@@ -11,7 +11,7 @@ use trial::{Engine, LONGEST_S, Mistake, Orders, Sheet};
 
 pub(super) const TARGET: Target = Target { name: "sheet", seeds, change: texts, check, allocated_max: (1 << 20, 1000) };
 
-/// One with propellers, one with a table of thrusts, one with a rudder.
+/// Boats with propellers, with a thrust table, and with a rudder.
 static BOATS: LazyLock<[Boat; 3]> = LazyLock::new(|| {
     ["otter", "heron", "surveyor_kinematic"].map(|name| {
         let file = scenarios().join("boats").join(name).with_extension("toml");
