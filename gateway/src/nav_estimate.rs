@@ -8,7 +8,7 @@ use crate::compass_check::CompassCheck;
 use crate::config::NavWatch;
 use crate::geodesy::LocalFrame;
 use crate::motion_check::MotionCheck;
-use crate::nmea::TimeOfDay;
+use crate::nmea::{FixQuality, TimeOfDay};
 use crate::protocol::{self, North, Report};
 use crate::supervisor::NavFault;
 use crate::thrust_check::{Ordered, ThrustCheck, ThrustFault};
@@ -67,6 +67,8 @@ struct Known {
     heading: Option<Heading>,
     /// What was wrong with the receiver's last fix, if anything.
     doubt: Option<NavFault>,
+    /// Quality and dilution of the last fix that told them.
+    told: Option<(Option<FixQuality>, Option<f64>)>,
     jumped: Option<(SimTime, f64)>,
     time_of_fix: Option<TimeOfDay>,
     /// Since when the position is the same to the last digit under thrust.
@@ -180,19 +182,34 @@ impl NavEstimator {
     }
 
     fn take_fix(&mut self, now: SimTime, fix: &protocol::Fix) -> bool {
-        // A boat that sends a fix twice, by two sentences, has sent it already.
+        let doubt = self.doubt_of(fix);
+        // A boat that sends a fix twice, by two sentences, has sent it already. What speaks
+        // against it may come in the second one alone.
         if self.is_repeated(fix.time, fix.at) {
+            self.known.doubt = doubt.or(self.known.doubt);
             return false;
         }
         self.known.time_of_fix = fix.time;
-        let poor = fix.quality.filter(|quality| *quality < self.watch.quality_min);
-        let bad_hdop = fix.hdop.filter(|hdop| *hdop > self.watch.hdop_max);
-        let doubt = match (poor, fix.at) {
-            (Some(quality), _) => Some(NavFault::Quality(quality)),
-            (None, None) => Some(NavFault::Quality(0)),
-            (None, Some(_)) => bad_hdop.map(NavFault::Dilution),
-        };
         self.take_position(now, fix.at, doubt)
+    }
+
+    /// What the receiver says against its fix.
+    fn doubt_of(&mut self, fix: &protocol::Fix) -> Option<NavFault> {
+        // RMC tells neither quality nor dilution: those of the GGA before it hold for it too, or
+        // each RMC would take back what speaks against the position. But that there is no fix,
+        // either of them says for itself.
+        let told = self.known.told.filter(|_| fix.quality.is_none()).unwrap_or((fix.quality, fix.hdop));
+        if fix.quality.is_some_and(|quality| quality != FixQuality::NONE) {
+            self.known.told = Some(told);
+        }
+        let (quality, hdop) = told;
+        let poor = quality.filter(|quality| !quality.meets(self.watch.quality_min));
+        let bad_hdop = hdop.filter(|hdop| *hdop > self.watch.hdop_max);
+        match (poor, fix.at) {
+            (Some(quality), _) => Some(NavFault::Quality(quality)),
+            (None, None) => Some(NavFault::Quality(FixQuality::NONE)),
+            (None, Some(_)) => bad_hdop.map(NavFault::Dilution),
+        }
     }
 
     /// A repeated fix is not a new one. Receivers that stamp whole seconds may take several in one.
@@ -267,5 +284,32 @@ impl NavEstimator {
         let yaw_rate_rad_s = heading.yaw_rate_deg_s.map_or_else(turned_rad_s, f64::to_radians);
         self.known.heading = Some(Heading { at: now, psi_rad, yaw_rate_rad_s });
         true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rmc_takes_back_nothing_that_gga_says_against_a_fix_in_either_order() {
+        let origin = LatLon { lat_deg: 42.0, lon_deg: -71.0 };
+        let watch = crate::config::default_gateway().nav;
+        for (quality, hdop, is_first) in [(6, 0.9, true), (6, 0.9, false), (1, 9.0, true), (1, 9.0, false)] {
+            let mut estimator = NavEstimator::new(LocalFrame::new(origin), watch, 0.0, 3.0);
+            for second in 1..=3_u32 {
+                let time = Some(TimeOfDay(1000 * second));
+                let at = Some(LatLon { lat_deg: 42.0 + 1e-5 * f64::from(second), ..origin });
+                let rmc = protocol::Fix { time, at, ..protocol::Fix::default() };
+                let gga = protocol::Fix { quality: Some(FixQuality::from_gga(quality)), hdop: Some(hdop), ..rmc };
+                let now = SimTime::from_s(f64::from(second));
+                for fix in if is_first { [gga, rmc] } else { [rmc, gga] } {
+                    estimator.update(now, &Report::Fix(fix));
+                    let is_known = second > 1 || fix.quality.is_some();
+                    let fault = estimator.known.doubt;
+                    assert!(fault.is_some() || !is_known, "{quality} {hdop} {is_first}: {fix:?}");
+                }
+            }
+        }
     }
 }

@@ -3,7 +3,7 @@
 use crate::config::{BoatProtocol, Gateway};
 use crate::mavlink;
 use crate::mavlink::dialect::MavMessage;
-use crate::nmea::{self, Date, Mode, Operator, Sentence, TimeOfDay, date_and_time, quality_in_words};
+use crate::nmea::{self, Date, FixQuality, Mode, Operator, Sentence, TimeOfDay, date_and_time};
 use crate::protocol::{ControlReport, Fix, Heading, North, Power, Protocol, Report};
 use ::mavlink::Message;
 use primitives::angle::{compass_deg_from_rad, wrap_pi};
@@ -211,7 +211,7 @@ impl SensorCheck {
         if let Some(Fix { at, quality: Some(quality), hdop, .. }) = self.fix {
             let place = at.map_or("no position".to_owned(), |at| format!("{:.6}, {:.6}", at.lat_deg, at.lon_deg));
             let hdop = hdop.map_or(String::new(), |hdop| format!(", dilution {hdop}"));
-            found.push(format!("position: {place} (fix quality {quality}: {}{hdop})", quality_in_words(quality)));
+            found.push(format!("position: {place}, fix quality {quality}{hdop}"));
         }
         found.extend(self.heading());
         if let Some(ControlReport { shown, operator }) = &self.control {
@@ -283,7 +283,9 @@ impl SensorCheck {
             });
         }
         // A receiver without a fix still sends its sentences, at the full rate.
-        if let Some(Fix { at: None, quality: Some(quality), .. }) = self.fix {
+        if let Some(Fix { at, quality: Some(quality), .. }) = self.fix
+            && (at.is_none() || !quality.is_fix())
+        {
             missing.push(format!("a position: its fix is of quality {quality}"));
         }
         missing
@@ -316,7 +318,7 @@ impl SensorCheck {
                 };
             }),
             Framer::Mavlink(framer) => framer.push(bytes, &mut |mavlink::Received { message, .. }| {
-                note(received, now, message.message_name(), (format!("{message:?}"), true));
+                note(received, now, message.message_name(), (mavlink::message_text(&message), true));
                 if let MavMessage::SYSTEM_TIME(time) = &message
                     && time.time_unix_usec > 0
                 {
@@ -331,6 +333,7 @@ impl SensorCheck {
             // RMC says no more than whether there is one.
             Report::Fix(fix) if fix.quality.is_some() => {
                 if let Some(at) = fix.at
+                    && fix.quality.is_some_and(FixQuality::is_fix)
                     // The first ones are kept: their scatter is judged over the time from the
                     // first to the last.
                     && self.fixes.len() < FIXES_MAX
@@ -402,7 +405,7 @@ mod tests {
         let host = TimeOfDay(54_302_400);
         let findings = checked(TELEMETRY, 10.0).findings(SimTime::ZERO, host).join("\n");
         for want in [
-            "position: 42.358436, -71.087448 (fix quality 2: DGPS, dilution 0.98)",
+            "position: 42.358436, -71.087448, fix quality 2 (DGPS), dilution 0.98",
             "heading: 222.6 by its compass; nothing true",
             "control: mode T (Thruster), commanded by Primary",
             "clock: fixes are 1.30 s behind this host's clock; it sends no date",

@@ -1,5 +1,5 @@
-//! The waves at one boat, by the number of components: the horizontal plane, the attitude, and the bare surface. Then the first
-//! two by instructions of the processor.
+//! The waves at one boat, by number of components: horizontal plane, attitude, and bare surface.
+//! Then the first two by instruction set.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use primitives::frame::{Ned, Pose};
@@ -14,7 +14,7 @@ fn waves(components: u32) -> Waves {
     Waves { hs_m: 0.5, tp_s: 3.0, gamma: 3.3, from_rad: 0.6, spreading, components, drift_factor: 1.0 }
 }
 
-/// Places all over a field, headings all round: a fleet's, one after the other.
+/// Poses all over a field, on all headings, like those of a fleet in turn.
 fn poses() -> Vec<Pose> {
     let pose = |i: u32| Pose {
         at: Ned { north: f64::from(i * 37 % 160), east: f64::from(i * 53 % 80) },

@@ -1,7 +1,8 @@
-//! A game without a referee's consequences: some of its boats afloat on its sea, for `squall sim --afloat`.
+//! A game without a referee's consequences, for `squall sim --afloat`: some of its boats afloat in
+//! its sea.
 //!
-//! This is where emulated boats float, while the game that they play in takes them for real ones. The sea, the boats and
-//! their sensors are those of the game; there are no tags, no flags that matter, no limits of sharing and no radio.
+//! Emulated boats float here, while their game treats them as real. Sea, boats and sensors are
+//! those of the game. Tags, flags, limits of sharing and radio have no effect.
 
 use crate::spawn::{self, NoStart};
 use primitives::SimTime;
@@ -9,10 +10,10 @@ use rules::{Rules, Sharing, TaggedBoat};
 use scenario::{Scenario, Source, StartPosition, UnknownVehicle};
 use thiserror::Error;
 
-/// As long as a file may make a game.
+/// The longest game that a scenario file permits.
 const DAY_S: f64 = 86_400.0;
 
-/// Why there is no such water.
+/// Why the boats cannot be set afloat.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum NotAfloat {
     /// A boat is not in the game.
@@ -23,16 +24,17 @@ pub enum NotAfloat {
     NoStart(#[from] NoStart),
 }
 
-/// The water of the game of `scenario` that `seed` chooses, with these of its boats in it, where they start.
+/// The sea of the game of `scenario` with this seed, with the named boats at their starting
+/// positions.
 ///
 /// # Errors
-/// [`NotAfloat`] for a boat that is not in the game, and for a game that cannot start.
+/// [`NotAfloat`] for a boat that is not in the game, or if the game cannot start.
 pub fn afloat(scenario: &Scenario, seed: u64, names: &[String]) -> Result<Scenario, NotAfloat> {
     let scenario = scenario.of_seed(seed).map_err(NoStart::from)?;
     for name in names {
         scenario.vehicle_named(name)?;
     }
-    // With all boats of the game, so that those afloat start where the game expects them.
+    // With all boats of the game, so that those afloat start at the positions the game expects.
     let poses = spawn::start_positions(&scenario, seed).map_err(NoStart::from)?;
     let mut water = scenario.clone();
     for (vehicle, pose) in water.vehicles.iter_mut().zip(poses) {
@@ -40,15 +42,15 @@ pub fn afloat(scenario: &Scenario, seed: u64, names: &[String]) -> Result<Scenar
     }
     water.vehicles.retain(|vehicle| names.contains(&vehicle.name));
     water.name = format!("{}_afloat", scenario.name);
-    // The game's own link already delays what its agents send; twice would be wrong.
+    // The game's own link already delays the agents' messages; delaying them twice would be wrong.
     water.link = None;
     water.rules = without_consequences(&scenario.rules);
-    // Its numbers are drawn: it must not be made anew from the files.
+    // Its values are already drawn: it must not be built again from the files.
     water.recipe = None;
     Ok(water)
 }
 
-/// Rules by which nothing happens to a boat, whatever the referee sees.
+/// Rules without consequences for boats, whatever the referee observes.
 fn without_consequences(rules: &Rules) -> Rules {
     Rules {
         boundary_tags: false,

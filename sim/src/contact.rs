@@ -1,12 +1,13 @@
 //! Contact of hulls with each other, with obstacles and with walls.
 //!
-//! We integrate surge, sway and yaw ourselves, since a rigid-body engine knows one mass for all
-//! directions and a hull with added mass has three. Where hulls may touch, rapier is handed the tick's
-//! motion, resolves the contacts and moves the poses; what it changed in velocity goes back.
+//! We integrate surge, sway and yaw ourselves, because a rigid-body engine has one mass for all
+//! directions and a hull with added mass has three. Where hulls may touch, rapier receives the
+//! tick's motion, resolves the contacts and moves the poses; its changes of velocity are copied
+//! back.
 //!
-//! The engine is built anew from the boats concerned, in vehicle order, every time it is asked. It therefore
-//! remembers nothing: a snapshot needs none of its state, and boats that touch nobody are the same bytes
-//! whether it was asked about others or not.
+//! The engine is rebuilt from the boats concerned, in vehicle order, at every use. It therefore has
+//! no memory: a snapshot needs none of its state, and boats without contact keep the same bytes
+//! whether or not the engine ran for others.
 
 use crate::hull::{HullModel, Planar};
 use primitives::angle::wrap_pi;
@@ -20,25 +21,25 @@ use rapier2d_f64::prelude::{
 };
 use rules::field::{Field, Obstacle, Walls};
 
-/// Two hulls close with at most this speed, m/s. What they close in a tick is how far ahead rapier looks for
-/// contacts: hulls farther apart cannot touch before it is asked again.
+/// Highest closing speed of two hulls, m/s. The distance they close in a tick is rapier's
+/// look-ahead for contacts: hulls farther apart cannot touch before the next tick.
 const CLOSING_MAX_M_S: f64 = 8.0;
-/// Hulls nearer than rapier's look-ahead and this are handed to it, m.
+/// Extra distance beyond rapier's look-ahead within which hulls are passed to rapier, m.
 const SPARE_M: f64 = 0.05;
-/// Thickness of a wall, and how far it reaches beyond the corners, m.
+/// Thickness of a wall, and its extension beyond the corners, m.
 // Thick, so that no boat is pushed out on the far side in one tick.
 const WALL_M: f64 = 10.0;
-/// Restitution and friction of hull on hull: fendered glass fibre, wet.
+/// Restitution and friction between hulls: fendered fibreglass, wet.
 const RESTITUTION: f64 = 0.1;
 const FRICTION: f64 = 0.2;
 
-/// Rapier's group of the hulls; what is fixed is in all groups.
+/// Rapier's group of the hulls; fixed shapes are in all groups.
 const HULLS: Group = Group::GROUP_1;
 
 /// The solid shapes of a game.
 #[derive(Clone)]
 pub struct ContactModel {
-    /// By kind of boat.
+    /// Hull shapes, by kind of boat.
     hulls: Vec<HullShape>,
     /// Obstacles and walls.
     fixed: Vec<Fixed>,
@@ -46,11 +47,11 @@ pub struct ContactModel {
     hulls_are_solid: bool,
     dt_s: f64,
     look_ahead_m: f64,
-    /// Hulls nearer than this are handed to rapier, m.
+    /// Hulls closer than this are passed to rapier, m.
     close_m: f64,
 }
 
-/// A capsule as long and as wide as a hull.
+/// A capsule with a hull's length and beam.
 #[derive(Clone)]
 struct HullShape {
     capsule: SharedShape,
@@ -65,53 +66,54 @@ struct Fixed {
     bounds: Bounds,
 }
 
-/// What a boat must come near before the shape itself is looked at.
+/// Bounds that a boat must approach before the exact shape is checked.
 #[derive(Clone)]
 enum Bounds {
     /// A circle: centre and radius.
     Circle(Ned, f64),
-    /// All that lies behind the line through a point; the unit vector points before it.
+    /// The half-plane behind the line through a point; the unit vector points in front of it.
     Behind(Ned, Ned),
 }
 
-/// A boat's motion over one tick, as it would be without contact; then as it is.
+/// A boat's motion over one tick: first without contact, then corrected.
 #[derive(Clone, Copy, Debug)]
 pub struct Displacement {
     /// Kind of boat.
     pub kind: usize,
-    /// Where it was at the beginning.
+    /// Pose at the start.
     pub from: primitives::Pose,
-    /// Where it is at the end.
+    /// Pose at the end.
     pub to: primitives::Pose,
-    /// The rotation of the heading at the beginning.
+    /// Rotation of the heading at the start.
     pub rotation: Rotation,
-    /// The rotation of the heading at the end.
+    /// Rotation of the heading at the end.
     pub rotation_to: Rotation,
-    /// How it takes part in contact.
+    /// Its role in contact.
     pub role: ContactRole,
-    /// By how much contact changed the velocity, in body axes.
+    /// Velocity change by contact, in body axes.
     pub velocity_change: Planar,
 }
 
-/// How a boat takes part in contact.
+/// Role of a boat in contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ContactRole {
     /// It is pushed.
     Dynamic,
-    /// It lies still, whatever bumps into it.
+    /// It stays at rest, whatever hits it.
     Fixed,
-    /// It keeps its own motion, whatever it bumps into: a real boat, which feels nothing of a simulated contact.
+    /// It keeps its own motion, whatever it hits: a real boat, which does not feel a simulated
+    /// contact.
     Kinematic,
 }
 
-/// A shape near a boat, with the direction in which it would be pushed.
+/// A shape near a boat, and the direction in which it would push the boat.
 struct Touch {
     boat: usize,
     distance_m: f64,
     normal: Vector,
 }
 
-/// One boat in rapier's hands.
+/// One boat in rapier's world.
 struct Entry {
     boat: usize,
     body: RigidBodyHandle,
@@ -121,8 +123,8 @@ struct Entry {
 }
 
 impl ContactModel {
-    /// The shapes of these kinds of boat (length and beam, m) on this field. Hulls that are not solid pass through each
-    /// other.
+    /// The shapes of these kinds of boat (length and beam, m) on this field. Hulls that are not
+    /// solid pass through each other.
     #[must_use]
     pub fn new(
         hulls: impl Iterator<Item = (f64, f64)>,
@@ -131,8 +133,8 @@ impl ContactModel {
         dt_s: f64,
     ) -> ContactModel {
         let hull = |(length_m, beam_m): (f64, f64)| {
-            // A capsule: rapier resolves it at about half the cost of a box, and a bow is round
-            // rather than square.
+            // A capsule: rapier resolves it at about half the cost of a box, and a bow is more
+            // round than square.
             let radius = 0.5 * beam_m.min(length_m);
             let capsule = SharedShape::capsule_x(0.5 * length_m - radius, radius);
             HullShape { capsule, half_length_m: 0.5 * length_m }
@@ -144,39 +146,41 @@ impl ContactModel {
                 fixed.push(wall(field.corners[i], field.corners[(i + 1) % 4], inward));
             }
         }
-        // Without prediction rapier sees a contact only after hulls overlap, and pushes them
-        // apart with a velocity that nobody had.
+        // Without prediction rapier sees a contact only after hulls overlap, and separates them
+        // with a spurious velocity.
         let look_ahead_m = CLOSING_MAX_M_S * dt_s;
         let (hulls, close_m) = (hulls.map(hull).collect(), look_ahead_m + SPARE_M);
         ContactModel { hulls, fixed, hulls_are_solid, dt_s, look_ahead_m, close_m }
     }
 
-    /// Hands hulls nearer than `close_m` to rapier; it may be more than is needed, and must then change nothing.
+    /// Passes hulls closer than `close_m` to rapier, which may be more than necessary. The results
+    /// must not change.
     #[doc(hidden)]
     pub fn widen(&mut self, close_m: f64) {
         self.close_m = self.close_m.max(close_m);
     }
 
-    /// The largest distance between two boats at which they may be about to touch, m.
+    /// The largest distance at which two boats may be about to touch, m.
     #[must_use]
     pub fn reach_m(&self) -> f64 {
         2.0 * self.hulls.iter().map(|hull| hull.half_length_m).fold(0.0, f64::max) + self.close_m
     }
 
-    /// Resolves all contacts of a tick; `near` are the pairs within [`ContactModel::reach_m`] at its beginning.
+    /// Resolves all contacts of a tick; `near` are the pairs within [`ContactModel::reach_m`] at
+    /// its start.
     pub fn resolve(&self, models: &[HullModel], displacements: &mut [Displacement], near: &[Pair]) {
         let mut touches = self.touches(displacements, near);
         if touches.is_empty() {
             return;
         }
-        // In vehicle order, each boat once, with the direction of what is nearest to it: who else is handed over
-        // must not matter.
+        // In vehicle order, each boat once, with the direction of its nearest neighbour: other
+        // boats passed to rapier must not matter.
         touches.sort_by(|a, b| a.boat.cmp(&b.boat).then(a.distance_m.total_cmp(&b.distance_m)));
         touches.dedup_by_key(|touch| touch.boat);
         self.hand_to_rapier(models, displacements, &touches);
     }
 
-    /// Boats that are close to another hull or something fixed.
+    /// Boats close to another hull or a fixed shape.
     fn touches(&self, displacements: &[Displacement], near: &[Pair]) -> Vec<Touch> {
         let mut touches = Vec::new();
         for pair in near.iter().filter(|_| self.hulls_are_solid) {
@@ -190,8 +194,7 @@ impl ContactModel {
             if let Some((distance_m, normal)) =
                 self.close(&displacements[a], shape_a, displacements[b].start(), shape_b)
             {
-                // The direction counts and not its sign: the mass along a line is the same both
-                // ways.
+                // Only the axis counts, not its sign: the mass along a line is the same both ways.
                 touches.push(Touch { boat: a, distance_m, normal });
                 touches.push(Touch { boat: b, distance_m, normal });
             }
@@ -212,7 +215,7 @@ impl ContactModel {
         touches
     }
 
-    /// Distance and direction between a hull and a shape that are close.
+    /// Distance and direction between a hull and a close shape.
     fn close(
         &self,
         displacement: &Displacement,
@@ -225,8 +228,8 @@ impl ContactModel {
     }
 
     fn hand_to_rapier(&self, models: &[HullModel], displacements: &mut [Displacement], touches: &[Touch]) {
-        // Warm starting is lost with the old world. Boats that bump rather than pile up do not
-        // need it.
+        // Rebuilding the world loses warm starting, which boats that bump instead of piling up do
+        // not need.
         let mut world = PhysicsWorld::new();
         world.gravity = Vector::ZERO;
         world.integration_parameters.dt = self.dt_s;
@@ -247,13 +250,13 @@ impl ContactModel {
         }
     }
 
-    /// What hulls touch: what is fixed, and each other if they are solid.
+    /// The collision groups of hulls: fixed shapes, and other hulls if solid.
     fn met_by_hulls(&self) -> InteractionGroups {
         let met = if self.hulls_are_solid { Group::ALL } else { Group::ALL - HULLS };
         InteractionGroups::new(HULLS, met, InteractionTestMode::And)
     }
 
-    /// Puts a boat into rapier's world with the mass it has in the direction of the push.
+    /// Adds a boat to rapier's world, with its mass in the direction of the push.
     fn enter(
         &self,
         world: &mut PhysicsWorld,
@@ -266,25 +269,26 @@ impl ContactModel {
         let velocity = vector(moved) / self.dt_s;
         let spin_rad_s = wrap_pi(displacement.to.psi_rad - displacement.from.psi_rad) / self.dt_s;
         let normal = frame::body_from_ned(displacement.rotation, Ned { north: touch.normal.x, east: touch.normal.y });
-        // rapier knows one mass for all directions. It gets the one with which the hull answers
+        // Rapier has one mass for all directions. It gets the mass with which the hull responds to
         // a push along this contact's normal, 1 / (n_u²/m_u + n_v²/m_v).
         let mass_kg = model.mass_along_kg(normal.ahead, normal.starboard);
         let body = match displacement.role {
             ContactRole::Dynamic => RigidBodyBuilder::dynamic(),
             ContactRole::Fixed => RigidBodyBuilder::fixed(),
-            // A real boat pushes others and is not pushed: where it is, only its reports say.
+            // A real boat pushes others but is not pushed: its position comes only from its
+            // reports.
             ContactRole::Kinematic => RigidBodyBuilder::kinematic_velocity_based(),
         };
         let body = body
             .pose(displacement.start())
             .linvel(velocity)
             .angvel(spin_rad_s)
-            // A body that lies still for some steps would be put to sleep; here each world
-            // lives for one step only.
+            // A body at rest for some steps would be put to sleep; here each world exists for one
+            // step only.
             .can_sleep(false)
             .additional_mass_properties(MassProperties::new(Vector::ZERO, mass_kg, model.m_yaw));
         let collider = ColliderBuilder::new(self.hulls[displacement.kind].capsule.clone())
-            // Otherwise the collider adds a mass of its own.
+            // Otherwise the collider would add its own mass.
             .density(0.0)
             .friction(FRICTION)
             .restitution(RESTITUTION)
@@ -325,7 +329,7 @@ fn fixed_obstacle(obstacle: &Obstacle) -> Fixed {
             bounds: Bounds::Circle(*centre, *radius_m),
         },
         Obstacle::Polygon { corners } => {
-            // A closed line, so that any polygon keeps its exact shape, bays included.
+            // A closed polyline, so that any polygon keeps its exact shape, bays included.
             let first = corners[0];
             let count = corners.len() as u32;
             let sides = (0..count).map(|i| [i, (i + 1) % count]).collect();
@@ -339,8 +343,8 @@ fn fixed_obstacle(obstacle: &Obstacle) -> Fixed {
     }
 }
 
-/// A wall from one corner to the next. It is a thick plank: boats have sailed through rapier's half-plane, whose
-/// bounding box is infinite.
+/// A wall from one corner to the next. It is a thick plank: boats have passed through rapier's
+/// half-plane, whose bounding box is infinite.
 fn wall(from: Ned, to: Ned, inward: Ned) -> Fixed {
     let half_thickness_m = 0.5 * WALL_M;
     let middle = from + (to - from).scaled(0.5);
@@ -351,25 +355,24 @@ fn wall(from: Ned, to: Ned, inward: Ned) -> Fixed {
     }
 }
 
-/// Takes a boat out of rapier's world; without an active contact its own motion stands.
+/// Reads a boat back from rapier's world; without an active contact its own motion stands.
 ///
-/// Rapier's impulse is taken over, not its change of velocity: a push on the bow quarter moves a hull that is
-/// heavier across than along in another direction than the push, and a change of velocity along the push
-/// would give it energy.
+/// Uses rapier's impulse, not its change of velocity: a push on the bow quarter moves a hull with
+/// more mass across than along in a direction other than the push, and a change of velocity along
+/// the push would add energy.
 fn leave(world: &PhysicsWorld, entry: &Entry, model: &HullModel, displacement: &mut Displacement) {
     let body = &world.bodies[entry.body];
     let mut colliders = body.colliders().iter();
     let touched =
         colliders.any(|c| world.narrow_phase.contact_pairs_with(*c).any(|pair| pair.has_any_active_contact()));
-    // A boat that was only near keeps our own motion to the last bit, not rapier's integration
-    // of it.
+    // A boat without contact keeps our own motion to the last bit, not rapier's integration of it.
     if !touched || displacement.role != ContactRole::Dynamic {
         return;
     }
     let (at, rotation) = (body.translation(), body.rotation());
     displacement.to.at = Ned { north: at.x, east: at.y };
     displacement.to.psi_rad = math::atan2(rotation.im, rotation.re);
-    // Not rapier's own sine and cosine: a snapshot has only the angle.
+    // Not rapier's own sine and cosine: a snapshot contains only the angle.
     displacement.rotation_to = displacement.to.rotation();
     let impulse = (body.linvel() - entry.velocity) * entry.mass_kg;
     let impulse = frame::body_from_ned(displacement.rotation, Ned { north: impulse.x, east: impulse.y });

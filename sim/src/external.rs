@@ -1,7 +1,7 @@
-//! Real boats on the field of a game: where they are taken to be between one report and the next.
+//! Real boats in a game: their estimated position between reports.
 //!
-//! A real boat has no physics here. Its gateway reports where it was and how it moved; from then on it goes on like that,
-//! tick by tick, until the next report sets it right.
+//! A real boat has no physics here. Its gateway reports position and motion; the boat is
+//! extrapolated with that motion, tick by tick, until the next report corrects it.
 
 use crate::hull::Planar;
 use messages::picture::{Nav, OwnBoat};
@@ -12,42 +12,45 @@ use rules::Event;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// So long after its last fix a boat is dead reckoned: it is taken to go on as it did. From then on it is taken to lie where that has brought
-/// it. The error of going on grows with the square of the time: a boat that slows down by 1 m/s² is half a metre off
-/// after one second, and two after another. A boat that reports nothing is likely to slow down, for it hears nothing
-/// either, and its own watchdog stops its thrusters. And one that is only imagined must not sail on to a flag.
+/// Time after its last fix for which a boat is dead reckoned, assuming constant motion. After that
+/// it is assumed to stay at the position reached. The extrapolation error grows with the square of
+/// the time: for a boat that slows down by 1 m/s² it is half a metre after one second, and two
+/// metres after another. A boat that reports nothing is likely to slow down, because it receives
+/// nothing either, and its own watchdog stops its thrusters. And an extrapolated boat must not
+/// reach a flag.
 pub const DEAD_RECKONING_MAX: SimTime = SimTime(1_000_000_000);
-/// A boat whose last fix is older than this is lost. It is more than [`DEAD_RECKONING_MAX`], so that a fix a second with the usual
-/// delays is enough, and little more, since its mind knows less and less of where it is.
+/// A boat whose last fix is older than this is lost. It exceeds [`DEAD_RECKONING_MAX`] so that one
+/// fix per second with the usual delays is enough, but only slightly, because its mind loses track
+/// of the position.
 pub const NAV_TTL: SimTime = SimTime(1_500_000_000);
 
-/// Beyond this from the datum, m, no boat is: as far as scenario files reach.
+/// Limit of the distance from the datum, m: the limit of scenario files.
 const ABSURD_M: f64 = 1e6;
-/// Faster than this over the ground, m/s, no boat of these games is.
+/// Limit of the speed over the ground, m/s: above that of any boat in these games.
 const ABSURD_M_S: f64 = 30.0;
-/// Faster than this, rad/s, no boat turns: once round in a second.
+/// Limit of the yaw rate, rad/s: one turn per second.
 const ABSURD_RAD_S: f64 = std::f64::consts::TAU;
 
-/// Why a report of a boat cannot be taken in.
+/// Why a report of a boat is rejected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum BadReport {
     /// The boat is a simulated one.
     #[error("the vehicle is not external: it is simulated")]
     Simulated,
-    /// A number in it is not one that a boat can have.
+    /// A number is outside its plausible range.
     #[error("a number is not finite, or absurd (position 1000 km, speed 30 m/s, yaw rate 2π rad/s at most)")]
     BadNumber,
 }
 
-/// What is known of a real boat.
+/// The track of a real boat.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Track {
     fix: Option<Fix>,
-    /// Whether the last event about it said that it is lost.
+    /// Whether the last event about it reported it as lost.
     reported_lost: bool,
 }
 
-/// Where a boat was at some time.
+/// A boat's navigation at one time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Fix {
     nav: Nav,
@@ -55,41 +58,41 @@ struct Fix {
 }
 
 impl Track {
-    /// Takes in where the boat was at some time.
+    /// Updates the boat's navigation at a time.
     pub(crate) fn update(&mut self, nav: Nav, at: SimTime) {
         self.fix = Some(Fix { nav, at });
     }
 
-    /// Whether it has ever been reported.
+    /// Whether it was ever reported.
     pub(crate) fn has_fix(&self) -> bool {
         self.fix.is_some()
     }
 
-    /// Whether its last fix is too old, or there never was one.
+    /// Whether its last fix is too old or missing.
     pub(crate) fn is_lost(&self, now: SimTime) -> bool {
         self.fix.is_none_or(|fix| now > fix.at + NAV_TTL)
     }
 
-    /// Where it is taken to be, and how it moves over the ground, since its last fix.
+    /// Its estimated position and motion over the ground, extrapolated from the last fix.
     pub(crate) fn estimate(&self, now: SimTime) -> Option<(Pose, Planar)> {
         let Fix { nav, at } = self.fix?;
         let since = now - at;
         let nu = Planar { surge: nav.surge_m_s, sway: nav.sway_m_s, yaw: nav.yaw_rate_rad_s };
-        // A fix may have been taken after the tick that the world stands at; then it goes back a little.
-        // After a second the boat is taken to lie where it would be then.
+        // A fix may be later than the world's tick, which means extrapolating back a little. After
+        // a second the boat is assumed to rest at the position reached.
         let span = since.clamp(SimTime::ZERO - DEAD_RECKONING_MAX, DEAD_RECKONING_MAX);
         let pose = dead_reckoned(nav.pose(), nu, span.as_s());
         Some((pose, if since < DEAD_RECKONING_MAX { nu } else { Planar::default() }))
     }
 
-    /// The event that it is lost, or that it is back, once each.
+    /// The event that it is lost or back, once each.
     pub(crate) fn event(&mut self, vehicle: VehicleId, now: SimTime) -> Option<Event> {
         let is_lost = self.is_lost(now);
         let was_lost = std::mem::replace(&mut self.reported_lost, is_lost);
         (is_lost != was_lost).then_some(if is_lost { Event::NavLost(vehicle) } else { Event::NavBack(vehicle) })
     }
 
-    /// Puts the boat's own fix in the place of the estimate that the world holds.
+    /// Replaces the world's estimate with the boat's own fix.
     pub(crate) fn put_fix(&self, own: &mut OwnBoat) {
         match self.fix {
             Some(Fix { nav, at }) => (own.nav, own.fix_ns) = (nav, at),
@@ -98,11 +101,12 @@ impl Track {
     }
 }
 
-/// Where a boat comes to that goes on for so long with the velocity over the ground and the yaw rate that it has, both
-/// constant in its own axes: along an arc.
+/// The pose after `span_s` at the present velocity over the ground and yaw rate, both constant in
+/// body axes: motion along an arc.
 pub(crate) fn dead_reckoned(from: Pose, nu: Planar, span_s: f64) -> Pose {
     let half_turn_rad = 0.5 * nu.yaw * span_s;
-    // The chord of the arc points half-way between both headings, and is shorter than the arc by sin(x) / x.
+    // The chord of the arc points half-way between both headings, and is shorter than the arc by a
+    // factor of sin(x) / x.
     let chord = if half_turn_rad.abs() < 1e-4 {
         1.0 - half_turn_rad * half_turn_rad / 6.0
     } else {
@@ -112,13 +116,12 @@ pub(crate) fn dead_reckoned(from: Pose, nu: Planar, span_s: f64) -> Pose {
     Pose { at: from.at + velocity.scaled(chord * span_s), psi_rad: wrap_pi(from.psi_rad + 2.0 * half_turn_rad) }
 }
 
-/// The navigation with its heading within ±π, if all its numbers are ones that a boat can have.
+/// The navigation with its heading within ±π, if all numbers are plausible.
 pub(crate) fn sound(nav: Nav) -> Result<Nav, BadReport> {
     // A NaN fails every comparison.
     let is_sound = nav.north_m.abs() <= ABSURD_M
         && nav.east_m.abs() <= ABSURD_M
-        // Not wrapped yet, and no more turns than that: reducing a huge angle loses all its
-        // digits.
+        // Not wrapped yet, and limited in turns: reducing a huge angle would lose all its digits.
         && nav.psi_rad.abs() <= 1e3
         && nav.speed_m_s() <= ABSURD_M_S
         && nav.yaw_rate_rad_s.abs() <= ABSURD_RAD_S;
@@ -137,7 +140,7 @@ mod tests {
         let once_round_s = std::f64::consts::TAU / nu.yaw;
         let back = dead_reckoned(from, nu, once_round_s);
         assert!(back.at.distance(from.at) < 1e-9 && (back.psi_rad - from.psi_rad).abs() < 1e-9, "{back:?}");
-        // In many steps it comes to the same place as in one, and backwards to where it was.
+        // Many steps reach the same place as one, and backward steps return.
         for yaw in [0.4, 0.0, 1e-6, -3.0] {
             let nu = Planar { yaw, ..nu };
             let stepped = (0..20).fold(from, |pose, _| dead_reckoned(pose, nu, 0.05));

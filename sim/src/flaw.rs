@@ -1,6 +1,6 @@
-//! Thruster faults: command latency, gain and saturation, ventilation, a sagging battery.
+//! Thruster flaws: command latency, gain and saturation, ventilation, a sagging battery.
 //!
-//! The front seat knows nothing of them: it reckons with the thrusters as they are sold.
+//! The front seat does not know about them: it assumes the nominal thrusters.
 
 use crate::battery::BatteryModel;
 use scenario::boat::{Flaws, Ventilation};
@@ -10,32 +10,34 @@ use std::collections::VecDeque;
 /// The flaws of a pair of thrusters, for one tick length.
 #[derive(Clone, Debug)]
 pub(crate) struct FlawModel {
-    /// Largest setting that is taken up, as a share of full ahead or astern.
+    /// Largest effective setting, as a share of full ahead or astern.
     pub(crate) saturation: f64,
-    /// Factors on thrust ahead and astern, port and starboard.
+    /// Factors on thrust ahead and astern, for port and starboard.
     gain: [(f64, f64); 2],
-    /// Moment at full thrust of both, N m clockwise.
+    /// Yaw moment at full thrust of both, N m clockwise.
     pub(crate) bias_newton_m: f64,
     latency_ticks: usize,
     pub(crate) battery: Option<BatteryModel>,
     pub(crate) ventilation: Option<Ventilation>,
 }
 
-/// What changes about flawed thrusters, their shafts apart. The default is that of perfect ones.
+/// The changing state of flawed thrusters, without their shafts. The default is that of perfect
+/// ones.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FlawState {
-    /// Settings on their way to the thrusters, the oldest first: as many as a setting takes ticks.
+    /// Settings in transit to the thrusters, oldest first: as many as the latency has ticks.
     under_way: VecDeque<[f64; 2]>,
-    /// Charge of the thrusters' battery as a share of a full one, 0 to 1; 0 and of no effect where they have none.
+    /// Charge of the thrusters' battery as a share of full, 0 to 1; 0 without effect if they have
+    /// none.
     pub charge: f64,
 }
 
 impl FlawModel {
-    /// The model of `flaws` for ticks of `dt_s`; none if there are none.
+    /// The model of `flaws` for ticks of `dt_s`; none without flaws.
     pub(crate) fn new(flaws: &Flaws, dt_s: f64) -> Option<FlawModel> {
-        // The watchdog is none of the thrusters' business: it sits where orders arrive.
+        // The watchdog is not part of the thrusters: it acts where orders arrive.
         if (Flaws { watchdog_s: None, ..flaws.clone() }) == Flaws::default() {
-            // No model at all for a perfect thruster: the usual case must not pay for this.
+            // Perfect thrusters have no model, so that the common case costs nothing.
             return None;
         }
         let gain = |side: f64| (side, side * flaws.reverse_efficiency);
@@ -56,14 +58,15 @@ impl FlawModel {
         }
     }
 
-    /// Factor on a thrust of this sign.
+    /// Factor on a thrust with this sign.
     #[inline]
     pub(crate) fn gain(&self, side: usize, newton: f64) -> f64 {
         let (ahead, astern) = self.gain[side];
         if newton < 0.0 { astern } else { ahead }
     }
 
-    /// Factor on the thrust of each thruster over this tick, from the battery and the water above the propellers.
+    /// Factor on the thrust of each thruster over this tick, from the battery and the water above
+    /// the propellers.
     #[inline]
     pub(crate) fn thrust_factors(&self, state: &FlawState, water_above_m: [f64; 2]) -> [f64; 2] {
         let battery = self.battery.map_or(1.0, |battery| battery.thrust_factor(state.charge));
@@ -73,23 +76,24 @@ impl FlawModel {
 }
 
 impl FlawState {
-    /// Puts a setting in the place of all that are on their way to one of the thrusters.
+    /// Replaces all settings in transit to one thruster.
     pub(crate) fn replace_under_way(&mut self, side: usize, setting: f64) {
         self.under_way.iter_mut().for_each(|settings| settings[side] = setting);
     }
 
-    /// Sends `settings` off; gives those that arrive.
+    /// Sends `settings` off; returns those that arrive.
     #[inline]
     pub(crate) fn pass(&mut self, settings: [f64; 2]) -> [f64; 2] {
-        // A queue as long as the latency: pushed and popped in the same tick, it never grows.
+        // A queue as long as the latency: with a push and a pop per tick, it never grows.
         self.under_way.push_back(settings);
         self.under_way.pop_front().unwrap_or(settings)
     }
 }
 
-/// Factor on the thrust of a propeller with this much water above it: 1 from half the still-water depth on, falling
-/// in a straight line to 0 where there is none. The measured loss is a curve over depth and propeller radius (Minsaas,
-/// Faltinsen and Persson 1983); which one holds for so small a propeller nobody has published.
+/// Thrust factor of a propeller with this much water above it: 1 from half the still-water depth
+/// on, decreasing linearly to 0 at the surface. The measured loss is a curve over depth and
+/// propeller radius (Minsaas, Faltinsen and Persson 1983); none is published for so small a
+/// propeller.
 #[inline]
 #[must_use]
 pub fn wetness(ventilation: Ventilation, water_above_m: f64) -> f64 {

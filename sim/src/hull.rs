@@ -10,8 +10,8 @@
 //!     | 0       m xg+A26  Iz+A66   |
 //! ```
 //!
-//! Added mass stands in `M`: put on the right as a force from the last acceleration it diverges as
-//! soon as it reaches the mass, and in sway it does.
+//! Added mass is part of `M`: as a force on the right-hand side, computed from the last
+//! acceleration, it diverges once it reaches the mass, as it does in sway.
 
 use primitives::frame::{Body, Ned, Rotation, ned_from_body};
 use scenario::boat::Hull;
@@ -39,7 +39,7 @@ impl Planar {
         }
     }
 
-    /// The velocity of surge and sway in the field's frame, for a boat with this rotation.
+    /// Surge and sway velocity in the field's frame, for a boat with this rotation.
     #[inline]
     #[must_use]
     pub fn in_ned(self, rotation: Rotation) -> Ned {
@@ -47,7 +47,7 @@ impl Planar {
     }
 }
 
-/// A hull ready for computing: the constants of the equation, and the inverse of `M`.
+/// A hull with precomputed constants of the equation and the inverse of `M`.
 #[derive(Clone, Debug)]
 pub struct HullModel {
     pub(crate) hull: Hull,
@@ -59,9 +59,10 @@ pub struct HullModel {
     pub(crate) m_yaw: f64,
     /// m xg + A26.
     pub(crate) m_cross: f64,
-    /// What stands for A22 in the Coriolis terms: A11 + munk (A22 − A11).
+    /// Replaces A22 in the Coriolis terms: A11 + munk (A22 − A11).
     ///
-    /// Used in surge and in the Munk moment alike, so that these terms do no work whatever the factor.
+    /// Used both in surge and in the Munk moment, so that these terms do no work whatever the
+    /// factor.
     pub(crate) munk_sway: f64,
     /// The inverse of `M`: surge, then the sway-yaw block.
     pub(crate) inverse_surge: f64,
@@ -80,18 +81,18 @@ impl HullModel {
         let m_sway = hull.mass_kg + hull.added_sway_kg;
         let m_yaw = hull.yaw_inertia_kg_m2 + hull.added_yaw_kg_m2;
         let m_cross = hull.mass_kg * hull.x_g_m + hull.added_sway_yaw_kg_m;
-        // The mass matrix is one number and a symmetric 2 x 2 block: three numbers are its
-        // inverse, once. A matrix library would be slower to read and to build.
+        // The mass matrix is one number and a symmetric 2 x 2 block: its inverse takes three
+        // numbers, computed once. A matrix library would be slower to read and to build.
         let determinant = m_sway * m_yaw - m_cross * m_cross;
         HullModel {
             m_surge,
             m_sway,
             m_yaw,
             m_cross,
-            // The full Munk moment is that of a bare hull in ideal flow; with it the model of
-            // an Otter spins by itself from 1.2 m/s on. Scaling the moment alone would create
-            // energy. The factor stands for A22 wherever that is in the Coriolis terms, so they
-            // stay skew-symmetric.
+            // The full Munk moment is that of a bare hull in ideal flow; with it the model of an
+            // Otter spins on its own from 1.2 m/s on. Scaling the moment alone would create energy.
+            // The factor therefore modifies A22 everywhere in the Coriolis terms, which stay
+            // skew-symmetric.
             munk_sway: hull.added_surge_kg + hull.munk_factor * (hull.added_sway_kg - hull.added_surge_kg),
             inverse_surge: 1.0 / m_surge,
             inverse_sway: m_yaw / determinant,
@@ -102,7 +103,7 @@ impl HullModel {
         }
     }
 
-    /// The change of velocity by an impulse (N s, N s, N m s).
+    /// The velocity change by an impulse (N s, N s, N m s).
     #[inline]
     #[must_use]
     pub fn velocity_change(&self, impulse: Planar) -> Planar {
@@ -113,7 +114,7 @@ impl HullModel {
         }
     }
 
-    /// The force (N, N, N m) that gives hull and added mass this acceleration.
+    /// The force (N, N, N m) for this acceleration of hull and added mass.
     #[inline]
     #[must_use]
     pub fn force_of(&self, acceleration: Planar) -> Planar {
@@ -131,13 +132,13 @@ impl HullModel {
         0.5 * (self.m_surge * u * u + self.m_sway * v * v + self.m_yaw * r * r) + self.m_cross * v * r
     }
 
-    /// The mass with which the hull answers a push along the unit vector (`ahead`, `starboard`) of its body, kg.
+    /// The effective mass for a push along the body-axes unit vector (`ahead`, `starboard`), kg.
     #[must_use]
     pub fn mass_along_kg(&self, ahead: f64, starboard: f64) -> f64 {
         1.0 / (ahead * ahead / self.m_surge + starboard * starboard / self.m_sway)
     }
 
-    /// Thrust that holds `speed_m_s` straight ahead, N.
+    /// Thrust that maintains `speed_m_s` straight ahead, N.
     #[must_use]
     pub fn surge_resistance_newton(&self, speed_m_s: f64) -> f64 {
         (self.hull.surge_linear_kg_s + self.hull.surge_quadratic_kg_m * speed_m_s.abs()) * speed_m_s

@@ -1,7 +1,8 @@
 //! The point boat of MOOS: a throttle, a rudder and two PID loops, without mass.
 //!
-//! The law is that of uSimMarine under pMarinePID (moos-ivp, `SimEngine::propagate…` and `PIDEngine`) as Pyquaticus has
-//! it, quirks included, because others train on it and their numbers have to come out here. For one step of `dt`:
+//! The model is that of uSimMarine with pMarinePID (moos-ivp, `SimEngine::propagate…` and
+//! `PIDEngine`) as implemented in Pyquaticus, quirks included, because others train on it and their
+//! numbers must be reproduced here. For one step of `dt`:
 //!
 //! ```text
 //! thrust  += PID_speed(v_wanted - v), or v_wanted * speed_factor;   below 0.01 it is 0
@@ -11,8 +12,9 @@
 //! v        = (v_next + v) / 2;   the position goes v dt along the circular mean of the old and new heading
 //! ```
 //!
-//! That the speed kept is the mean of old and new halves the limits of acceleration: a configured 0.15 m/s² is 0.075.
-//! The loops act once a step, not once a second: behaviour depends on `dt`, and the reference numbers are for 0.1 s.
+//! Averaging old and new speed halves the acceleration limits: a configured 0.15 m/s² becomes
+//! 0.075. The loops act once per step, not once per second: behaviour depends on `dt`, and the
+//! reference numbers are for 0.1 s.
 
 use crate::piecewise_linear::PiecewiseLinear;
 use messages::Order;
@@ -20,47 +22,48 @@ use primitives::{Ned, Rotation, math};
 use scenario::boat::{Kinematic, Pid};
 use serde::{Deserialize, Serialize};
 
-/// Less thrust than this, per cent, is none.
+/// Smaller thrust, in per cent, counts as 0.
 const THRUST_MIN: f64 = 0.01;
-/// Thrust and rudder are per cent: uSimMarine takes no more, whatever the limits of the loops.
+/// Maximum of thrust and rudder, per cent: uSimMarine accepts no more, whatever the limits of the
+/// loops.
 const FULL: f64 = 100.0;
 
-/// A point boat ready for computing.
+/// A point boat with precomputed constants.
 #[derive(Clone, Debug)]
 pub struct KinematicModel {
     boat: Kinematic,
-    /// Speed, m/s, over thrust, per cent.
+    /// Speed, m/s, as a function of thrust, per cent.
     speed_of_thrust: PiecewiseLinear,
     /// Largest rudder that the heading loop sets, per cent.
     rudder_max: f64,
     rotate_deg_s: f64,
 }
 
-/// What changes about a point boat, its position apart.
+/// The changing state of a point boat, without its position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct KinematicState {
     /// Speed through the water, m/s.
     pub speed_m_s: f64,
-    /// Heading, degrees clockwise from north, −180 to 180: the reference keeps degrees.
+    /// Heading, degrees clockwise from north, −180 to 180: the reference uses degrees.
     pub heading_deg: f64,
-    /// Per cent.
+    /// Thrust, per cent.
     pub thrust: f64,
-    /// Per cent, to starboard.
+    /// Rudder, per cent to starboard.
     pub rudder: f64,
     speed_loop: Loop,
     heading_loop: Loop,
 }
 
-/// What a point boat did in a step.
+/// Motion of a point boat in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct KinematicMotion {
-    /// By how far it came, drift included, m.
+    /// Distance travelled, including drift, m.
     pub travel_m: Ned,
-    /// By how much it turned, rad clockwise.
+    /// Change of heading, rad clockwise.
     pub turn_rad: f64,
 }
 
-/// Memory of a PID loop.
+/// State of a PID loop.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Loop {
     /// The last error; none before the first call, which has no derivative.
@@ -71,7 +74,7 @@ struct Loop {
 impl Loop {
     /// The output for `error`, within ±`limit`.
     fn answer(&mut self, gains: Pid, error: f64, limit: f64, dt_s: f64) -> f64 {
-        // No kick of the derivative in the first step, as in PIDEngine.
+        // No derivative kick in the first step, as in PIDEngine.
         let rate = self.error.map_or(0.0, |before| (error - before) / dt_s);
         self.error = Some(error);
         self.integral = (self.integral + gains.i * error * dt_s).clamp(-gains.i_limit, gains.i_limit);
@@ -80,14 +83,14 @@ impl Loop {
 }
 
 impl KinematicState {
-    /// At rest, pointing there.
+    /// A boat at rest with this heading.
     #[must_use]
     pub fn at_rest(psi_rad: f64) -> KinematicState {
         KinematicState { heading_deg: wrap_180(psi_rad.to_degrees()), ..KinematicState::default() }
     }
 
-    /// On a course that it has long been steering: pointing there, at this speed (m/s) and thrust (per cent), with the
-    /// memory of loops that had nothing left to correct.
+    /// A boat in steady state on a course: with this heading, speed (m/s) and thrust (per cent),
+    /// and loops without remaining error.
     #[must_use]
     pub fn under_way(psi_rad: f64, speed_m_s: f64, thrust: f64) -> KinematicState {
         let settled = Loop { error: Some(0.0), integral: 0.0 };
@@ -100,14 +103,14 @@ impl KinematicState {
         }
     }
 
-    /// Where it points, rad clockwise from north, −pi to pi.
+    /// Heading, rad clockwise from north, −pi to pi.
     #[must_use]
     pub fn psi_rad(&self) -> f64 {
         self.heading_deg.to_radians()
     }
 
-    /// Loses the way that it makes along the unit vector `out`, to either side, and points where the rest of it goes. One
-    /// that is left with none came head on: it points to starboard of the way in.
+    /// Removes the velocity along the unit vector `out`, in both directions, and turns to the
+    /// remaining velocity. A head-on boat has none left; it turns to starboard of its way in.
     pub fn slide_across(&mut self, out: Ned) {
         let along = Ned { north: -out.east, east: out.north };
         let way_m_s = Rotation::from_heading(self.psi_rad()).ahead().scaled(self.speed_m_s).dot(along);
@@ -115,7 +118,7 @@ impl KinematicState {
         self.divert(math::atan2(ahead.east, ahead.north), way_m_s.abs());
     }
 
-    /// Takes up a heading and a speed that came from outside, from contact for example. The loops keep their memory.
+    /// Applies an external heading and speed, for example from contact. The loops keep their state.
     pub fn divert(&mut self, psi_rad: f64, speed_m_s: f64) {
         self.heading_deg = wrap_180(psi_rad.to_degrees());
         self.speed_m_s = speed_m_s.max(0.0);
@@ -134,17 +137,18 @@ impl KinematicModel {
         }
     }
 
-    /// The thrust at which the boat keeps this speed straight ahead, per cent: the thrust map read backwards. Speeds
-    /// beyond its ends count as its ends.
+    /// The thrust for this speed straight ahead, per cent: the inverse of the thrust map. Speeds
+    /// beyond its ends are clamped.
     #[must_use]
     pub fn thrust_for_speed(&self, speed_m_s: f64) -> f64 {
         math::interpolate(self.boat.thrust_map.iter().map(|(thrust, speed_m_s)| (*speed_m_s, *thrust)), speed_m_s)
     }
 
-    /// Moves a boat on by `dt_s`. `drift_m_s` carries it along: the current.
+    /// Advances a boat by `dt_s`. The current `drift_m_s` carries it along.
     ///
-    /// The loops steer a course. The thrusts of two thrusters, shares of full, are to a boat that has one and a rudder half
-    /// their sum and half their difference; then the loops rest. To hold is speed 0 on whatever heading it has.
+    /// The loops steer a course. For an order of two thrusts (shares of full), thrust and rudder
+    /// are half their sum and half their difference, and the loops rest. Hold means speed 0 on the
+    /// present heading.
     pub fn step(&self, state: &mut KinematicState, command: Order, drift_m_s: Ned, dt_s: f64) -> KinematicMotion {
         self.control(state, command, dt_s);
         let v_next_m_s = self.next_speed(state, dt_s);
@@ -152,7 +156,8 @@ impl KinematicModel {
         let heading_deg = wrap_180(state.heading_deg + turn_deg);
         let v_mean_m_s = 0.5 * (v_next_m_s + state.speed_m_s);
         let way = circular_mean(state.heading_deg, heading_deg).scaled(v_mean_m_s);
-        // What is astern counts for the position once and is forgotten: the reference keeps no negative speed.
+        // Motion astern changes the position once and is then forgotten: the reference keeps no
+        // negative speed.
         state.speed_m_s = v_mean_m_s.clamp(0.0, self.boat.speed_max_m_s);
         state.heading_deg = heading_deg;
         KinematicMotion { travel_m: (way + drift_m_s).scaled(dt_s), turn_rad: turn_deg.to_radians() }
@@ -173,18 +178,18 @@ impl KinematicModel {
             Order::Turn { by_rad, speed_m_s } => (speed_m_s.min(boat.speed_max_m_s), by_rad.to_degrees()),
             Order::Hold => (0.0, 0.0),
         };
-        // pMarinePID has both: a map from speed to thrust, or a loop that adds to the thrust
-        // before.
+        // pMarinePID supports both: a map from speed to thrust, or a loop that changes the previous
+        // thrust.
         let thrust = if boat.speed_factor > 0.0 {
             wanted_m_s * boat.speed_factor
         } else {
             let error_m_s = wanted_m_s - state.speed_m_s;
             state.thrust + state.speed_loop.answer(boat.speed_pid, error_m_s, boat.thrust_max, dt_s)
         };
-        // Never astern: the reference clips at zero, so a point boat brakes by its deceleration
-        // alone.
+        // Never astern: the reference clips at zero, so a point boat only brakes by its
+        // deceleration.
         state.thrust = if thrust < THRUST_MIN { 0.0 } else { thrust.min(boat.thrust_max) };
-        // Without thrust the heading loop is not asked, and remembers nothing of the meantime.
+        // Without thrust the heading loop does not run and keeps its state.
         state.rudder = if state.thrust > 0.0 {
             state.heading_loop.answer(boat.heading_pid, error_deg, self.rudder_max, dt_s)
         } else {
@@ -192,18 +197,18 @@ impl KinematicModel {
         };
     }
 
-    /// The speed that thrust and rudder give, within the limits of acceleration (uSimMarine).
+    /// The speed from thrust and rudder, within the acceleration limits (uSimMarine).
     fn next_speed(&self, state: &KinematicState, dt_s: f64) -> f64 {
         let boat = &self.boat;
         let raw_m_s = self.speed_of_thrust.at(state.thrust) * (1.0 - boat.turn_loss * state.rudder.abs() / FULL);
         let limit = |rate_m_s2: f64| if rate_m_s2 > 0.0 { rate_m_s2 * dt_s } else { f64::INFINITY };
         let least = state.speed_m_s - limit(boat.deceleration_max_m_s2);
         let most = state.speed_m_s + limit(boat.acceleration_max_m_s2);
-        // Not `clamp`, which panics on a NaN that ought to be contained where numbers are judged.
+        // Not `clamp`, which panics on NaN; the check of the state handles NaN later.
         raw_m_s.min(most).max(least)
     }
 
-    /// By how much the rudder and the bias turn it (uSimMarine).
+    /// Change of heading by rudder and bias (uSimMarine).
     fn turn_deg(&self, state: &KinematicState, v_next_m_s: f64, dt_s: f64) -> f64 {
         let rudder = if v_next_m_s == 0.0 { 0.0 } else { state.rudder };
         let side = if state.thrust < 0.0 { -1.0 } else { 1.0 };
@@ -213,7 +218,8 @@ impl KinematicModel {
     }
 }
 
-/// An angle in degrees brought into −180 to 180 by whole turns, both included: the reference tells them apart.
+/// Wraps an angle in degrees to −180 to 180 by whole turns. Both ends are included, because the
+/// reference distinguishes them.
 fn wrap_180(angle_deg: f64) -> f64 {
     if angle_deg > 180.0 {
         angle_deg - 360.0 * ((angle_deg - 180.0) / 360.0).ceil()
@@ -225,7 +231,7 @@ fn wrap_180(angle_deg: f64) -> f64 {
 }
 
 /// The unit vector half-way between two headings.
-// Not half the sum: across south that points north.
+// Not half the sum, which would point north for headings on both sides of south.
 fn circular_mean(a_deg: f64, b_deg: f64) -> Ned {
     let [a, b] = [a_deg, b_deg].map(|deg: f64| Rotation::from_heading(deg.to_radians()));
     Rotation::from_heading(math::atan2(a.sin + b.sin, a.cos + b.cos)).ahead()
@@ -235,7 +241,7 @@ fn circular_mean(a_deg: f64, b_deg: f64) -> Ned {
 mod tests {
     use super::*;
 
-    /// A boat that is simple to reckon with: thrust in per cent is speed in cm/s, no limits, no loss.
+    /// A boat with simple numbers: thrust in per cent is speed in cm/s, no limits, no loss.
     fn plain() -> Kinematic {
         let none = Pid { p: 0.0, i: 0.0, d: 0.0, i_limit: 0.0 };
         Kinematic {

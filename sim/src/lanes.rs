@@ -1,25 +1,27 @@
-//! Numbers side by side, as they lie in wide registers.
+//! Numbers side by side, as in wide registers.
 //!
-//! Every operation is a plain loop over all of them, which becomes one instruction, or several where registers are narrower.
-//! Which it is changes no bit: each number is worked out by itself, rounded by IEEE 754, and none is fused.
+//! Every operation is a plain loop over all lanes, which compiles to one instruction, or to several
+//! on narrower registers. The results are bit-identical: each lane is computed separately, rounded
+//! by IEEE 754, and never fused.
 
 use std::ops::{Add, AddAssign, Div, Mul, Sub};
 
-/// As many single numbers as the widest registers hold: components of waves side by side.
-// Crates such as `wide` decide on the registers when they are compiled; plain arrays leave it
-// to the machine that runs.
+/// As many single-precision numbers as the widest registers hold: wave components side by side.
+// Crates such as `wide` choose the registers at compile time; plain arrays leave the choice to the
+// machine at run time.
 pub(crate) const LANES: usize = 16;
 
-/// Components of a row. Sums over the components are kept by their place in the row, so that these do not wait for each other.
+/// Components of a row. Sums over the components are kept per position in the row, so that they do
+/// not wait for each other.
 pub(crate) const ROW: usize = 4;
 
-/// Rows side by side; or numbers for each component of one row.
+/// Rows side by side, or numbers for each component of one row.
 pub(crate) const FOLD: usize = LANES / ROW;
 
-/// Numbers side by side. Sixteen are one for each of sixteen components, or four for each component of a row, all of the first
-/// number before all of the second.
+/// Numbers side by side. Sixteen lanes hold one number for each of sixteen components, or four
+/// numbers for each component of a row, ordered by number first.
 #[derive(Clone, Copy, Debug)]
-// A cache line, and the width of the widest registers: loads never straddle two lines.
+// Aligned to a cache line, the width of the widest registers: loads never straddle two lines.
 #[repr(align(64))]
 pub(crate) struct Lanes<T, const N: usize = LANES>(pub(crate) [T; N]);
 
@@ -50,7 +52,7 @@ impl<const N: usize> AddAssign for Lanes<f32, N> {
 }
 
 impl<T: Copy, const N: usize> Lanes<T, N> {
-    /// The same number in all places.
+    /// The same number in all lanes.
     #[inline(always)]
     pub(crate) fn splat(number: T) -> Lanes<T, N> {
         Lanes([number; N])
@@ -68,7 +70,7 @@ impl<const N: usize> Lanes<f64, N> {
         single
     }
 
-    /// The same numbers without their signs.
+    /// The absolute values.
     #[inline(always)]
     pub(crate) fn abs(mut self) -> Lanes<f64, N> {
         for number in &mut self.0 {
@@ -77,7 +79,7 @@ impl<const N: usize> Lanes<f64, N> {
         self
     }
 
-    /// These numbers, which are not negative, with the signs of others.
+    /// These non-negative numbers with the signs of others.
     #[inline(always)]
     pub(crate) fn with_signs_of(mut self, others: Lanes<f64, N>) -> Lanes<f64, N> {
         for i in 0..N {
@@ -87,7 +89,8 @@ impl<const N: usize> Lanes<f64, N> {
     }
 }
 
-/// In each place, the number of `first` where that of `a` is at most that of `b`, and the number of `second` where it is not.
+/// Per lane, the number of `first` if that of `a` is at most that of `b`; otherwise the number of
+/// `second`.
 #[inline(always)]
 pub(crate) fn where_at_most<const N: usize>(
     (a, b): (Lanes<f64, N>, Lanes<f64, N>),
@@ -109,7 +112,7 @@ impl Lanes<f32> {
         lanes
     }
 
-    /// The numbers of one row out of those of sixteen components, four times over.
+    /// The numbers of one row out of those of sixteen components, repeated four times.
     #[inline(always)]
     pub(crate) fn row(&self, row: usize) -> Lanes<f32> {
         let mut repeated = Lanes::splat(0.0);
@@ -119,12 +122,12 @@ impl Lanes<f32> {
         repeated
     }
 
-    /// The sum of one of four numbers over the components of a row, always in the same order.
+    /// The sum of one of the four numbers over the components of a row, always in the same order.
     #[inline(always)]
     pub(crate) fn sum(&self, number: usize) -> f64 {
         let at = |place: usize| f64::from(self.0[ROW * number + place]);
-        // In this order on every machine: a sum of four parts, however many lanes the processor
-        // has.
+        // In this order on every machine: a sum of four parts, whatever the processor's register
+        // width.
         (at(0) + at(1)) + (at(2) + at(3))
     }
 }

@@ -1,6 +1,7 @@
-//! The Squall simulation: boats in water, and the game that they play.
+//! The Squall simulation: boats in water, and the game they play.
 //!
-//! Open [`World::step`] first: it is physics alone. [`Contest`] plays a whole game with it; `node` puts one on the network.
+//! Start with [`World::step`]: physics alone. [`Contest`] plays a whole game with it; `node` serves
+//! it on the network.
 
 pub mod afloat;
 pub mod autopilot;

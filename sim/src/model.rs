@@ -1,4 +1,4 @@
-//! What is constant in a world: the boats as they are, the sea, and what they bump into.
+//! The constants of a world: the boats, the sea, and the solid shapes.
 
 use crate::autopilot::AutopilotModel;
 use crate::contact::{ContactModel, ContactRole, Displacement};
@@ -25,40 +25,40 @@ use scenario::sensor::Sensors;
 pub(crate) struct Model {
     pub(crate) tick: SimTime,
     pub(crate) dt_s: f64,
-    /// By kind of boat.
+    /// Hull models, by kind of boat.
     pub(crate) hulls: Vec<HullModel>,
     drives: Vec<Drive>,
-    /// Kind of each vehicle.
+    /// Kind of each vehicle, by vehicle index.
     pub(crate) kinds: Vec<usize>,
-    /// Whether each vehicle is a real boat.
+    /// Whether each vehicle is a real boat, by vehicle index.
     external: Vec<bool>,
-    /// The place of each vehicle among the point boats, if it is one.
+    /// Index of each vehicle among the point boats, if it is one.
     points: Vec<Option<usize>>,
-    /// The sensors of each vehicle that has any, and its place among those.
+    /// The sensors of each vehicle that has any, with its index among those.
     pub(crate) sensed: Vec<Option<(usize, SensorModel)>>,
-    /// The hulls again, by vehicle.
+    /// The hulls again, by vehicle index.
     pub(crate) fleet: Fleet,
     pub(crate) sea: SeaModel,
     pub(crate) contact: ContactModel,
-    /// Pairs of boats within this are looked for, m.
+    /// Pairs of boats within this distance are searched, m.
     pub(crate) pairs_within_m: f64,
-    /// By vehicle: the faults of its thrusters.
+    /// Fault spans of the thrusters, by vehicle index.
     thruster_faults: Vec<Vec<FaultSpan>>,
 }
 
-/// What is wrong with a thruster.
+/// The failure of a thruster.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Failing {
-    /// It stands still.
+    /// It stops.
     Lost,
-    /// It goes on as it went.
+    /// It keeps its last setting.
     Stuck,
 }
 
-/// What drives a kind of boat.
+/// The propulsion of a kind of boat.
 #[derive(Clone)]
 enum Drive {
-    /// Thrusters under a front seat.
+    /// Thrusters controlled by a front seat.
     Thrusters(ThrusterModel, AutopilotModel),
     Point(KinematicModel),
 }
@@ -82,12 +82,12 @@ impl Model {
         let shapes = plan.kinds.iter().map(|boat| (boat.length_m, boat.beam_m));
         let drives: Vec<Drive> =
             plan.kinds.iter().zip(&hulls).map(|(boat, hull)| Drive::new(boat, hull, dt_s)).collect();
-        // A real boat has no state of a point boat, whatever its file says: its gateway tells
-        // where it is.
+        // A real boat has no state of a point boat, whatever its file says: its gateway reports its
+        // position.
         let points = plan.vehicles.iter().map(|v| !v.is_external && matches!(drives[v.kind], Drive::Point(_)));
         let sensors = |kind: usize| &plan.kinds[kind].sensors;
-        // Boats without sensors keep no readings at all: large fleets of perfect boats would
-        // carry them for nothing.
+        // Boats without sensors keep no readings: large fleets of perfect boats would carry them
+        // for nothing.
         let is_sensed = plan.vehicles.iter().map(|v| !v.is_external && *sensors(v.kind) != Sensors::default());
         let sensed = numbered(is_sensed).into_iter().zip(&plan.vehicles).map(|(place, vehicle)| {
             let model = || {
@@ -113,7 +113,7 @@ impl Model {
         }
     }
 
-    /// The flaws of each vehicle's thrusters when the game starts.
+    /// Initial flaw state of each vehicle's thrusters.
     pub(crate) fn flaws_at_start(&self) -> Vec<FlawState> {
         let start = |kind: &usize| match &self.drives[*kind] {
             Drive::Thrusters(thruster, ..) => thruster.start(),
@@ -122,31 +122,31 @@ impl Model {
         self.kinds.iter().map(start).collect()
     }
 
-    /// The point boats when the game starts.
+    /// Initial state of the point boats.
     pub(crate) fn points_at_start(&self, boats: &[BoatState]) -> Vec<KinematicState> {
         let is_point = |(i, _): &(usize, &BoatState)| self.points[*i].is_some();
         let points = boats.iter().enumerate().filter(is_point);
         points.map(|(_, boat)| KinematicState::at_rest(boat.pose.psi_rad)).collect()
     }
 
-    /// What sensors remember and tell before they are first read.
+    /// Initial state and reading of the sensors, before the first measurement.
     pub(crate) fn senses_at_start(&self) -> Vec<(SensorState, Reading)> {
         self.sensed.iter().flatten().map(|_| (SensorState::default(), Reading::default())).collect()
     }
 
-    /// How far a vehicle's compass is off, rad.
+    /// Compass error of a vehicle, rad.
     #[inline]
     pub(crate) fn heading_error_rad(&self, vehicle: usize, senses: &[(SensorState, Reading)]) -> f64 {
         self.sensed[vehicle].as_ref().map_or(0.0, |(place, _)| senses[*place].0.heading_error_rad())
     }
 
-    /// Whether a vehicle is a real boat: nothing here moves it.
+    /// Whether a vehicle is a real boat, which the simulation never moves.
     #[inline]
     pub(crate) fn is_external(&self, vehicle: usize) -> bool {
         self.external[vehicle]
     }
 
-    /// The model of a vehicle that is a point boat, and its place among those.
+    /// The model of a point boat and its index among those.
     #[inline]
     pub(crate) fn point(&self, vehicle: usize) -> Option<(usize, &KinematicModel)> {
         match (self.points[vehicle], &self.drives[self.kinds[vehicle]]) {
@@ -155,7 +155,7 @@ impl Model {
         }
     }
 
-    /// What is wrong with a vehicle's port and starboard thrusters at this time.
+    /// Current failures of a vehicle's port and starboard thrusters.
     #[inline]
     pub(crate) fn failing(&self, vehicle: usize, now: SimTime) -> [Option<Failing>; 2] {
         let mut failing = [None; 2];
@@ -165,15 +165,15 @@ impl Model {
                 FaultKind::StarboardLost => failing[1] = Some(Failing::Lost),
                 FaultKind::PortStuck => failing[0] = Some(Failing::Stuck),
                 FaultKind::StarboardStuck => failing[1] = Some(Failing::Stuck),
-                // Faults of sensors, radio and agents are others' affair.
+                // Faults of sensors, radio and agents are handled elsewhere.
                 _ => {}
             }
         }
         failing
     }
 
-    /// What moves a boat in this tick, and the current it is in: its thrusters take up its command, by the heading that
-    /// its compass shows, and the sea does its part.
+    /// The forces on a boat in this tick, and the current around it. Thrusters follow the command
+    /// by the compass heading, and the sea adds its forces.
     #[inline]
     pub(crate) fn forcing(
         &self,
@@ -188,19 +188,19 @@ impl Model {
         let Drive::Thrusters(thruster, autopilot) = &self.drives[kind] else {
             return (Forcing::default(), Ned::default());
         };
-        // A boat whose state stopped being numbers lies where it is, so that one mistake does
-        // not end the game of all others.
+        // A quarantined boat stays where it is, so that one bug does not end the game for all
+        // others.
         if boat.quarantined || self.external[vehicle] {
             return (Forcing::default(), Ned::default());
         }
         let hull = &self.hulls[kind];
         let mut settings = settings(boat, heading_error_rad, (hull, thruster, autopilot), command);
         for (side, shaft) in [&boat.port, &boat.starboard].into_iter().enumerate() {
-            // The front seat does not know of the fault, and steers as if both thrusters
-            // worked: that is what the fault is for.
+            // The front seat does not know about the fault and steers as if both thrusters worked:
+            // that is the purpose of the fault.
             let Some(failing) = failing[side] else { continue };
             settings[side] = if failing == Failing::Lost { 0.0 } else { shaft.command };
-            // What is under way to it does not count either.
+            // Settings in transit to it are replaced as well.
             flaws.replace_under_way(side, settings[side]);
         }
         let from_sea = sea.forcing(kind, hull, boat.pose, rotation, boat.nu);
@@ -216,7 +216,8 @@ impl Model {
         (forcing, from_sea.current_m_s)
     }
 
-    /// A boat's displacement over a tick as if it were alone, and its velocity over the ground after it.
+    /// A boat's displacement over a tick without contact, and its velocity over the ground after
+    /// it.
     #[inline]
     pub(crate) fn displacement(
         &self,
@@ -232,13 +233,12 @@ impl Model {
         if boat.quarantined {
             return (still, Planar::default());
         }
-        // Wrapped at each tick: an angle that grew with each turn would lose digits in a long
-        // game.
+        // Wrapped at each tick: an angle that accumulated turns would lose digits in a long game.
         let psi_rad = wrap_pi(from.psi_rad + motion.turn_rad);
         let rotation_half = rotation.turned(small_rotation(motion.turn_half_rad));
         let rotation_to = Rotation::from_heading(psi_rad);
-        // Simpson's rule for the way over the ground: velocities along the boat's axes are
-        // known at the beginning, the middle and the end of the tick, while the axes turn.
+        // Simpson's rule for the distance over the ground: velocities in body axes are known at the
+        // start, middle and end of the tick, while the axes turn.
         let start = forcing.nu_r.in_ned(rotation);
         let middle = motion.nu_r_half.in_ned(rotation_half);
         let end = motion.nu_r.in_ned(rotation_to);
@@ -264,7 +264,8 @@ impl Model {
         (Displacement { to, rotation_to, ..still }, through_water(nu, rotation_to, drift_m_s, 1.0))
     }
 
-    /// A real boat's displacement over a tick, as far as it is known, and its velocity over the ground: it goes on as it does.
+    /// A real boat's estimated displacement over a tick, and its velocity over the ground: dead
+    /// reckoned.
     pub(crate) fn dead_reckoned_displacement(
         &self,
         vehicle: usize,
@@ -287,7 +288,8 @@ impl Model {
         Displacement { kind, from, to: from, rotation, rotation_to: rotation, role, velocity_change: Planar::default() }
     }
 
-    /// How a boat lies in the waves; a point boat knows none, and of a real boat it is not known.
+    /// A boat's attitude in the waves; zero for a point boat, and for a real boat, whose attitude
+    /// is unknown.
     pub(crate) fn attitude(&self, vehicle: usize, boat: &BoatState, rotation: Rotation, sea: &SeaNow<'_>) -> Attitude {
         let kind = self.kinds[vehicle];
         match self.drives[kind] {
@@ -296,7 +298,7 @@ impl Model {
         }
     }
 
-    /// What is true of a boat.
+    /// The true state of a boat.
     pub(crate) fn truth(&self, vehicle: usize, boat: &BoatState, rotation: Rotation, sea: &SeaNow<'_>) -> Truth {
         let kind = self.kinds[vehicle];
         let thrust_share = match &self.drives[kind] {
@@ -315,7 +317,7 @@ impl Model {
     }
 }
 
-/// Each one's place among those that count.
+/// The index of each selected item among the selected ones.
 fn numbered(counts: impl Iterator<Item = bool>) -> Vec<Option<usize>> {
     let mut before = 0;
     let place = |counts: bool| {
@@ -326,7 +328,7 @@ fn numbered(counts: impl Iterator<Item = bool>) -> Vec<Option<usize>> {
     counts.map(place).collect()
 }
 
-/// The settings of the thrusters, port and starboard, that a command asks for.
+/// The spans of thruster faults.
 #[inline]
 fn thruster_faults(faults: &[FaultSpan]) -> Vec<FaultSpan> {
     let is_of_thrusters = |kind: FaultKind| {
@@ -336,6 +338,7 @@ fn thruster_faults(faults: &[FaultSpan]) -> Vec<FaultSpan> {
     faults.iter().filter(|span| is_of_thrusters(span.kind)).copied().collect()
 }
 
+/// The settings of the port and starboard thrusters for a command.
 fn settings(
     boat: &mut BoatState,
     heading_error_rad: f64,
@@ -355,8 +358,8 @@ fn settings(
     }
 }
 
-/// The rotation by a turn of half a tick, which is small: the series is exact to the last digits and takes a fraction of
-/// the time.
+/// The rotation by the small angle of half a tick: the series is exact to the last digits and takes
+/// a fraction of the time.
 #[inline]
 fn small_rotation(by_rad: f64) -> Rotation {
     let square = by_rad * by_rad;
@@ -369,8 +372,8 @@ fn small_rotation(by_rad: f64) -> Rotation {
     }
 }
 
-/// `nu` with the current, seen from the boat, added `sign` times: −1 takes a velocity over the ground to one
-/// through the water, 1 takes it back.
+/// `nu` plus `sign` times the current in body axes: −1 converts velocity over the ground to
+/// velocity through the water, 1 converts back.
 #[inline]
 fn through_water(nu: Planar, rotation: Rotation, current_m_s: Ned, sign: f64) -> Planar {
     let current = frame::body_from_ned(rotation, current_m_s);

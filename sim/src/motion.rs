@@ -1,29 +1,31 @@
 //! One step of motion, for several boats side by side.
 //!
-//! A boat's step is one long chain of dependent operations, in which a processor mostly waits. Boats do not depend on
-//! each other, so eight are moved on together, each in its lane. A lane does the same IEEE operations whatever
-//! the others hold and whatever the processor offers: the numbers do not depend on who stands beside whom.
+//! A boat's step is one long chain of dependent operations, in which a processor mostly waits.
+//! Boats are independent of each other, so eight advance together, each in its lane. A lane
+//! performs the same IEEE operations whatever the other lanes and the processor: results do not
+//! depend on how boats are grouped.
 
 use crate::hull::{HullModel, Planar};
 use crate::lanes::{Lanes, where_at_most};
 use primitives::instructions::{Instructions, Kernel};
 
-/// Boats side by side; and of those that are left, if they are no more.
-// A boat's four stages are one chain of dependent operations: eight chains side by side halve
-// the time of a tick and more.
+/// Boats per full row, and per last row.
+// A boat's four stages are one chain of dependent operations: eight chains side by side take less
+// than half the time per tick.
 const MANY: usize = 8;
 const FEW: usize = 4;
 
-/// What moves a boat for a tick.
+/// The forces on a boat over a tick.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Forcing {
-    /// Velocity through the water at the beginning.
+    /// Velocity through the water at the start.
     pub nu_r: Planar,
-    /// The force on the hull, apart from the hull's own, at the beginning, half-way and at the end.
+    /// Force on the hull, without the hull's own reaction, at the start, half-way and at the end.
     pub tau: [Planar; 3],
-    /// The water's own motion half-way, waves and eddies, that resistance feels beside the boat's.
+    /// The water's own motion half-way (waves and eddies), which resistance feels in addition to
+    /// the boat's.
     pub water: Planar,
-    /// The rate at which that changes.
+    /// Rate of change of `water`.
     pub water_rate: Planar,
 }
 
@@ -40,12 +42,12 @@ pub struct Motion {
     pub turn_rad: f64,
 }
 
-/// The hulls of a fleet, ready to be moved.
+/// The hulls of a fleet, packed for `advance`.
 #[derive(Clone, Debug)]
 pub struct Fleet {
     count: usize,
     rows: Vec<Row<MANY>>,
-    /// Behind the rows, if there are any more: few.
+    /// The boats beyond the full rows, if any.
     last: Option<Row<FEW>>,
     instructions: Instructions,
 }
@@ -61,20 +63,21 @@ impl Fleet {
         Fleet { count: hulls.len(), rows, last, instructions: Instructions::best() }
     }
 
-    /// Moves the boats with these instructions. Which ones changes nothing but how long it takes.
+    /// Computes with these instructions. The choice affects only the speed.
     pub(crate) fn set_instructions(&mut self, instructions: Instructions) {
         self.instructions = instructions;
     }
 
-    /// Moves every boat on by `dt_s`: the classical Runge-Kutta step of fourth order. The motions, by boat, replace what
-    /// was in `motions`.
+    /// Advances every boat by `dt_s` with a classical fourth-order Runge-Kutta step. Replaces the
+    /// contents of `motions`, which is indexed by boat.
     ///
-    /// The equation in `nu_r` does not know the heading, so this needs no sine or cosine.
+    /// The equation in `nu_r` does not depend on the heading, so no sine or cosine is needed.
     ///
-    /// Where the water lies still or all moves alike, `is_uniform` saves looking at it; the numbers are the same.
+    /// `is_uniform` skips the water's own motion if it is the same everywhere; the results are
+    /// equal.
     ///
     /// # Panics
-    /// If there is not one forcing for each boat.
+    /// If the number of forcings differs from the number of boats.
     pub fn advance(&self, forcings: &[Forcing], dt_s: f64, is_uniform: bool, motions: &mut Vec<Motion>) {
         assert_eq!(forcings.len(), self.count, "one forcing a boat");
         motions.clear();
@@ -98,7 +101,7 @@ impl Fleet {
         motions: &mut [Motion],
     ) {
         let forcings = Forcings::gather(forcings);
-        // Two compiled versions, since a branch inside would keep the loop from the vector
+        // Two compiled versions, because a branch inside would keep the loop from using vector
         // registers.
         let moved = if is_uniform {
             self.instructions.run(Advance::<N, true> { row, forcings: &forcings, dt_s })
@@ -111,9 +114,9 @@ impl Fleet {
     }
 }
 
-/// A step of boats side by side. How these come and go is none of its business: done in it, it would keep their numbers
-/// out of wide registers.
-// A sum is never a fused multiply-add: rustc does not contract, and no intrinsic asks for it.
+/// Advances boats side by side. Packing and unpacking happen outside: inside, they would keep the
+/// numbers out of wide registers.
+// A sum is never a fused multiply-add: rustc does not contract, and we use no intrinsic for it.
 struct Advance<'a, const N: usize, const UNIFORM: bool> {
     row: &'a Row<N>,
     forcings: &'a Forcings<N>,
@@ -129,7 +132,7 @@ impl<const N: usize, const UNIFORM: bool> Kernel for Advance<'_, N, UNIFORM> {
     }
 }
 
-/// The resistance of a hull that drifts sideways at this speed, N.
+/// Resistance of a hull that drifts sideways at this speed, N.
 pub(crate) fn cross_flow_newton(hull: &HullModel, drift_m_s: f64) -> f64 {
     let (sway, _) = Row::<FEW>::new(&[hull]).crossflow(Lanes::splat(drift_m_s), Lanes::splat(0.0));
     hull.hull.sway_linear_kg_s * drift_m_s + sway.0[0]
@@ -161,7 +164,7 @@ impl<const N: usize> Planars<N> {
         Planar { surge: self.surge.0[i], sway: self.sway.0[i], yaw: self.yaw.0[i] }
     }
 
-    /// `f` of each part and its like in the others.
+    /// Applies `f` to each component of the parts.
     #[inline(always)]
     fn zip<const M: usize>(parts: [Planars<N>; M], f: impl Fn([Lanes<f64, N>; M]) -> Lanes<f64, N>) -> Planars<N> {
         Planars { surge: f(parts.map(|p| p.surge)), sway: f(parts.map(|p| p.sway)), yaw: f(parts.map(|p| p.yaw)) }
@@ -184,9 +187,9 @@ struct Forcings<const N: usize> {
 }
 
 impl<const N: usize> Forcings<N> {
-    /// Of one to `N` boats; what is missing is filled up.
+    /// Packs one to `N` boats; fills the remaining lanes.
     fn gather(forcings: &[Forcing]) -> Forcings<N> {
-        // Empty lanes repeat the last boat, so that nothing is divided by their zeros.
+        // Unused lanes repeat the last boat, to avoid division by zero.
         let forcing = |i: usize| &forcings[i.min(forcings.len() - 1)];
         Forcings {
             nu_r: Planars::gather(|i| forcing(i).nu_r),
@@ -221,9 +224,9 @@ impl<const N: usize> Motions<N> {
 struct Row<const N: usize> {
     m_surge: Lanes<f64, N>,
     m_cross: Lanes<f64, N>,
-    /// m + what stands for A22 in the Coriolis terms.
+    /// m plus the replacement for A22 in the Coriolis terms.
     m_munk: Lanes<f64, N>,
-    /// The same less A11: the Munk moment.
+    /// The same minus A11: the Munk moment.
     munk: Lanes<f64, N>,
     inverse_surge: Lanes<f64, N>,
     inverse_sway: Lanes<f64, N>,
@@ -241,7 +244,7 @@ struct Row<const N: usize> {
 }
 
 impl<const N: usize> Row<N> {
-    /// `hulls` has one to `N`; what is missing is filled up.
+    /// `hulls` has one to `N` entries; the remaining lanes are filled.
     fn new(hulls: &[&HullModel]) -> Row<N> {
         let each = |f: fn(&HullModel) -> f64| Lanes(std::array::from_fn(|i| f(hulls[i.min(hulls.len() - 1)])));
         Row {
@@ -265,17 +268,16 @@ impl<const N: usize> Row<N> {
         }
     }
 
-    /// The acceleration under `tau` at the velocity `nu_r` through the water. Resistance acts on the velocity through
-    /// the water as it moves to and fro, `nu_r - water`.
+    /// The acceleration under `tau` at the velocity `nu_r` through the water. Resistance acts on
+    /// the velocity relative to the oscillating water, `nu_r - water`.
     #[inline(always)]
     fn acceleration<const UNIFORM: bool>(&self, nu_r: Planars<N>, tau: Planars<N>, water: Planars<N>) -> Planars<N> {
-        // M nu_r' + C(nu_r) nu_r + D(nu_r) nu_r = tau (Fossen 2021, ch. 6), row by row.
-        // Relative to the water, a current that is constant in time and space has no term here;
-        // it only carries the position.
+        // M nu_r' + C(nu_r) nu_r + D(nu_r) nu_r = tau (Fossen 2021, ch. 6), row by row. Relative to
+        // the water, a current constant in time and space has no term here; it only changes the
+        // position.
         let Planars { surge: u, sway: v, yaw: r } = nu_r;
-        // Waves move the water past the hull: they enter resistance by this and the force by
-        // their acceleration, which is in `tau`. The slope's push on top would count them
-        // twice.
+        // Waves move the water past the hull. Their velocity enters resistance here, and their
+        // acceleration is in `tau`. A force by the surface slope as well would count them twice.
         let past = if UNIFORM { nu_r } else { Planars::zip([nu_r, water], |[boat, water]| boat - water) };
         let (y_cross, n_cross) = self.crossflow(past.sway, past.yaw);
         let speed = past.surge.abs();
@@ -296,9 +298,10 @@ impl<const N: usize> Row<N> {
 
     /// Cross-flow drag in sway and yaw (strip theory): ½ρ C_d T ∫ [1, x] |v + x r| (v + x r) dx.
     ///
-    /// The integral is done in closed form instead of over strips. With s = r L/2, the cross-flow at the bow that
-    /// the turn makes: where |s| ≤ |v| the flow has one side all along the hull and the integrand is a polynomial;
-    /// where |s| > |v| it changes its side at x = −v/r, and the two polynomials meet there.
+    /// The integral is in closed form instead of over strips. Let s = r L/2 be the cross-flow that
+    /// the turn adds at the bow. If |s| ≤ |v|, the flow has one sign along the hull and the
+    /// integrand is a polynomial; if |s| > |v|, the sign changes at x = −v/r, where two polynomials
+    /// meet.
     #[inline(always)]
     fn crossflow(&self, v: Lanes<f64, N>, r: Lanes<f64, N>) -> (Lanes<f64, N>, Lanes<f64, N>) {
         let number = Lanes::<f64, N>::splat;
@@ -332,9 +335,9 @@ impl<const N: usize> Row<N> {
         } else {
             [water.plus(-half, water_rate), water, water.plus(half, water_rate)]
         };
-        // One fourth-order step of 50 ms is close enough to a reference at 20 ms for strict
-        // tests; Euler would need much shorter ticks. Thrust at the three times is known
-        // beforehand, since thrusters have an exact solution.
+        // One fourth-order step of 50 ms is close enough to a reference at 20 ms for strict tests;
+        // Euler would need much shorter ticks. The thrust at the three times is known in advance,
+        // because thrusters have an exact solution.
         let k1 = self.acceleration::<UNIFORM>(start, tau[0], water[0]);
         let k2 = self.acceleration::<UNIFORM>(start.plus(half, k1), tau[1], water[1]);
         let k3 = self.acceleration::<UNIFORM>(start.plus(half, k2), tau[1], water[1]);
@@ -347,7 +350,7 @@ impl<const N: usize> Row<N> {
         let eighth = number(dt_s / 8.0);
         let middle =
             Planars::zip([start, end, k1, k4], |[a, b, at_a, at_b]| number(0.5) * (a + b) + eighth * (at_a - at_b));
-        // Integrals of the yaw rate's cubic: Simpson over the whole tick, and its first half exactly.
+        // Integrals of the cubic yaw rate: Simpson over the whole tick, and its first half exactly.
         let turn = number(sixth) * (start.yaw + number(4.0) * middle.yaw + end.yaw);
         let turn_half = number(dt_s / 24.0) * (number(5.0) * start.yaw + number(8.0) * middle.yaw - end.yaw);
         Motions { nu_r: end, nu_r_half: middle, turn_half_rad: turn_half, turn_rad: turn }

@@ -1,20 +1,20 @@
-//! A piecewise linear function with an index, so that a look-up needs no search.
+//! A piecewise linear function with an index, so that look-ups need no search.
 
-/// Most cells of the index.
+/// Limit of cells in the index.
 const CELLS_MAX: usize = 256;
 
-/// The lines through measured points; constant beyond the ends.
+/// Linear interpolation through measured points; constant beyond the ends.
 #[derive(Clone, Debug)]
 pub(crate) struct PiecewiseLinear {
     pieces: Vec<Piece>,
-    /// The piece in which each of equally wide cells begins, so that a look-up needs no search.
+    /// For each of equally wide cells, the piece at its start.
     index: Vec<u16>,
     per_x: f64,
     first: (f64, f64),
     last: (f64, f64),
 }
 
-/// One line: `y = at.1 + slope * (x - at.0)` from `at.0` to below `end`.
+/// One piece: `y = at.1 + slope * (x - at.0)` from `at.0` to below `end`.
 #[derive(Clone, Copy, Debug)]
 struct Piece {
     at: (f64, f64),
@@ -23,7 +23,7 @@ struct Piece {
 }
 
 impl PiecewiseLinear {
-    /// The lines through `points`, whose first numbers rise strictly.
+    /// The interpolation through `points`, whose first numbers increase strictly.
     ///
     /// # Panics
     /// If there are fewer than two points.
@@ -37,7 +37,7 @@ impl PiecewiseLinear {
         let (first, last) = (points[0], points[points.len() - 1]);
         let width = last.0 - first.0;
         let narrowest = pieces.iter().map(|piece| piece.end - piece.at.0).fold(width, f64::min);
-        // As fine as the narrowest piece, so that a cell holds one border at most.
+        // As fine as the narrowest piece, so that a cell contains at most one border.
         let cells = ((width / narrowest).ceil() as usize).clamp(1, CELLS_MAX);
         let piece_at = |x: f64| pieces[..pieces.len() - 1].iter().take_while(|piece| piece.end <= x).count();
         let index = (0..cells).map(|cell| piece_at(first.0 + width * cell as f64 / cells as f64) as u16).collect();
@@ -55,8 +55,8 @@ impl PiecewiseLinear {
         }
         let cell = ((x - self.first.0) * self.per_x) as usize;
         let mut i = usize::from(self.index[cell.min(self.index.len() - 1)]);
-        // A cell holds one border at most, or the pieces are very uneven. The sum, unlike a branch, is never guessed
-        // wrong.
+        // A cell contains at most one border, unless the pieces are very uneven. Unlike a branch,
+        // the sum is never mispredicted.
         i += usize::from(x >= self.pieces[i].end);
         while x >= self.pieces[i].end {
             i += 1;

@@ -1,4 +1,5 @@
-//! What is reported while a game is played: shown on the terminal, and by a sim as one JSON line each for `squall run`.
+//! Progress messages of a running game: shown on the terminal, and printed by a sim as one JSON
+//! line each for `squall run`.
 
 use crate::contest::Contest;
 use crate::report::Report;
@@ -7,7 +8,7 @@ use scenario::Outcome;
 use scenario::outcome::EventOutcome;
 use serde::{Deserialize, Serialize};
 
-/// One message.
+/// A progress message.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", tag = "kind")]
 pub enum ProgressMessage {
@@ -15,36 +16,36 @@ pub enum ProgressMessage {
     Open {
         /// The game's name on the network.
         game: String,
-        /// Where nodes on this machine can connect.
+        /// Endpoint for nodes on this machine.
         endpoint: String,
     },
-    /// Somebody is not there yet.
+    /// Some nodes are missing.
     Waiting {
         /// The vehicles without an agent, by name.
         agents: Vec<String>,
-        /// The real boats that no gateway has reported the position of, by name.
+        /// The real boats that no gateway has reported yet, by name.
         gateways: Vec<String>,
     },
-    /// The game begins.
+    /// The game starts.
     Started,
-    /// Something happened.
+    /// An event of the game.
     Event(EventOutcome),
-    /// Some time has passed: ten times a second or so.
+    /// Regular progress, about ten times a second.
     Progress(Progress),
-    /// How it ended.
+    /// The final report.
     Done(Box<Report>),
 }
 
-/// How a game stands.
+/// The state of a running game.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Progress {
     /// Simulated time, s.
     pub now_s: f64,
-    /// The end of the game at the latest, s.
+    /// Latest possible end of the game, s.
     pub end_s: f64,
-    /// Team and points.
+    /// Teams with their points.
     pub score: Vec<(String, u32)>,
-    /// Simulated seconds a second, lately.
+    /// Recent speed, simulated seconds per second.
     pub rate: f64,
     /// Messages refused so far.
     pub refused: u64,
@@ -57,11 +58,11 @@ pub struct Reporter {
 }
 
 impl Reporter {
-    /// The events since last time, then how the game stands.
+    /// Reports the events since the last call, then the progress.
     pub fn progress(&mut self, contest: &Contest, (rate, refused): (f64, u64), tell: &mut dyn FnMut(ProgressMessage)) {
         let scenario = contest.scenario();
-        // Events before the progress: a line that says who has scored is shown before the score
-        // that it changes.
+        // Events before the progress: the line that reports a score appears before the score
+        // changes.
         let news = self.reported.read(contest.events()).iter();
         news.for_each(|logged| tell(ProgressMessage::Event(EventOutcome::new(scenario, logged))));
         let teams = scenario.teams.iter().map(|team| team.name.clone());
@@ -74,7 +75,7 @@ impl Reporter {
         }));
     }
 
-    /// The events that are left when the game has ended.
+    /// Reports the remaining events after the end of the game.
     pub fn rest(mut self, outcome: &Outcome, tell: &mut dyn FnMut(ProgressMessage)) {
         let rest = self.reported.read(&outcome.events).iter();
         rest.for_each(|event| tell(ProgressMessage::Event(event.clone())));

@@ -1,7 +1,9 @@
-//! The radio link between the minds ashore and their boats: reports come in late or never, and orders go out so.
+//! The radio link between the minds ashore and their boats: delays and losses of reports and
+//! orders.
 //!
-//! All of it is drawn from the game's seed, by vehicle, direction and number of the decision: the same losses in one
-//! process and over a network, whatever else is sent. What the real network does comes on top.
+//! All random values derive from the game's seed, by vehicle, direction and decision: losses are
+//! the same in one process and over a network, whatever else is sent. The real network's delays and
+//! losses add to them.
 
 use crate::two_state::TwoStateChain;
 use messages::Order;
@@ -13,9 +15,9 @@ use scenario::link::Link;
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
-/// The largest number that [`primitives::stream::Noise::exponential`] gives, 53 ln 2, rounded up.
+/// Upper bound of [`primitives::stream::Noise::exponential`]: 53 ln 2, rounded up.
 const MOST_JITTERS: f64 = 37.0;
-/// Uniform numbers that a decision takes: the link's turn, and loss and jitter of either direction.
+/// Uniform numbers per decision: the link's change of state, and loss and jitter in each direction.
 const DRAWS: u64 = 5;
 
 /// The links of a game.
@@ -25,26 +27,27 @@ pub(crate) struct Radio {
     state: RadioState,
 }
 
-/// What is constant about them.
+/// The constants of the links.
 #[derive(Clone)]
 struct RadioModel {
     link: Link,
-    /// When a link is bad.
+    /// The changes between good and bad state of a link.
     bursts: TwoStateChain,
-    /// By vehicle.
+    /// Noises, by vehicle index.
     noises: Vec<TimedNoise>,
     /// The time between two decisions.
     decision: SimTime,
-    /// The most messages under way in one direction: one for each decision in the longest time that one takes.
+    /// Limit of messages in transit per direction: one for each decision within the longest transit
+    /// time.
     most: usize,
 }
 
-/// What changes.
+/// The changing state of the links.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct RadioState {
-    /// The decision that is open.
+    /// The open decision.
     decision: u64,
-    /// By vehicle.
+    /// Links, by vehicle index.
     lines: Vec<Line>,
 }
 
@@ -52,12 +55,12 @@ pub(crate) struct RadioState {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Line {
     is_bad: bool,
-    /// Messages under way in each direction, by rising arrival. One that is overtaken by a later one is not taken any more.
+    /// Messages in transit in each direction, by ascending arrival. Overtaken messages are dropped.
     orders: VecDeque<Sent<Order>>,
     reports: VecDeque<Sent<OwnBoat>>,
 }
 
-/// A message under way.
+/// A message in transit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Sent<T> {
     /// The decision at which it was sent.
@@ -66,7 +69,7 @@ struct Sent<T> {
     message: T,
 }
 
-/// Which way a message goes; the first of its draws in a decision.
+/// The direction of a message; its value is the index of the first draw in a decision.
 #[derive(Clone, Copy)]
 enum Direction {
     Out = 1,
@@ -74,15 +77,15 @@ enum Direction {
 }
 
 fn send<T>(under_way: &mut VecDeque<Sent<T>>, sent: Sent<T>, most: usize) {
-    // What would arrive after this one is overtaken by it.
-    // As a sender that only ever keeps its newest message: an older one that arrives later
-    // would be worth nothing.
+    // This message overtakes those that would arrive after it, as with a sender that keeps only its
+    // newest message: an older one that arrives later would be worthless.
     while under_way.pop_back_if(|earlier| earlier.arrival >= sent.arrival).is_some() {}
     assert!(under_way.len() < most, "one message a decision, and none takes longer than the longest");
     under_way.push_back(sent);
 }
 
-/// The newest message that has arrived by `now`, if any has; `each` is told of all of them by their decisions.
+/// The newest message that has arrived by `now`, if any; calls `each` with the decision of every
+/// arrived message.
 fn receive<T>(under_way: &mut VecDeque<Sent<T>>, now: SimTime, mut each: impl FnMut(u64)) -> Option<T> {
     let mut newest = None;
     while let Some(sent) = under_way.pop_front_if(|sent| sent.arrival <= now) {
@@ -93,7 +96,7 @@ fn receive<T>(under_way: &mut VecDeque<Sent<T>>, now: SimTime, mut each: impl Fn
 }
 
 impl Radio {
-    /// The links of this scenario in the game that its seed chooses, if it states any.
+    /// The links of this scenario with its seed, if it defines any.
     pub(crate) fn new(scenario: &Scenario) -> Option<Radio> {
         let link = scenario.link.clone()?;
         let seeds = scenario.seeds();
@@ -103,7 +106,7 @@ impl Radio {
 
     fn over(link: Link, decision: SimTime, noises: impl Iterator<Item = TimedNoise>) -> Radio {
         let decisions = |span_s: f64| (span_s / decision.as_s()).ceil() as usize + 2;
-        // Jitter is seldom so long, and what is late is overtaken.
+        // Jitter is rarely that long, and late messages are overtaken.
         let usual = decisions(link.delay_s);
         let line = |_: &TimedNoise| Line {
             is_bad: false,
@@ -116,29 +119,29 @@ impl Radio {
         Radio { model: RadioModel { bursts: bursts(&link, decision), noises, decision, most, link }, state }
     }
 
-    /// What changes, for reading.
+    /// The changing state.
     pub(crate) fn state(&self) -> &RadioState {
         &self.state
     }
 
-    /// Goes on from another state of these links.
+    /// Replaces the changing state.
     pub(crate) fn set_state(&mut self, state: RadioState) {
         self.state = state;
     }
 
-    /// The next decision opens: each link turns good or bad, or stays.
+    /// Opens the next decision: each link may change between good and bad.
     pub(crate) fn open_next(&mut self) {
         let Radio { model, state } = self;
         state.decision += 1;
         let now = model.decision * state.decision as i64;
         for (line, noise) in state.lines.iter_mut().zip(&model.noises) {
-            // Gilbert and Elliott's model: losses on radio come in bursts, which single ones do
-            // not teach anybody.
+            // The Gilbert-Elliott model: radio losses come in bursts, which independent losses do
+            // not prepare agents for.
             line.is_bad = model.bursts.next(line.is_bad, noise.at(now).unit(DRAWS * state.decision));
         }
     }
 
-    /// An order goes out to a boat, which is at `at`. Of one decision's orders the last one counts.
+    /// Sends an order to a boat at `at`. Of several orders in one decision the last one counts.
     pub(crate) fn send_order(&mut self, vehicle: usize, order: Order, at: Ned, now: SimTime) {
         if let Some(sent) = self.sent(vehicle, Direction::Out, order, at, now) {
             send(&mut self.state.lines[vehicle].orders, sent, self.model.most);
@@ -150,39 +153,39 @@ impl Radio {
         receive(&mut self.state.lines[vehicle].orders, now, |_| {})
     }
 
-    /// Orders under way to a boat do not arrive any more.
+    /// Cancels orders in transit to a boat.
     pub(crate) fn recall_orders(&mut self, vehicle: usize) {
         self.state.lines[vehicle].orders.clear();
     }
 
-    /// A boat reports from `at`, once a decision.
+    /// Sends a boat's report from `at`, once per decision.
     pub(crate) fn send_report(&mut self, vehicle: usize, report: OwnBoat, at: Ned, now: SimTime) {
         if let Some(sent) = self.sent(vehicle, Direction::In, report, at, now) {
             send(&mut self.state.lines[vehicle].reports, sent, self.model.most);
         }
     }
 
-    /// The newest report of a boat that has come in by `now`, if any has; `each` is told of all of them by the decisions
-    /// at which they were sent.
+    /// A boat's newest report that has arrived by `now`, if any; calls `each` with the decision at
+    /// which each arrived report was sent.
     pub(crate) fn report(&mut self, vehicle: usize, now: SimTime, each: impl FnMut(u64)) -> Option<OwnBoat> {
         receive(&mut self.state.lines[vehicle].reports, now, each)
     }
 
-    /// The decision of the oldest report that is under way, or the one that is open.
+    /// The decision of the oldest report in transit, or else the open one.
     pub(crate) fn oldest_report(&self) -> u64 {
         let oldest = |line: &Line| line.reports.front().map(|sent| sent.decision);
         self.state.lines.iter().filter_map(oldest).min().unwrap_or(self.state.decision)
     }
 
-    /// A message of the open decision, unless it is lost.
+    /// Sends a message of the open decision, unless it is lost.
     fn sent<T>(&self, vehicle: usize, way: Direction, message: T, at: Ned, now: SimTime) -> Option<Sent<T>> {
         let decision = self.state.decision;
         let (link, noise) = (&self.model.link, self.model.noises[vehicle].at(now));
         let draw = DRAWS * decision + way as u64;
         let share = if self.state.lines[vehicle].is_bad { link.loss.bad } else { link.loss.good };
         let is_out_of_range = link.range_m.is_some_and(|range_m| at.distance(link.station) > range_m);
-        // Looked up by vehicle and decision and not drawn in turn: another boat's messages, or
-        // a lost one, shift no number.
+        // Looked up by vehicle and decision instead of drawn in sequence: other boats' messages, or
+        // lost ones, shift no numbers.
         if is_out_of_range || noise.unit(draw) < share {
             return None;
         }
@@ -191,7 +194,7 @@ impl Radio {
     }
 }
 
-/// When a link is bad, from one decision to the next.
+/// The changes between good and bad state, from one decision to the next.
 fn bursts(link: &Link, decision: SimTime) -> TwoStateChain {
     let loss = &link.loss;
     if loss.good_time_s <= 0.0 {
@@ -274,7 +277,8 @@ mod tests {
             radio.open_next();
         }
         let n = n as f64;
-        // Closed forms: bad for 2 of 10 s; a stay seen at every tenth of a second lasts tenth / (1 - stay).
+        // Closed forms: bad for 2 of 10 s; a stay sampled every tenth of a second lasts
+        // tenth / (1 - stay).
         assert!((bad / n - 0.2).abs() < 0.01, "{}", bad / n);
         for lost in lost {
             assert!((lost / n - (0.8 * 0.01 + 0.2 * 0.6)).abs() < 0.005, "{}", lost / n);

@@ -1,4 +1,4 @@
-//! Records a game as it is played, from its first decision on: over the network or in this process.
+//! Records a running game from its first decision on, on the network or in this process.
 
 use crate::contest::Contest;
 use crate::report::Report;
@@ -9,69 +9,69 @@ use recording::{Decision, Ending, Entry, Header, NewFile, RecordError, Recorder,
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// How far a recording is.
+/// The stage of a recording.
 enum Stage {
-    /// Before the first decision there is only the file.
+    /// Before the first decision: only the file exists.
     Waiting(NewFile),
     Recording(Recorder),
-    /// Why there is none.
+    /// Recording failed for this reason.
     Failed(String),
 }
 
-/// The recording of a game. Nobody waits for it.
+/// The recorder of a game. The game never waits for it.
 pub struct GameRecorder {
     path: PathBuf,
     game: String,
     pace: String,
     commit: String,
     stage: Stage,
-    /// Whether pictures come as messages, encoded as they go over the network.
+    /// Whether pictures are recorded as the messages sent over the network.
     pictures_are_sent: bool,
 }
 
 impl GameRecorder {
-    /// Of a game of this name at this pace on the network, into a new file, by a program of this commit.
+    /// A recorder into a new file, for a networked game with this name and pace, played by a
+    /// program of this commit.
     ///
     /// # Errors
-    /// [`RecordError`] if the file cannot be made.
+    /// [`RecordError`] if the file cannot be created.
     pub fn on_network(path: PathBuf, game: &str, pace: &str, commit: &str) -> Result<GameRecorder, RecordError> {
         let stage = Stage::Waiting(NewFile::create(&path)?);
         let [game, pace, commit] = [game, pace, commit].map(str::to_owned);
         Ok(GameRecorder { path, game, pace, commit, stage, pictures_are_sent: true })
     }
 
-    /// Of a game in this process, into a new file.
+    /// A recorder into a new file, for a game in this process.
     ///
     /// # Errors
-    /// [`RecordError`] if the file cannot be made.
+    /// [`RecordError`] if the file cannot be created.
     pub fn in_process(path: PathBuf, game: &str, commit: &str) -> Result<GameRecorder, RecordError> {
         let recorder = GameRecorder::on_network(path, game, "in process", commit)?;
         Ok(GameRecorder { pictures_are_sent: false, ..recorder })
     }
 
-    /// Records a decision: its frame, and what the contest was given since the one before.
+    /// Records a decision: its frame, and the contest's inputs since the previous one.
     pub fn decision(&mut self, contest: &mut Contest, frame: Arc<Frame>) {
         contest.keep_inputs();
         self.begin(contest);
         let inputs = contest.take_inputs();
         let Stage::Recording(recorder) = &self.stage else { return };
-        // Over the network pictures are recorded as the bytes that were sent; here they were
-        // never bytes.
+        // Over the network pictures are recorded as the bytes that were sent; in one process they
+        // are never encoded.
         let shows = !self.pictures_are_sent && inputs.contains(&Input::Pictured);
         let pictures = if shows { contest.last_pictures().to_vec() } else { vec![] };
-        // Handed over as it is: encoding and writing are another thread's, and a game is never
-        // held up by the disk.
+        // Passed on unencoded: another thread encodes and writes, and the disk never delays a game.
         recorder.record(Entry::Decision(Box::new(Decision { frame, pictures, inputs })));
     }
 
-    /// Records something that goes over the network.
+    /// Records a network message.
     pub fn message(&self, entry: Entry) {
         if let Stage::Recording(recorder) = &self.stage {
             recorder.record(entry);
         }
     }
 
-    /// How it stands.
+    /// The state of the recording.
     #[must_use]
     pub fn state(&self) -> RecordingState {
         let unwritten =
@@ -83,7 +83,7 @@ impl GameRecorder {
         }
     }
 
-    /// Ends it well, and says how it stands then.
+    /// Completes the recording with its result and returns the final state.
     #[must_use]
     pub fn end(self, report: &Report) -> RecordingState {
         let state = self.state();
@@ -92,7 +92,7 @@ impl GameRecorder {
         if let Stage::Recording(recorder) = self.stage { recorder.end(ending.facts()) } else { state }
     }
 
-    /// Begins at the first decision.
+    /// Starts the recording at the first decision.
     fn begin(&mut self, contest: &Contest) {
         if !matches!(self.stage, Stage::Waiting(_)) {
             return;

@@ -1,32 +1,32 @@
-//! How a game went: what came of it, and how it was run.
+//! The report of a game: its outcome, and how it was run.
 
 use messages::refusal::Refusals;
 use scenario::Outcome;
 use serde::{Deserialize, Serialize};
 
-/// How a game went.
+/// The report of a game.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Report {
     /// How the game ended.
     pub outcome: Outcome,
-    /// How it was run.
+    /// How the game was run.
     pub run: Run,
 }
 
-/// What depends on the machines and the network, not on the game.
+/// Facts that depend on the machines and the network, not on the game.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Run {
-    /// How the game was paced.
+    /// The pace of the game.
     pub pace: String,
-    /// Wall-clock time it took, s.
+    /// Wall-clock duration, s.
     pub wall_s: f64,
-    /// What was refused from agents and gateways.
+    /// Refused messages of agents and gateways.
     pub refused: Refusals,
-    /// Decision ticks that began late (real time only).
+    /// Decisions that began late (real time only).
     pub overruns: u64,
-    /// Whether it was ended before its end.
+    /// Whether it was stopped early.
     pub cut_short: bool,
-    /// What is wrong with the recording, in words.
+    /// The problem with the recording, in words, if any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub recording_problem: Option<String>,
 }

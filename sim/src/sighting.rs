@@ -1,8 +1,9 @@
-//! What a team is shown of other boats: seen by one of its own within range and view, some time ago, not quite there.
+//! A team's sightings of other boats: by its own boats within range and view, delayed and noisy.
 //!
-//! Only games whose rules limit sharing come here; otherwise everything is shown at once. What a boat sees it tells in
-//! its report: where there is a radio link, a report that is late or lost takes its sightings with it. How a sighting
-//! errs, and whether it is lost, is drawn once a decision for each team and boat seen, whoever of the team sees it.
+//! Only for games whose rules limit sharing; otherwise everything is shown at once. A boat reports
+//! its sightings: with a radio link, a late or lost report takes its sightings with it. The error
+//! of a sighting, and whether it is lost, is drawn once per decision for each team and sighted
+//! boat, whichever boat of the team sees it.
 
 use messages::picture::Contact;
 use primitives::SimTime;
@@ -15,31 +16,31 @@ use scenario::Scenario;
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
-/// Sightings of a game, by all teams.
+/// The sightings of all teams in a game.
 #[derive(Clone)]
 pub(crate) struct Sightings {
     sharing: Sharing,
     /// Decisions between a sighting and its report.
     late: u64,
-    /// By vehicle.
+    /// Noises, by vehicle index.
     noises: Vec<TimedNoise>,
     /// The time between two decisions.
     decision: SimTime,
     state: SightingState,
-    /// Memory that is used again.
+    /// Buffers for reuse.
     spare: Vec<Vec<Contact>>,
 }
 
-/// What changes in them.
+/// The changing state of the sightings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct SightingState {
-    /// The truth at the decisions whose sightings may still be reported, the oldest first.
+    /// The true states at the decisions whose sightings may still be reported, oldest first.
     past: VecDeque<Truths>,
-    /// By team and vehicle: the last report.
+    /// The last report, by team and vehicle index.
     known: Vec<Vec<Option<Contact>>>,
 }
 
-/// The truth about every boat at one decision.
+/// The true state of every boat at one decision.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Truths {
     decision: u64,
@@ -47,7 +48,7 @@ struct Truths {
 }
 
 impl Sightings {
-    /// Those of this scenario, if its rules limit what is shown.
+    /// The sightings for this scenario, if its rules limit sharing.
     pub(crate) fn new(scenario: &Scenario) -> Option<Sightings> {
         let sharing = scenario.rules.sharing.clone();
         if sharing == Sharing::default() {
@@ -68,30 +69,32 @@ impl Sightings {
         })
     }
 
-    /// What changes, for reading.
+    /// The changing state.
     pub(crate) fn state(&self) -> &SightingState {
         &self.state
     }
 
-    /// Goes on from another state of these sightings.
+    /// Replaces the changing state.
     pub(crate) fn set_state(&mut self, state: SightingState) {
         self.state = state;
     }
 
-    /// Looks round at one decision: the truth about every boat. Reports of decisions before `oldest` are not to come.
+    /// Records the true state of every boat at one decision. Reports of decisions before `oldest`
+    /// can no longer arrive.
     pub(crate) fn record_truth(&mut self, decision: u64, oldest: u64, boats: impl Iterator<Item = Contact>) {
         let oldest = oldest.saturating_sub(self.late);
         while let Some(past) = self.state.past.pop_front_if(|past| past.decision < oldest) {
             self.spare.push(past.boats);
         }
-        // Used again: a tick allocates nothing.
+        // Reused: a tick allocates nothing.
         let mut now = self.spare.pop().unwrap_or_default();
         now.clear();
         now.extend(boats);
         self.state.past.push_back(Truths { decision, boats: now });
     }
 
-    /// The report that `seer` sent at `decision` has come in: its team is shown what it had seen.
+    /// Processes the arrival of the report that `seer` sent at `decision`: its team learns what it
+    /// had seen.
     pub(crate) fn show_sightings(&mut self, seer: usize, decision: u64) {
         let Sightings { sharing, late, noises, decision: length, state: SightingState { past, known }, .. } = self;
         let seen_at = decision.checked_sub(*late);
@@ -101,11 +104,10 @@ impl Sightings {
         let boats = &past[place].boats;
         let (own, teams) = (&boats[seer], known.len() as u64);
         let known = &mut known[own.team.index()];
-        // By team and not by seer: two boats that see the same one do not average its noise
-        // away.
+        // By team, not by seer: two boats that see the same one do not average out its noise.
         let draw = 4 * (decision * teams + own.team.index() as u64);
         for (seen, known) in boats.iter().zip(known).filter(|(seen, _)| seen.team != own.team) {
-            // Another boat may have reported as much already, or a later sighting.
+            // Another boat may have reported the same or a later sighting already.
             let is_news = known.is_none_or(|known| known.seen_ns < seen.seen_ns);
             let noise = noises[seen.vehicle.index()].at(*length * decision as i64);
             if is_news && sees(sharing, own, seen) && noise.unit(draw) >= sharing.loss {
@@ -114,7 +116,7 @@ impl Sightings {
         }
     }
 
-    /// What a team knows of a vehicle by `now`.
+    /// A team's knowledge of a vehicle at `now`.
     pub(crate) fn of(&self, team: usize, vehicle: usize, now: SimTime) -> Option<Contact> {
         let remembered = |contact: &Contact| now.as_s() - contact.seen_ns.as_s() <= self.sharing.memory_s;
         self.state.known[team][vehicle].filter(remembered)
@@ -131,7 +133,7 @@ fn sees(sharing: &Sharing, own: &Contact, other: &Contact) -> bool {
 }
 
 fn blurred(sharing: &Sharing, seen: Contact, noise: Noise, draw: u64) -> Contact {
-    // Pairs of other counts than the units: a pair takes the units of twice its count.
+    // Counts chosen to be distinct from the units': a pair uses the units of twice its count.
     let (north, east) = noise.normal_pair(draw / 2 + (1 << 60));
     let (velocity_north, velocity_east) = noise.normal_pair(draw / 2 + 1 + (1 << 60));
     Contact {

@@ -1,4 +1,4 @@
-//! Where boats start: as placed, or drawn from the game's `spawn` stream.
+//! Starting positions: placed by the scenario, or drawn from the game's `spawn` stream.
 
 use primitives::TeamId;
 use primitives::angle::wrap_pi;
@@ -8,14 +8,14 @@ use rules::Field;
 use scenario::{Problems, RealBoats, Scenario, StartPosition};
 use thiserror::Error;
 
-/// How often a start position is drawn before the field counts as full.
+/// Number of draws of a starting position before the field counts as full.
 const TRIES: u32 = 10_000;
 
-/// No room on the field.
+/// A spawn area has no room.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("no free start position for {vehicle} after {TRIES} tries: enlarge its spawn area or lower gap_m")]
 pub struct SpawnError {
-    /// Which vehicle found none.
+    /// The vehicle without room.
     pub vehicle: String,
 }
 
@@ -25,24 +25,23 @@ pub enum NoStart {
     /// The boats do not fit into their spawn area.
     #[error(transparent)]
     SpawnError(#[from] SpawnError),
-    /// The numbers drawn for this seed are each allowed, but not together.
+    /// The values drawn for this seed are each allowed but inconsistent.
     #[error("what was drawn for this seed does not go together\n{0}")]
     Draw(#[from] Problems),
-    /// The game has real boats, and is to be played without a clock.
+    /// The game has real boats, but runs without a clock.
     #[error(transparent)]
     RealBoats(#[from] RealBoats),
 }
 
-/// Where every vehicle starts. Boats placed by hand come first, then the others in order.
+/// The starting pose of every vehicle. Placed boats come first, then the others in order.
 ///
 /// # Errors
-/// [`SpawnError`] where a spawn area is too full.
+/// [`SpawnError`] if a spawn area is full.
 pub fn start_positions(scenario: &Scenario, seed: u64) -> Result<Vec<Pose>, SpawnError> {
     let mut stream = Stream::new(seed, "spawn");
     let mut taken: Vec<(usize, Pose)> = Vec::new();
     for (i, vehicle) in scenario.vehicles.iter().enumerate() {
-        // Placed boats first: a drawn one must keep clear of them wherever they stand in the
-        // file.
+        // Placed boats first: drawn ones must keep clear of them wherever they are in the file.
         if let StartPosition::At(pose) = vehicle.start_position {
             taken.push((i, pose));
         }
@@ -54,8 +53,8 @@ pub fn start_positions(scenario: &Scenario, seed: u64) -> Result<Vec<Pose>, Spaw
                 taken.iter().all(apart) && clear_of_obstacles(&scenario.field, at, gap_m)
             };
             let mut draw = || seen_from(&scenario.field, vehicle.team, (along_m, across_m), &mut stream);
-            // Drawn and rejected, not placed on a grid: every free place is as likely, and a
-            // field that is too full is an error.
+            // Drawn by rejection, not placed on a grid: every free place is equally likely, and a
+            // full field is an error.
             let at = (0..TRIES).map(|_| draw()).find(|at| free(*at));
             let at = at.ok_or_else(|| SpawnError { vehicle: vehicle.name.clone() })?;
             let psi_rad = wrap_pi(scenario.field.facing_deg(vehicle.team).to_radians());
@@ -66,7 +65,7 @@ pub fn start_positions(scenario: &Scenario, seed: u64) -> Result<Vec<Pose>, Spaw
     Ok(taken.into_iter().map(|(_, pose)| pose).collect())
 }
 
-/// A random place in a rectangle seen from the team's own end, port side first.
+/// A random place in a rectangle relative to the team's own end, port side first.
 fn seen_from(field: &Field, team: TeamId, area: ((f64, f64), (f64, f64)), stream: &mut Stream) -> Ned {
     let ((near_m, far_m), (port_m, starboard_m)) = area;
     let along_m = stream.between(near_m, far_m);

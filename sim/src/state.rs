@@ -1,4 +1,4 @@
-//! What changes in a world.
+//! The changing state of a world.
 
 use crate::flaw::FlawState;
 use crate::hull::Planar;
@@ -8,40 +8,40 @@ use crate::thruster::Shaft;
 use primitives::{Pose, SimTime};
 use serde::{Deserialize, Serialize};
 
-/// Everything that changes in a world. Nothing else is remembered from tick to tick: what a step does follows from this
-/// and the commands. What a game adds to it (the standing, orders in force, messages under way, sightings) belongs to
-/// [`Contest`](crate::Contest), whose snapshot holds both.
+/// The complete changing state of a world: a step depends only on this and the commands. The
+/// additional state of a game (standing, orders in force, messages in transit, sightings) belongs
+/// to [`Contest`](crate::Contest), whose snapshot contains both.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// Physics ticks since the start.
     pub tick: u64,
     /// Simulated time since the start.
     pub now: SimTime,
-    /// By vehicle.
+    /// Boats, by vehicle index.
     pub boats: Vec<BoatState>,
-    /// By vehicle: what its thrusters' flaws remember.
+    /// Flaw state of the thrusters, by vehicle index.
     pub flaws: Vec<FlawState>,
-    /// The point boats among the vehicles, in their order.
+    /// The point boats among the vehicles, in vehicle order.
     pub points: Vec<KinematicState>,
-    /// Of the vehicles with sensors, in their order: what those remember, and what they tell.
+    /// State and reading of the sensors, for vehicles with sensors, in vehicle order.
     pub senses: Vec<(SensorState, Reading)>,
 }
 
-/// Everything that changes about one boat.
+/// The changing state of one boat.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct BoatState {
-    /// Where it is.
+    /// Position and heading.
     pub pose: Pose,
     /// Velocity over the ground in body axes.
     pub nu: Planar,
-    /// By how much that changed in the last tick: what accelerometers feel.
+    /// Change of `nu` in the last tick, as felt by accelerometers.
     pub nu_change: Planar,
     /// Port thruster.
     pub port: Shaft,
     /// Starboard thruster.
     pub starboard: Shaft,
-    /// Memory of the front seat's speed loop, N.
+    /// State of the front seat's speed loop, N.
     pub speed_integral_newton: f64,
-    /// Whether its numbers went bad: it lies still and plays no more.
+    /// Whether its state became non-finite: it stays at rest and plays no more.
     pub quarantined: bool,
 }

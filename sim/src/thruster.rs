@@ -1,4 +1,4 @@
-//! A thruster: dead-band, slew limit and first-order lag of its setting, and the thrust curve.
+//! A thruster: dead-band, slew limit, first-order lag and thrust curve.
 
 use crate::flaw::{FlawModel, FlawState};
 use crate::hull::Planar;
@@ -7,9 +7,9 @@ use primitives::math;
 use scenario::boat::{Propeller, ThrustCurve, Thruster, Ventilation};
 use serde::{Deserialize, Serialize};
 
-/// A thruster ready for computing, for one tick length.
+/// A thruster with constants computed for one tick length.
 ///
-/// A *setting* is a shaft speed in rad/s for a propeller, a share of full ahead for a table.
+/// A *setting* is a shaft speed in rad/s for a propeller, or a share of full ahead for a table.
 #[derive(Clone, Debug)]
 pub struct ThrusterModel {
     curve: Curve,
@@ -22,17 +22,17 @@ pub struct ThrusterModel {
     pub newton_max: f64,
     /// Thrust at full astern (negative), N.
     pub newton_min: f64,
-    /// Largest change of the commanded setting in a tick.
+    /// Largest change of the commanded setting per tick.
     slew: f64,
-    /// Smaller commands give nothing.
+    /// Smaller commands have no effect.
     deadband: f64,
-    /// What is left of a difference after half a tick and after a tick.
+    /// Remaining share of a difference after half a tick and after a tick.
     lag: (f64, f64),
-    /// In what a pair of them falls short of all this.
+    /// Flaws of a pair of these thrusters.
     flaws: Option<Box<FlawModel>>,
 }
 
-/// Thrust over setting, both ways.
+/// Thrust as a function of the setting, and its inverse.
 #[derive(Clone, Debug)]
 enum Curve {
     /// `k n |n|`.
@@ -46,14 +46,14 @@ enum Curve {
     },
 }
 
-/// What one thruster is doing.
+/// The state of one thruster.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Shaft {
     /// The command after the slew limit.
     pub command: f64,
-    /// The setting reached.
+    /// The present setting.
     pub setting: f64,
-    /// The thrust it gives, N.
+    /// The present thrust, N.
     pub newton: f64,
 }
 
@@ -90,20 +90,20 @@ impl ThrusterModel {
         model
     }
 
-    /// The flaws of a pair of these thrusters at the start of a game; [`ThrusterModel::drive`] wants them.
+    /// Initial flaw state of a pair of these thrusters, for [`ThrusterModel::drive`].
     #[must_use]
     pub fn start(&self) -> FlawState {
         self.flaws.as_ref().map(|flaws| flaws.start()).unwrap_or_default()
     }
 
-    /// How the thrusters ventilate, if they do.
+    /// The ventilation of the thrusters, if they have any.
     #[inline]
     #[must_use]
     pub fn ventilation(&self) -> Option<Ventilation> {
         self.flaws.as_ref().and_then(|flaws| flaws.ventilation)
     }
 
-    /// The thrust of a setting without flaws, N.
+    /// The thrust at a setting, without flaws, N.
     #[inline]
     #[must_use]
     pub fn newton(&self, setting: f64) -> f64 {
@@ -115,7 +115,7 @@ impl ThrusterModel {
         }
     }
 
-    /// The setting that gives this thrust, within what the thruster can do without flaws.
+    /// The setting for this thrust, within the limits of the thruster without flaws.
     #[inline]
     #[must_use]
     pub fn setting(&self, newton: f64) -> f64 {
@@ -127,18 +127,18 @@ impl ThrusterModel {
         }
     }
 
-    /// The setting at this share (−1 to 1) of full ahead or astern.
+    /// The setting for this share (−1 to 1) of full ahead or astern.
     #[inline]
     #[must_use]
     pub fn setting_of_share(&self, share: f64) -> f64 {
         share * if share > 0.0 { self.ahead } else { self.astern }
     }
 
-    /// Moves both thrusters, port and starboard, on by one tick towards `settings`; gives the force on the hull at the
-    /// beginning, half-way and at the end.
+    /// Advances both thrusters, port and starboard, by one tick towards `settings`; returns the
+    /// force on the hull at the start, half-way and at the end.
     ///
-    /// `state` begins as [`ThrusterModel::start`]; `water_above_m` is how far under the surface each propeller is and
-    /// counts only where [`ThrusterModel::ventilation`] is something.
+    /// The initial `state` is [`ThrusterModel::start`]; `water_above_m` is the depth of each
+    /// propeller below the surface, used only with [`ThrusterModel::ventilation`].
     #[inline]
     pub fn drive(
         &self,
@@ -165,7 +165,7 @@ impl ThrusterModel {
         })
     }
 
-    // Apart from the usual path, in which thrusters have no flaws.
+    // Separate from the common case, thrusters without flaws.
     #[cold]
     #[inline(never)]
     fn drive_flawed(
@@ -179,14 +179,14 @@ impl ThrusterModel {
         let (least, most) = (-self.astern * flaws.saturation, self.ahead * flaws.saturation);
         let arrived = state.pass(settings);
         let factors = flaws.thrust_factors(state, water_above_m);
-        // What a propeller takes out of the battery, and what it gives to the hull.
+        // Power drawn from the battery, and force on the hull.
         let (mut taken, mut given) = ([0.0; 2], [[0.0; 3]; 2]);
         for (side, shaft) in shafts.into_iter().enumerate() {
             shaft.newton = self.newton(shaft.setting);
             let nominal = self.respond(shaft, arrived[side].max(least).min(most));
             given[side] = nominal.map(|newton| newton * factors[side] * flaws.gain(side, newton));
             taken[side] = self.share(nominal[1] * factors[side]);
-            // What observers are shown is what acts on the hull.
+            // Observers see the force that acts on the hull.
             shaft.newton = given[side][2];
         }
         if let Some(battery) = flaws.battery {
@@ -199,25 +199,25 @@ impl ThrusterModel {
         on_hull
     }
 
-    /// The size of a thrust as a share of full ahead or astern.
+    /// The magnitude of a thrust as a share of full ahead or astern.
     #[inline]
     fn share(&self, newton: f64) -> f64 {
         newton / if newton < 0.0 { self.newton_min } else { self.newton_max }
     }
 
-    /// Moves a shaft on by one tick towards `wanted` as one without flaws; gives the thrust at the beginning, half-way
-    /// and at the end, N.
+    /// Advances a shaft by one tick towards `wanted`, without flaws; returns the thrust at the
+    /// start, half-way and at the end, N.
     #[inline]
     pub fn respond(&self, shaft: &mut Shaft, wanted: f64) -> [f64; 3] {
-        // The slew limits the command and the lag follows it: motor controllers ramp,
+        // The slew rate limits the command, and the lag follows it: motor controllers ramp,
         // propellers have inertia.
         let change = (wanted - shaft.command).clamp(-self.slew, self.slew);
         shaft.command += change;
         let target = if shaft.command.abs() < self.deadband { 0.0 } else { shaft.command };
         let from = shaft.newton;
         let difference = shaft.setting - target;
-        // A first-order lag has an exact solution, so thrust is known half-way and at the end
-        // without integrating it.
+        // A first-order lag has an exact solution, so the thrust half-way and at the end needs no
+        // integration.
         let half = self.newton(target + difference * self.lag.0);
         shaft.setting = target + difference * self.lag.1;
         shaft.newton = self.newton(shaft.setting);
@@ -286,8 +286,8 @@ mod tests {
         assert_eq!(shaft.newton, 0.0);
     }
 
-    /// Both thrusters through 400 ticks of changing settings; the bits of every force and moment on the way, hashed,
-    /// and the last surge and yaw.
+    /// Runs both thrusters through 400 ticks of changing settings. Returns a hash of the bits of
+    /// every force and moment, and the last surge and yaw.
     fn voyage(thruster: &Thruster) -> (u64, f64, f64) {
         let model = ThrusterModel::new(thruster, 0.05);
         let mut state = model.start();
@@ -312,14 +312,14 @@ mod tests {
 
     #[test]
     fn without_flaws_every_bit_is_as_it_was_before_there_were_any() {
-        // Recorded when a thruster had none.
+        // Recorded before thrusters had flaws.
         let propeller_was = (7_544_133_322_723_756_280, 13.121_373_992_948_243, -4.875_639_398_475_489_5);
         let table_was = (3_658_721_781_925_709_332, 15.826_061_272_148_417, -4.523_535_130_683_975_5);
         assert_eq!(voyage(&propeller()), propeller_was);
         assert_eq!(voyage(&table()), table_was);
     }
 
-    /// Forces after two minutes (both shafts have settled) at these shares of full.
+    /// Forces after two minutes (both shafts have settled) at these shares of full thrust.
     fn settled(flaws: Flaws, shares: [f64; 2]) -> Planar {
         let (model, mut state, mut shafts) = flawed(flaws);
         let settings = shares.map(|share| model.setting_of_share(share));

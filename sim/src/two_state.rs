@@ -1,11 +1,13 @@
-//! A two-state Markov chain in continuous time, sampled at equal intervals: receiver outages, bursts of radio loss.
+//! A two-state Markov chain in continuous time, sampled at equal intervals: receiver outages,
+//! bursts of radio loss.
 //!
-//! With a rate of turning on λ and one of turning off μ, one that is off is on a period p later with probability
-//! λ / (λ + μ) (1 − e^−(λ+μ)p). So durations are exponential, and the share of time that it is on is λ / (λ + μ) exactly.
+//! With turn-on rate λ and turn-off rate μ, a chain that is off is on after a period p with
+//! probability λ / (λ + μ) (1 − e^−(λ+μ)p). Durations are therefore exponential, and the share of
+//! time on is exactly λ / (λ + μ).
 
 use primitives::SimTime;
 
-/// The probabilities of a change from one sample to the next.
+/// The probabilities of a change between consecutive samples.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TwoStateChain {
     turns_on: f64,
@@ -13,18 +15,18 @@ pub(crate) struct TwoStateChain {
 }
 
 impl TwoStateChain {
-    /// One that is never on.
+    /// A chain that is never on.
     pub(crate) const OFF: TwoStateChain = TwoStateChain { turns_on: 0.0, turns_off: 1.0 };
 
-    /// The chain of these rates, 1/s, sampled every `period`.
+    /// A chain with these rates, 1/s, sampled every `period`.
     pub(crate) fn new(on_per_s: f64, off_per_s: f64, period: SimTime) -> TwoStateChain {
-        // In continuous time, so that the period of a receiver changes how often it is looked
-        // at and not how often it fails.
+        // In continuous time, so that a receiver's period changes only the sampling, not the rate
+        // of failures.
         let either = -libm::expm1(-(on_per_s + off_per_s) * period.as_s()) / (on_per_s + off_per_s);
         TwoStateChain { turns_on: on_per_s * either, turns_off: off_per_s * either }
     }
 
-    /// Whether it is on at the next sample, by a uniform number between 0 and 1.
+    /// Whether it is on at the next sample, given a uniform number between 0 and 1.
     pub(crate) fn next(self, on: bool, uniform: f64) -> bool {
         uniform < if on { 1.0 - self.turns_off } else { self.turns_on }
     }

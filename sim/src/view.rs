@@ -1,4 +1,4 @@
-//! What others see of a world: the truth for observers, and each team's picture.
+//! Views of a world: the true state for observers, and each team's picture.
 
 use crate::sensor::imu::ImuReading;
 use crate::sighting::Sightings;
@@ -10,7 +10,7 @@ use rules::Standing;
 use rules::event::{Event, Logged};
 use scenario::Scenario;
 
-/// Everything that there is to see at one decision.
+/// All data of one decision that views draw on.
 #[derive(Clone, Copy)]
 pub(crate) struct Scene<'a> {
     pub(crate) scenario: &'a Scenario,
@@ -40,7 +40,7 @@ impl Scene<'_> {
         self.standing.flags.iter().map(|flag| FlagView { carrier: flag.carrier.map_or(-1, |v| i32::from(v.0)) })
     }
 
-    /// The truth about everything that world and referee know of, with these events.
+    /// The true state of world and referee, with these events.
     pub(crate) fn frame(&self, events: &[Logged]) -> Frame {
         Frame {
             stamp: self.stamp::<Frame>(),
@@ -85,8 +85,8 @@ impl Scene<'_> {
         }
     }
 
-    /// Brings a team's picture up to date in place. `own` is what is known of its boats, by vehicle; `events` what happened
-    /// since the picture before.
+    /// Updates a team's picture in place. `own` is the known state of its boats, by vehicle index;
+    /// `events` are those since the previous picture.
     pub(crate) fn picture(
         &self,
         own: &[OwnBoat],
@@ -96,7 +96,7 @@ impl Scene<'_> {
     ) {
         let team = TeamId(picture.team);
         picture.stamp = self.stamp::<Picture>();
-        // Refilled and not made anew: a decision of many teams allocates nothing.
+        // Refilled instead of rebuilt: a decision of many teams allocates nothing.
         picture.own.clear();
         picture.contacts.clear();
         for (i, vehicle) in self.scenario.vehicles.iter().enumerate() {
@@ -119,12 +119,12 @@ impl Scene<'_> {
         picture.over = self.standing.over;
     }
 
-    /// What a boat reports of itself.
+    /// A boat's report about itself.
     pub(crate) fn own_boat(&self, i: usize) -> OwnBoat {
         let (vehicle, standing) = (VehicleId::at(i), &self.standing.vehicles[i]);
         let (nav, fix_ns, imu) = match self.world.reading(vehicle) {
-            // What the boat's sensors say, also to its own team: nothing that agents see is the
-            // truth unless the boat's file leaves its sensors out.
+            // Sensor readings, even for the boat's own team: agents never see the true state,
+            // unless the boat's file omits sensors.
             Some(reading) => (reading.nav, reading.fix_at, reading.imu),
             None => (self.nav(i), self.world.state().now, ImuReading::of(&self.world.truth(vehicle))),
         };
@@ -148,7 +148,7 @@ impl Scene<'_> {
         }
     }
 
-    /// The truth about a boat, as a node report gives it: perfect sharing, as Aquaticus does ashore.
+    /// The true state of a boat as in a node report: perfect sharing, as Aquaticus has ashore.
     pub(crate) fn contact(&self, i: usize) -> Contact {
         let (state, standing) = (self.world.state(), &self.standing.vehicles[i]);
         let boat = &state.boats[i];
@@ -168,11 +168,10 @@ impl Scene<'_> {
     }
 }
 
-/// Whether an event is about one of the team's boats or its flag, or ends the game.
+/// Whether an event involves one of the team's boats or its flag, or ends the game.
 fn concerns(scenario: &Scenario, team: TeamId, event: Event) -> bool {
     let ours = |vehicle: VehicleId| scenario.vehicles[vehicle.index()].team == team;
-    // What concerns neither own boats nor the own flag, a team on the water would not learn
-    // either.
+    // On real water, a team would not learn of events that involve neither its boats nor its flag.
     let is_own_flag = event.flag().is_some_and(|flag| scenario.field.flags[flag.index()].team == team);
     let is_own_boat = [event.vehicle(), event.other()].into_iter().flatten().any(ours);
     is_own_flag || is_own_boat || matches!(event, Event::Ended { .. })

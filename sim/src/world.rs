@@ -1,4 +1,4 @@
-//! The world: boats in water and what they bump into, one tick at a time. It knows no game.
+//! The world: boats in water and their contacts, one tick at a time. It is independent of the game.
 
 use crate::contact::Displacement;
 use crate::hull::Planar;
@@ -19,11 +19,11 @@ use scenario::fault::{FaultSpan, fault_spans};
 use scenario::sea::Sea;
 use scenario::{Boat, Scenario, Source};
 
-/// No boat is faster than this over the ground, m/s; one that is has bad numbers.
-// Far beyond any boat, and far below where squares overflow.
+/// Limit of the speed over the ground, m/s; a faster boat has an invalid state.
+// Far above any boat, and far below the overflow of squares.
 const ABSURD_M_S: f64 = 1_000.0;
 
-/// Pyquaticus sets boats back by this much more than the radius, m.
+/// Extra distance beyond the radius to which Pyquaticus sets boats back, m.
 const POINT_BOAT_SPARE_M: f64 = 0.1;
 
 /// Boats in water.
@@ -34,57 +34,58 @@ pub struct World {
     work: Work,
 }
 
-/// What a world is made of.
+/// The specification of a world.
 #[derive(Clone, Debug)]
 pub struct WorldPlan<'a> {
     /// The length of a tick.
     pub tick: SimTime,
     /// Wind, waves and current.
     pub sea: &'a Sea,
-    /// Where walls and obstacles are, and over what eddies are laid.
+    /// Defines walls and obstacles, and the area of eddies.
     pub field: &'a Field,
     /// The kinds of boat.
     pub kinds: &'a [Boat],
-    /// By vehicle.
+    /// Vehicles, by index.
     pub vehicles: Vec<VehiclePlan<'a>>,
     /// The time between two readings of the sensors.
     pub sensor_period: SimTime,
-    /// Whether boats bump into each other; if not they pass through each other, and bump into walls and obstacles alone.
+    /// Whether boats collide with each other; otherwise they pass through each other and collide
+    /// only with walls and obstacles.
     pub boats_are_solid: bool,
-    /// [`World::pairs`] lists all boats that are nearer to each other than this, m, and more.
+    /// [`World::pairs`] lists at least all pairs of boats closer than this, m.
     pub pairs_within_m: f64,
-    /// Choose the randomness of the sea and of the sensors.
+    /// Seeds of the randomness of sea and sensors.
     pub seeds: Seeds,
 }
 
 /// One vehicle of a [`WorldPlan`].
 #[derive(Clone, Debug)]
 pub struct VehiclePlan<'a> {
-    /// The name that its sensors' randomness is drawn for.
+    /// The name that selects its sensors' random numbers.
     pub name: &'a str,
     /// Index of its kind.
     pub kind: usize,
-    /// Where it starts.
+    /// Starting pose.
     pub start: Pose,
-    /// Whether it is a real boat: nothing here moves it.
+    /// Whether it is a real boat, which the simulation never moves.
     pub is_external: bool,
-    /// What of it fails, and when.
+    /// Its faults and their times.
     pub faults: Vec<FaultSpan>,
 }
 
-/// Memory that is used again every tick; all of it follows from the state.
+/// Memory reused every tick; its contents follow from the state.
 #[derive(Clone, Default)]
 struct Work {
     near: Near,
-    /// By vehicle: the rotation of its heading.
+    /// Rotations of the headings, by vehicle index.
     rotations: Vec<Rotation>,
-    /// What moves each boat, and how it moves by that alone.
+    /// Forces on each boat, and its motion under these alone.
     forcings: Vec<Forcing>,
     currents_m_s: Vec<Ned>,
     motions: Vec<Motion>,
-    /// Motion over the tick, by vehicle.
+    /// Motion over the tick, by vehicle index.
     displacements: Vec<Displacement>,
-    /// Velocity over the ground at the end of the tick without contact, by vehicle.
+    /// Velocity over the ground at the end of the tick without contact, by vehicle index.
     velocities: Vec<Planar>,
     pairs: Vec<Pair>,
     quarantined: Vec<VehicleId>,
@@ -107,18 +108,18 @@ impl World {
         state.points = model.points_at_start(&state.boats);
         let mut world = World { model, state, work: Work::default() };
         world.refresh();
-        // Minds decide before the first tick, by what sensors show at rest.
+        // Minds decide before the first tick, from sensor readings at rest.
         world.read_sensors();
         world
     }
 
-    /// The boats, the sea and the field of the game that `seed` chooses, at its start.
+    /// The boats, the sea and the field of the game with this seed, at its start.
     ///
     /// # Errors
-    /// [`NoStart`] where the boats do not fit into their spawn area, or randomised numbers do not go together.
+    /// [`NoStart`] if the boats do not fit into their spawn area or the randomised values are
+    /// inconsistent.
     pub fn of_game(scenario: &Scenario, seed: u64) -> Result<World, NoStart> {
-        // The seed first: a file may draw numbers, and everything below is asked of the game
-        // that was drawn.
+        // The seed first: a file may draw values, and everything below depends on the drawn game.
         let scenario = scenario.of_seed(seed)?;
         let starts = spawn::start_positions(&scenario, seed)?;
         let seeds = scenario.seeds();
@@ -145,20 +146,21 @@ impl World {
         }))
     }
 
-    /// Moves the world on by one tick. `commands` are what the boats do in it, by vehicle, with sound numbers. The boats
-    /// whose own numbers went bad come back: they lie still from now on.
+    /// Advances the world by one tick. `commands` are the boats' commands, by vehicle index, with
+    /// valid numbers. Returns the boats whose state became non-finite; they stay at rest from now
+    /// on.
     ///
     /// # Panics
-    /// If there is not one command for each vehicle.
+    /// If the number of commands differs from the number of vehicles.
     pub fn step(&mut self, commands: &[Order]) -> &[VehicleId] {
         assert_eq!(commands.len(), self.state.boats.len(), "one command a vehicle");
         self.work.quarantined.clear();
-        // Wind and current are processes in time: their values of this tick are worked out
-        // once, for all boats.
+        // Wind and current are processes in time: their values for this tick are computed once, for
+        // all boats.
         self.model.sea.prepare(self.state.now);
         self.drive(commands);
-        // All boats move first as if alone, and then those that touch are changed: who is
-        // listed first gains nothing.
+        // All boats move first without contact, and then those that touch are corrected: list order
+        // gives no advantage.
         self.model.contact.resolve(&self.model.hulls, &mut self.work.displacements, &self.work.pairs);
         self.settle();
         self.state.tick += 1;
@@ -167,7 +169,7 @@ impl World {
         &self.work.quarantined
     }
 
-    /// Sensors are read: for whoever is to decide now.
+    /// Reads the sensors for the next decision.
     pub fn read_sensors(&mut self) {
         let World { model, state, work } = self;
         if state.senses.is_empty() {
@@ -182,9 +184,10 @@ impl World {
         }
     }
 
-    /// Sets boats back onto the circle (centre, radius in m) that they must stay out of, if there is one for a vehicle at
-    /// its place. A hull loses its way inward. A point boat does as in Pyquaticus: it is back where it came in, and goes
-    /// along the circle with what is left of its way. A real boat is where it is.
+    /// Sets boats back onto the circle (centre, radius in m) that a vehicle at its position must
+    /// stay out of, if any. A hull loses its inward velocity. A point boat behaves as in
+    /// Pyquaticus: it returns to its point of entry and continues along the circle with the
+    /// remaining velocity. A real boat is not moved.
     pub fn set_back(&mut self, circle: impl Fn(VehicleId, Ned) -> Option<(Ned, f64)>) {
         let World { model, state, work } = self;
         let mut moved = false;
@@ -192,15 +195,15 @@ impl World {
             let Some((centre, radius_m)) = circle(VehicleId::at(i), boat.pose.at) else { continue };
             let from_centre = boat.pose.at - centre;
             let distance_m = from_centre.length();
-            // At the very centre there is no direction to be set back in.
+            // At the very centre there is no direction for the set-back.
             if distance_m >= radius_m || distance_m == 0.0 {
                 continue;
             }
             moved = true;
             if let Some((place, _)) = model.point(i) {
                 let came_from = work.displacements.get(i).map_or(boat.pose.at, |displacement| displacement.from.at);
-                // As in Pyquaticus: back where it came in, turned along the circle, with the
-                // part of its way that goes along it.
+                // As in Pyquaticus: back to the point of entry, turned along the circle, with the
+                // tangential part of its velocity.
                 boat.pose.at = way_back((came_from, boat.pose.at), centre, radius_m + POINT_BOAT_SPARE_M);
                 let point = &mut state.points[place];
                 let drift = boat.nu.in_ned(work.rotations[i]) - work.rotations[i].ahead().scaled(point.speed_m_s);
@@ -215,7 +218,7 @@ impl World {
             boat.pose.at = centre + out.scaled(radius_m);
             let out_in_body = frame::body_from_ned(work.rotations[i], out);
             let inward_m_s = (out_in_body.ahead * boat.nu.surge + out_in_body.starboard * boat.nu.sway).min(0.0);
-            // A hull keeps its heading and loses its way inward, as on a soft wall.
+            // A hull keeps its heading and loses its inward velocity, as at a soft wall.
             boat.nu.surge -= inward_m_s * out_in_body.ahead;
             boat.nu.sway -= inward_m_s * out_in_body.starboard;
         }
@@ -224,33 +227,34 @@ impl World {
         }
     }
 
-    /// What changes, for reading.
+    /// The changing state.
     #[must_use]
     pub fn state(&self) -> &State {
         &self.state
     }
 
-    /// Goes on from another state of this world.
+    /// Replaces the changing state.
     ///
     /// # Panics
-    /// If it has not as many boats.
+    /// If the number of boats differs.
     pub fn set_state(&mut self, state: State) {
         assert_eq!(state.boats.len(), self.state.boats.len(), "a state of this world");
         self.state = state;
         self.refresh();
     }
 
-    /// Puts a boat there, moving over the ground like this (body axes), its thrusters as they are: somebody outside says so.
+    /// Places a boat with this velocity over the ground (body axes); its thrusters keep their
+    /// state. For external control.
     ///
     /// # Panics
-    /// If there is no such vehicle.
+    /// If the vehicle does not exist.
     pub fn set_under_way(&mut self, vehicle: VehicleId, pose: Pose, nu: Planar) {
         let boat = &mut self.state.boats[vehicle.index()];
         (boat.pose, boat.nu) = (pose, nu);
         self.refresh();
     }
 
-    /// How a vehicle moved in the last tick.
+    /// A vehicle's motion in the last tick.
     #[must_use]
     pub fn leg(&self, vehicle: VehicleId) -> Leg {
         let to = self.state.boats[vehicle.index()].pose.at;
@@ -258,55 +262,56 @@ impl World {
         Leg { from, to }
     }
 
-    /// Boats that are near each other, in the order of [`primitives::near::Near`]: all that may touch, and all within
-    /// [`WorldPlan::pairs_within_m`].
+    /// Pairs of near boats, in the order of [`primitives::near::Near`]: all that may touch, and all
+    /// within [`WorldPlan::pairs_within_m`].
     #[must_use]
     pub fn pairs(&self) -> &[Pair] {
         &self.work.pairs
     }
 
-    /// The sea now.
+    /// The present sea.
     #[must_use]
     pub fn sea(&self) -> SeaNow<'_> {
         self.model.sea.at_time(self.state.now)
     }
 
-    /// What a vehicle's sensors tell it; `None` is all of the truth.
+    /// A vehicle's sensor readings; `None` if all its sensors are perfect.
     #[must_use]
     pub fn reading(&self, vehicle: VehicleId) -> Option<&Reading> {
         let place = self.model.sensed[vehicle.index()].as_ref().map(|(place, _)| *place)?;
         Some(&self.state.senses[place].1)
     }
 
-    /// What is true of a vehicle, as far as sensors feel it.
+    /// The true state of a vehicle, as far as sensors measure it.
     #[must_use]
     pub fn truth(&self, vehicle: VehicleId) -> Truth {
         let i = vehicle.index();
         self.model.truth(i, &self.state.boats[i], self.work.rotations[i], &self.sea())
     }
 
-    /// How a vehicle lies in the waves.
+    /// A vehicle's attitude in the waves.
     #[must_use]
     pub fn attitude(&self, vehicle: VehicleId) -> Attitude {
         let i = vehicle.index();
         self.model.attitude(i, &self.state.boats[i], self.work.rotations[i], &self.sea())
     }
 
-    /// Hands boats to rapier that are as far as `close_m` from anything. Slower, and the same bytes.
+    /// Passes boats to rapier that are within `close_m` of anything. Slower, with the same bytes.
     #[doc(hidden)]
     pub fn widen_contact(&mut self, close_m: f64) {
         self.model.contact.widen(close_m);
         self.find_pairs();
     }
 
-    /// Works the sea and the motion out with these instructions instead of the fastest that the machine has. The same bytes.
+    /// Computes sea and motion with these instructions instead of the machine's fastest. The bytes
+    /// are the same.
     #[doc(hidden)]
     pub fn set_instructions(&mut self, instructions: Instructions) {
         self.model.sea.set_instructions(instructions);
         self.model.fleet.set_instructions(instructions);
     }
 
-    /// Makes what follows from the state follow from it.
+    /// Updates everything derived from the state.
     fn refresh(&mut self) {
         self.work.rotations.clear();
         self.work.rotations.extend(self.state.boats.iter().map(|boat| boat.pose.rotation()));
@@ -314,18 +319,18 @@ impl World {
     }
 
     fn find_pairs(&mut self) {
-        // One search for both, over the longer of the two reaches: among many boats the search
-        // is what grows.
+        // One search for both, with the larger of the two reaches: with many boats the search
+        // dominates the cost.
         let reach_m = self.model.contact.reach_m().max(self.model.pairs_within_m);
-        // At the end of a tick, for the next one and for the referee: both look for boats near
-        // each other, at the same places.
+        // At the end of a tick, for the next tick and for the referee: both need near pairs at the
+        // same positions.
         let boats = &self.state.boats;
         let pairs = self.work.near.pairs(|i| boats[i].pose.at, boats.len(), reach_m);
         self.work.pairs.clear();
         self.work.pairs.extend_from_slice(pairs);
     }
 
-    /// Every boat's motion over the tick as if it were alone.
+    /// Every boat's motion over the tick without contact.
     fn drive(&mut self, commands: &[Order]) {
         let World { model, state, work } = self;
         let sea = model.sea.at_time(state.now);
@@ -363,7 +368,8 @@ impl World {
         }
     }
 
-    /// The boats take up the motion, with what contact changed in it. Bad numbers are contained here.
+    /// Applies the motion, with its changes by contact, to the boats. Non-finite states are
+    /// contained here.
     fn settle(&mut self) {
         let World { model, state, work } = self;
         let sea = model.sea.at_time(state.now);
@@ -379,7 +385,7 @@ impl World {
                     state.points[place].divert(boat.pose.psi_rad, boat.nu.surge - drift.ahead);
                 }
             } else if !boat.quarantined {
-                // At its last sound position, where others may bump into it.
+                // At its last valid position, where others may hit it.
                 *boat = BoatState { pose: boat.pose, quarantined: true, ..BoatState::default() };
                 work.quarantined.push(VehicleId::at(i));
             }
@@ -387,8 +393,8 @@ impl World {
     }
 }
 
-/// Where a boat inside of a circle has come in on its straight way, found by going back along it; straight out if it has
-/// not moved.
+/// The point where a boat inside a circle entered it, by tracing back its straight path; straight
+/// outward if it has not moved.
 fn way_back((from, to): (Ned, Ned), centre: Ned, radius_m: f64) -> Ned {
     let back = if from == to { to - centre } else { from - to };
     let back = back.scaled(1.0 / back.length());

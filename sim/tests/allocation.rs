@@ -1,7 +1,7 @@
-//! What a step asks of the heap: nothing where no hulls are close, and nothing for good where they are.
+//! Heap allocations of a step: none unless hulls are close, and none that persist if they are.
 //!
-//! `stats_alloc` counts for us: it is a hundred lines, safe to use, and needs no `unsafe` here as an allocator of
-//! our own would. Its count is of the whole process, so this file holds one test.
+//! `stats_alloc` counts: it is a hundred lines, safe to use, and avoids the `unsafe` of our own
+//! allocator. It counts the whole process, so this file has one test.
 
 mod common;
 
@@ -15,10 +15,10 @@ use std::alloc::System;
 #[global_allocator]
 static HEAP: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-/// Ticks in which everybody has met once: the lists of near boats and of events have grown.
+/// Ticks until all boats have met once: the lists of near boats and of events have grown.
 const WARM_UP: u32 = 1_300;
 
-/// Everybody goes for the middle, then off again, for half a minute each.
+/// All boats head for the middle, then away again, for half a minute each.
 fn orders(world: &World, middle: Ned, orders: &mut [Order]) {
     let away_rad = if (world.state().tick / 600).is_multiple_of(2) { 0.0 } else { std::f64::consts::PI };
     for (order, boat) in orders.iter_mut().zip(&world.state().boats) {
@@ -26,7 +26,7 @@ fn orders(world: &World, middle: Ned, orders: &mut [Order]) {
     }
 }
 
-/// Whether any two boats are so near that their hulls may be about to touch.
+/// Whether any two boats are so close that their hulls may be about to touch.
 fn crowded(world: &World, reach_m: f64) -> bool {
     let boats = &world.state().boats;
     let near = |i: usize| boats[..i].iter().any(|other| other.pose.at.distance(boats[i].pose.at) < reach_m);
@@ -42,7 +42,7 @@ fn a_step_leaves_nothing_on_the_heap_and_takes_nothing_unless_hulls_are_close() 
         let (mut free, mut busy, mut collisions, mut touching) = (0, 0, 0, Vec::new());
         for tick in 0..6_000 {
             orders(&world, scenario.field.middle(), &mut plan);
-            // Two Surveyors bow to bow, and what they may close in a tick.
+            // Two Surveyors bow to bow, plus the distance they may close in a tick.
             let crowded = crowded(&world, 1.83 + 0.5);
             let heap = Region::new(HEAP);
             world.step(&plan);
@@ -53,14 +53,14 @@ fn a_step_leaves_nothing_on_the_heap_and_takes_nothing_unless_hulls_are_close() 
             }
             if crowded {
                 busy += 1;
-                // What rapier takes it gives back.
+                // Rapier frees what it allocates.
                 assert_eq!(used.allocations, used.deallocations, "{game}, tick {tick}: {used:?}");
             } else {
                 free += 1;
                 assert_eq!(used.allocations + used.reallocations, 0, "{game}, tick {tick}: {used:?}");
             }
         }
-        // In waves four boats do not meet.
+        // In waves the four boats do not meet.
         let meet = game != "pav01_afloat.toml";
         assert!(
             free > 1_000 && (!meet || busy > 10 && collisions > 0),

@@ -1,4 +1,5 @@
-//! Balances of force and of energy: a boat that is left to the wind, and what thrust and resistance do to its energy.
+//! Balances of force and energy: a boat drifting in the wind, and the effect of thrust and
+//! resistance on its energy.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -17,7 +18,8 @@ fn blowing(speed_10m_m_s: f64) -> Wind {
     Wind { speed_10m_m_s, from_rad: 0.0, profile_exponent: 0.0, gusts: Gusts::None }
 }
 
-/// The speed at which a boat drifts beam to the wind: ½ρ_a C_y A_L (W − V)² = Y_v V + ½ρ C_d L T V².
+/// The speed at which a boat drifts beam to the wind:
+/// ½ρ_a C_y A_L (W − V)² = Y_v V + ½ρ C_d L T V².
 fn beam_drift_m_s(scenario: &Scenario, wind_m_s: f64) -> f64 {
     let (boat, water_kg_m3) = (&scenario.boats[0], scenario.sea.water_density_kg_m3);
     let air = 0.5 * 1.225 * boat.windage.sway_coefficient * boat.windage.lateral_area_m2;
@@ -26,7 +28,8 @@ fn beam_drift_m_s(scenario: &Scenario, wind_m_s: f64) -> f64 {
     common::root((0.0, wind_m_s), |v| water * v * v + hull.sway_linear_kg_s * v - air * (wind_m_s - v) * (wind_m_s - v))
 }
 
-/// A boat of this kind after `minutes` in this wind from the north, without thrust, from rest on a heading.
+/// A boat of this kind after `minutes` in this wind from the north, without thrust, starting at
+/// rest on a heading.
 fn left_to_the_wind(kind: &str, wind_m_s: f64, heading_deg: f64, minutes: u32) -> (f64, Planar) {
     let mut scenario = alone(kind, "calm");
     scenario.sea.wind = Some(blowing(wind_m_s));
@@ -40,8 +43,9 @@ fn left_to_the_wind(kind: &str, wind_m_s: f64, heading_deg: f64, minutes: u32) -
 
 #[test]
 fn a_free_boat_comes_to_lie_beam_to_the_wind_and_drifts_as_the_balance_says() {
-    // Zeros of the moment: wind ahead, abeam, astern. The wind pushes a bow away from itself, and as the boat drifts
-    // obliquely the water's Munk moment turns it across its way too: abeam is stable, ahead and astern are not.
+    // Equilibria of the moment: wind ahead, abeam, astern. The wind pushes the bow away, and as the
+    // boat drifts obliquely the water's Munk moment also turns it across its path: abeam is stable,
+    // ahead and astern are not.
     for kind in ["surveyor_m1_8", "otter", "heron"] {
         for wind_m_s in [5.0, 10.0] {
             let drift_m_s = beam_drift_m_s(&alone(kind, "calm"), wind_m_s);
@@ -70,7 +74,7 @@ fn wind_right_ahead_or_astern_holds_a_boat_only_until_something_turns_it() {
     }
 }
 
-/// A boat under imposed thrust, and what it takes to keep its accounts.
+/// A boat under imposed thrust, with the data for its energy balance.
 struct Accounts {
     scenario: Scenario,
     world: World,
@@ -101,7 +105,7 @@ impl Accounts {
         common::hulls(&self.scenario)[0].energy_joule(self.through_water())
     }
 
-    /// What the thrusters put in, and what resistance takes out, strip by strip, W.
+    /// Power from the thrusters, and power lost to resistance, strip by strip, W.
     fn powers_watt(&self) -> (f64, f64) {
         let (boat, kind) = (self.world.state().boats[0], &self.scenario.boats[0]);
         let (Planar { surge: u, sway: v, yaw: r }, hull) = (self.through_water(), &kind.hull);
@@ -130,9 +134,9 @@ const ORDERS: [Order; 3] = [
 
 #[test]
 fn the_energy_changes_by_what_thrust_puts_in_and_resistance_takes_out() {
-    // From rest, and on through another order, in water at rest and in a current, where what counts is motion through
-    // the water. The integrals by Simpson's rule over pairs of ticks, short ones since shafts are quick. The Munk factor
-    // of the Surveyor is not 1.
+    // From rest, and on through another order, in water at rest and in a current, where motion
+    // through the water counts. Integrals by Simpson's rule over pairs of ticks, short ones because
+    // shafts are quick. The Munk factor of the Surveyor is not 1.
     const TICK_S: f64 = 0.005;
     let stream = Ned { north: 0.3, east: -0.4 };
     for (kind, current) in [("otter", Ned::default()), ("otter", stream), ("surveyor_m1_8", stream), ("heron", stream)]

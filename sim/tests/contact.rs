@@ -1,4 +1,4 @@
-//! Hulls that touch: boats, obstacles and walls.
+//! Contact of hulls with boats, obstacles and walls.
 
 mod common;
 
@@ -11,11 +11,11 @@ use scenario::Scenario;
 use sim::World;
 
 const BOATS: [&str; 3] = ["heron", "otter", "surveyor_m1_8"];
-/// Hulls sink into each other no deeper than this, m: a hundredth of a boat's beam or so.
+/// Largest allowed penetration of hulls, m: about a hundredth of a boat's beam.
 const DEEPEST_M: f64 = 0.02;
 const AHEAD: Order = Order::Thrust { port: 1.0, starboard: 1.0 };
 
-/// Sails on; the smallest gap between the first two boats on the way, m.
+/// Runs the world; returns the smallest gap between the first two boats, m.
 fn sail(world: &mut World, scenario: &Scenario, orders: [Order; 2], ticks: u32) -> f64 {
     let mut least_m = f64::INFINITY;
     for _ in 0..ticks {
@@ -52,7 +52,7 @@ fn a_boat_that_rams_anothers_side_pushes_it_away() {
     }
 }
 
-/// Two boats anyhow, one aimed roughly at the other.
+/// Places two boats at random, one aimed roughly at the other.
 fn collision_course(world: &mut World, seed: u64) {
     let mut stream = Stream::new(seed, "collision");
     let (bearing_deg, distance_m) = (stream.between(0.0, 360.0), stream.between(2.5, 3.5));
@@ -95,13 +95,14 @@ fn no_collision_makes_energy() {
     }
 }
 
-/// The boat drives on for half a minute; how deep its capsule gets into the obstacle's outline, m, and where it is.
+/// Drives the boat for half a minute; returns its capsule's deepest penetration of the obstacle's
+/// outline, m, and its position.
 fn run_into(obstacle: &Obstacle, start: (f64, f64, f64)) -> (f64, Ned) {
     let scenario = among("surveyor_m1_8", vec![obstacle.clone()]);
     let mut world = afloat(&scenario, 1, start, (2.5, 0.0, 0.0));
     let mut least_m = f64::INFINITY;
     for _ in 0..600 {
-        // The front seat keeps it pointing where it started out.
+        // The front seat keeps its initial heading.
         let heading_rad = primitives::angle::rad_from_compass_deg(start.2);
         world.step(&[Order::Steer { heading_rad, speed_m_s: 2.5 }, Order::Hold]);
         least_m = least_m.min(outline_gap_m(&world, &scenario, obstacle));
@@ -131,11 +132,12 @@ fn a_boat_stops_at_a_dolphin() {
 
 #[test]
 fn a_boat_stops_in_the_bay_of_a_mole() {
-    // A U that is open to the west, its bay 6 m wide and 10 m deep.
+    // A U open to the west, with a bay 6 m wide and 10 m deep.
     let corners = [(100.0, 95.0), (112.0, 95.0), (112.0, 105.0), (100.0, 105.0), (100.0, 103.0), (110.0, 103.0)];
     let corners = corners.into_iter().chain([(110.0, 97.0), (100.0, 97.0)]).map(|(x, y)| Ned::from_xy(x, y));
     let mole = Obstacle::Polygon { corners: corners.collect() };
-    // Into the bay: to its end. Into the end of an arm: no farther. From behind and from the side: not in at all.
+    // Into the bay: to its end. Into the end of an arm: no farther. From behind and from the side:
+    // not at all.
     for (start, east_m, north_m) in [
         ((90.0, 100.0, 90.0), (108.9, 109.2), (97.0, 103.0)),
         ((90.0, 104.0, 90.0), (98.0, 130.0), (103.0, 130.0)),
@@ -167,7 +169,7 @@ fn boats_stay_inside_of_walls() {
     }
 }
 
-/// Boats that mill about in a crowd: every one steers for the middle of the fleet, or past it.
+/// Boats in a dense crowd: each steers for the middle of the fleet, or past it.
 fn crowd(world: &World, orders: &mut Vec<Order>) {
     let boats = &world.state().boats;
     let sum = boats.iter().fold(Ned::default(), |sum, boat| sum + boat.pose.at);
@@ -211,7 +213,7 @@ fn asking_rapier_only_about_close_hulls_changes_no_byte() {
 fn mirrored_orders_make_a_mirrored_course() {
     for boat in BOATS {
         let scenario = among(boat, Vec::new());
-        // The mirror stands along the meridian of the datum, so that mirrored numbers are exact.
+        // The mirror line is the meridian of the datum, so that mirrored numbers are exact.
         let mut world = afloat(&scenario, 1, (20.0, 100.0, 30.0), (1.0, 0.3, -0.2));
         place_boat(&mut world, 1, (-20.0, 100.0, -30.0), (1.0, -0.3, 0.2));
         let mut stream = Stream::new(1, "orders");

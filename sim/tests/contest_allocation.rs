@@ -1,6 +1,8 @@
-//! What a decision over radio links and with limits of sharing asks of the heap: nothing, once queues have grown.
+//! Heap allocations of a decision with radio links and limits of sharing: none, once queues have
+//! grown.
 //!
-//! `stats_alloc` counts for us, see `allocation.rs`; one test, since it counts the whole process.
+//! `stats_alloc` counts, see `allocation.rs`; this file has one test, because it counts the whole
+//! process.
 
 mod common;
 
@@ -14,7 +16,7 @@ use std::alloc::System;
 #[global_allocator]
 static HEAP: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-/// Decisions in which queues, pictures and the list of past truths have grown.
+/// Decisions until queues, pictures and the list of past true states have grown.
 const WARM_UP: u64 = 1_500;
 
 #[test]
@@ -39,7 +41,7 @@ fn a_decision_over_the_air_takes_nothing_from_the_heap_unless_hulls_are_close_or
         }
         contest.advance();
         let used = heap.change();
-        // The log of events grows, now and then.
+        // The event log grows, now and then.
         if crowded || contest.events().len() > events || decision < WARM_UP {
             busy += 1;
         } else {

@@ -1,4 +1,4 @@
-//! The current against closed forms: tide, shear, eddies, and a wander that stays in its bounds.
+//! The current against closed forms: tide, shear, eddies, and a bounded wander.
 
 mod common;
 
@@ -18,7 +18,7 @@ fn model(current: &Current, seed: u64) -> CurrentField {
     CurrentField::new(current, &field(), &seed.into())
 }
 
-/// The velocity at a place and a time in seconds.
+/// The velocity at a place and a time, s.
 fn at(model: &CurrentField, place: Ned, time_s: f64) -> Ned {
     model.at_time(SimTime::from_s(time_s)).at(place)
 }
@@ -50,7 +50,7 @@ fn a_tide_is_a_sine_of_time_on_top_of_the_mean() {
 }
 
 fn shear() -> Shear {
-    // The stream goes east and grows southwards from y = 10.
+    // The stream flows east and increases southwards from y = 10.
     Shear {
         toward: Ned::from_xy(1.0, 0.0),
         across: Ned::from_xy(0.0, -1.0),
@@ -66,8 +66,8 @@ fn a_shear_grows_across_and_turns_a_hull_that_lies_across() {
         let got = at(&model, Ned::from_xy(123.0, y), 0.0);
         assert!(got.distance(Ned::from_xy(want_m_s, 0.0)) < 1e-15, "y = {y}: {got:?}");
     }
-    // Seen from above, the water south of a place goes east faster: a hull that points north is turned against the
-    // clock with the whole of the shear, one that points east not at all.
+    // Seen from above, the water south of a place flows east faster: a hull that points north is
+    // turned anticlockwise by the whole shear, one that points east not at all.
     let now = model.at_time(SimTime::ZERO);
     for (heading_deg, want_rad_s) in [(0.0, -0.004), (180.0, -0.004), (90.0, 0.0), (45.0, -0.002)] {
         let place = Ned::from_xy(5.0, -40.0);
@@ -107,7 +107,8 @@ fn an_eddy_is_fastest_where_lamb_and_oseen_have_it() {
 fn an_eddy_has_its_circulation_no_divergence_and_the_vorticity_of_a_gaussian() {
     let centre = Ned::from_xy(40.0, -10.0);
     let model = model(&eddy_at(centre), 1);
-    // Γ from the fastest flow: Γ / (2 π a) (1 − e^−α) / √α, with both numbers from the literature: 0.6382.
+    // Γ from the fastest flow, Γ / (2 π a) (1 − e^−α) / √α, with both numbers from the literature:
+    // 0.6382.
     let gamma = PEAK_M_S * TAU * CORE_M / 0.638_173;
     for radius_m in [1.0, 10.0, CORE_M, 60.0, 125.0, 127.0, 500.0] {
         // Clockwise along a circle around the centre.

@@ -1,4 +1,4 @@
-//! The same seed and the same orders make the same bytes; and what is done about bad bytes and bad numbers.
+//! Equal seeds and orders give equal bytes; invalid bytes and numbers are handled.
 
 mod common;
 
@@ -11,7 +11,7 @@ use rules::event::{EventCursor, Logged};
 use scenario::{Scenario, StartPosition};
 use sim::{Contest, RestoreError, World};
 
-/// Gives orders that make for a lively game, from nothing but the time and the vehicle, and plays a decision.
+/// Gives orders that make a lively game, depending only on time and vehicle, and plays a decision.
 fn play(contest: &mut Contest) {
     contest.pictures();
     let middle = contest.scenario().field.middle();
@@ -29,7 +29,7 @@ fn play(contest: &mut Contest) {
     contest.advance();
 }
 
-/// Plays on; how many times boats came together.
+/// Plays several decisions; returns how often boats came together.
 fn sail(contest: &mut Contest, decisions: u32) -> usize {
     let mut cursor = EventCursor::default();
     cursor.read(contest.events());
@@ -42,7 +42,7 @@ fn started(scenario: &Scenario, seed: u64) -> Contest {
     Contest::new(scenario, seed).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Waves, wind, sensors and flawed thrusters, over radio links, with limits of what boats see of each other.
+/// Waves, wind, sensors and flawed thrusters, with radio links and limits of sharing.
 fn hampered() -> Scenario {
     let mut scenario = shipped("pav01_afloat.toml");
     common::hamper(&mut scenario);

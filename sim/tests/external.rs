@@ -1,4 +1,4 @@
-//! Real boats on the field of a game: reported, judged, bumped into, lost and found.
+//! Real boats in a game: reported, judged, collided with, lost and found.
 
 mod common;
 
@@ -17,7 +17,8 @@ use sim::{BadReport, Contest, HoldCause};
 const REAL: VehicleId = VehicleId(0);
 const OTHER: VehicleId = VehicleId(1);
 
-/// Blue one, a real boat at (50, 40), and red one where it is said; its flag is at (140, 40), blue's at (20, 40).
+/// Blue one, a real boat at (50, 40), and red one at `red_at`; its flag is at (140, 40), blue's at
+/// (20, 40).
 fn game(red_at: &str, more: &str) -> Scenario {
     written(&format!(
         "base = \"../games/pav01_vs_pav01.toml\"\norder_ttl_s = 60\n{more}\n\
@@ -39,7 +40,7 @@ fn report(contest: &mut Contest, nav: Nav) {
     contest.report(REAL, nav, contest.now(), true).expect("a sound report");
 }
 
-/// Sails the real boat along y = 40 from one place to another, reported at every decision.
+/// Drives the real boat along y = 40 from one place to another, with a report at every decision.
 fn sail(contest: &mut Contest, from_x: f64, to_x: f64, speed_m_s: f64) {
     let decisions = ((to_x - from_x) / speed_m_s / 0.1).round() as u32;
     for i in 0..decisions {
@@ -89,10 +90,10 @@ fn a_real_boat_is_tagged_and_its_effective_command_is_what_the_rules_make_of_its
     let mut contest = slow(TaggedBoat::IsDriven);
     let Order::Steer { heading_rad, speed_m_s } = contest.effective_command(REAL) else { panic!("it is driven home") };
     assert!(wrap_pi(heading_rad - rad_from_compass_deg(270.0)).abs() < 1e-9 && speed_m_s == 1.5);
-    // What goes to the boat is sound.
+    // The command to the boat is valid.
     let sent = messages::VehicleOrder::new(REAL, contest.effective_command(REAL));
     assert!(sent.order().expect("a known kind").check().is_ok() && ExternalOrder::VERSION == 2);
-    // Nobody drives a boat without an agent.
+    // A boat without an agent holds.
     contest.lose_agent(REAL);
     assert_eq!(contest.effective_command(REAL), Order::Hold);
 }
@@ -106,7 +107,7 @@ fn the_cause_for_which_a_boat_holds_is_known_and_the_first_of_several_counts() {
             assert_eq!(contest.effective_command(vehicle) == Order::Hold, want.is_some(), "{want:?}");
         }
     };
-    // Nobody has reported the one, or ordered the other anything.
+    // The real boat has had no report, the other no order.
     shows(&contest, [Some(HoldCause::NavLost), Some(HoldCause::Ordered)]);
     report(&mut contest, nav(50.0, 40.0, 90.0, 0.0));
     for vehicle in [REAL, OTHER] {
@@ -147,7 +148,7 @@ fn a_real_boat_pushes_a_simulated_one_out_of_its_way() {
     assert!(real.distance(Ned::from_xy(65.0, 40.0)) < 1e-9, "{real:?}");
     assert!(other.distance(Ned::from_xy(58.0, 40.0)) > 1.0, "{other:?}");
     assert!(gap_m(contest.world(), &scenario, 0, 1) > -0.05);
-    // One that is suddenly reported on top of another does not throw it out of the sea.
+    // A real boat suddenly reported on top of a simulated one does not throw it out of the sea.
     report(&mut contest, nav(other.east, other.north, 45.0, 0.0));
     advance(&mut contest, 10);
     let thrown_m = contest.world().state().boats[1].pose.at.distance(other);
@@ -171,10 +172,10 @@ fn between_reports_a_real_boat_goes_on_as_it_did_and_then_it_is_lost() {
     let (u, r) = (2.0, 0.25);
     let fix = Nav { yaw_rate_rad_s: r, ..nav(50.0, 40.0, 0.0, u) };
     contest.advance();
-    // Taken 0.1 s ago, on the wire since.
+    // Taken 0.1 s ago and delayed since.
     let fix_at = contest.now() - SimTime::from_s(0.1);
     contest.report(REAL, fix, fix_at, true).expect("a sound report");
-    // No radio of ours comes between it and its mind.
+    // No simulated radio between it and its mind.
     order(&mut contest, REAL, Order::Thrust { port: 1.0, starboard: 1.0 });
     for decisions in 0..30 {
         let since_s = (contest.now() - fix_at).as_s();
@@ -214,7 +215,7 @@ fn reports_that_cannot_be_relied_on_change_nothing_and_bad_ones_are_refused() {
     }
     assert_eq!(contest.report(OTHER, Nav::default(), now, true), Err(BadReport::Simulated));
     assert_eq!(contest.digest(), before);
-    // A fix of the future is one of the next decision at most.
+    // A future fix is treated as one of the next decision at most.
     assert_eq!(contest.report(REAL, nav(50.0, 40.0, 0.0, 1.0), SimTime::NEVER, true), Ok(()));
     assert!(contest.world().state().boats[0].pose.at.distance(Ned::from_xy(50.0, 39.9)) < 1e-9);
     advance(&mut contest, 40);

@@ -1,4 +1,4 @@
-//! Faults in the midst of a game: what fails does so at its time, on its boat, and is well again afterwards.
+//! Faults during a game: they occur at the right time on the right boat, and end again.
 
 use messages::Order;
 use primitives::{SimTime, VehicleId};
@@ -10,7 +10,7 @@ use std::path::Path;
 const HIT: VehicleId = VehicleId(0);
 const SPARED: VehicleId = VehicleId(1);
 
-/// Two against two, in which something befalls the first boat from 20 s to 40 s.
+/// Two against two; the first boat has a fault from 20 s to 40 s.
 fn scenario(kind: &str, more: &str) -> Scenario {
     let fault = format!("fault.tried={{ kind = \"{kind}\", boats = [\"blue_1\"], at_s = 20, for_s = 20{more} }}");
     let overrides = Overrides { settings: vec![Setting::parse(&fault).expect("it can be")], ..Overrides::default() };
@@ -18,7 +18,7 @@ fn scenario(kind: &str, more: &str) -> Scenario {
     load_with(&file, &overrides).unwrap_or_else(|problems| panic!("{problems}")).of_seed(3).expect("it can be")
 }
 
-/// Plays on to a time; all boats steer a slow circle.
+/// Plays until a time; all boats steer a slow circle.
 fn play_to(contest: &mut Contest, until_s: f64) {
     while contest.now() < SimTime::from_s(until_s) {
         let at = contest.pictures()[0].stamp.valid_ns;
@@ -34,7 +34,7 @@ fn speed_m_s(contest: &Contest, vehicle: VehicleId) -> f64 {
     contest.world().state().boats[vehicle.index()].nu.surge
 }
 
-/// How far the position that a boat's receiver gives is from the true one, m, and the heading that its compass shows, rad.
+/// Errors of the position that a boat's receiver reports, m, and of its compass heading, rad.
 fn errors(contest: &Contest, vehicle: VehicleId) -> (f64, f64) {
     let pose = contest.world().state().boats[vehicle.index()].pose;
     let nav = contest.world().reading(vehicle).expect("it can be").nav;
@@ -109,7 +109,7 @@ fn a_compass_is_off_by_what_is_said_at_its_time() {
     for contest in [&mut with, &mut without] {
         play_to(contest, 20.1);
     }
-    // The boats have hardly parted: the readings differ by the fault.
+    // The boats have barely separated: the readings differ by the fault.
     let off = |contest: &Contest| errors(contest, HIT).1;
     assert!((off(&with) - off(&without) - 30_f64.to_radians()).abs() < 0.05, "{} {}", off(&with), off(&without));
     play_to(&mut with, 41.0);

@@ -1,4 +1,4 @@
-//! The front seat: how well the shipped boats follow an order to steer.
+//! The front seat: how well the shipped boats follow steer orders.
 
 mod common;
 
@@ -7,7 +7,7 @@ use messages::Order;
 use primitives::angle::wrap_pi;
 use sim::World;
 
-/// Cruising and at top speed, m/s.
+/// Boats at cruising speed and at top speed, m/s.
 const BOATS: [(&str, f64); 6] =
     [("heron", 1.5), ("heron", 2.0), ("otter", 2.0), ("otter", 3.0), ("surveyor_m1_8", 2.0), ("surveyor_m1_8", 3.0)];
 

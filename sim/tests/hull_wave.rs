@@ -1,4 +1,5 @@
-//! What waves do to a hull, against linear theory integrated by brute force, and against published magnitudes.
+//! Wave effects on a hull, against linear theory integrated by brute force and published
+//! magnitudes.
 
 mod common;
 
@@ -21,7 +22,7 @@ fn surveyor() -> Boat {
     boat(1.8, 0.9, 0.14)
 }
 
-/// So small that it feels the waves at a point of the surface.
+/// A boat so small that it feels the waves at a point of the surface.
 fn cork() -> Boat {
     boat(1e-4, 1e-4, 1e-6)
 }
@@ -40,7 +41,7 @@ fn pose(north: f64, east: f64, psi_rad: f64) -> Pose {
     Pose { at: Ned { north, east }, psi_rad }
 }
 
-/// Mean square of a part of the velocity over places and times, with the boat on this heading.
+/// Mean square of one component of the velocity over places and times, on this heading.
 fn mean_square(hull: &HullWaves, psi_rad: f64, part: impl Fn(Planar) -> f64) -> f64 {
     let at = |i: usize| hull.at(pose((i % 100) as f64 * 7.3, 0.0, psi_rad), 0.37 * i as f64).velocity;
     mean_of(20_000, |i| square(part(at(i))))
@@ -87,7 +88,7 @@ fn a_hull_feels_the_mean_and_the_first_moment_over_its_length_and_beam() {
     let field = sea(0.3, 1.8, Spreading::CosineSquared);
     let (hull, point) = (HullWaves::new(&field, &boat, DENSITY_KG_M3), HullWaves::new(&field, &cork(), DENSITY_KG_M3));
     let (n_x, n_y) = (60, 30);
-    // Headings at which the tables have an entry: what is tested is the entry.
+    // Headings with an entry in the tables: the entry itself is tested.
     for (psi_deg, t) in [(0.0, 1.0), (35.0, 2.0), (90.0, 5.0), (-145.0, 8.0)] {
         let psi_rad = f64::to_radians(psi_deg);
         let rotation = Rotation::from_heading(psi_rad);
@@ -127,14 +128,14 @@ fn a_hull_does_not_feel_waves_that_fit_into_it() {
     assert!(head_on(100.0 * boat.length_m) > 0.99, "long waves are not");
 }
 
-/// How far surge, sway and yaw velocity and the drift force are off between the headings of the table: root mean square
-/// over headings and times, over their own.
+/// Interpolation errors of surge, sway and yaw velocity and drift force between the headings of the
+/// table: root mean square over headings and times, relative to their own.
 fn off_between_headings(field: &WaveField, boat: &Boat) -> [f64; 4] {
     let (steps, bin_rad) = (10, TAU / 72.0);
     let hull = HullWaves::new(field, boat, DENSITY_KG_M3);
     let (mut off, mut size) = ([0.0; 4], [0.0; 4]);
     for step in 0..steps {
-        // The same sea in axes turned by a part of a bin: there the heading has an entry.
+        // The same sea in axes rotated by a fraction of a bin: there the heading has an entry.
         let by_rad = bin_rad * (f64::from(step) + 0.5) / f64::from(steps);
         let turned: Vec<Component> =
             field.components().map(|c| Component { toward_rad: c.toward_rad - by_rad, ..*c }).collect();
@@ -157,8 +158,8 @@ fn off_between_headings(field: &WaveField, boat: &Boat) -> [f64; 4] {
 
 #[test]
 fn between_the_headings_of_the_table_the_error_is_a_small_part_of_the_motion() {
-    // For the shipped boats at most 0.4 %, in yaw. A long hull's answer to waves that fit into it several times changes
-    // faster with heading than the table does, and is small.
+    // For the shipped boats at most 0.4 %, in yaw. The response of a long hull to waves several
+    // times shorter varies faster with heading than the table, and is small.
     let heron = (boat(1.35, 1.0, 0.1), 0.005);
     let (surveyor, otter) = ((surveyor(), 0.005), (boat(2.0, 1.08, 0.195), 0.005));
     for (hs_m, tp_s, ten_metres) in [(0.1, 1.5, 0.03), (0.3, 2.0, 0.012), (0.5, 3.0, 0.006), (1.0, 5.0, 0.005)] {
@@ -194,7 +195,8 @@ fn the_drift_force_of_a_regular_wave_is_steady_and_points_where_it_goes() {
         let field = regular(length_m, toward_rad, depth_m);
         let hull = HullWaves::new(&field, &boat, DENSITY_KG_M3);
         let reflected = 1.0 - libm::exp(-2.0 * k * boat.draught_m);
-        // Twice the group speed over the phase speed (Longuet-Higgins 1977), by differences of ω(k).
+        // Twice the ratio of group speed to phase speed (Longuet-Higgins 1977), by differences of
+        // ω(k).
         let omega = |k: f64| (GRAVITY_M_S2 * k * depth_m.map_or(1.0, |h| libm::tanh(k * h))).sqrt();
         let groups = 2.0 * k / omega(k) * (omega(k * 1.0001) - omega(k * 0.9999)) / (k * 0.0002);
         let per_metre = 0.5 * DENSITY_KG_M3 * GRAVITY_M_S2 * square(0.2 * reflected) * groups;
@@ -203,7 +205,7 @@ fn the_drift_force_of_a_regular_wave_is_steady_and_points_where_it_goes() {
             let got = hull.at(pose(4.0, 5.0, toward_rad - off_bow_rad), t).drift_newton;
             let (sin, cos) = libm::sincos(off_bow_rad);
             let want = (boat.beam_m * cos * cos.abs() * per_metre, boat.length_m * sin * sin.abs() * per_metre);
-            // What the straight lines between the headings of the table may be off by: (5°)² / 4.
+            // Error of linear interpolation between the headings of the table: (5°)² / 4.
             let within = 2e-3 * boat.length_m * per_metre;
             let off = ((got.surge - want.0).abs(), (got.sway - want.1).abs());
             assert!(off.0 < within && off.1 < within, "{off_bow_deg} deg, {depth_m:?}: {got:?}, not {want:?}");
@@ -232,9 +234,10 @@ fn the_drift_force_comes_in_groups_about_the_closed_mean() {
 
 #[test]
 fn orbital_motion_and_drift_have_the_magnitudes_computed_elsewhere() {
-    // Hs and Tp; rms orbital velocity at a point and over the hull; rms slope; Stokes drift at the surface; mean drift force beam-on
-    // and head-on, for 1.8 m by 0.9 m by 0.14 m. From a separate calculation, long-crested, of the band from 0.6 to 3.5
-    // peak frequencies. Here it goes on to 5, and what weighs the high frequencies is larger by up to a sixth.
+    // Hs and Tp; rms orbital velocity at a point and over the hull; rms slope; Stokes drift at the
+    // surface; mean drift force beam-on and head-on, for 1.8 m by 0.9 m by 0.14 m. From a separate
+    // calculation, long-crested, for the band from 0.6 to 3.5 peak frequencies. Here the band
+    // extends to 5, and quantities that weight high frequencies are larger by up to a sixth.
     let rows = [
         (0.2, 2.0, 0.19, 0.13, 5.7, 0.036, 5.7, 2.8),
         (0.3, 2.5, 0.23, 0.18, 5.4, 0.041, 6.8, 3.4),
@@ -264,7 +267,7 @@ fn orbital_motion_and_drift_have_the_magnitudes_computed_elsewhere() {
 
 #[test]
 fn on_a_long_swell_a_boat_floats_with_the_surface() {
-    // A kilometre long, travelling north: 25 s or more, slow against every spring.
+    // A wave a kilometre long, travelling north: 25 s or more, slow against every spring.
     for (t, psi_deg, depth_m) in
         [(0.0, 0.0, None), (6.0, 90.0, None), (12.0, 180.0, Some(20.0)), (18.0, -90.0, Some(5.0)), (3.0, 45.0, None)]
     {
@@ -274,7 +277,8 @@ fn on_a_long_swell_a_boat_floats_with_the_surface() {
         let got = response.at(pose(100.0, 0.0, psi_rad), Ned::default(), 0.0, t);
         let surface = field.surface(Ned { north: 100.0, east: 0.0 }, t);
         let bow_up = surface.slope.north * libm::cos(psi_rad);
-        // The surface rises to the north; with the bow east, that is the port side, and starboard is down.
+        // The surface rises to the north: with the bow east, that is the port side, and starboard
+        // is down.
         let starboard_down = surface.slope.north * libm::sin(psi_rad);
         assert!((got.heave_up_m - surface.elevation_m).abs() < 0.01, "{t} s: {got:?} {surface:?}");
         assert!((got.pitch_rad - bow_up).abs() < 5e-5, "{t} s: pitch {} {bow_up}", got.pitch_rad);
@@ -313,7 +317,7 @@ fn the_rates_of_the_attitude_are_its_changes_along_a_turning_track() {
     for (what, (got, want)) in ["heave", "roll", "pitch"].into_iter().zip(got.into_iter().zip(want)) {
         assert!((got - want).abs() < 5e-5, "{what}: {got}, by differences {want}");
     }
-    // On a straight track the acceleration is that of the heave, exactly.
+    // On a straight track the acceleration is exactly that of the heave.
     let straight = |t: f64| {
         let here = pose(10.0 + velocity.north * t, 4.0 + velocity.east * t, 1.0);
         response.at(here, velocity, 0.0, 500.0 + t)
@@ -340,7 +344,7 @@ fn a_sample_is_the_same_bits_everywhere() {
     assert_eq!(got, PINNED, "{got:#018x?}");
 }
 
-/// Read off once; another value on any machine is a fault.
+/// Recorded once; a different value on any machine is a bug.
 const PINNED: [u64; 6] = [
     0xbfdf_e89c_1000_0000,
     0x3fc0_ed5a_c000_0000,

@@ -1,4 +1,4 @@
-//! The sea comes to the same bits with all instructions that the machine has.
+//! The sea has the same bits with every instruction set of the machine.
 
 mod common;
 
@@ -12,7 +12,7 @@ use scenario::sea::{Spreading, Waves};
 use sim::World;
 use sim::sea::{Attitude, HullWaves, Submergence, Surface, WaveField, WaveResponse, WaveSample};
 
-/// What waves of so many components do to a boat, everywhere and on all headings, as bits.
+/// Effects of waves with this many components on a boat, everywhere and on all headings, as bits.
 fn bits_of_waves(components: u32, instructions: Instructions) -> Vec<u64> {
     let boat = boat("surveyor_m1_8");
     let sea = Waves { spreading: Spreading::CosineSquared, components, ..waves(0.7, 2.5, 0.4) };
@@ -83,7 +83,7 @@ fn a_voyage_has_the_same_bits_with_all_instructions_and_on_every_machine() {
     }
 }
 
-/// Read off once; another value on any machine is a fault.
+/// Recorded once; a different value on any machine is a bug.
 const PINNED: [(&str, &str, u128); 3] = [
     ("pav01_afloat.toml", "fresh_breeze.toml", 0x8021_ad52_3d8c_3295_63e2_539a_18e8_d69b),
     ("pav01_afloat.toml", "bay_gale.toml", 0x18a1_b4fa_6cc6_b6c3_d6c9_3236_171d_cc1b),

@@ -1,4 +1,4 @@
-//! The point boat against reference trajectories and numbers of its published law.
+//! The point boat against reference trajectories and numbers of its published model.
 
 mod common;
 
@@ -8,10 +8,10 @@ use scenario::boat::Kinematic;
 use sim::kinematic::{KinematicModel, KinematicState};
 
 const DT_S: f64 = 0.1;
-/// How long a boat runs up before a manoeuvre.
+/// Duration of the run-up before a manoeuvre, s.
 const RUN_UP_S: f64 = 60.0;
 
-/// The shipped point boat of this name: Pyquaticus' (main, 2025-11).
+/// The shipped point boat with this name: that of Pyquaticus (main, 2025-11).
 fn shipped(name: &str) -> Kinematic {
     let boat = common::boat(&format!("{name}_kinematic"));
     let scenario::boat::Drive::Kinematic(kinematic) = boat.drive else { panic!("{name} is a point boat") };
@@ -27,7 +27,7 @@ struct Afloat {
     rate_deg_s: f64,
 }
 
-/// Where it was, and its state, at a time since the manoeuvre began.
+/// Position and state at a time since the start of the manoeuvre.
 struct Row {
     t_s: f64,
     at: Ned,
@@ -40,7 +40,7 @@ impl Afloat {
         Afloat { model, state, at: Ned::default(), rate_deg_s: 0.0 }
     }
 
-    /// One that has run up northward and is back at the origin.
+    /// A boat after its run-up northward, moved back to the origin.
     fn under_way(boat: &Kinematic, speed_m_s: f64) -> Afloat {
         let mut afloat = Afloat::new(boat);
         afloat.sail(RUN_UP_S, |_| north(speed_m_s));
@@ -77,12 +77,12 @@ fn north(speed_m_s: f64) -> Order {
     steer(0.0, speed_m_s)
 }
 
-/// When something first holds, s.
+/// The first time at which `holds` is true, s.
 fn first(rows: &[Row], holds: impl Fn(&Row) -> bool) -> f64 {
     rows.iter().find(|row| holds(row)).map_or(f64::NAN, |row| row.t_s)
 }
 
-/// Every row and column of a reference within 1e-6.
+/// Compares every row and column with a reference, within 1e-6.
 fn follow(name: &str, mut afloat: Afloat, text: &str) {
     for (i, line) in text.lines().skip(1).enumerate() {
         let c: Vec<Option<f64>> = line.split(',').map(|field| field.parse().ok()).collect();
@@ -127,7 +127,7 @@ fn it_takes_thrust_and_rudder_from_outside_as_the_reference_does() {
 
 const BOATS: [&str; 3] = ["heron", "surveyor", "large_usv"];
 
-/// Compares to the place to which the reference is printed: half of it either way.
+/// Compares to the printed precision of the reference: half of the last digit either way.
 fn compare(name: &str, what: &str, got: &[f64]) {
     let begin = format!("{name},{what},");
     let line = include_str!("kinematic/manoeuvres.csv").lines().find_map(|line| line.strip_prefix(&begin));
@@ -136,7 +136,7 @@ fn compare(name: &str, what: &str, got: &[f64]) {
     for (reference, got) in references.into_iter().zip(got) {
         let want: f64 = reference.parse().unwrap_or_else(|e| panic!("{begin}{reference}: {e}"));
         let half_place = [0.5, 0.05, 0.005][reference.split_once('.').map_or(0, |(_, places)| places.len())];
-        // The binary neighbours of a decimal half are on either side of it.
+        // The binary neighbours of a decimal half are on both sides of it.
         let agrees = (got - want).abs() <= half_place + 1e-9 || got.is_nan() && want.is_nan();
         assert!(agrees, "{name}, {what}: {got}, reference {reference}");
     }

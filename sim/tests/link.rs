@@ -1,4 +1,4 @@
-//! The radio link as a game feels it: when orders are in force, what is lost, and what a boat does without any.
+//! The radio link in a game: when orders are in force, losses, and a boat without orders.
 
 mod common;
 
@@ -13,14 +13,14 @@ use sim::Contest;
 const BLUE: VehicleId = VehicleId(0);
 const RED: VehicleId = VehicleId(1);
 
-/// In bursts, of all sorts.
+/// Bursts with both kinds of loss.
 const BURSTS: Loss = Loss { good: 0.1, bad: 0.8, good_time_s: 4.0, bad_time_s: 2.0 };
 
 fn link() -> Link {
     Link { delay_s: 0.0, jitter_s: 0.0, loss: Loss::default(), range_m: None, station: Ned::default() }
 }
 
-/// One boat a side over this link, blue at x = 150 m, y = 200 m, pointing east.
+/// One boat per side over this link, blue at x = 150 m, y = 200 m, pointing east.
 fn over(link: Link) -> Scenario {
     let mut scenario = alone("surveyor_m1_8", "calm");
     scenario.rules.time_limit = SimTime::from_s(80_000.0);
@@ -28,7 +28,7 @@ fn over(link: Link) -> Scenario {
     scenario.vehicles[BLUE.index()].start_position =
         StartPosition::At(Pose { at: Ned::from_xy(150.0, 200.0), psi_rad });
     scenario.link = Some(link);
-    // What becomes of an order that is never followed by another is no matter of the link.
+    // The expiry of an order without a successor is not tested here.
     scenario.order_ttl_s = 3_600.0;
     scenario
 }
@@ -37,7 +37,7 @@ fn started(scenario: &Scenario) -> Contest {
     Contest::new(scenario, 1).expect("the boats fit")
 }
 
-/// An order that says when it was given: at this decision. At this pace nobody gets anywhere.
+/// An order that encodes the decision at which it was given. At this speed boats barely move.
 fn labelled(decision: u64) -> Order {
     Order::Steer { heading_rad: 0.0, speed_m_s: 1e-6 * decision as f64 }
 }
@@ -56,7 +56,8 @@ fn an_order_is_in_force_once_the_delay_has_passed() {
     let mut contest = started(&over(Link { delay_s: 0.25, ..link() }));
     for k in 0..100_u64 {
         play(&mut contest);
-        // The last tick of decision k begins at (k + 1/2) tenths of a second, just when order k - 2 arrives.
+        // The last tick of decision k begins at (k + 1/2) tenths of a second, just when order k - 2
+        // arrives.
         let want = k.checked_sub(2).map_or(Order::Hold, labelled);
         assert_eq!(contest.order_in_force(BLUE), want, "decision {k}");
     }
@@ -91,7 +92,7 @@ fn orders_sent_beyond_the_range_do_not_arrive() {
     let (mut inside, mut outside) = (0, 0);
     let mut want = Order::Hold;
     for k in 0..400_u32 {
-        // East, and at which decision it was said.
+        // East, and the decision at which it was given.
         let heading_rad = std::f64::consts::FRAC_PI_2;
         let order = Order::Steer { heading_rad, speed_m_s: 2.0 + 1e-6 * f64::from(k) };
         if contest.world().state().boats[0].pose.at.distance(station) <= 30.0 {
@@ -125,7 +126,7 @@ fn the_stated_share_of_orders_is_lost() {
 fn a_mind_that_is_silent_or_talks_much_changes_the_fate_of_no_other_message() {
     let link = Link { delay_s: 0.12, jitter_s: 0.1, loss: BURSTS, ..link() };
     let (silence, loquacity) = (200..300, 600..700);
-    // What arrived, decision by decision: orders in force, and when the reports known were sent.
+    // What arrived, by decision: orders in force, and when the known reports were sent.
     let record = |says: &dyn Fn(u64) -> u32| {
         let mut contest = started(&over(link.clone()));
         let mut told = vec![];
@@ -143,7 +144,7 @@ fn a_mind_that_is_silent_or_talks_much_changes_the_fate_of_no_other_message() {
     let mut differ = 0;
     for (k, (plain, other)) in plain.iter().zip(&other).enumerate() {
         assert_eq!((plain.1, plain.0[1]), (other.1, other.0[1]), "decision {k}");
-        // Until the first order after the silence has arrived, the last one before it stands.
+        // Until the first order after the silence arrives, the last one before it stays in force.
         let is_of_silence = |order: &Order| silence.clone().any(|k| labelled(k) == *order);
         if is_of_silence(&plain.0[0]) {
             differ += 1;
@@ -162,7 +163,7 @@ fn holding_stops_what_is_under_way() {
         ("lose", |contest| contest.lose_agent(BLUE)),
         ("regain", |contest| {
             contest.lose_agent(BLUE);
-            // Nobody's order: its agent is lost.
+            // An order without effect: its agent is lost.
             order(contest, BLUE, labelled(77));
             contest.regain_agent(BLUE);
         }),
@@ -203,13 +204,14 @@ fn a_watchdog_stops_the_thrusters_when_the_link_is_silent_and_the_next_order_sta
             started_again += u32::from(k - last > 10);
             last = k;
         }
-        // The decision's last tick begins half a decision after its order came, or should have.
+        // The decision's last tick starts half a decision after the arrival, actual or missed, of
+        // its order.
         let is_silent = k - last >= 10;
         assert_eq!(got, if is_silent { Order::Hold } else { thrust(last) }, "decision {k}, heard at {last}");
         running = if got == Order::Hold { 0 } else { running + 1 };
         let newton = contest.world().state().boats[0].port.newton;
         if k - last >= 15 {
-            // What the thruster's lag has left of it.
+            // What remains after the thruster's lag.
             assert!(newton < 0.95 * before_newton || newton < 1e-3, "decision {k}: {newton} N after {before_newton} N");
             least_newton = least_newton.min(newton);
             stopped += 1;

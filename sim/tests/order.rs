@@ -1,4 +1,5 @@
-//! Orders in a contest: how long they are in force, and that a recording has all that this depends on.
+//! Orders in a contest: their time in force, and that a recording contains everything it depends
+//! on.
 
 mod common;
 
@@ -23,7 +24,8 @@ fn started(scenario: &Scenario) -> Contest {
     Contest::new(scenario, 1).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Whether the boat follows an order in each of so many decisions, from the open one on.
+/// Whether the boat follows an order in each of the next `decisions` decisions, from the open one
+/// on.
 fn follows(contest: &mut Contest, decisions: u32) -> Vec<bool> {
     let decision = |_| {
         contest.advance();
@@ -85,7 +87,8 @@ fn a_game_with_silent_agents_is_played_again_from_its_recording() {
     };
     assert!(again(&recorded).snapshot() == contest.snapshot());
 
-    // Before orders had a time, they were in force from when they came until they were recorded as held.
+    // Before orders had a time, they were in force from their arrival until they were recorded as
+    // held.
     let old = Inputs { stamp: Stamp { version: 1, ..stamp }, ..recorded };
     let old = Inputs {
         inputs: old.inputs.into_iter().map(|record| InputRecord { at_ns: SimTime::ZERO, ..record }).collect(),

@@ -36,7 +36,7 @@ fn thrust(n_rad_s: [f64; 2]) -> Order {
     Order::Thrust { port: share(n_rad_s[0]), starboard: share(n_rad_s[1]) }
 }
 
-/// What the boat did, at the times of the reference: position from the start, psi, u, v, r.
+/// The boat's motion at the times of the reference: position from the start, psi, u, v, r.
 fn sail(rows: &[Row], sea: &str, mut order_at: impl FnMut(f64, f64, &Row) -> Order) -> Vec<(Ned, f64, [f64; 3])> {
     let mut world = World::of_game(&common::alone("otter", sea), 1).expect("an empty sea has room");
     let start = world.state().boats[0].pose.at;
@@ -53,13 +53,13 @@ fn sail(rows: &[Row], sea: &str, mut order_at: impl FnMut(f64, f64, &Row) -> Ord
     track
 }
 
-/// The largest distance from the reference over the distance sailed.
+/// The largest distance from the reference, relative to the distance travelled.
 fn position_error(rows: &[Row], track: &[(Ned, f64, [f64; 3])]) -> f64 {
     let mut sailed_m = 0.0;
     let mut worst = 0.0_f64;
     for (i, row) in rows.iter().enumerate() {
         sailed_m += if i > 0 { row.at.distance(rows[i - 1].at) } else { 0.0 };
-        // Below a metre a share means nothing.
+        // Below a metre a relative error is meaningless.
         worst = worst.max(track[i].0.distance(row.at) / sailed_m.max(1.0));
     }
     worst
@@ -75,7 +75,8 @@ fn it_accelerates_to_the_speed_of_the_closed_form() {
     assert!(error < 0.005, "position is off by {:.3} %", error * 100.0);
 }
 
-/// Its velocity at every tick of this many seconds under these shaft speeds, from rest, and the world in the end.
+/// Its velocity at every tick for this many seconds under these shaft speeds, from rest, and the
+/// final world.
 fn from_rest(n_rad_s: [f64; 2], seconds: u32) -> (Vec<[f64; 3]>, World) {
     let mut world = World::of_game(&common::alone("otter", "calm_salt"), 1).expect("an empty sea has room");
     let step = |_| {
@@ -99,7 +100,8 @@ fn its_steady_speeds_are_those_of_the_closed_form() {
 
 #[test]
 fn it_takes_up_speed_as_its_mass_resistance_and_shafts_say() {
-    // Shafts come up as 1 − e^(−t / 0.1 s), thrust is that squared, and (m + A11) u' = thrust − d u is linear.
+    // Shaft speeds follow 1 − e^(−t / 0.1 s), thrust is its square, and (m + A11) u' = thrust − d u
+    // is linear.
     let time_s = 85.2815 / 77.5544;
     let share = |t_s: f64| {
         let ramp = |rate: f64| {
@@ -126,12 +128,13 @@ fn it_takes_up_speed_as_its_mass_resistance_and_shafts_say() {
 
 #[test]
 fn it_spins_on_the_spot_under_opposed_shafts() {
-    // At 70 and −70 rad/s, published as 13.18 degrees per second. Astern the propellers give less, so it creeps ahead.
+    // At 70 and −70 rad/s, published as 13.18 degrees per second. Astern the propellers give less
+    // thrust, so it creeps ahead.
     let [u, v, r] = from_rest([70.0, -70.0], 60).0[1199];
     assert!((r.to_degrees() - 13.18).abs() < 0.02, "{} degrees per second", r.to_degrees());
     assert!((0.0..0.4).contains(&u) && v.abs() < 0.1, "{u} {v}");
 
-    // As much thrust astern as ahead: it turns about a point that stays where it is.
+    // Equal thrust astern and ahead: it turns about a fixed point.
     let astern = -70.0 * (0.01108_f64 / 0.006445).sqrt();
     let (_, mut world) = from_rest([70.0, astern], 60);
     let mut around = || {
@@ -186,7 +189,7 @@ fn it_drifts_with_the_current_and_turns_as_it_is_caught() {
 #[test]
 fn its_zigzag_has_the_same_period_and_overshoot() {
     let rows = reference(include_str!("otter/zigzag10_n80_d10.csv"));
-    // 20 s straight, then 80 ± 10, switching where the heading passes 10 degrees.
+    // 20 s straight, then 80 ± 10, switching when the heading passes 10 degrees.
     let mut side = 1.0;
     let mut switches = Vec::new();
     let limit = 10.0_f64.to_radians();

@@ -1,5 +1,6 @@
-//! Games of point boats by Pyquaticus' rules against Pyquaticus: numbers of its own environment, which was run for them
-//! (main, November 2025, and the branch of the competition of 2026; power play off, a step of 0.1 s).
+//! Games of point boats by Pyquaticus' rules, compared with Pyquaticus: numbers from runs of its
+//! own environment (main, November 2025, and the branch of the 2026 competition; power play off, a
+//! step of 0.1 s).
 
 mod common;
 
@@ -16,7 +17,8 @@ use std::f64::consts::PI;
 const BLUE: VehicleId = VehicleId(0);
 const RED: VehicleId = VehicleId(1);
 
-/// One boat a side by a step of 0.1 s: blue's at a place (x, y) with a heading in degrees, red's out of the way.
+/// One boat per side with a step of 0.1 s: blue's at a place (x, y) with a heading in degrees,
+/// red's out of the way.
 fn game(rules: &str, boat: &str, (x, y, heading_deg): (f64, f64, f64)) -> Scenario {
     let scenario = written(&format!(
         "base = \"../games/pav01_kinematic.toml\"\nrules = \"../rules/{rules}.toml\"\n\
@@ -32,7 +34,7 @@ fn afloat(scenario: &Scenario) -> Contest {
     Contest::new(scenario, 1).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// One decision, and a tick, in which blue's boat follows an order.
+/// One decision of one tick, in which blue's boat follows an order.
 fn step(contest: &mut Contest, blue: Order) {
     order(contest, BLUE, blue);
     contest.advance();
@@ -42,7 +44,7 @@ fn steer(heading_deg: f64, speed_m_s: f64) -> Order {
     Order::Steer { heading_rad: heading_deg.to_radians(), speed_m_s }
 }
 
-/// Where a boat is (x, y), its speed, and its heading in degrees.
+/// A boat's position (x, y), speed, and heading in degrees.
 fn state(contest: &Contest, vehicle: VehicleId) -> [f64; 4] {
     let boat = &contest.world().state().boats[vehicle.index()];
     [boat.pose.at.east, boat.pose.at.north, boat.nu.surge, boat.pose.psi_rad.to_degrees()]
@@ -54,8 +56,8 @@ fn assert_near(what: &str, got: [f64; 4], want: [f64; 4], within: f64) {
 
 #[test]
 fn a_boat_that_leaves_at_the_side_comes_back_as_soon_as_in_the_competition() {
-    // Full ahead from (40, 70) to the north: when it leaves, for how long it is outside, and when it is freed, with looks
-    // at every step of 0.1 s and with the competition's at every tenth.
+    // Full ahead from (40, 70) to the north: when it leaves, how long it is outside, and when it is
+    // freed, with looks at every step of 0.1 s and, as in the competition, at every tenth.
     for (boat, speed_m_s, looks_s, want_s) in [
         ("heron", 2.0, 0.0, [8.9, 8.8, 28.6]),
         ("heron", 2.0, 1.0, [9.0, 9.0, 29.0]),
@@ -70,7 +72,7 @@ fn a_boat_that_leaves_at_the_side_comes_back_as_soon_as_in_the_competition() {
         let (mut left_s, mut back_s, mut freed_s) = (0.0, 0.0, 0.0);
         while freed_s == 0.0 && contest.now().as_s() < 120.0 {
             let known = contest.events().len();
-            // Ahead on whatever heading it has, as the actions of Pyquaticus are.
+            // Ahead on its present heading, like the actions of Pyquaticus.
             step(&mut contest, Order::Turn { by_rad: 0.0, speed_m_s });
             for logged in &contest.events()[known..] {
                 match logged.event {
@@ -89,8 +91,8 @@ fn a_boat_that_leaves_at_the_side_comes_back_as_soon_as_in_the_competition() {
 
 #[test]
 fn a_point_boat_slides_along_the_keepout_circle_as_in_pyquaticus() {
-    // Start, heading ordered all the time; the first step at which it is set back, and x, y, speed and heading then; the
-    // same at 30 s, which is long after it has got past the flag.
+    // Start and constant ordered heading; the first step at which it is set back, with x, y, speed
+    // and heading then; and x, y at 30 s, long after it has passed the flag.
     type Case = (&'static str, (f64, f64, f64), f64, [f64; 4], [f64; 2]);
     let cases: [Case; 6] = [
         ("heron", (20.0, 25.0, 0.0), 8.9, [20.0, 34.9, 0.0, 90.0], [25.63014, 59.421063]),
@@ -110,7 +112,8 @@ fn a_point_boat_slides_along_the_keepout_circle_as_in_pyquaticus() {
             }
         }
         let [x, y, ..] = state(&contest, BLUE);
-        // Theirs has headings and speeds in single precision, and every time it is set back enlarges the difference.
+        // Pyquaticus has headings and speeds in single precision, and every set-back enlarges the
+        // difference.
         assert!((x - end[0]).abs() < 0.01 && (y - end[1]).abs() < 0.01, "{boat} {start:?}: ({x}, {y}), not {end:?}");
     }
 }
@@ -133,7 +136,7 @@ fn a_hull_held_at_the_keepout_circle_does_not_go_on_pushing() {
 fn boats_pass_through_each_other_where_the_rules_say_so() {
     for contact in [Contact::Ghost, Contact::Solid] {
         let mut scenario = game("pyquaticus", "heron", (100.0, 60.0, 90.0));
-        // Nobody is near enough to be tagged.
+        // No boat is close enough to be tagged.
         (scenario.rules.contact, scenario.rules.tag_radius_m) = (contact, 0.1);
         let mut contest = afloat(&scenario);
         common::set_in(&mut contest, |state| {
@@ -146,7 +149,7 @@ fn boats_pass_through_each_other_where_the_rules_say_so() {
             step(&mut contest, steer(90.0, 2.0));
             gap_m = gap_m.min(common::gap_m(contest.world(), &scenario, 0, 1));
         }
-        // Their keels pass each other at half a metre, and the hulls are a metre wide.
+        // Their keels pass at half a metre, and the hulls are a metre wide.
         let want_m = if contact == Contact::Ghost { -0.5..-0.45 } else { -0.02..0.05 };
         assert!(want_m.contains(&gap_m), "{contact:?}: {gap_m} m");
         let collided = |logged: &rules::event::Logged| matches!(logged.event, Event::Collided { .. });
@@ -156,8 +159,8 @@ fn boats_pass_through_each_other_where_the_rules_say_so() {
 
 #[test]
 fn half_a_turn_is_an_order_of_its_own_to_either_side() {
-    // Their actions 0 and 8, half a turn at full speed and at half of it, held from rest: x, y, speed and heading after
-    // 3 s, 12 s and 30 s. To port it is the mirror image.
+    // Actions 0 and 8 of Pyquaticus, half a turn at full and at half speed, held from rest: x, y,
+    // speed and heading after 3 s, 12 s and 30 s. To port it is the mirror image.
     let cases: [(&str, f64, [[f64; 4]; 3]); 4] = [
         (
             "heron",
@@ -211,16 +214,16 @@ fn half_a_turn_is_an_order_of_its_own_to_either_side() {
     }
 }
 
-/// A game as Pyquaticus played it: where the boats start, what each does at every step, what happens, where they end.
+/// A game played by Pyquaticus: starting positions, actions at every step, events, final positions.
 #[derive(Default)]
 struct Trace {
-    /// By boat: x, y, heading in degrees.
+    /// x, y, heading in degrees, by boat.
     starts: Vec<[f64; 3]>,
-    /// By step, by boat: the number of the action.
+    /// Action numbers, by step and boat.
     actions: Vec<Vec<usize>>,
-    /// By the number of steps played.
+    /// Events, by number of steps played.
     events: BTreeMap<usize, Vec<String>>,
-    /// By boat: x, y.
+    /// x, y, by boat.
     ends: Vec<[f64; 2]>,
 }
 
@@ -244,7 +247,8 @@ impl Trace {
     }
 }
 
-/// The order that an action of Pyquaticus means: half a turn to an eighth of a turn to port, at full and at half speed.
+/// The order for an action of Pyquaticus: half a turn to an eighth of a turn to port, at full and
+/// at half speed.
 fn order_of(action: usize, speed_max_m_s: f64) -> Order {
     let by_rad = (180.0 - 45.0 * (action % 8) as f64).to_radians();
     match action {
@@ -254,7 +258,7 @@ fn order_of(action: usize, speed_max_m_s: f64) -> Order {
     }
 }
 
-/// The word for an event that a trace has.
+/// The trace's word for an event.
 fn told(event: Event) -> Option<String> {
     Some(match event {
         Event::Tagged { vehicle, cause: TagCause::Opponent(by) } => format!("tag {} {}", by.0, vehicle.0),
@@ -283,7 +287,8 @@ fn whole_games_go_event_for_event_as_in_pyquaticus() {
              boat = \"../boats/{boat}_kinematic.toml\"\ndecision_s = 0.1\n{}",
             vehicles.collect::<String>()
         ));
-        // Theirs sets boats back with headings in single precision, and every time it does enlarges the difference.
+        // Pyquaticus sets boats back with headings in single precision, and every set-back enlarges
+        // the difference.
         scenario.rules.flag_keepout_m = 0.0;
         let mut contest = afloat(&scenario);
         let speed_max_m_s = scenario.boat_of(BLUE).speed_max_m_s();

@@ -1,4 +1,4 @@
-//! The sea and the boats together: what must hold of every world, against closed forms and symmetry.
+//! The sea and the boats together: invariants of every world, against closed forms and symmetry.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -56,8 +56,8 @@ fn energy_does_not_grow_without_input_in_a_moving_water_seen_from_it() {
     }
 }
 
-/// A drifter's mean velocity over ten minutes and the root mean square of its velocity, m/s, in waves of this height
-/// without drift force.
+/// A drifter's mean velocity over ten minutes and the root mean square of its velocity, m/s, in
+/// waves of this height without drift force.
 fn adrift(hs_m: f64, seed: u64) -> (Ned, f64) {
     let scenario = surveyor_on(|sea| sea.waves = Some(Waves { drift_factor: 0.0, ..waves(hs_m, 2.5) }));
     let mut world = afloat(&scenario, seed, (300.0, 200.0, 20.0), (0.0, 0.0, 0.0));
@@ -75,12 +75,13 @@ fn adrift(hs_m: f64, seed: u64) -> (Ned, f64) {
 
 #[test]
 fn a_drifter_in_waves_goes_to_and_fro_and_only_second_order_takes_it_anywhere() {
-    // The published scale: 0.18 m/s of orbital velocity averaged over the hull in a sea of 0.3 m. Stokes drift is 0.04 m/s.
+    // The published scale: 0.18 m/s of orbital velocity averaged over the hull in a sea of 0.3 m.
+    // Stokes drift is 0.04 m/s.
     let (mean, rms) = adrift(0.3, 4);
     assert!((0.08..0.3).contains(&rms), "{rms} m/s to and fro");
     assert!(mean.length() < 0.08, "{mean:?} m/s on the whole");
-    // First-order motion is in proportion to the height and has no mean: in waves a tenth as high a boat goes to and fro a
-    // tenth as fast, and of the rest a hundredth is left.
+    // First-order motion is proportional to the height and has no mean: in waves a tenth as high a
+    // boat oscillates a tenth as fast, and of the rest a hundredth remains.
     let (small_mean, small_rms) = adrift(0.03, 4);
     assert!((small_rms / rms - 0.1).abs() < 0.01, "{small_rms} m/s of {rms} to and fro");
     assert!(small_mean.length() < 0.03 * small_rms, "{small_mean:?} m/s on the whole, {small_rms} to and fro");
@@ -88,7 +89,8 @@ fn a_drifter_in_waves_goes_to_and_fro_and_only_second_order_takes_it_anywhere() 
 
 #[test]
 fn boats_in_waves_heave_at_the_frequency_of_encounter() {
-    // One long-crested wave of some 2.5 s from ahead, abeam and astern, at held speeds: ω − k V cos, with V as it turns out.
+    // One long-crested wave of about 2.5 s from ahead, abeam and astern, at held speeds: ω − k V
+    // cos, with the resulting V.
     let (samples, dt_s) = (2_048_usize, 0.05);
     let resolution = TAU / (samples as f64 * dt_s);
     for (from_deg, speed_m_s) in [(0.0, 0.8), (0.0, 1.5), (90.0, 1.5), (180.0, 0.8), (180.0, 1.5)] {

@@ -1,4 +1,5 @@
-//! Sensors against what they are stated to do: statistics, times, curves, and the truth where they are perfect.
+//! Sensors against their specification: statistics, times, curves, and the true state for perfect
+//! ones.
 
 mod common;
 
@@ -17,7 +18,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 const TICK: SimTime = SimTime(50_000_000);
 
-/// A receiver that takes a fix five times a second and errs in nothing.
+/// A receiver that takes an exact fix five times a second.
 fn exact_gps() -> Gps {
     Gps {
         bias_m: 0.0,
@@ -48,7 +49,7 @@ fn with_compass(compass: Compass) -> Sensors {
     Sensors { compass: Some(compass), ..Sensors::default() }
 }
 
-/// A boat that goes 2 m/s ahead and 0.5 m/s to starboard with its bow 30° east of north.
+/// A boat moving at 2 m/s ahead and 0.5 m/s to starboard with its bow 30° east of north.
 fn sailing(now: SimTime) -> Truth {
     let psi_rad = PI / 6.0;
     let velocity = ned_from_body(Rotation::from_heading(psi_rad), Body { ahead: 2.0, starboard: 0.5 });
@@ -59,14 +60,14 @@ fn sailing(now: SimTime) -> Truth {
     }
 }
 
-/// What one boat reads, tick by tick.
+/// The readings of one boat, tick by tick.
 fn record(sensors: &Sensors, seed: u64, ticks: i64, truth: impl Fn(SimTime) -> Truth) -> Vec<(SimTime, Reading)> {
     let model = SensorModel::new(sensors, TICK, &seed.into(), "blue_one");
     let mut state = SensorState::default();
     (0..ticks).map(|i| (TICK * i, model.read(&mut state, &truth(TICK * i), TICK * i))).collect()
 }
 
-/// What one boat with this receiver reads, fix by fix.
+/// The readings of one boat with this receiver, fix by fix.
 fn gps_record(gps: Gps, seed: u64, fixes: i64, truth: impl Fn(SimTime) -> Truth) -> Vec<(SimTime, Reading)> {
     record(&with_gps(gps), seed, 4 * fixes, truth).into_iter().step_by(4).collect()
 }
@@ -75,7 +76,7 @@ fn at_rest(_now: SimTime) -> Truth {
     Truth::default()
 }
 
-/// Everything at fault at once.
+/// All faults at once.
 fn faulty() -> Sensors {
     Sensors {
         gps: Some(Gps {
@@ -130,7 +131,8 @@ fn perfect_sensors_tell_the_truth_bit_for_bit() {
 
 #[test]
 fn a_fix_says_where_the_boat_was_and_comes_out_after_its_latency() {
-    // (latency, ticks until it is out): a fix is out at the first tick at which it is old enough.
+    // (latency, ticks until delivery): a fix is delivered at the first tick at which it is old
+    // enough.
     for (latency_s, late) in [(0.0, 0), (0.05, 1), (0.25, 5), (0.26, 6), (1.0, 20), (3.15, 63)] {
         for (now, reading) in record(&with_gps(Gps { latency_s, ..exact_gps() }), 1, 400, sailing) {
             let tick = now.0 / TICK.0;
@@ -145,7 +147,7 @@ fn a_fix_says_where_the_boat_was_and_comes_out_after_its_latency() {
 
 #[test]
 fn the_longest_latency_that_a_file_may_state_comes_out_as_stated_whatever_the_periods() {
-    // What `scenario` allows: latency_s up to 2 and up to 12 periods, period_s from 0.02.
+    // The limits of `scenario`: latency_s up to 2 and up to 12 periods, period_s from 0.02.
     for decision_ms in [10, 20, 50, 100, 250, 1_000] {
         let decision = SimTime(decision_ms * 1_000_000);
         for period_s in [0.02, 0.029, 0.05, 0.074, 0.1, 0.13, 0.149, 0.149_999, 0.15, 0.2, 1.0, 1.49, 10.0] {
@@ -195,7 +197,7 @@ fn the_bias_of_a_receiver_wanders_as_stated_and_noise_comes_on_top() {
         assert_memory(what, &x, &[0, 10, 40, 80], STEP_S / 8.0, within);
     }
     assert!(mean_of(FIXES, |i| biased[i].north * biased[i].east).abs() / 2.25 < within);
-    // Noise does not move the bias: the difference of the two records is the noise.
+    // Noise does not affect the bias: the difference of the two records is the noise.
     let noisy = fixes(Gps { noise_m: 0.2, ..gps }, 2);
     let noise: Vec<f64> = noisy.iter().zip(&biased).map(|(noisy, biased)| noisy.north - biased.north).collect();
     let variance = mean_of(FIXES, |i| noise[i] * noise[i]) / 0.04;
@@ -353,7 +355,7 @@ fn at_rest_a_gyro_reads_its_bias_and_noise_and_an_accelerometer_the_water_s_push
         })
         .collect();
     for (axis, (x, noise, bias)) in columns.iter().enumerate() {
-        // Noise is white, so all that neighbours share is bias.
+        // Noise is white, so any correlation of neighbours is bias.
         for lag in [0, 1, 50, 100, 200] {
             let got = mean_of(TICKS - lag, |i| x[i] * x[i + lag]);
             let white = if lag == 0 { noise * noise } else { 0.0 };
@@ -381,7 +383,8 @@ fn a_true_reading_follows_the_boat_s_motion() {
     let surging = Truth { nu_dot: Planar { surge: 0.4, sway: -0.2, yaw: 0.0 }, ..Truth::default() };
     let heaving = lying(Attitude { heave_up_m_s2: -1.0, ..Attitude::default() });
     for (what, truth, want) in [
-        // A turn to starboard pushes to starboard with u r, and astern with v r where the boat slides to starboard.
+        // A turn to starboard pushes to starboard by u r, and astern by v r if the boat slides to
+        // starboard.
         ("turn", level, [-0.25, 0.5, -GRAVITY_M_S2]),
         // Starboard side down, the push up is to port of the mast; bow up, ahead of it.
         ("roll", rolled, [0.0, -half, -most]),
@@ -466,7 +469,7 @@ fn sensors_go_on_from_a_snapshot_to_the_bit() {
             let back: SensorState = postcard::from_bytes(&bytes).unwrap();
             assert_eq!(back, state, "tick {i}");
             assert!(bytes.len() < 500, "only fixes under way are kept: {} bytes", bytes.len());
-            // A state from bytes sails on beside the one that never was bytes.
+            // A state restored from bytes continues like the original.
             let (mut one, mut other) = (state.clone(), back);
             for j in i..i + 30 {
                 let readings = [&mut one, &mut other].map(|state| model.read(state, &sailing(TICK * j), TICK * j));
@@ -489,7 +492,7 @@ fn the_front_seat_steers_by_the_heading_that_the_compass_shows() {
         world.step(&orders);
         world.read_sensors();
     }
-    // A compass that points 0.2 rad too far east reads as much too little.
+    // A compass needle 0.2 rad too far east reads 0.2 rad too low.
     let (psi_rad, reading) =
         (world.state().boats[0].pose.psi_rad, world.reading(VehicleId::at(0)).unwrap().nav.psi_rad);
     assert!((reading - 1.0).abs() < 0.01, "it reads {reading}");

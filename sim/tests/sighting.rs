@@ -1,5 +1,5 @@
-//! What a team is shown of other boats, against what the scenario states: range, view, delay, noise, loss and memory;
-//! and that sightings share the fate of the report that carries them.
+//! Sightings against the scenario's settings: range, view, delay, noise, loss and memory; and
+//! sightings share the fate of the report that carries them.
 
 mod common;
 
@@ -17,7 +17,7 @@ const BLUE: VehicleId = VehicleId(0);
 const RED: VehicleId = VehicleId(1);
 const DECISION: SimTime = SimTime(100_000_000);
 
-/// Nothing is seen later, wrongly or not at all, and yet it is not the default.
+/// Sightings without delay, error or loss, but not the default.
 fn clear_sight() -> Sharing {
     Sharing { range_m: Some(1e6), memory_s: 1e4, ..Sharing::default() }
 }
@@ -26,7 +26,7 @@ fn start_position((x, y, heading_deg): (f64, f64, f64)) -> StartPosition {
     StartPosition::At(Pose { at: Ned::from_xy(x, y), psi_rad: rad_from_compass_deg(heading_deg) })
 }
 
-/// One boat a side, at x (m), y (m) and a compass heading (deg).
+/// One boat per side, at x (m), y (m) and a compass heading (deg).
 fn facing(sharing: Sharing, blue: (f64, f64, f64), red: (f64, f64, f64)) -> Scenario {
     let mut scenario = alone("surveyor_m1_8", "calm");
     scenario.rules.sharing = sharing;
@@ -40,7 +40,7 @@ fn started(scenario: &Scenario) -> Contest {
     Contest::new(scenario, 1).expect("the boats fit")
 }
 
-/// What blue is shown of red.
+/// Blue's contact of red.
 fn shown(contest: &mut Contest) -> Option<Contact> {
     contest.pictures()[0].contacts.iter().find(|contact| contact.vehicle == RED).copied()
 }
@@ -107,7 +107,7 @@ fn reports_err_by_the_stated_noise_and_anew_each_time() {
     let (noise_m, velocity_noise_m_s) = (3.0, 0.5);
     let sharing = Sharing { noise_m, velocity_noise_m_s, ..clear_sight() };
     let mut contest = started(&facing(sharing, (300.0, 200.0, 0.0), (500.0, 200.0, 90.0)));
-    // In standard deviations.
+    // Errors in standard deviations.
     let mut errors: [Vec<f64>; 4] = Default::default();
     for _ in 0..REPORTS {
         let off = at(&shown(&mut contest).unwrap()) - place(&contest, RED);
@@ -195,7 +195,7 @@ fn sightings_are_late_or_lost_with_the_report_of_the_boat_that_saw() {
 #[test]
 fn a_boat_out_of_radio_range_tells_nobody_what_it_sees() {
     for (range_m, is_told) in [(Some(100.0), false), (Some(200.0), true), (None, true)] {
-        // blue_one is at the station and sees nothing; blue_two, 140 m from it, sees red.
+        // blue_one is at the station and sees nothing; blue_two, 140 m away, sees red.
         let sharing = Sharing { range_m: Some(50.0), ..clear_sight() };
         let mut scenario = facing(sharing, (400.0, 200.0, 0.0), (560.0, 200.0, 90.0));
         let mut second = scenario.vehicles[BLUE.index()].clone();

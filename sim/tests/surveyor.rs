@@ -1,4 +1,4 @@
-//! The Surveyor's model against what was measured of the boat, and against what its parameters predict.
+//! The Surveyor's model against measurements of the boat and predictions from its parameters.
 
 mod common;
 
@@ -50,8 +50,8 @@ fn it_is_as_fast_as_its_thrust_map_says() {
 
 #[test]
 fn it_turns_on_one_thruster_as_its_parameters_predict() {
-    // Predicted with the whole of A22 in surge's Coriolis term: 1.90 m/s. Here the Munk factor acts there too, so that
-    // the inertia terms do no work, and that is worth 0.04 m/s.
+    // Predicted with all of A22 in surge's Coriolis term: 1.90 m/s. Here the Munk factor acts there
+    // too, so that the inertia terms do no work, which makes a difference of 0.04 m/s.
     let nu = sail(&mut afloat(AT_REST), Order::Thrust { port: 1.0, starboard: 0.0 }, 100).nu;
     within("surge", nu.surge, 1.90, 0.025);
     within("yaw rate, degrees", nu.yaw.to_degrees(), 23.0, 0.02);
@@ -70,8 +70,8 @@ fn it_spins_on_the_spot_under_opposed_thrust() {
 
 #[test]
 fn it_coasts_as_the_closed_form_says() {
-    // (m + A11) u' = −(6 + 13 u) u from 2 to 0.2 m/s takes 9.57 s and (58.1 / 13) ln(32 / 8.6) = 5.87 m; the way to
-    // rest is (58.1 / 13) ln(32 / 6) = 7.48 m.
+    // (m + A11) u' = −(6 + 13 u) u from 2 to 0.2 m/s takes 9.57 s and (58.1 / 13) ln(32 / 8.6) =
+    // 5.87 m; the distance to rest is (58.1 / 13) ln(32 / 6) = 7.48 m.
     let mut world = afloat((2.0, 0.0, 0.0));
     let start = world.state().boats[0].pose.at;
     let (mut ticks, mut boat) = (0, world.state().boats[0]);

@@ -1,4 +1,5 @@
-//! What must not matter: where north is, which side is port, how fast all the water moves, and a disturbance of no size.
+//! Invariances: orientation of north, port and starboard, uniform motion of the water, and a
+//! disturbance of size zero.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -26,7 +27,7 @@ fn turned(v: Ned, by_rad: f64) -> Ned {
     Ned { north: v.north * cos - v.east * sin, east: v.north * sin + v.east * cos }
 }
 
-/// The scenario as it is with north `by_rad` further to port: everything turns to starboard about the datum.
+/// The scenario with north moved `by_rad` to port: everything turns to starboard about the datum.
 fn with_all_turned(mut scenario: Scenario, by_rad: f64) -> Scenario {
     let sea = &mut scenario.sea;
     for from_rad in [&mut sea.waves.as_mut().unwrap().from_rad, &mut sea.wind.as_mut().unwrap().from_rad] {
@@ -45,7 +46,7 @@ fn with_all_turned(mut scenario: Scenario, by_rad: f64) -> Scenario {
     scenario
 }
 
-/// All that a sea can have.
+/// Adds all effects of a sea.
 fn everything(sea: &mut Sea) {
     (sea.waves, sea.wind) = (Some(waves(0.3)), Some(wind(8.0)));
     sea.current.mean_m_s = Ned { north: 0.2, east: 0.1 };
@@ -57,8 +58,8 @@ fn everything(sea: &mut Sea) {
     sea.current.eddies = vec![Eddy { centre: Ned { north: 215.0, east: 320.0 }, radius_m: 20.0, peak_m_s: 0.3 }];
 }
 
-/// Where a boat is after each tick, its heading and its velocity, from north 200 and east 300 on a heading of 20°, in a
-/// world turned by `by_rad`; turned back.
+/// A boat's position, heading and velocity after each tick, from north 200 and east 300 on a
+/// heading of 20°, in a world rotated by `by_rad`; rotated back.
 fn track(scenario: &Scenario, order_of: impl Fn(f64) -> Order, by_rad: f64) -> Vec<[f64; 6]> {
     let start = turned(Ned { north: 200.0, east: 300.0 }, by_rad);
     let start = (start.east, start.north, 20.0 + by_rad.to_degrees());
@@ -75,8 +76,9 @@ fn track(scenario: &Scenario, order_of: impl Fn(f64) -> Order, by_rad: f64) -> V
 
 #[test]
 fn it_does_not_matter_where_north_is() {
-    // The table of headings has an entry every 5°. Turned by a multiple of that, a boat finds the same numbers, to single
-    // precision; by anything else, it finds others between the entries, which are off by a part of a per cent.
+    // The heading table has an entry every 5°. Rotated by a multiple of that, a boat finds the same
+    // numbers, to single precision; otherwise it finds others between the entries, which are off by
+    // a fraction of a per cent.
     let scenario = surveyor_on(everything);
     let steer = |by_rad: f64| Order::Steer { heading_rad: primitives::angle::wrap_pi(0.6 + by_rad), speed_m_s: 1.5 };
     let thrust = |_| Order::Thrust { port: 0.6, starboard: 0.55 };
@@ -101,9 +103,10 @@ fn it_does_not_matter_where_north_is() {
 
 #[test]
 fn it_does_not_matter_which_side_is_port() {
-    // Mirrored in the line north-south through the datum: east, heading, sway and yaw change sign. Without waves to the
-    // last bit; with them to single precision, since a heading and its mirror image lie between different entries of the
-    // table. Waves of one direction: where they spread, the directions are drawn, and not the mirrored ones.
+    // Mirrored at the meridian of the datum: east, heading, sway and yaw change sign. Exact without
+    // waves; with them to single precision, because a heading and its mirror image lie between
+    // different entries of the table. Waves of one direction: with spreading, the directions are
+    // drawn and not mirrored.
     let sail = |side: f64, has_waves: bool| {
         let mut scenario = surveyor_on(|sea| {
             sea.current.mean_m_s = Ned { north: 0.2, east: side * 0.3 };
@@ -132,7 +135,8 @@ fn it_does_not_matter_which_side_is_port() {
     }
     for (tick, (a, b)) in sail(1.0, true).iter().zip(&sail(-1.0, true)).enumerate() {
         let off = a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        // Rounding to single precision, 1e-10 a tick, grows a millionfold in a minute as tracks side by side part.
+        // Rounding to single precision, 1e-10 per tick, grows a millionfold in a minute as
+        // neighbouring tracks separate.
         let within = if tick < 300 { 2e-6 } else { 0.01 };
         assert!(off < within, "tick {tick}: {a:?} {b:?}");
     }
@@ -140,11 +144,13 @@ fn it_does_not_matter_which_side_is_port() {
 
 #[test]
 fn a_uniform_current_carries_everything_along_and_changes_nothing_else() {
-    // Of imposed thrust. The front seat steers by what it is told of the ground, and a current changes that.
+    // With imposed thrust. The front seat steers by motion over the ground, which a current
+    // changes.
     let current = Ned { north: 0.35, east: -0.2 };
     let orders = [Order::Thrust { port: 0.8, starboard: 0.5 }, Order::Hold];
     let (at_rest, streaming) = (surveyor_on(|_| ()), surveyor_on(|sea| sea.current.mean_m_s = current));
-    // The same velocity through the water: over the ground it is that and the current, seen from the boat at 0°.
+    // The same velocity through the water: over the ground the current is added, seen from the boat
+    // at 0°.
     let mut carried = afloat(&streaming, 1, (200.0, 200.0, 0.0), (1.0 + current.north, current.east, 0.1));
     let mut still = afloat(&at_rest, 1, (200.0, 200.0, 0.0), (1.0, 0.0, 0.1));
     for tick in 1..=12_000 {
@@ -153,13 +159,13 @@ fn a_uniform_current_carries_everything_along_and_changes_nothing_else() {
         let (a, b) = (still.state().boats[0].pose, carried.state().boats[0].pose);
         let off_m = (b.at - current.scaled(f64::from(tick) * 0.05)).distance(a.at);
         let off_rad = primitives::angle::wrap_pi(a.psi_rad - b.psi_rad).abs();
-        // The state holds the velocity over the ground, so in every tick the current is added and taken away again:
-        // that rounds, and headings are alike to rounding, not to the last bit.
+        // The state stores the velocity over the ground, so every tick adds and subtracts the
+        // current. That rounds: headings agree to rounding, not to the last bit.
         assert!(off_m < 1e-10 && off_rad < 1e-12, "tick {tick}: {off_m} m, {off_rad} rad");
     }
 }
 
-/// A name, and what is done to a sea.
+/// A name, and a change of the sea.
 type Change = (&'static str, fn(&mut Sea));
 
 const NOTHINGS: [Change; 9] = [
@@ -186,7 +192,7 @@ const NOTHINGS: [Change; 9] = [
     }),
 ];
 
-/// The digests of a game's state, tick by tick, on the sea so changed.
+/// The digests of a game's state, tick by tick, on the changed sea.
 fn digests(change: impl FnOnce(&mut Sea)) -> Vec<u128> {
     let mut world = afloat(&surveyor_on(change), 1, (200.0, 200.0, 40.0), (1.0, 0.2, -0.1));
     let orders = [Order::Steer { heading_rad: 2.0, speed_m_s: 2.0 }, Order::Thrust { port: 0.7, starboard: 0.2 }];
@@ -208,7 +214,7 @@ fn a_disturbance_of_no_size_is_none_to_the_last_bit() {
 
 #[test]
 fn a_disturbance_of_no_size_changes_nothing_in_a_rough_sea_either() {
-    // No wind, which is no wind at all: air at rest would resist a boat under way.
+    // Zero wind instead of still air, which would resist a boat under way.
     let rough = |sea: &mut Sea| {
         sea.waves = Some(waves(0.3));
         sea.current.mean_m_s = Ned { north: 0.2, east: 0.1 };

@@ -1,4 +1,4 @@
-//! The sum of waves against the spectrum it stands for, and against linear wave theory.
+//! The sum of waves against the spectrum it represents, and against linear wave theory.
 
 mod common;
 
@@ -21,8 +21,8 @@ fn power(x: f64, n: usize) -> f64 {
     std::iter::repeat_n(x, n).product()
 }
 
-/// The moments of order 0, 1 and 2 of the components, and the same of the spectrum up to 60 peak frequencies, beyond
-/// which the second has 0.0004 of itself left.
+/// The moments of order 0, 1 and 2 of the components, and those of the spectrum up to 60 peak
+/// frequencies, beyond which 0.0004 of the second moment is left.
 fn moments(field: &WaveField) -> [f64; 3] {
     let of = |n| field.components().map(|c| 0.5 * square(c.amplitude_m) * power(c.omega_rad_s, n)).sum();
     [of(0), of(1), of(2)]
@@ -53,7 +53,8 @@ fn the_variance_is_that_of_the_significant_height_to_the_last_digits() {
 
 #[test]
 fn the_spectrum_has_the_published_mean_periods() {
-    // Tz/Tp and T1/Tp: DNV-RP-C205, 3.5.5.4 to 3.5.5.5, and for gamma = 1 those of Pierson and Moskowitz.
+    // Tz/Tp and T1/Tp: DNV-RP-C205, 3.5.5.4 to 3.5.5.5, and for gamma = 1 those of Pierson and
+    // Moskowitz.
     for (gamma, zero_up, mean) in [(3.3, 0.778, 0.834), (1.0, 0.710, 0.772)] {
         let [m0, m1, m2] = moments_of_spectrum(&Waves { gamma, tp_s: 1.0, ..sea(1) });
         let got = (TAU * (m0 / m2).sqrt(), TAU * m0 / m1);
@@ -64,7 +65,7 @@ fn the_spectrum_has_the_published_mean_periods() {
 
 #[test]
 fn the_components_have_the_mean_periods_of_the_spectrum() {
-    // The band ends at five peak frequencies, which takes 4 % of the second moment away: 2 % of Tz.
+    // The band ends at five peak frequencies, which removes 4 % of the second moment: 2 % of Tz.
     for (components, within) in [(16, 0.08), (64, 0.04), (256, 0.03)] {
         for seed in 0..20 {
             let [m0, m1, m2] = moments(&WaveField::new(&Waves { tp_s: 1.0, ..sea(components) }, None, seed));
@@ -77,8 +78,8 @@ fn the_components_have_the_mean_periods_of_the_spectrum() {
 
 #[test]
 fn half_an_hour_at_a_place_has_the_stated_variance() {
-    // Half an hour is some 700 waves. For this spectrum the sampling error of a Gaussian sea is then 6 %
-    // (2π ∫S² dω / (T m0²), its root), and that of the mean over sixteen seas 1.5 %.
+    // Half an hour is about 700 waves. For this spectrum the sampling error of a Gaussian sea is
+    // then 6 % (the root of 2π ∫S² dω / (T m0²)), and that of the mean over sixteen seas 1.5 %.
     let seas = 16;
     let mut mean = 0.0;
     for seed in 0..seas {
@@ -130,7 +131,7 @@ fn variance_between(series: &[f64], dt_s: f64, from_rad_s: f64, to_rad_s: f64) -
     (first..=last).map(variance).sum()
 }
 
-/// Energy-weighted mean vector of the components' travel, from where the waves ought to go.
+/// Energy-weighted mean vector of the components' travel, relative to the expected direction.
 fn mean_vector(components: &[Component], from_rad: f64) -> (f64, f64) {
     let energy: f64 = components.iter().map(|c| square(c.amplitude_m)).sum();
     let sum = |f: fn(f64) -> f64| -> f64 {
@@ -141,7 +142,8 @@ fn mean_vector(components: &[Component], from_rad: f64) -> (f64, f64) {
 
 #[test]
 fn directions_have_the_mean_and_the_spread_of_their_distribution_at_all_frequencies() {
-    // First Fourier coefficients: 8 / 3π for cos², s / (s + 1) for cos^2s (Longuet-Higgins, Cartwright and Smith 1963).
+    // First Fourier coefficients: 8 / 3π for cos², s / (s + 1) for cos^2s (Longuet-Higgins,
+    // Cartwright and Smith 1963).
     let cases = [
         (Spreading::None, 1.0),
         (Spreading::CosineSquared, 8.0 / (3.0 * PI)),
@@ -186,7 +188,8 @@ fn regular(period_s: f64, toward_rad: f64, depth_m: Option<f64>) -> WaveField {
     WaveField::of(&[wave], depth_m, 1.0)
 }
 
-/// The first place after `from`, in the direction `toward_rad`, at which the surface rises through zero.
+/// The first place after `from_m`, in the direction `toward_rad`, at which the surface rises
+/// through zero.
 fn rise_after_m(field: &WaveField, toward_rad: f64, from_m: f64, time_s: f64) -> f64 {
     let (sin, cos) = libm::sincos(toward_rad);
     let height = |m: f64| field.surface(Ned { north: m * cos, east: m * sin }, time_s).elevation_m;
@@ -232,8 +235,9 @@ fn dispersion_holds_from_very_shallow_to_very_deep() {
 
 #[test]
 fn who_moves_meets_every_wave_at_its_frequency_of_encounter() {
-    // Nine waves of one sea, met against, across, with and obliquely: each is a peak of the spectrum, of its own height, at
-    // ω − k V cos, within the resolution of fourteen minutes. Nothing of that is put in: the surface is asked for on the way.
+    // Nine waves of one sea, encountered head-on, across, following and obliquely: each is a peak
+    // of the spectrum, of its own height, at ω − k V cos, within the resolution of fourteen
+    // minutes. None of this is put in: the surface is evaluated along the track.
     let (samples, dt_s) = (8192, 0.1);
     let field = WaveField::new(&Waves { gamma: 1.0, ..sea(9) }, None, 2);
     let resolution = TAU / (f64::from(samples) * dt_s);
@@ -249,7 +253,7 @@ fn who_moves_meets_every_wave_at_its_frequency_of_encounter() {
             for (i, c) in field.components().enumerate() {
                 let others = met_at.iter().enumerate().filter(|(j, _)| *j != i);
                 let room = others.map(|(_, at)| (at - met_at[i]).abs()).fold(met_at[i], f64::min);
-                // Two that meet a boat at nearly the same frequency are one peak.
+                // Two waves with nearly the same frequency of encounter are one peak.
                 if room < 6.0 {
                     continue;
                 }
@@ -304,7 +308,7 @@ fn phase_rad(c: &Component, at: Ned, time_s: f64) -> f64 {
     let k = c.omega_rad_s * c.omega_rad_s / GRAVITY_M_S2;
     let turned = c.omega_rad_s * time_s;
     let lost = c.omega_rad_s.mul_add(time_s, -turned);
-    // 2π has a tail of its own: 2.449e-16.
+    // The tail of 2π: 2.449e-16.
     let turns = (turned / TAU).round();
     let rest = turns.mul_add(-TAU, turned) - turns * 2.449_293_598_294_706_4e-16 + lost;
     k * (at.north * cos + at.east * sin) - rest + c.phase_rad

@@ -1,4 +1,4 @@
-//! The wind against its formulas, and its force against Fossen's and the drift that closed form gives.
+//! The wind against its formulas, and its force against Fossen's and the drift in closed form.
 
 mod common;
 
@@ -31,8 +31,8 @@ fn ornstein_uhlenbeck() -> Gusts {
     Gusts::OrnsteinUhlenbeck { intensity: INTENSITY, across_ratio: ACROSS_RATIO, length_m: LENGTH_M }
 }
 
-/// Wind from the west at one place, every `step_s`: (east over the mean − 1, south over the mean), both over the
-/// intensity along the wind.
+/// Wind from the west at one place, every `step_s`: (east over the mean − 1, south over the mean),
+/// both over the intensity along the wind.
 fn record(gusts: Gusts, seed: u64, count: i64, step_s: f64) -> Vec<(f64, f64)> {
     let mut field = WindField::new(&wind(270.0, gusts), HEIGHT_M, &field(), &seed.into());
     let mean_m_s = field.mean_m_s(HEIGHT_M);
@@ -76,7 +76,8 @@ fn ornstein_uhlenbeck_gusts_have_the_moments_and_the_memory_of_their_process() {
 
 #[test]
 fn the_spectrum_of_ornstein_uhlenbeck_gusts_bends_at_the_length_scale() {
-    // Dryden: S(ω) proportional to 1 / (1 + (ω τ)²). Periodograms of 3000 stretches of 64 τ with Hann's window.
+    // Dryden: S(ω) proportional to 1 / (1 + (ω τ)²). Periodograms of 3000 stretches of 64 τ with
+    // Hann's window.
     const STRETCH: usize = 1024;
     const STRETCHES: usize = 3000;
     let mean_m_s = WindField::new(&wind(0.0, Gusts::None), HEIGHT_M, &field(), &1.into()).mean_m_s(HEIGHT_M);
@@ -123,7 +124,7 @@ fn a_gust_comes_to_a_boat_downwind_as_it_was() {
             let way_m = 1.0 + f64::from(i) * 0.3;
             let later = SimTime::from_s(now.as_s() + way_m / mean_m_s);
             let downwind_later = field.at(upwind + downwind.scaled(way_m), mean_m_s, later);
-            // A nanosecond of rounding is worth 1e-8 m of way.
+            // A nanosecond of rounding is 1e-8 m of distance.
             assert!(air_m_s.distance(downwind_later) < WITHIN_M_S + 1e-7, "{i}: {air_m_s:?}, {downwind_later:?}");
             assert!(air_m_s.distance(field.at(upwind + abreast.scaled(30.0), mean_m_s, now)) < WITHIN_M_S);
             let ratio = field.at(upwind, 2.0 * mean_m_s, now);
@@ -140,7 +141,8 @@ fn the_wind_is_a_function_of_seed_place_and_time_alone() {
     let fresh = |seed: u64| WindField::new(&wind(30.0, ornstein_uhlenbeck()), HEIGHT_M, &field(), &seed.into());
     let mut sailed = fresh(9);
     let tick = SimTime::from_s(0.05);
-    // Sail on for ten minutes, go back to tick 700, then on again; each time as a world that starts there.
+    // Continue for ten minutes, go back to tick 700, then on again; compare each time with a world
+    // that starts there.
     for tick_count in (0..12_000).chain(700..900).chain([5, 1_000_000]) {
         let now = tick * tick_count;
         sailed.prepare(now);
@@ -166,7 +168,7 @@ fn no_wind_is_no_gusts_either() {
     }
 }
 
-/// The Surveyor's windage as the closed-form drift was worked out for.
+/// The Surveyor's windage used for the closed-form drift.
 fn surveyor() -> Windage {
     Windage {
         frontal_area_m2: 0.30,
@@ -203,7 +205,8 @@ fn the_wind_pushes_a_boat_away_and_its_bow_off() {
         let sign = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
         assert_eq!((sign(got.surge), sign(got.sway), sign(got.yaw)), want, "from {from_deg}: {got:?}");
     }
-    // A boat that points east, makes 3 m/s ahead and 1 m/s to starboard, in a wind from the north on its port side.
+    // A boat that points east, moving at 3 m/s ahead and 1 m/s to starboard, in a wind from the
+    // north on its port side.
     let past = wind_past_boat(
         Rotation::from_heading_deg(90.0),
         Ned { north: -4.0, east: 0.0 },

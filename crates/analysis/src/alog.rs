@@ -1,14 +1,16 @@
-//! A game as the `.alog` files of MOOS, so that its post-mission tools (`alogview`, `aloggrep` and the like) read it.
+//! Exports a game as `.alog` files of MOOS, for its post-mission tools (`alogview`, `aloggrep` and
+//! the like).
 //!
-//! As after a mission there is a file for the shoreside and one for every vehicle. Positions are local metres, x east and
-//! y north of the datum; headings are compass degrees. A file is a header of five lines, then rows in the order of time:
-//! seconds since `LOGSTART` in 15 columns with 5 places, the variable in 20, the source in 15, and the value. Values are
-//! not escaped, and older readers drop the blanks in them: no value here has any.
+//! As after a mission, there is a file for the shoreside and one for every vehicle. Positions are
+//! local metres, x east and y north of the datum; headings are compass degrees. A file has a header
+//! of five lines, then rows in time order: seconds since `LOGSTART` in 15 columns with 5 decimals,
+//! the variable in 20, the source in 15, and the value. Values are not escaped, and older readers
+//! drop blanks, so no value here contains any.
 //!
 //! | file | variables |
 //! |---|---|
 //! | shoreside | `NODE_REPORT` of every boat (the truth), `AQUATICUS_GAME_ALL`, `<TEAM>_SCORES`, `<TEAM>_FLAG_GRABBED`, `HAS_FLAG_<BOAT>`, `TAGGED_<BOAT>`, `ONFIELD_<BOAT>`, `FLAG_RESET`, `SQUALL_EVENT` |
-//! | a vehicle | `NAV_X`, `NAV_Y`, `NAV_HEADING`, `NAV_SPEED` (what it estimated), the same as `NAV_GT_…` (the truth), `DESIRED_HEADING`, `DESIRED_TURN`, `DESIRED_SPEED`, `DESIRED_THRUST_L` and `_R`, `HAS_FLAG`, `TAGGED`, `NODE_REPORT_LOCAL` |
+//! | a vehicle | `NAV_X`, `NAV_Y`, `NAV_HEADING`, `NAV_SPEED` (estimated), the same as `NAV_GT_…` (true), `DESIRED_HEADING`, `DESIRED_TURN`, `DESIRED_SPEED`, `DESIRED_THRUST_L` and `_R`, `HAS_FLAG`, `TAGGED`, `NODE_REPORT_LOCAL` |
 
 use crate::step::{Sample, Step, for_each_step};
 use messages::Order;
@@ -20,26 +22,26 @@ use scenario::Scenario;
 use scenario::outcome::EventOutcome;
 use std::io::{self, BufWriter, Write};
 
-/// Node reports come this often, s: as the reporter of that test-bed has it by default.
+/// Period of node reports, s: the default of the test-bed's reporter.
 const REPORT_S: f64 = 0.5;
-/// The community of the shoreside.
+/// The community name of the shoreside.
 const SHORESIDE: &str = "shoreside";
-/// The program that all rows are from.
+/// The source of all rows.
 const SOURCE: &str = "squall";
 
-/// So many files are open at a time: of more boats the recording is read again.
+/// Limit of files open at a time. For more boats, the recording is read in several passes.
 const FILES_MAX: usize = 100;
 
-/// Opens the file of the shoreside, which is named so, or of a boat.
+/// Opens the file of the shoreside or of a boat, by name.
 pub type Open<'a> = dyn FnMut(&str) -> io::Result<Box<dyn Write>> + 'a;
 
-/// A log in the making.
+/// A log being written.
 struct Log {
     file: BufWriter<Box<dyn Write>>,
     start_utc_s: f64,
 }
 
-/// The log of the shoreside in the making.
+/// The shoreside's log being written.
 struct Shoreside {
     log: Log,
     points: Vec<Option<u32>>,
@@ -47,7 +49,7 @@ struct Shoreside {
     has_begun: bool,
 }
 
-/// The log of a vehicle in the making.
+/// A vehicle's log being written.
 struct Vehicle {
     log: Log,
     place: usize,
@@ -55,17 +57,17 @@ struct Vehicle {
     before: Option<Sample>,
 }
 
-/// Writes the log of the shoreside, and then those of the vehicles in their order, if they are wanted; says how many, and what of
-/// the recording could not be read.
+/// Writes the log of the shoreside and, if wanted, those of the vehicles in order. Returns their
+/// number and the damaged messages.
 ///
 /// # Errors
-/// As `open`, or as the files that it gives.
+/// Those of `open` and of the files that it returns.
 pub fn write(recording: &Recording, wants_vehicles: bool, open: &mut Open<'_>) -> io::Result<(usize, Damaged)> {
     let header = recording.header();
     let boats = if wants_vehicles { recording.scenario().vehicles.len() } else { 0 };
     let mut shoreside = Some(Shoreside::begin(header, open)?);
     let (mut next, mut damaged) = (0, Damaged::default());
-    // The first pass is made even where no vehicle is wanted.
+    // The first pass is needed even without vehicles.
     while shoreside.is_some() || next < boats {
         let end = boats.min(next + FILES_MAX);
         let vehicles: io::Result<Vec<Vehicle>> = (next..end).map(|place| Vehicle::begin(header, place, open)).collect();
@@ -75,7 +77,7 @@ pub fn write(recording: &Recording, wants_vehicles: bool, open: &mut Open<'_>) -
     Ok((1 + boats, damaged))
 }
 
-/// Writes these logs in one reading of the recording.
+/// Writes these logs in one pass over the recording.
 fn pass(recording: &Recording, mut shoreside: Option<Shoreside>, mut vehicles: Vec<Vehicle>) -> io::Result<Damaged> {
     let scenario = recording.scenario();
     let mut written = Ok(());
@@ -102,7 +104,8 @@ impl Shoreside {
 
     fn add(&mut self, scenario: &Scenario, step: &Step) -> io::Result<()> {
         let (log, time_s) = (&mut self.log, step.time_s);
-        // An event is told with the frame after it; its own time comes first, but for the beginning of the game.
+        // An event is recorded with the next frame. Its own time comes first, except at the start
+        // of the game.
         if !std::mem::replace(&mut self.has_begun, true) {
             log.row(time_s, "AQUATICUS_GAME_ALL", "play")?;
         }
@@ -202,7 +205,8 @@ impl Log {
         }
     }
 
-    /// A node report: `key=value` with commas between, `TIME` in UTC seconds. `TYPE` is a shape for viewers to draw.
+    /// A node report: comma-separated `key=value`, `TIME` in UTC seconds. `TYPE` is the shape that
+    /// viewers draw.
     fn node_report(&self, at_s: f64, scenario: &Scenario, (place, sample, nav): (usize, &Sample, &Nav)) -> String {
         let vehicle = &scenario.vehicles[place];
         let group = scenario.teams.get(vehicle.team.index()).map_or("", |team| team.name.as_str());
@@ -220,7 +224,7 @@ impl Log {
     }
 }
 
-/// What happened, under the names that the referees of the Aquaticus test-bed have for it, and all of it once more as
+/// Writes an event under the names used by the referees of the Aquaticus test-bed, and again as
 /// `SQUALL_EVENT`.
 fn happened(log: &mut Log, scenario: &Scenario, event: &EventOutcome) -> io::Result<()> {
     let at_s = event.at_s;
@@ -251,7 +255,7 @@ fn happened(log: &mut Log, scenario: &Scenario, event: &EventOutcome) -> io::Res
     log.row(at_s, "SQUALL_EVENT", &text)
 }
 
-/// What a boat is about; a viewer shows it beside the boat.
+/// The current activity of a boat, which viewers show beside it.
 fn mode(sample: &Sample) -> &'static str {
     match sample {
         Sample { nav_lost: true, .. } => "LOST",
@@ -264,7 +268,7 @@ fn mode(sample: &Sample) -> &'static str {
     }
 }
 
-/// Says at which samples something comes that does not come at all.
+/// Limits a stream of samples to one per period.
 struct Every {
     step_s: f64,
     next_s: f64,

@@ -1,4 +1,5 @@
-//! Two games beside each other: the same boats on the water and in simulation, or the same game played twice.
+//! Compares two games: the same boats on the water and in simulation, or the same game played
+//! twice.
 
 use crate::response::{Response, response};
 use crate::series::{BoatSeries, GameSeries};
@@ -9,20 +10,20 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use thiserror::Error;
 
-/// What differs between two games, A and B.
+/// The differences between two games, A and B.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
-    /// How long each is, s.
+    /// The duration of each, s.
     pub durations_s: [f64; 2],
-    /// What tracks and events are compared over: from the begin of both to the end of the shorter, s.
+    /// Length of the compared part, from the start of both to the end of the shorter, s.
     pub common_s: f64,
-    /// Differences of what was played, in words.
+    /// Differences in the set-up, in plain words.
     pub notes: Vec<String>,
-    /// Boats that are in both.
+    /// Boats in both games.
     pub boats: Vec<Pair>,
     /// Points by team, at the end of each file.
     pub score: BTreeMap<String, [Option<u32>; 2]>,
-    /// What happened in one and not in the other.
+    /// Events in only one of the games.
     pub events: EventDifference,
 }
 
@@ -33,32 +34,32 @@ pub struct Pair {
     pub boat: String,
     /// Its team in A.
     pub team: String,
-    /// How far apart its tracks are.
+    /// The distance between its tracks.
     pub apart: TrackDifference,
-    /// How it answered its orders in each.
+    /// Its response to orders in each game.
     pub response: [Response; 2],
 }
 
-/// What happened in one game and not in the other. Two events are the same if kind, boats and team are, and their times
-/// are near.
+/// Events in one game but not in the other. Two events match if kind, boats and team are equal and
+/// their times are within the tolerance.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EventDifference {
-    /// How near, s.
+    /// The tolerance, s.
     pub tolerance_s: f64,
-    /// How many happened in both.
+    /// Number of matched events.
     pub in_both: u32,
-    /// What happened only in A.
+    /// Events only in A.
     pub only_in_a: Vec<EventOutcome>,
-    /// What happened only in B.
+    /// Events only in B.
     pub only_in_b: Vec<EventOutcome>,
-    /// How often what happened in each, by kind.
+    /// Number of events in each game, by kind.
     pub counts: BTreeMap<String, [u32; 2]>,
 }
 
-/// Why two games cannot be compared.
+/// Reason why two games cannot be compared.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum Incomparable {
-    /// Their places are not from the same point.
+    /// Their positions have different origins.
     #[error("the fields {a} and {b} have different datums: places of one mean nothing on the other")]
     Datum {
         /// The field of A.
@@ -66,7 +67,7 @@ pub enum Incomparable {
         /// The field of B.
         b: String,
     },
-    /// No boat is in both.
+    /// No boat is in both games.
     #[error("no boat is in both: A has {a}, B has {b}")]
     Boats {
         /// The boats of A.
@@ -74,19 +75,19 @@ pub enum Incomparable {
         /// The boats of B.
         b: String,
     },
-    /// There is no time at which both were on.
+    /// The games have no time in common.
     #[error("there is no time at which both games were on: one of the recordings has no frames")]
     Time,
 }
 
-/// How far two datums may be apart, degrees: a millimetre.
+/// Tolerance between two datums, degrees: about a millimetre.
 const DATUM_DEG: f64 = 1e-8;
 
 impl Comparison {
     /// Compares two games.
     ///
     /// # Errors
-    /// [`Incomparable`] says why nothing can be said.
+    /// [`Incomparable`] if nothing can be compared.
     pub fn of(
         [head_a, head_b]: [&Header; 2],
         [a, b]: [&GameSeries; 2],
@@ -132,7 +133,7 @@ fn names(boats: &[BoatSeries]) -> String {
     boats.iter().map(|boat| boat.name.as_str()).collect::<Vec<_>>().join(", ")
 }
 
-/// What else differs, so that nobody takes it for the boats' doing.
+/// Other differences, so that they are not attributed to the boats.
 fn notes(heads: [&Header; 2], [a, b]: [&GameSeries; 2]) -> Vec<String> {
     let [one, other] = heads.map(|header| &header.info.scenario);
     let mut notes = vec![];
@@ -185,15 +186,15 @@ fn score(a: &GameSeries, b: &GameSeries) -> BTreeMap<String, [Option<u32>; 2]> {
     score
 }
 
-/// What makes events the same, but for their time.
+/// The attributes of an event, apart from its time, that must match.
 type Kind = (String, Option<String>, Option<String>, Option<String>);
 
 fn kind(event: &EventOutcome) -> Kind {
     (event.event.clone(), event.vehicle.clone(), event.other.clone(), event.team.clone())
 }
 
-/// Pairs the events of each kind in order: the earlier one of two that are too far apart has no counterpart, since all that
-/// follow on the other side are later still.
+/// Pairs the events of each kind in order. If two are too far apart in time, the earlier one has no
+/// match, because all following events on the other side are later still.
 fn events([a, b]: [Vec<EventOutcome>; 2], until_s: f64, tolerance_s: f64) -> EventDifference {
     let mut counts: BTreeMap<String, [u32; 2]> = BTreeMap::new();
     let mut kinds: BTreeMap<Kind, [Vec<EventOutcome>; 2]> = BTreeMap::new();
@@ -221,7 +222,7 @@ fn events([a, b]: [Vec<EventOutcome>; 2], until_s: f64, tolerance_s: f64) -> Eve
         only_in_a.extend(of_a);
         only_in_b.extend(of_b);
     }
-    // After the end of the shorter game there is nothing to miss.
+    // After the end of the shorter game, no event counts as missing.
     for only in [&mut only_in_a, &mut only_in_b] {
         only.retain(|event: &EventOutcome| event.at_s <= until_s);
         only.sort_by(|one, other| one.at_s.total_cmp(&other.at_s));

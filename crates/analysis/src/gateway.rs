@@ -1,4 +1,4 @@
-//! Gateways: what went over their links, and what stopped their boats.
+//! Gateways: the traffic on their links and their failsafes.
 
 use crate::link_line::{Line, Lines};
 use messages::external::{FailsafeReport, GatewayStatus, LinkBytes};
@@ -7,33 +7,33 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// What a recording tells of a gateway.
+/// The part of a recording about one gateway.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Gateway {
     /// The boat.
     pub boat: String,
     /// The supervisor's last known state.
     pub state: Option<String>,
-    /// What made it stop, oldest first.
+    /// Its failsafes, oldest first.
     pub failsafes: Vec<FailsafeReport>,
-    /// What came from the boat.
+    /// Traffic from the boat.
     pub from_boat: Traffic,
-    /// What went to the boat.
+    /// Traffic to the boat.
     pub to_boat: Traffic,
-    /// What could not be read of it.
+    /// Damaged messages about it.
     pub damaged: Damaged,
 }
 
-/// What went one way over a link.
+/// Traffic in one direction of a link.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Traffic {
-    /// How many bytes.
+    /// Number of bytes.
     pub bytes: u64,
-    /// How many lines of each kind of sentence.
+    /// Number of lines, by kind of sentence.
     pub sentences: BTreeMap<String, u64>,
 }
 
-/// The gateways of a game, in the order of their boats.
+/// The gateways of a game, by boat.
 pub(crate) fn gateways(recording: &Recording) -> Vec<Gateway> {
     let topics = recording.bag().topics();
     let is_known = |name: &str| ["link", "status"].iter().any(|what| topics.contains_key(&*format!("{what}/{name}")));
@@ -41,14 +41,15 @@ pub(crate) fn gateways(recording: &Recording) -> Vec<Gateway> {
     boats.filter(|name| is_known(name)).map(|name| gateway_of(recording.bag(), name)).collect()
 }
 
-/// What a recording tells of a boat's gateway: a game's, or the gateway's own.
+/// The gateway of a boat, from the recording of a game or of the gateway itself.
 #[must_use]
 pub fn gateway_of(bag: &Bag, boat: &str) -> Gateway {
-    // The recording of a gateway begins with it, and a gateway begins safed.
+    // A gateway's recording starts with the gateway, which starts safed.
     let state = (bag.kind() == Kind::Gateway).then(|| "safed".to_owned());
     let mut gateway = Gateway { boat: boat.to_owned(), state, ..Gateway::default() };
     traffic(bag, &mut gateway);
-    // Each status holds the failsafes so far, and a gateway that was started anew begins again: every one is taken once.
+    // Each status lists the failsafes so far, and a restarted gateway starts over: count each one
+    // once.
     for message in bag.on(&format!("status/{boat}")) {
         let Some(status) = gateway.damaged.sound(message.read_json::<GatewayStatus>()) else { continue };
         for failsafe in status.failsafes {
@@ -58,7 +59,7 @@ pub fn gateway_of(bag: &Bag, boat: &str) -> Gateway {
         }
         gateway.state = Some(status.state);
     }
-    // The gateway's own recording holds the changes of its state.
+    // The gateway's own recording contains its changes of state.
     for message in bag.on("event") {
         let Some(event) = gateway.damaged.sound(message.read_json::<Value>()) else { continue };
         if let Some(state) = event["event"]["state"]["to"].as_str() {

@@ -1,27 +1,27 @@
-//! Whether two hulls touch, as the rectangles around them.
+//! Whether two hulls touch, approximated by their bounding rectangles.
 
 use primitives::{Ned, Pose};
 
-/// A hull as the rectangle around it.
+/// A hull as its bounding rectangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HullRectangle {
-    /// Where its middle is and where it points.
+    /// Position of its centre, and heading.
     pub pose: Pose,
-    /// From bow to stern, m.
+    /// Length, m.
     pub length_m: f64,
-    /// From side to side, m.
+    /// Beam, m.
     pub beam_m: f64,
 }
 
 impl HullRectangle {
-    /// Half of its extent along an axis, a unit vector, m.
+    /// Half of its extent along an axis (a unit vector), m.
     fn half_m(&self, axis: Ned) -> f64 {
         let rotation = self.pose.rotation();
         let (ahead, starboard) = (rotation.ahead().dot(axis).abs(), rotation.starboard().dot(axis).abs());
         0.5 * (self.length_m * ahead + self.beam_m * starboard)
     }
 
-    /// Whether it overlaps another: no side of either separates them.
+    /// Whether it overlaps another: no side of either is a separating axis.
     #[must_use]
     pub fn overlaps(&self, other: &HullRectangle) -> bool {
         let line = other.pose.at - self.pose.at;
@@ -49,7 +49,7 @@ mod tests {
             ("bow to stern, touching", hull(1.99, 0.0, 0.0), true),
             ("a bow at the side, apart", hull(0.0, 1.51, 90.0), false),
             ("a bow at the side, touching", hull(0.0, 1.49, 90.0), true),
-            // Its corner reaches 1.5 / sqrt(2) = 1.06 m from its middle.
+            // Its corner reaches 1.5 / sqrt(2) = 1.06 m from its centre.
             ("a corner at the side, apart", hull(0.0, 1.57, 45.0), false),
             ("a corner at the side, touching", hull(0.0, 1.55, 45.0), true),
         ] {

@@ -1,10 +1,12 @@
-//! What a recorded game tells afterwards: statistics, tables for other programs, and how it differs from another game.
+//! Analysis of recorded games: statistics, tables for other programs, and comparison with another
+//! game.
 //!
-//! Everything here is computed from a [`recording::Recording`]. [`for_each_step`] gives the game decision by decision, so that
-//! [`Summary`] (for people), [`table`] (of single topics) and [`alog`] (for MOOS) need no more memory for a longer game.
-//! [`GameSeries`] is the game as time series, of long games thinned out, for plots and for [`Comparison`] of a game on the
-//! water with its simulation. [`quality`] says how sensibly boats play, of steps of a recording or of a game that is
-//! being played. Of a gateway's own recording [`gateway_of`] tells what went over its link.
+//! All results are computed from a [`recording::Recording`]. [`for_each_step`] yields the game
+//! decision by decision, so that [`Summary`] (for people), [`table`] (of single topics) and
+//! [`alog`] (for MOOS) need no more memory for a longer game. [`GameSeries`] holds the game as time
+//! series, thinned out if long, for plots and for [`Comparison`] of a game on the water with its
+//! simulation. [`quality`] measures how sensibly boats play, from the steps of a recording or of a
+//! running game. [`gateway_of`] reports the link traffic in a gateway's own recording.
 
 pub mod alog;
 mod compare;

@@ -1,6 +1,6 @@
-//! The lines in the bytes of a link or of a payload, each way.
+//! Splits the bytes of a link or payload into lines, per direction.
 
-/// A line this long is given as it is, ended or not, bytes: no sentence is.
+/// A line of this length is returned even if it has not ended, bytes: no sentence is that long.
 const LONGEST: usize = 1024;
 
 /// A line on a link.
@@ -8,12 +8,12 @@ const LONGEST: usize = 1024;
 pub struct Line {
     /// Whether it goes to the boat or payload.
     pub outward: bool,
-    /// The line without its end; what is not ASCII that can be printed is escaped.
+    /// The line without its line end; anything but printable ASCII is escaped.
     pub text: String,
 }
 
 impl Line {
-    /// The kind of sentence, such as `GPRMC`; `other` for what is none.
+    /// The kind of sentence, such as `GPRMC`; `other` if it is not a sentence.
     #[must_use]
     pub fn kind(&self) -> &str {
         let body = self.text.strip_prefix(['$', '!']).unwrap_or_default();
@@ -23,15 +23,15 @@ impl Line {
     }
 }
 
-/// Puts lines together from pieces.
+/// Assembles lines from pieces.
 #[derive(Clone, Debug, Default)]
 pub struct Lines {
-    /// What has not ended yet: inward, outward.
+    /// Incomplete lines: inward, outward.
     begun: [Vec<u8>; 2],
 }
 
 impl Lines {
-    /// Takes some bytes; the lines that end in them.
+    /// Adds bytes; returns the lines that they complete.
     pub fn take(&mut self, outward: bool, bytes: &[u8]) -> Vec<Line> {
         let mut lines = vec![];
         let begun = &mut self.begun[usize::from(outward)];
@@ -46,25 +46,25 @@ impl Lines {
         lines
     }
 
-    /// What has begun one way and not ended, where nothing more comes.
+    /// The incomplete line in one direction, after its last byte.
     pub fn end(&mut self, outward: bool) -> Option<Line> {
         line(std::mem::take(&mut self.begun[usize::from(outward)]), outward)
     }
 
-    /// Whether nothing has begun.
+    /// Whether no line is incomplete.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.begun.iter().all(Vec::is_empty)
     }
 
-    /// What has begun and not ended.
+    /// The incomplete lines.
     #[must_use]
     pub fn rest(mut self) -> Vec<Line> {
         [false, true].into_iter().filter_map(|outward| self.end(outward)).collect()
     }
 }
 
-/// A line, unless there is nothing in it.
+/// A line, unless it is empty.
 fn line(bytes: Vec<u8>, outward: bool) -> Option<Line> {
     let bytes = bytes.strip_suffix(b"\r").unwrap_or(&bytes);
     (!bytes.is_empty()).then(|| Line { outward, text: bytes.escape_ascii().to_string() })
@@ -80,7 +80,7 @@ mod tests {
         for cut in 0..bytes_in.len() {
             let mut lines = Lines::default();
             let mut all = lines.take(false, &bytes_in[..cut]);
-            // The other way does not mix with it.
+            // The directions do not mix.
             assert_eq!(lines.take(true, b"$PSEAC,L"), []);
             all.extend(lines.take(false, &bytes_in[cut..]));
             all.extend(lines.rest());

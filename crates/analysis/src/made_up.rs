@@ -1,4 +1,4 @@
-//! Made-up games whose statistics are known in closed form.
+//! Synthetic games whose statistics are known in closed form.
 
 use crate::series::{BoatSeries, GameSeries};
 use crate::step::Sample;
@@ -6,7 +6,7 @@ use messages::picture::Nav;
 use primitives::math;
 use std::f64::consts::TAU;
 
-/// A series of samples every 0.1 s up to `span_s`, in which one boat does this.
+/// A game with samples every 0.1 s up to `span_s`, in which one boat moves as `at` says.
 pub(crate) fn game(span_s: f64, at: impl Fn(f64) -> Sample) -> GameSeries {
     let times_s: Vec<f64> = (0..=(span_s * 10.0).round() as usize).map(|i| i as f64 / 10.0).collect();
     let samples = times_s.iter().map(|time_s| at(*time_s)).collect();
@@ -16,7 +16,7 @@ pub(crate) fn game(span_s: f64, at: impl Fn(f64) -> Sample) -> GameSeries {
     GameSeries { boats: vec![boat], teams, score, times_s, ..GameSeries::default() }
 }
 
-/// A boat that sails clockwise about the datum, once in 100 s.
+/// A boat that drives clockwise around the datum, once in 100 s.
 pub(crate) fn circle(radius_m: f64, span_s: f64) -> GameSeries {
     game(span_s, |time_s| {
         let turn_rad = TAU * time_s / 100.0;

@@ -1,35 +1,37 @@
-//! Quantiles of any number of values in bounded memory, within one part in 128.
+//! Quantiles of any number of values in bounded memory, accurate to one part in 128.
 //!
-//! Values are counted in bins of equal ratio, as in `HdrHistogram` (Tene) and `DDSketch` (Masson, Rim and Lee, PVLDB 12, 2019). The
-//! bits of a number that is not negative sort as it does, so that its exponent and the first bits of its mantissa name the bin.
+//! Values are counted in bins of equal ratio, as in `HdrHistogram` (Tene) and `DDSketch` (Masson,
+//! Rim and Lee, PVLDB 12, 2019). The bits of non-negative numbers sort like the numbers, so the
+//! exponent and the leading bits of the mantissa identify the bin.
 
 use std::collections::BTreeMap;
 
-/// The bits of a mantissa that are left away: 7 of 52 are kept.
+/// The number of mantissa bits dropped: 7 of 52 are kept.
 const LEFT_AWAY: u32 = 52 - 7;
-/// Values below share a bin, as do those above.
+/// Values below share a bin, and so do values above.
 const RANGE: (f64, f64) = (1e-3, 1e9);
 
-/// Counts of values, which are not negative.
+/// A histogram of non-negative values.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Quantile {
-    /// By bin, how many there are and the largest of them.
+    /// Count and largest value, by bin.
     bins: BTreeMap<u64, (u64, f64)>,
     count: u64,
 }
 
 impl Quantile {
-    /// Adds a value; what is no number is more than all.
+    /// Adds a value; NaN counts as the largest.
     pub(crate) fn add(&mut self, value: f64) {
         let value = if value.is_nan() { f64::INFINITY } else { value };
-        // Statistics are sums, made decision by decision: the series of 40 boats in a recording
-        // of 1.3 GB were 500 MB.
+        // Statistics are sums, updated at each decision: the series of 40 boats in a recording of
+        // 1.3 GB took 500 MB.
         let (count, largest) = self.bins.entry(value.clamp(RANGE.0, RANGE.1).to_bits() >> LEFT_AWAY).or_default();
         (*count, *largest) = (*count + 1, largest.max(value));
         self.count += 1;
     }
 
-    /// The smallest value that this share of them do not exceed, by the nearest rank; up to one part in 128 more. None of nothing.
+    /// The smallest value not exceeded by this share of the values, by nearest rank; up to one part
+    /// in 128 too large. None without values.
     pub(crate) fn at(&self, share: f64) -> Option<f64> {
         let rank = ((share * self.count as f64).ceil() as u64).max(1);
         let mut reached = 0;

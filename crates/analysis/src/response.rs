@@ -1,4 +1,4 @@
-//! How a boat answers to its orders: how late, how much, and where it goes by itself.
+//! A boat's response to its orders: delay, gain and drift.
 
 use crate::series::{BoatSeries, GameSeries};
 use crate::step::Sample;
@@ -8,41 +8,41 @@ use primitives::angle::wrap_pi;
 use primitives::frame::{Rotation, body_from_ned};
 use serde::{Deserialize, Serialize};
 
-/// A boat's answer to its orders. What the game gave no occasion to tell is none.
+/// A boat's response to its orders. Values that the game cannot determine are none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Response {
-    /// How late its heading follows, s: the delay at which heading and order agree best.
+    /// Heading delay, s: the delay at which heading and order agree best.
     pub heading_lag_s: Option<f64>,
-    /// What is left between them at that delay, root mean square, degrees.
+    /// Remaining heading error at that delay, root mean square, degrees.
     pub heading_rms_deg: Option<f64>,
-    /// How late its speed follows, s: the delay at which speed ahead and order correlate best.
+    /// Speed delay, s: the delay at which speed ahead and order correlate best.
     pub speed_lag_s: Option<f64>,
     /// Speed ahead over order at that delay, by least squares.
     pub speed_gain: Option<f64>,
-    /// What is left between them at that delay, root mean square, m/s.
+    /// Remaining speed error at that delay, root mean square, m/s.
     pub speed_rms_m_s: Option<f64>,
-    /// Mean velocity towards north and east while it was to hold, from [`SETTLED_S`] on, m/s.
+    /// Mean velocity towards north and east under hold orders, from [`SETTLED_S`] on, m/s.
     pub hold_drift_m_s: Option<[f64; 2]>,
-    /// Mean velocity to starboard of the ordered heading while it was steered, m/s.
+    /// Mean velocity to starboard of the ordered heading under steer orders, m/s.
     pub cross_track_m_s: Option<f64>,
 }
 
-/// The longest delay that is looked for, s.
+/// The longest delay considered, s.
 const LAG_MAX_S: f64 = 10.0;
-/// So long after it was told to hold a boat no longer glides, s.
+/// Time from a hold order until a boat no longer glides, s.
 pub const SETTLED_S: f64 = 10.0;
-/// An order that varies less than this, as a standard deviation, tells nothing of a delay.
+/// Orders with a smaller standard deviation than this do not determine a delay, m/s.
 const VARIES_M_S: f64 = 0.05;
 const VARIES_RAD: f64 = 0.05;
-/// Speeds that go together less than this tell no delay either: there would be a best one all the same.
+/// Nor do speeds with a smaller correlation than this: the search would still find a best delay.
 const CORRELATED: f64 = 0.5;
-/// Fewer samples than this tell nothing.
+/// The minimum number of samples.
 const SAMPLES_MIN: usize = 100;
 
-/// An order and what came of it some time later.
+/// An order and the response some time later.
 type OrderAndAnswer = (f64, f64);
 
-/// How a boat answers.
+/// The response of a boat.
 #[must_use]
 pub(crate) fn response(series: &GameSeries, boat: &BoatSeries) -> Response {
     let step_s = if series.times_s.len() > 1 { series.span_s() / (series.times_s.len() - 1) as f64 } else { 1.0 };
@@ -69,7 +69,8 @@ pub(crate) fn response(series: &GameSeries, boat: &BoatSeries) -> Response {
     }
 }
 
-/// For each sample where the stretch ends in which the boat was steered without a break; 0 where it was not.
+/// For each sample, the end of its uninterrupted stretch of steering; 0 if the boat was not
+/// steered.
 fn run_ends(samples: &[Sample]) -> Vec<usize> {
     let mut ends = vec![0; samples.len()];
     let mut end = samples.len();
@@ -79,7 +80,7 @@ fn run_ends(samples: &[Sample]) -> Vec<usize> {
     ends
 }
 
-/// The root mean square of what is between heading and order, where the order varies.
+/// Root mean square of heading minus order, if the order varies.
 fn heading_rms_rad(pairs: &[OrderAndAnswer]) -> Option<f64> {
     let first = pairs.first()?.0;
     let turned: Vec<OrderAndAnswer> = pairs.iter().map(|(order, _)| (wrap_pi(order - first), 0.0)).collect();
@@ -87,7 +88,7 @@ fn heading_rms_rad(pairs: &[OrderAndAnswer]) -> Option<f64> {
     crate::statistics::rms(pairs.iter().map(|(order, psi_rad)| wrap_pi(psi_rad - order)))
 }
 
-/// How much two series go together: Pearson's coefficient.
+/// Pearson's correlation coefficient of two series.
 fn correlation(pairs: &[OrderAndAnswer]) -> Option<f64> {
     varies(pairs, VARIES_M_S)?;
     let count = pairs.len() as f64;
@@ -102,7 +103,7 @@ fn correlation(pairs: &[OrderAndAnswer]) -> Option<f64> {
     (coefficient >= CORRELATED).then_some(coefficient)
 }
 
-/// Whether there are enough orders, and they vary.
+/// Whether there are enough orders with enough variation.
 fn varies(pairs: &[OrderAndAnswer], least: f64) -> Option<()> {
     let count = pairs.len() as f64;
     let mean = pairs.iter().map(|t| t.0).sum::<f64>() / count;
@@ -110,7 +111,7 @@ fn varies(pairs: &[OrderAndAnswer], least: f64) -> Option<()> {
     (pairs.len() >= SAMPLES_MIN && variance > least * least).then_some(())
 }
 
-/// The factor from order to what came of it, and what is left, root mean square.
+/// The gain from order to response, and the root mean square of the residual.
 fn proportion(pairs: &[OrderAndAnswer]) -> (f64, f64) {
     let (xx, xy) = pairs.iter().fold((0.0, 0.0), |(xx, xy), (x, y)| (xx + x * x, xy + x * y));
     let gain = if xx > 0.0 { xy / xx } else { 0.0 };
@@ -147,7 +148,7 @@ mod tests {
     use messages::picture::Nav;
     use std::f64::consts::TAU;
 
-    /// Orders that go up and down, and a boat that does the same later, with this factor on its speed.
+    /// Orders that oscillate, and a boat that follows with this delay and speed gain.
     fn late(lag_s: f64, gain: f64) -> GameSeries {
         let heading_rad = |time_s: f64| 3.0 + 0.8 * primitives::math::sin_cos(TAU * time_s / 40.0).0;
         let speed_m_s = |time_s: f64| 1.5 + 0.5 * primitives::math::sin_cos(TAU * time_s / 23.0).0;
@@ -174,7 +175,7 @@ mod tests {
     #[test]
     fn a_break_in_steering_is_not_steered_over() {
         let mut series = late(3.0, 1.0);
-        // While it is not free it points anywhere.
+        // While the boat is not free, its heading is arbitrary.
         for sample in &mut series.boats[0].samples[500..600] {
             sample.is_free = false;
             sample.truth.psi_rad = 0.0;
@@ -189,7 +190,7 @@ mod tests {
     fn drift_is_told_once_a_boat_has_settled() {
         let series = made_up::game(60.0, |time_s| {
             let surge_m_s = if time_s <= SETTLED_S { 3.0 } else { 0.0 };
-            // Heading east, starboard is south.
+            // With heading east, starboard is south.
             let truth = Nav { psi_rad: TAU / 4.0, surge_m_s, sway_m_s: 0.2, ..Nav::default() };
             Sample { truth, is_free: true, ..Sample::default() }
         });

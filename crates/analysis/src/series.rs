@@ -1,4 +1,5 @@
-//! A recorded game as time series, as plots and comparisons need it: of a long game every so manieth decision.
+//! A recorded game as time series for plots and comparisons; long games are thinned to every nth
+//! decision.
 
 use crate::step::{Sample, Step, for_each_step};
 use primitives::Ned;
@@ -7,17 +8,17 @@ use rules::event::Logged;
 use scenario::outcome::EventOutcome;
 use scenario::{Scenario, Source};
 
-/// The most samples of all boats together, about 140 bytes each. A game that has more is thinned out.
+/// Limit of samples of all boats together, about 140 bytes each. Longer games are thinned out.
 const SAMPLES_MAX: usize = 1_000_000;
 
 /// A game as time series.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GameSeries {
-    /// Every so manieth decision is in it, and the last.
+    /// The thinning factor: every nth decision is included, and the last.
     pub every: usize,
-    /// When the samples were, s.
+    /// Times of the samples, s.
     pub times_s: Vec<f64>,
-    /// By vehicle.
+    /// Boats, by vehicle index.
     pub boats: Vec<BoatSeries>,
     /// The names of the teams.
     pub teams: Vec<String>,
@@ -25,7 +26,7 @@ pub struct GameSeries {
     pub score: Vec<Vec<u32>>,
     /// All events in the frames.
     pub events: Vec<Logged>,
-    /// What could not be read of it.
+    /// Damaged messages.
     pub damaged: Damaged,
 }
 
@@ -34,29 +35,30 @@ pub struct GameSeries {
 pub struct BoatSeries {
     /// Its name.
     pub name: String,
-    /// Its team's place among the teams.
+    /// Its team's index.
     pub team: usize,
-    /// Whether it is a real one, whose truth is what its gateway reported.
+    /// Whether it is a real boat, whose true state is its gateway's report.
     pub is_real: bool,
-    /// By time.
+    /// Samples, in time order.
     pub samples: Vec<Sample>,
 }
 
 impl BoatSeries {
-    /// Where it was, sample by sample.
+    /// Its true positions, sample by sample.
     pub fn track(&self) -> impl ExactSizeIterator<Item = Ned> + '_ {
         self.samples.iter().map(|sample| sample.truth.at())
     }
 }
 
 impl GameSeries {
-    /// The series of a recording, in one pass. Messages that are not what they should be are left out, and counted.
+    /// Reads a recording in one pass. Damaged messages are skipped and counted.
     #[must_use]
     pub fn of(recording: &Recording) -> GameSeries {
         GameSeries::of_at_most(recording, SAMPLES_MAX)
     }
 
-    /// The same, thinned out to this many samples of all boats together, and the last decision.
+    /// The same, thinned out to at most this many samples of all boats together, plus the last
+    /// decision.
     #[must_use]
     pub fn of_at_most(recording: &Recording, samples_max: usize) -> GameSeries {
         let scenario = recording.scenario();
@@ -97,7 +99,7 @@ impl GameSeries {
         }
     }
 
-    /// That decisions were left out, for people, if they were.
+    /// A remark for people if decisions were left out.
     #[must_use]
     pub fn remark(&self) -> Option<String> {
         (self.every > 1).then(|| format!("the game is long: only one decision of {} is looked at", self.every))
@@ -109,26 +111,26 @@ impl GameSeries {
         self.times_s.last().zip(self.times_s.first()).map_or(0.0, |(last, first)| last - first)
     }
 
-    /// For each sample how long it stands for, s: since the one before, and nothing for the first.
+    /// The time each sample covers, s: since the previous one, and 0 for the first.
     pub fn steps_s(&self) -> impl Iterator<Item = f64> + '_ {
         let first = self.times_s.first().copied().unwrap_or(0.0);
         let before = std::iter::once(first).chain(self.times_s.iter().copied());
         self.times_s.iter().zip(before).map(|(now, before)| now - before)
     }
 
-    /// The sample at this time: the last that was not later.
+    /// Index of the sample at this time: the last one not later.
     #[must_use]
     pub fn sample_at(&self, at_s: f64) -> usize {
         self.times_s.partition_point(|time_s| *time_s <= at_s + 1e-6).saturating_sub(1)
     }
 
-    /// The boat of this name.
+    /// The boat with this name.
     #[must_use]
     pub fn boat(&self, name: &str) -> Option<&BoatSeries> {
         self.boats.iter().find(|boat| boat.name == name)
     }
 
-    /// What happened, with names.
+    /// All events, with names.
     #[must_use]
     pub fn named_events(&self, scenario: &Scenario) -> Vec<EventOutcome> {
         self.events.iter().map(|logged| EventOutcome::new(scenario, logged)).collect()

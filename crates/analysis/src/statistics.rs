@@ -1,4 +1,4 @@
-//! What a boat did in a game, in statistics.
+//! Statistics of each boat in a game.
 
 use crate::quantile::Quantile;
 use crate::step::{Sample, Step};
@@ -8,70 +8,71 @@ use rules::count::{Counts, Tally};
 use scenario::{Scenario, Source, Vehicle};
 use serde::{Deserialize, Serialize};
 
-/// A boat's game in statistics.
+/// Statistics of one boat in a game.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BoatStatistics {
     /// The boat.
     pub boat: String,
     /// Its team.
     pub team: String,
-    /// Whether it is a real one. Its truth is then what its gateway reported.
+    /// Whether it is a real boat. Its true state is then its gateway's report.
     pub is_real: bool,
-    /// The length of its track, m: straight from decision to decision.
+    /// Length of its track, m, with straight segments between decisions.
     pub distance_m: f64,
     /// Mean speed over the ground, m/s.
     pub speed_mean_m_s: f64,
     /// Highest speed over the ground, m/s.
     pub speed_max_m_s: f64,
-    /// How long it was tagged, s.
+    /// Time tagged, s.
     pub tagged_s: f64,
-    /// How long it was outside of the field, s.
+    /// Time outside the field, s.
     pub outside_s: f64,
-    /// How long it carried a flag, s.
+    /// Time carrying a flag, s.
     pub carrying_s: f64,
-    /// How long it had no mind, s.
+    /// Time without an agent, s.
     pub agent_lost_s: f64,
-    /// How long nobody knew where it was, s.
+    /// Time with unknown position, s.
     pub nav_lost_s: f64,
-    /// What it did, how often.
+    /// Counts of its events.
     pub counts: Counts,
-    /// How far its own navigation was from the truth.
+    /// Error of its own navigation.
     pub navigation: Option<NavigationError>,
-    /// How well it kept to what it was ordered.
+    /// Error of its heading and speed against its orders.
     pub steering: Option<SteeringError>,
 }
 
-/// How far a boat's own navigation, as its mind was shown it, was from the truth of that sample.
+/// Error of a boat's own navigation, as in its mind's picture, against the true state of the same
+/// sample.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NavigationError {
     /// Root mean square, m.
     pub rms_m: f64,
-    /// Nineteen of twenty were not more, m; up to one part in 128 too much.
+    /// 95th percentile, m; up to one part in 128 too large.
     pub p95_m: f64,
 }
 
-/// How far a boat was from the heading and the speed it was ordered, while it was free to follow.
+/// Deviation of a boat from its ordered heading and speed while it was free to follow.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SteeringError {
-    /// Of the heading, root mean square, degrees.
+    /// Heading error, root mean square, degrees.
     pub heading_rms_deg: f64,
-    /// Of the speed ahead, root mean square, m/s.
+    /// Error of the speed ahead, root mean square, m/s.
     pub speed_rms_m_s: f64,
-    /// For how much of the game this could be told, s.
+    /// Time in which this was measured, s.
     pub steered_s: f64,
 }
 
-/// The statistics of all boats, made decision by decision: of no decision more is kept than its part in the sums.
+/// Builds the statistics of all boats decision by decision. Only sums are kept.
 pub struct StatisticsBuilder<'a> {
     scenario: &'a Scenario,
-    /// The time of the decision before, s.
+    /// Time of the previous decision, s.
     before_s: Option<f64>,
     span_s: f64,
     tally: Tally,
     boats: Vec<BoatSums>,
 }
 
-/// What is added up of a boat.
+/// The sums for one boat.
 #[derive(Clone, Debug, Default)]
 struct BoatSums {
     before: Option<Ned>,
@@ -91,7 +92,7 @@ struct BoatSums {
 }
 
 impl<'a> StatisticsBuilder<'a> {
-    /// Of no decision of this game yet.
+    /// Starts before the first decision of a game.
     #[must_use]
     pub fn new(scenario: &'a Scenario) -> StatisticsBuilder<'a> {
         let count = scenario.vehicles.len();
@@ -102,13 +103,13 @@ impl<'a> StatisticsBuilder<'a> {
     /// Adds a decision.
     pub fn add(&mut self, step: &Step) {
         step.events.iter().for_each(|logged| self.tally.add(logged.event));
-        // A decision stands for the time since the one before, and the first for nothing.
+        // A decision covers the time since the previous one, and the first covers none.
         let step_s = step.time_s - self.before_s.replace(step.time_s).unwrap_or(step.time_s);
         self.span_s += step_s;
         self.boats.iter_mut().zip(&step.samples).for_each(|(boat, sample)| boat.add(sample, step_s));
     }
 
-    /// The statistics, by vehicle.
+    /// The statistics, by vehicle index.
     #[must_use]
     pub fn end(self) -> Vec<BoatStatistics> {
         let boats = self.scenario.vehicles.iter().zip(self.boats).zip(self.tally.vehicles);
@@ -169,7 +170,7 @@ impl BoatSums {
     }
 }
 
-/// A mean of squares, number by number.
+/// A mean of squares, accumulated one by one.
 #[derive(Clone, Copy, Debug, Default)]
 struct MeanSquare {
     sum: f64,
@@ -181,13 +182,13 @@ impl MeanSquare {
         (self.sum, self.count) = (self.sum + number * number, self.count + 1);
     }
 
-    /// Its root; none of nothing.
+    /// Its square root; none without numbers.
     fn root(self) -> Option<f64> {
         (self.count > 0).then(|| (self.sum / self.count as f64).sqrt())
     }
 }
 
-/// The root of the mean square; none of nothing.
+/// The root mean square; none without numbers.
 pub(crate) fn rms(numbers: impl Iterator<Item = f64>) -> Option<f64> {
     let mut mean = MeanSquare::default();
     numbers.for_each(|number| mean.add(number));
@@ -205,7 +206,7 @@ mod tests {
     use rules::event::{Event, Logged, TagCause};
     use std::path::Path;
 
-    /// The statistics of a made-up game, whose events happen at its beginning.
+    /// The statistics of a synthetic game, whose events happen at its start.
     fn statistics(series: &GameSeries) -> Vec<BoatStatistics> {
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
         let scenario = scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
@@ -220,7 +221,7 @@ mod tests {
 
     #[test]
     fn a_boat_on_a_circle_sails_its_circumference_at_its_speed() {
-        // Once round in 100 s: chords of a tenth of a second are a millionth short.
+        // One turn in 100 s: chords of a tenth of a second are a millionth too short.
         let statistics = &statistics(&made_up::circle(20.0, 100.0))[0];
         let round_m = std::f64::consts::TAU * 20.0;
         assert!((statistics.distance_m / round_m - 1.0).abs() < 1e-5, "{} m", statistics.distance_m);

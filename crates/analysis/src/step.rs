@@ -11,34 +11,35 @@ use scenario::Scenario;
 /// A decision of a game.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Step {
-    /// Its number: the frame's.
+    /// Its number, from the frame.
     pub decision: u64,
-    /// When it was, s.
+    /// Time, s.
     pub time_s: f64,
-    /// By vehicle.
+    /// Boats, by vehicle index.
     pub samples: Vec<Sample>,
-    /// Points, by team.
+    /// Points, by team index.
     pub score: Vec<u32>,
-    /// What had happened since the decision before.
+    /// Events since the previous decision.
     pub events: Vec<Logged>,
 }
 
 /// A boat at one decision.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sample {
-    /// Where it was.
+    /// Its true navigation.
     pub truth: Nav,
-    /// Where it estimated to be, in the picture of that decision.
+    /// Its estimated navigation, from the picture of that decision.
     pub estimated: Option<Nav>,
-    /// The order that led here: the last that it had been sent before.
+    /// The order that led here: the last one sent before.
     pub order: Order,
-    /// Whether it was free to follow its order: neither stopped nor tagged, off the field, out of action or lost.
+    /// Whether it was free to follow its order: not stopped, tagged, off the field, out of action
+    /// or lost.
     pub is_free: bool,
     /// Whether it was tagged.
     pub tagged: bool,
     /// Whether it carried a flag.
     pub carrying: bool,
-    /// Whether it was outside of the field.
+    /// Whether it was outside the field.
     pub outside: bool,
     /// Whether its agent was lost.
     pub agent_lost: bool,
@@ -47,7 +48,8 @@ pub struct Sample {
 }
 
 impl Step {
-    /// The decision that a frame shows, with the orders that led there, by vehicle; what boats estimated is not in it.
+    /// The decision in a frame, with the orders that led there, by vehicle. Estimated navigation is
+    /// not included.
     #[must_use]
     pub fn of_frame(scenario: &Scenario, frame: &Frame, orders: impl Iterator<Item = Order>) -> Step {
         let truth = |i: usize| frame.vehicles.get(i).copied().unwrap_or_default();
@@ -61,8 +63,8 @@ impl Step {
     }
 }
 
-/// Gives every decision of a recording, one after the other: one at a time is in memory, however long the game. Messages that
-/// are not what they should be are left out, and counted.
+/// Passes every decision of a recording to `take`, holding one at a time in memory. Damaged
+/// messages are skipped and counted.
 pub fn for_each_step(recording: &Recording, take: impl FnMut(Step)) -> Damaged {
     let scenario = recording.scenario();
     let pictures: Vec<String> = scenario.teams.iter().map(|team| picture(&team.name)).collect();
@@ -88,7 +90,7 @@ pub fn for_each_step(recording: &Recording, take: impl FnMut(Step)) -> Damaged {
 }
 
 impl Sample {
-    /// The heading, rad, and the speed, m/s, that it steered by order.
+    /// The ordered heading, rad, and speed, m/s, if it was steered.
     #[must_use]
     pub fn steered(&self) -> Option<(f64, f64)> {
         match self.order {
@@ -97,22 +99,23 @@ impl Sample {
         }
     }
 
-    /// How far its estimated position was from the true one, m.
+    /// Distance between estimated and true position, m.
     #[must_use]
     pub fn nav_error_m(&self) -> Option<f64> {
         self.estimated.map(|nav| nav.at().distance(self.truth.at()))
     }
 }
 
-/// Makes decisions of messages as they come.
+/// Assembles decisions from messages.
 struct Reader<'a, T> {
     scenario: &'a Scenario,
     take: T,
-    /// The decision whose pictures may still come: they are recorded after its frame, and before the next.
+    /// The decision whose pictures may still follow: they are recorded after its frame and before
+    /// the next.
     open: Option<Step>,
-    /// The time of the last frame, s.
+    /// Time of the last frame, s.
     now_s: Option<f64>,
-    /// In force, by vehicle, with the time of the picture that each answers.
+    /// Orders in force with the time of the picture that each answers, by vehicle index.
     orders: Vec<(Order, SimTime)>,
 }
 
@@ -125,7 +128,7 @@ impl<T: FnMut(Step)> Reader<'_, T> {
         Ok(())
     }
 
-    /// Gives the open decision.
+    /// Passes on the open decision.
     fn close(&mut self) {
         if let Some(step) = self.open.take() {
             (self.take)(step);
@@ -156,7 +159,8 @@ impl<T: FnMut(Step)> Reader<'_, T> {
         Ok(())
     }
 
-    /// Orders expire by the age of the picture that they answer, when a decision is played.
+    /// Drops expired orders. Orders expire by the age of the answered picture when a decision is
+    /// played.
     fn expire_orders(&mut self) {
         let Some(now_s) = self.now_s else { return };
         for (order, given_at) in &mut self.orders {

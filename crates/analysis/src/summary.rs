@@ -1,4 +1,4 @@
-//! A recorded game on one page.
+//! A one-page summary of a recorded game.
 
 use crate::gateway::{Gateway, gateways};
 use crate::statistics::{BoatStatistics, StatisticsBuilder};
@@ -8,67 +8,68 @@ use scenario::outcome::EventOutcome;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// What comes within less than this has no rate, s.
+/// Messages within a shorter time than this have no rate, s.
 const RATE_OVER_MIN_S: f64 = 0.1;
 
-/// A game on one page.
+/// A one-page summary of a game.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
     /// The game's name on the network.
     pub game: String,
     /// The scenario's name.
     pub scenario: String,
-    /// The seed that chose the game.
+    /// The seed of the game.
     pub seed: u64,
     /// The version of Squall that played it.
     pub version: String,
-    /// The commit that it was built from.
+    /// The commit it was built from.
     pub commit: String,
-    /// How it was paced.
+    /// The pace.
     pub pace: String,
-    /// When it began: UTC, ns since 1970.
+    /// Start of the game: UTC, ns since 1970.
     pub began_utc_ns: u64,
-    /// How long it was, simulated, s.
+    /// Simulated duration, s.
     pub duration_s: f64,
-    /// How long it took by the clock, s.
+    /// Wall-clock duration, s.
     pub wall_s: f64,
-    /// Whether the file ends before the game did.
+    /// Whether the file is truncated.
     pub is_cut: bool,
-    /// Messages that are missing, since the disk was too slow for them; none where the file ends abruptly.
+    /// Messages dropped because the disk was too slow; none if the file is truncated.
     pub dropped: Option<u64>,
-    /// Messages that are damaged, and left out of everything else.
+    /// Damaged messages, excluded from all other values.
     pub damaged: Damaged,
     /// Size of the file, bytes.
     pub bytes: u64,
     /// Points by team, at the end of the file.
     pub score: BTreeMap<String, u32>,
-    /// Who won; none is a draw, or that the file ends before.
+    /// The winning team; none for a draw or a truncated file.
     pub winner: Option<String>,
-    /// The digest of the game; none where the file ends before.
+    /// The digest of the game; none if the file is truncated.
     pub digest: Option<String>,
-    /// Everything that happened, in order.
+    /// All events, in order.
     pub events: Vec<EventOutcome>,
-    /// By boat.
+    /// Statistics of each boat, by vehicle index.
     pub boats: Vec<BoatStatistics>,
-    /// By real boat.
+    /// The gateways of real boats.
     pub gateways: Vec<Gateway>,
-    /// What is in the file, by topic.
+    /// Contents of the file, by topic.
     pub topics: BTreeMap<String, Topic>,
 }
 
 /// A topic of a recording.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Topic {
-    /// How many messages.
+    /// Number of messages.
     pub count: u64,
-    /// How many bytes in them.
+    /// Their total size, bytes.
     pub bytes: u64,
-    /// Messages a simulated second, from the first to the last; none where these are less than a tenth of a second apart.
+    /// Messages per simulated second, from the first to the last; none if these are less than a
+    /// tenth of a second apart.
     pub rate_hz: Option<f64>,
 }
 
 impl Summary {
-    /// The summary of a recording, in memory that does not grow with its length but for what happened.
+    /// Summarises a recording. Memory grows only with the number of events.
     #[must_use]
     pub fn of(recording: &Recording) -> Summary {
         let scenario = recording.scenario();

@@ -1,29 +1,30 @@
-//! How far two tracks are apart, sample by sample and as shapes.
+//! The distance between two tracks, sample by sample and as shapes.
 
 use crate::series::{BoatSeries, GameSeries};
 use primitives::Ned;
 use serde::{Deserialize, Serialize};
 
-/// How far apart a boat was in two games.
+/// Distance between a boat's tracks in two games.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TrackDifference {
-    /// Mean of the distance between the places at the same time, m.
+    /// Mean distance at the same time, m.
     pub mean_m: f64,
-    /// Its root mean square, m.
+    /// Root mean square distance, m.
     pub rms_m: f64,
-    /// The largest, m.
+    /// Largest distance, m.
     pub max_m: f64,
-    /// At the end of what the games have in common, m.
+    /// Distance at the end of the common time, m.
     pub final_m: f64,
-    /// Discrete Fréchet distance of the tracks as shapes, m: the shortest leash with which two can walk them, one each,
-    /// stopping as they like but never going back. Where a boat was early or late does not count.
+    /// Discrete Fréchet distance of the tracks as shapes, m: the shortest leash with which two
+    /// walkers can follow one track each, pausing but never going back. Timing does not count.
     pub frechet_m: f64,
 }
 
-/// Points of each track that shapes are told from at most: time and memory go with their product and their sum.
+/// Limit of points per track for comparing shapes: time grows with their product, memory with their
+/// sum.
 const SHAPE_POINTS: usize = 2000;
 
-/// How far a boat of one game was from that of another, while both games were on; none where they have no sample in common.
+/// Distance between the boats of two games in their common time; none without a common sample.
 #[must_use]
 pub(crate) fn apart(
     (a, in_a): (&GameSeries, &BoatSeries),
@@ -48,13 +49,13 @@ pub(crate) fn apart(
     })
 }
 
-/// From when until when both games were on, s.
+/// Start and end of the common time, s.
 fn common_s(a: &GameSeries, b: &GameSeries) -> Option<(f64, f64)> {
     let end_s = a.times_s.last()?.min(*b.times_s.last()?);
     Some((a.times_s.first()?.max(*b.times_s.first()?), end_s))
 }
 
-/// How far a boat of one game was from that of another, while both games were on: the time, s, and the distance, m, at the
+/// Distance between the boats of two games in their common time: time, s, and distance, m, at the
 /// samples of the first.
 #[must_use]
 pub fn distances((a, in_a): (&GameSeries, &BoatSeries), (b, in_b): (&GameSeries, &BoatSeries)) -> Vec<(f64, f64)> {
@@ -64,25 +65,26 @@ pub fn distances((a, in_a): (&GameSeries, &BoatSeries), (b, in_b): (&GameSeries,
     common.map(|(time_s, at)| (*time_s, at.distance(place_at(&b.times_s, &other, *time_s)))).collect()
 }
 
-/// Where a track is at a time, straight between two samples.
+/// The position on a track at a time, interpolated linearly.
 fn place_at(times_s: &[f64], track: &[Ned], time_s: f64) -> Ned {
     let after = times_s.partition_point(|t| *t < time_s).min(track.len() - 1);
     let before = after.saturating_sub(1);
     let step_s = times_s[after] - times_s[before];
     let share = if step_s > 0.0 { ((time_s - times_s[before]) / step_s).clamp(0.0, 1.0) } else { 1.0 };
-    // As a weighted sum it gives each sample's own place exactly.
+    // This weighted sum gives each sample's own position exactly.
     track[before].scaled(1.0 - share) + track[after].scaled(share)
 }
 
-/// Every so manieth point, and the last.
+/// Every nth point, and the last.
 fn thinned(track: &[Ned]) -> Vec<Ned> {
     let every = track.len().div_ceil(SHAPE_POINTS).max(1);
     let last = track.last().filter(|_| !(track.len() - 1).is_multiple_of(every));
     track.iter().step_by(every).chain(last).copied().collect()
 }
 
-/// The discrete Fréchet distance of two tracks, m (Eiter and Mannila, "Computing discrete Fréchet distance", Technical
-/// Report CD-TR 94/64, TU Wien 1994), row by row in place of their recursion.
+/// The discrete Fréchet distance of two tracks, m (Eiter and Mannila, "Computing discrete Fréchet
+/// distance", Technical Report CD-TR 94/64, TU Wien 1994), computed row by row instead of
+/// recursively.
 #[must_use]
 fn frechet_m(a: &[Ned], b: &[Ned]) -> f64 {
     let mut row: Vec<f64> = vec![];
@@ -116,7 +118,7 @@ mod tests {
         let beside = line(&[(0.0, 2.0), (1.0, 2.0), (2.0, 2.0), (3.0, 2.0)]);
         let mut back = there.clone();
         back.reverse();
-        // The same way with a rest on it; a detour; the way back, whose ends are 3 m apart.
+        // The same track with a pause; a detour; the track back, whose ends are 3 m apart.
         let rest = line(&[(0.0, 0.0), (1.0, 0.0), (1.0, 0.0), (1.0, 0.0), (2.0, 0.0), (3.0, 0.0)]);
         let detour = line(&[(0.0, 0.0), (1.0, 5.0), (3.0, 0.0)]);
         for (other, want_m) in
@@ -133,7 +135,7 @@ mod tests {
     fn a_boat_that_is_late_is_apart_in_time_and_not_in_shape() {
         let a = made_up::circle(20.0, 100.0);
         let mut b = a.clone();
-        // 5 s late, it waits at the start.
+        // Waits 5 s at the start.
         let samples = b.boats[0].samples.clone();
         for (i, sample) in b.boats[0].samples.iter_mut().enumerate() {
             *sample = samples[i.saturating_sub(50)];

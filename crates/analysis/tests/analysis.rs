@@ -1,4 +1,5 @@
-//! What a recording tells afterwards: statistics, tables and logs of a small made-up game, to the byte where others read them.
+//! Analysis of a small synthetic recording: statistics, and tables and logs byte by byte where
+//! other programs read them.
 
 use analysis::{Comparison, GameSeries, Incomparable, Summary, alog, gateway_of, table};
 use messages::external::{FailsafeReport, GatewayStatus, LinkBytes};
@@ -30,8 +31,8 @@ fn ending() -> Ending {
     Ending { outcome, run: serde_json::json!({"pace": "lockstep"}), dropped: 3 }
 }
 
-/// The decision `seq`: the first boat goes north at 2 m/s, and believes to be 3 m north and 4 m east of where it is. At
-/// the third frame it has a flag.
+/// The decision `seq`: the first boat drives north at 2 m/s and estimates its position 3 m too far
+/// north and 4 m too far east. It carries a flag at the third frame.
 fn decision(seq: u64) -> Decision {
     let at = |seq: u64, version| Stamp { valid_ns: SimTime(seq as i64 * 100_000_000), seq, version };
     let nav = |seq: u64| Nav { north_m: 10.0 + 0.2 * seq as f64, surge_m_s: 2.0, ..Nav::default() };
@@ -156,7 +157,7 @@ fn a_long_game_is_thinned_out_evenly_with_its_end_and_all_its_events() {
     let recording = Recording::of(bytes_of(&header(), 12)).expect("a recording");
     let whole = GameSeries::of(&recording);
     assert_eq!((whole.every, whole.times_s.len(), whole.remark()), (1, 12, None));
-    // Of 48 samples of four boats no more than 20: every third decision, and the last.
+    // At most 20 of 48 samples of four boats: every third decision, and the last.
     let thinned = GameSeries::of_at_most(&recording, 20);
     let kept = [0, 3, 6, 9, 11];
     assert_eq!((thinned.every, &thinned.times_s), (3, &kept.map(|i| whole.times_s[i]).to_vec()));

@@ -1,4 +1,5 @@
-//! A whole game of Pav01 against Pav01 in one process, minds, referee and all: games (and ticks) a second.
+//! A whole game of Pav01 against Pav01 in one process, minds and referee included: games (and
+//! ticks) per second.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use std::path::Path;
@@ -9,7 +10,7 @@ fn game(c: &mut Criterion) {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../scenarios/games/{name}.toml"));
         let scenario = scenario::load(&path).unwrap_or_else(|e| panic!("{e}"));
         let play = || arena::play(&scenario, agent::minds_of(&scenario), 1).unwrap_or_else(|e| panic!("{e}"));
-        // Ticks a second.
+        // Ticks per second.
         group.throughput(Throughput::Elements(play().ticks)).sample_size(10);
         group.bench_function(name, |b| b.iter(play));
     }

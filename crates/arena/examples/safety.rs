@@ -1,10 +1,12 @@
-//! How safe the mandatory behaviours make games of random strategies: how often boats leave the field, and how often
-//! hulls touch.
+//! Tests how well the mandatory behaviours keep random strategies safe: how often boats leave the
+//! field, and how often hulls touch.
 //!
-//! `cargo run --release -p squall-arena --example safety -- [GAMES] [SEA] [DURATION_S] [BOAT] [TRACKED_SEED]`, by default
-//! 10,000 games of 120 s in calm water between boats of the kind `surveyor_m1_8`. With the seed of a game, plays that one alone and prints the track of every boat before
-//! it leaves the field or touches another. Every boat has a random strategy over `safety.toml`: places on the field and up to 20 m beyond it,
-//! pursuits, stations, headings, at any speed. The same seeds are the same games.
+//! Run `cargo run --release -p squall-arena --example safety -- [GAMES] [SEA] [DURATION_S] [BOAT] [TRACKED_SEED]`.
+//! The default is 10,000 games of 120 s in calm water between boats of the kind `surveyor_m1_8`. With
+//! the seed of a game, it plays only that game and prints the track of every boat before it leaves
+//! the field or touches another. Every boat has a random strategy over `safety.toml`: places on the
+//! field and up to 20 m beyond it, pursuits, stations, headings, at any speed. Equal seeds give equal
+//! games.
 
 use agent::MindRunner;
 use analysis::HullRectangle;
@@ -21,22 +23,22 @@ use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// What came of the games.
+/// Counts over all games.
 #[derive(Clone, Copy, Debug, Default)]
 struct Tally {
     games: u64,
     boat_hours: f64,
     /// Times a boat left the field.
     left: u64,
-    /// Of those, within five seconds of hulls touching.
+    /// Of those, within five seconds after hulls touched.
     left_pushed: u64,
-    /// Of those that were not pushed, by a boat that was nearer than 15 m to another: it gave way, or chased.
+    /// Of those that were not pushed, by a boat within 15 m of another: it gave way, or chased.
     left_crowded: u64,
     games_left: u64,
-    /// Times two hulls began to touch.
+    /// Times two hulls started to touch.
     touched: u64,
     games_touched: u64,
-    /// Times two boats came nearer than the collision distance of the rules.
+    /// Times two boats came within the collision distance of the rules.
     collided: u64,
 }
 
@@ -54,9 +56,9 @@ impl Tally {
     }
 }
 
-/// A boat that leaves the field so long after hulls touched was not pushed out, s.
+/// A boat that leaves the field later than this after hulls touched was not pushed out, s.
 const PUSH_REMEMBERED_S: f64 = 5.0;
-/// Boats that are nearer than this make each other give way, m.
+/// Boats closer than this make each other give way, m.
 const CROWD_M: f64 = 15.0;
 
 fn main() {
@@ -193,18 +195,18 @@ fn behaviour(stream: &mut Stream) -> String {
     }
 }
 
-/// The last seconds of every boat, for who wants to know why it left.
+/// The last seconds of every boat, to show why it left.
 #[derive(Default)]
 struct Tracks {
     shown: bool,
-    /// By boat, the newest last.
+    /// Lines by boat, newest last.
     lines: Vec<VecDeque<String>>,
 }
 
 impl Tracks {
-    /// How many decisions are remembered.
+    /// Number of decisions kept.
     const COUNT: usize = 120;
-    /// One in so many is printed.
+    /// Every nth decision is printed.
     const EVERY: usize = 5;
 
     fn shown() -> Tracks {
@@ -263,7 +265,7 @@ impl Tracks {
     }
 }
 
-/// Plays a game and counts.
+/// Plays a game and counts its events.
 fn play(scenario: &Scenario, seed: u64, tracks: &mut Tracks) -> Tally {
     let mut contest = Contest::new(scenario, seed).unwrap_or_else(|e| panic!("seed {seed}: {e}"));
     let scenario = contest.scenario().clone();

@@ -1,8 +1,8 @@
-//! How fast games run: their time over that of one core, and their digests.
+//! Measures how fast games run: simulated time per second of one core, and their digests.
 //!
-//! `cargo run --release -p squall-arena --example speed -- [--seeds N] [--duration-s S] [GAME.toml ...]`, by default the
-//! shipped games that need no person and no real boat, with seed 1. A change that is only to make games faster leaves
-//! every digest as it is.
+//! Run `cargo run --release -p squall-arena --example speed -- [--seeds N] [--duration-s S] [GAME.toml ...]`.
+//! The default is the shipped games that need no person and no real boat, with seed 1. A pure
+//! optimisation leaves every digest unchanged.
 
 use primitives::SimTime;
 use scenario::Scenario;
@@ -30,7 +30,7 @@ fn main() {
     }
 }
 
-/// The games that can be played by programs alone.
+/// The games that programs can play alone.
 fn shipped() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games");
     let entries = folder.read_dir().unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
@@ -59,7 +59,7 @@ fn print_game(path: &Path, scenario: &Scenario, seed: u64, until: SimTime) {
     );
 }
 
-/// Time that this thread has had a core to itself, s: what others do on the machine does not count.
+/// CPU time of this thread, s: other load on the machine does not count.
 fn core_time_s() -> f64 {
     let path = "/proc/thread-self/schedstat";
     let text = std::fs::read_to_string(path).unwrap_or_else(|e| panic!("{path}: {e} (this program needs Linux)"));

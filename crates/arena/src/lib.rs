@@ -1,6 +1,6 @@
 //! Whole Squall games in one process: no network, no clock.
 //!
-//! The same world and the same minds as across processes, and the same bytes.
+//! Uses the same world and minds as across processes, and produces the same bytes.
 
 use agent::{Mind, MindRunner};
 use primitives::VehicleId;
@@ -8,26 +8,27 @@ use scenario::{Outcome, Scenario};
 use sim::Contest;
 use sim::NoStart;
 
-/// Plays the game of `scenario` that `seed` chooses to its end. `minds` are by vehicle.
+/// Plays the game of `scenario` with this seed to its end. `minds` are indexed by vehicle.
 ///
 /// # Errors
-/// [`NoStart`] where the boats do not fit into their spawn area, randomised numbers do not go together, or boats are
-/// real ones.
+/// [`NoStart`] if the boats do not fit into their spawn area, the randomised values are
+/// inconsistent, or a boat is real.
 ///
 /// # Panics
-/// If there is not one mind for each vehicle.
+/// If the number of minds differs from the number of vehicles.
 pub fn play(scenario: &Scenario, minds: Vec<Box<dyn Mind>>, seed: u64) -> Result<Outcome, NoStart> {
     play_watched(scenario, minds, seed, |_| true)
 }
 
-/// As [`play`], but shows the contest to `watch` before every decision and at the end, and stops when that says `false`.
+/// Like [`play`], but shows the contest to `watch` before every decision and at the end. Stops when
+/// `watch` returns `false`.
 ///
 /// # Errors
-/// [`NoStart`] where the boats do not fit into their spawn area, randomised numbers do not go together, or boats are
-/// real ones.
+/// [`NoStart`] if the boats do not fit into their spawn area, the randomised values are
+/// inconsistent, or a boat is real.
 ///
 /// # Panics
-/// If there is not one mind for each vehicle.
+/// If the number of minds differs from the number of vehicles.
 pub fn play_watched(
     scenario: &Scenario,
     minds: Vec<Box<dyn Mind>>,
@@ -37,14 +38,14 @@ pub fn play_watched(
     play_observed(scenario, minds, seed, |contest, _| watch(contest))
 }
 
-/// As [`play_watched`], and shows with the contest the minds that have led there.
+/// Like [`play_watched`], but also shows the minds, in the state that led there.
 ///
 /// # Errors
-/// [`NoStart`] where the boats do not fit into their spawn area, randomised numbers do not go together, or boats are
-/// real ones.
+/// [`NoStart`] if the boats do not fit into their spawn area, the randomised values are
+/// inconsistent, or a boat is real.
 ///
 /// # Panics
-/// If there is not one mind for each vehicle.
+/// If the number of minds differs from the number of vehicles.
 pub fn play_observed(
     scenario: &Scenario,
     minds: Vec<Box<dyn Mind>>,
@@ -62,18 +63,18 @@ pub fn play_observed(
     Ok(contest.outcome())
 }
 
-/// What runs these minds, one for each vehicle in the scenario's order.
+/// A runner for these minds, one per vehicle in the scenario's order.
 #[must_use]
 pub fn runner_of<M: Mind + ?Sized>(minds: Vec<Box<M>>) -> MindRunner<M> {
     MindRunner::new(minds.into_iter().enumerate().map(|(i, mind)| (VehicleId::at(i), mind)))
 }
 
-/// Shows every mind its team's picture and gives the contest its order.
+/// Passes every mind its team's picture and the contest its order.
 pub fn decide<M: Mind + ?Sized>(contest: &mut Contest, runner: &mut MindRunner<M>) {
     let stamp = contest.pictures()[0].stamp;
     runner.decide(stamp, |vehicle| Some(contest.picture_of(vehicle)));
     for (vehicle, order) in runner.orders() {
-        // As over the network: an order with bad numbers is refused, and the boat holds.
+        // As over the network: an order with invalid numbers is refused, and the boat holds.
         contest.order(vehicle, order, stamp.valid_ns).unwrap_or_default();
     }
 }

@@ -1,6 +1,7 @@
-//! What a whole decision asks of the heap: pictures, minds, ticks and the referee.
+//! Heap allocations of a whole decision: pictures, minds, ticks and the referee.
 //!
-//! `stats_alloc` counts for us, see `sim/tests/allocation.rs`; one test, since it counts the whole process.
+//! `stats_alloc` counts, see `sim/tests/allocation.rs`; this file has one test, because it counts
+//! the whole process.
 
 use scenario::Scenario;
 use sim::Contest;
@@ -11,7 +12,7 @@ use std::path::Path;
 #[global_allocator]
 static HEAP: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-/// Decisions in which everything has happened once, up to a capture: every list has grown.
+/// Decisions until everything has happened once, up to a capture: every list has grown.
 const WARM_UP: u64 = 3_000;
 
 #[test]
@@ -30,7 +31,7 @@ fn a_decision_takes_nothing_from_the_heap_unless_hulls_are_close_or_something_ha
         arena::decide(&mut contest, &mut runner);
         contest.advance();
         let used = heap.change();
-        // The log of events grows, now and then; it is the one thing that does.
+        // Only the event log grows, now and then.
         if crowded || contest.events().len() > events || decision < WARM_UP {
             busy += 1;
         } else {

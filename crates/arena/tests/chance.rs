@@ -1,4 +1,4 @@
-//! A scenario knows whether its seed matters: games of two seeds differ exactly where it says so.
+//! A scenario knows whether its seed matters: games of two seeds differ exactly if it says so.
 
 use primitives::reseed::Reseed;
 use primitives::time::SimTime;
@@ -6,14 +6,14 @@ use scenario::{Overrides, Scenario, load_with};
 use sim::Contest;
 use std::path::Path;
 
-/// What is left of the first minute of a game: it may depend on the seed nowhere else.
+/// The digest of a game after its first minute.
 fn digest(scenario: &Scenario, seed: u64) -> String {
     let mut game = scenario.of_seed(seed).unwrap_or_else(|problems| panic!("{problems}"));
     game.rules.time_limit = SimTime::from_s(60.0);
     arena::play(&game, agent::minds_of(&game), seed).unwrap_or_else(|why| panic!("{why}")).digest
 }
 
-/// The shipped games of few boats: larger ones are random by what these have too, and take long.
+/// The shipped games of few boats: larger ones have the same sources of randomness, and take long.
 fn small_games() -> Vec<Scenario> {
     let games = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games");
     let scenario = |entry: std::io::Result<std::fs::DirEntry>| {
@@ -68,7 +68,7 @@ fn a_snapshot_from_either_side_of_another_seed_goes_on_as_the_game_did() {
             snapshots.push(contest.snapshot());
             contest.advance();
         }
-        // Back from the end into each part, without having been there.
+        // Restores snapshots from the end backwards, without having played the parts between.
         for snapshot in snapshots.iter().rev().step_by(45) {
             let mut other = begin();
             other.restore(snapshot).unwrap_or_else(|why| panic!("{why}"));

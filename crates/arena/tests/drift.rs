@@ -1,4 +1,5 @@
-//! Boats in current and wind: what their helms see of the drift, and where they go in spite of it.
+//! Boats in current and wind: the drift that their helms estimate, and where they go in spite of
+//! it.
 
 use agent::MindRunner;
 use primitives::{Ned, VehicleId};
@@ -9,12 +10,13 @@ use std::path::Path;
 /// Speed of the point boat of these tests, through the water, m/s.
 const SPEED_M_S: f64 = 2.0;
 
-/// A point boat that takes up speed and heading nearly at once: [`SPEED_M_S`] at two thirds of its thrust.
+/// A point boat that reaches speed and heading almost at once: [`SPEED_M_S`] at two thirds of its
+/// thrust.
 const QUICK_BOAT: &str = "base = \"SCENARIOS/boats/surveyor_kinematic.toml\"\n\
     [kinematic]\nthrust_map = [[-100, -3.0], [0, 0], [100, 3.0]]\nspeed_factor = 33.333333333333336\nturn_rate = 20\n\
     turn_loss = 0\nheading_pid = { p = 4, d = 0 }\nacceleration_max_m_s2 = 0\ndeceleration_max_m_s2 = 0\n";
 
-/// Blue has one boat in open water at (300, 200) m, red one that lies far off.
+/// Blue has one boat in open water at (300, 200) m; red one is far away.
 fn scenario(boat: &str, sea: &str, strategy: &str, heading_deg: f64) -> Scenario {
     let folder = tempfile::tempdir().expect("a folder for files");
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
@@ -34,12 +36,12 @@ fn scenario(boat: &str, sea: &str, strategy: &str, heading_deg: f64) -> Scenario
     scenario::load(&folder.path().join("game.toml")).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Calm water that goes this way.
+/// Calm water with this current.
 fn current(speed_m_s: f64, toward_deg: f64) -> String {
     format!("base = \"SCENARIOS/seas/calm.toml\"\n[current]\nspeed_m_s = {speed_m_s}\ntoward_deg = {toward_deg}\n")
 }
 
-/// Plays, and shows the contest after every decision until that says `false`.
+/// Plays, and shows the contest after every decision until `shown` returns `false`.
 fn watch(scenario: &Scenario, mut shown: impl FnMut(&Contest, &MindRunner) -> bool) {
     let mut contest = Contest::new(scenario, 1).unwrap_or_else(|e| panic!("{e}"));
     let mut runner = arena::runner_of(agent::minds_of(scenario));
@@ -56,8 +58,9 @@ fn blue_at(contest: &Contest) -> Ned {
     contest.world().state().boats[0].pose.at
 }
 
-/// The way of a boat to a point 200 m east of it across a current of half a metre a second towards north: its distances
-/// from the straight line by the distance still to go along it, m, and how long it took, s.
+/// A boat's path to a point 200 m east across a current of half a metre per second towards north.
+/// Returns its distances from the straight line by the remaining distance along it, m, and the
+/// duration, s.
 fn crossing(compensate_drift: bool) -> (Vec<(f64, f64)>, f64) {
     let strategy = format!(
         "base = \"SCENARIOS/strategies/safety.toml\"\nabout = \"crosses\"\nhelm = {{ hysteresis = 0, compensate_drift = {compensate_drift} }}\n\
@@ -78,8 +81,9 @@ fn crossing(compensate_drift: bool) -> (Vec<(f64, f64)>, f64) {
 
 #[test]
 fn a_boat_that_only_points_at_its_goal_drifts_along_the_curve_of_pursuit() {
-    // With k the current over the speed through the water, and the goal at the distance a across the current:
-    // y = a/2 ((x/a)^(1-k) - (x/a)^(1+k)), as of the boat that rows to the other bank (Boole 1859, ch. XI).
+    // With k the ratio of current to speed through the water, and the goal at the distance a across
+    // the current: y = a/2 ((x/a)^(1-k) - (x/a)^(1+k)), like the boat that rows to the other bank
+    // (Boole 1859, ch. XI).
     let k = 0.5 / SPEED_M_S;
     let curve_m = |to_go_m: f64| {
         let share = (to_go_m / 200.0).clamp(0.0, 1.0);
@@ -98,7 +102,7 @@ fn a_boat_crosses_a_current_on_a_straight_line() {
     let (track, time_s) = crossing(true);
     let farthest_m = track.iter().map(|(_, off_m)| off_m.abs()).fold(0.0, f64::max);
     assert!(farthest_m < 2.0, "{farthest_m} m off the line");
-    // The velocity over the ground is what the crab angle leaves: sqrt(V² - c²).
+    // The velocity over the ground with the crab angle: sqrt(V² - c²).
     let want_s = 199.0 / (SPEED_M_S * SPEED_M_S - 0.25_f64).sqrt();
     assert!((time_s - want_s).abs() < 0.03 * want_s, "{time_s} s, {want_s} s");
 }
@@ -131,7 +135,8 @@ fn a_helm_sees_the_current_that_there_is() {
 fn a_boat_outside_comes_back_against_a_wind_that_drifts_it_faster_than_its_recovery_speed() {
     let strategy = "base = \"SCENARIOS/strategies/safety.toml\"\nabout = \"comes back\"\n\
         [behaviour.stay_in]\nrecovery_speed_m_s = 0.5\n";
-    // At the lee edge of open water: a gale from the south-east over a bay drifts a free boat by 0.75 m/s.
+    // At the lee edge of open water: a gale from the south-east over a bay drifts a free boat by
+    // 0.75 m/s.
     let boat = "base = \"SCENARIOS/boats/surveyor_m1_8.toml\"\n";
     let mut scenario = scenario(boat, "base = \"SCENARIOS/seas/bay_gale.toml\"\n", strategy, 0.0);
     let field = scenario.field.clone();
@@ -145,6 +150,6 @@ fn a_boat_outside_comes_back_against_a_wind_that_drifts_it_faster_than_its_recov
         }
         inside_s.is_none() && contest.now().as_s() < 200.0
     });
-    // 15 m at 0.5 m/s are 30 s; beyond them there is the time to turn.
+    // 15 m at 0.5 m/s take 30 s; the rest is time to turn.
     assert!(inside_s.is_some_and(|s| s < 150.0), "{inside_s:?}");
 }

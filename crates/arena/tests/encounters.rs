@@ -1,4 +1,4 @@
-//! Boats whose ways cross: they keep clear of each other, and do not both turn to the same side.
+//! Boats on crossing paths: they keep clear of each other, and do not both turn to the same side.
 
 use analysis::HullRectangle;
 use primitives::stream::Stream;
@@ -7,12 +7,12 @@ use scenario::Scenario;
 use sim::Contest;
 use std::path::Path;
 
-/// Where their ways cross, along and across the field, m.
+/// Where their paths cross, along and across the field, m.
 const MIDDLE_M: (f64, f64) = (400.0, 200.0);
-/// How far from there they begin, m.
+/// Their initial distance from there, m.
 const START_M: f64 = 45.0;
 
-/// Two mates in calm water, each on its way through the middle to the other side.
+/// Two mates in calm water, each heading through the middle to the other side.
 fn encounter(stream: &mut Stream) -> Scenario {
     let folder = tempfile::tempdir().expect("a folder for files");
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
@@ -51,7 +51,7 @@ fn encounter(stream: &mut Stream) -> Scenario {
     scenario::load(&folder.path().join("game.toml")).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// How near the two come, m, and whether their hulls touch.
+/// The closest distance of the two, m, and whether their hulls touch.
 fn nearest(scenario: &Scenario) -> (f64, bool) {
     let mut contest = Contest::new(scenario, 1).unwrap_or_else(|e| panic!("{e}"));
     let mut runner = arena::runner_of(agent::minds_of(scenario));

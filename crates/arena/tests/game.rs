@@ -12,7 +12,7 @@ fn shipped(name: &str) -> Scenario {
     scenario::load(&path).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Games that were played once, by name and seed: no two tests play the same one.
+/// Games played once, by name and seed, and shared between tests.
 type Played = BTreeMap<(&'static str, u64), Arc<OnceLock<Outcome>>>;
 
 /// The outcome of a shipped game.
@@ -44,7 +44,7 @@ fn the_first_game_of_the_paper_is_played_to_its_end() {
             all(&outcome, |counts| counts.captures),
             all(&outcome, |counts| counts.tags),
         ];
-        // Attackers reach the flag, some get home with it, and defenders catch some of them.
+        // Attackers reach the flag, some bring it home, and defenders catch some of them.
         assert!(grabs > 0 && captures > 0 && tags > 0, "seed {seed}: {grabs} grabs, {captures} captures, {tags} tags");
         assert!(captures <= grabs, "seed {seed}");
         let left = outcome.events.iter().filter(|event| event.event == "left_field").count();
@@ -58,7 +58,7 @@ fn the_same_seed_is_the_same_game() {
         let (first, again) = (played(game, 5), play(&shipped(game), 5));
         assert_eq!(first, again, "{game}");
     }
-    // Forty boats that avoid each other take long to play: two minutes of theirs will do.
+    // Forty boats that avoid each other take long to simulate: two minutes of game time suffice.
     let mut swarm = shipped("swarm_20v20.toml");
     swarm.rules.time_limit = SimTime::from_s(120.0);
     let [first, again, other] = [5, 5, 6].map(|seed| play(&swarm, seed));
@@ -69,7 +69,7 @@ fn the_same_seed_is_the_same_game() {
 
 #[test]
 fn mirrored_teams_draw() {
-    // Both teams play the same strategy from mirrored start positions: what one does, the other does.
+    // Both teams play the same strategy from mirrored start positions, so they mirror each other.
     let outcome = played("pav01_vs_pav01.toml", 1);
     assert_eq!(outcome.winner, None);
     assert_eq!(outcome.score.teams["blue"], outcome.score.teams["red"]);
@@ -103,7 +103,7 @@ fn the_shipped_games_are_what_they_say_and_no_boat_is_quarantined() {
         (sum(|counts| counts.grabs), sum(|counts| counts.captures), sum(|counts| counts.tags))
     };
     assert_eq!(sums("attack_1v1.toml", 1), (3, 3, 0), "nothing stops the attacker");
-    // The seed draws something in the first of them only.
+    // Only the first game uses its seed.
     for (game, seeds) in [("pav01_3v3.toml", 5), ("pav01_4v4.toml", 1), ("harbour_2v2.toml", 1)] {
         let (grabs, captures, tags) = sums(game, seeds);
         assert!(grabs > 0 && captures > 0 && tags > 0, "{game}: {grabs} grabs, {captures} captures, {tags} tags");

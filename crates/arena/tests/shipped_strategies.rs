@@ -1,4 +1,4 @@
-//! Shipped strategies: what they are said to do.
+//! Shipped strategies: their documented behaviour.
 
 use agent::Mind;
 use messages::helm::HelmReport;
@@ -11,7 +11,7 @@ fn shipped(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(path)
 }
 
-/// The game that a seed chooses, with so many boats on each side.
+/// The game with this seed and this many boats per side.
 fn game(boats: u32, blue: &str, red: &str, seed: u64) -> Scenario {
     let folder = tempfile::tempdir().expect("a folder for the game");
     let path = folder.path().join("game.toml");
@@ -29,7 +29,7 @@ fn played(scenario: &Scenario) -> Outcome {
     arena::play(scenario, agent::minds_of(scenario), scenario.seed).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// What the first boat thinks at the end, and the modes that it was in.
+/// The final report of the first boat's helm, and the modes it was in.
 fn watched(scenario: &Scenario) -> (HelmReport, Vec<String>) {
     let (mut last, mut modes) = (None, vec![]);
     arena::play_observed(scenario, agent::minds_of(scenario), scenario.seed, |_, runner| {
@@ -98,7 +98,7 @@ fn strategy_5_beats_strategy_4_from_either_side() {
             lost += u64::from(points(&outcome, own) < points(&outcome, other));
         }
     }
-    // In hundreds of games it wins about three of four that are decided.
+    // In hundreds of games it wins about three of four decided ones.
     assert!(won > lost && 2 * won > SEEDS, "{won} won, {lost} lost");
 }
 

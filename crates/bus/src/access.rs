@@ -1,19 +1,21 @@
-//! What others may do at a hub: the rules for zenoh's access control.
+//! The rights of other nodes at a hub: the rules for zenoh's access control.
 //!
-//! Everything is denied that no rule allows. The rules bind whoever is linked with the hub, not the hub's own session: so what
-//! only the sim may do (publish pictures and what gateways report, answer the queries that are its own, be alive as the sim,
-//! hear orders, navigation and reports) needs no rule at all. Without keys, all others have the same rights; with keys each has those of its part.
+//! Everything that no rule allows is denied. The rules bind nodes linked to the hub, not the hub's
+//! own session. What only the sim may do therefore needs no rule: publish pictures and gateway
+//! reports, answer its own queries, show the sim's liveliness token, and receive orders, navigation
+//! and reports. Without keys, all other nodes have the same rights; with keys, each has the rights
+//! of its role.
 //!
-//! What the hub sends on has a topic that is spelled out here, none that others can make up: zenoh 1.10 panics, and the sim with
-//! it, where it has to send a key of more than 65535 bytes.
+//! Topics that the hub forwards are spelled out here; nodes cannot invent them. zenoh 1.10 panics,
+//! and takes the sim with it, if it has to send a key of more than 65535 bytes.
 
 use crate::keys::Identity;
 use messages::topic::{self, GameName};
 use scenario::{Scenario, Vehicle};
 use serde_json::{Value, json};
 
-/// What somebody may do, by patterns of topics. `{team}` stands for each of its teams, `{boat}` for each of its boats; only what the
-/// sim alone hears may have wildcards.
+/// The rights of a node, as topic patterns. `{team}` expands to each of its teams, `{boat}` to each
+/// of its boats. Only topics that the sim alone receives may have wildcards.
 struct Rights {
     publishes: &'static [&'static str],
     hears: &'static [&'static str],
@@ -21,22 +23,22 @@ struct Rights {
     answers: &'static [&'static str],
 }
 
-/// Anybody who reaches a hub without keys.
+/// Any node that reaches a hub without keys.
 const ANYBODY: Rights = Rights {
     publishes: &[
-        // Everything below, not one level: without keys the team in the key says nothing, and
-        // the sim checks the ticket of each order anyway.
+        // Everything below, not one level: without keys the team in the key proves nothing, and the
+        // sim checks the ticket of each order anyway.
         "order/**",
         "say/{team}",
         "policy/{boat}",
         "nav/{boat}",
-        // Reports go to the sim with the gateway's ticket, and on from there: without keys
-        // anybody can publish as a gateway, but nobody can publish what the sim does.
+        // The sim receives reports with the gateway's ticket and forwards them. Without keys, any
+        // node can publish as a gateway, but none can publish as the sim.
         "report/status/{boat}",
         "report/link/{boat}",
         "control",
-        // Whoever sees danger must not look for a secret first, so everybody may stop boats:
-        // without a token and, with keys, by any part of the game.
+        // Anyone who sees danger must be able to stop boats without looking for a secret first:
+        // without a token and, with keys, in any role.
         "stop/{boat}",
     ],
     hears: &[
@@ -66,7 +68,8 @@ const ANYBODY: Rights = Rights {
     ],
     answers: &["helm/{boat}", "operate/{boat}"],
 };
-/// The agents of a team, and policies that propose to them: no truth, and nothing of other teams.
+/// The agents of a team and policies that propose actions to them: no truth, and nothing from other
+/// teams.
 const TEAM: Rights = Rights {
     publishes: &["order/{team}/*", "say/{team}", "policy/{boat}", "control", "stop/{boat}"],
     hears: &["picture/{team}", "say/{team}", "policy/{boat}", "run", "control", "released"],
@@ -79,16 +82,16 @@ const GATEWAY: Rights = Rights {
     asks: &["scenario", "join/gateway/{boat}"],
     answers: &["operate/{boat}"],
 };
-// It sees all that is published, and what helms decide, but changes nothing: only stops are
-// open to it, as to everybody.
+// Receives everything published and what helms decide, but changes nothing except that, like every
+// node, it may stop boats.
 const OBSERVER: Rights = Rights {
     publishes: &["control", "stop/{boat}"],
     asks: &["scenario", "events", "water", "helm/{boat}"],
     answers: &[],
     ..ANYBODY
 };
-// The only part that is let through to `operate`: with keys no token is asked for as well,
-// since it would be a second secret for the same right.
+// The only role admitted to `operate`: with keys no token is required as well, since it would be a
+// second secret for the same right.
 const OPERATOR: Rights = Rights {
     publishes: &["control", "stop/{boat}", "policy/{boat}"],
     asks: &["scenario", "events", "water", "helm/{boat}", "control", "operate/{boat}"],
@@ -97,7 +100,7 @@ const OPERATOR: Rights = Rights {
 
 fn rights(identity: &Identity) -> &'static Rights {
     match identity {
-        // It opens the hub: nobody is linked as the sim.
+        // The sim opens the hub; no node links as the sim.
         Identity::Sim => &Rights { publishes: &[], hears: &[], asks: &[], answers: &[] },
         Identity::Team(_) => &TEAM,
         Identity::Gateway(_) => &GATEWAY,
@@ -106,15 +109,15 @@ fn rights(identity: &Identity) -> &'static Rights {
     }
 }
 
-/// Whether somebody may ask at `key` at all: no answer comes where it may not.
+/// Whether a node may query `key` at all; if not, no answer ever comes.
 pub(crate) fn may_ask(identity: &Identity, key: &str) -> bool {
-    // By the kind alone: this check only spares a node that may not ask the wait for an answer.
-    // What binds is the rule at the hub, which is spelled out.
+    // Checks the kind alone: this only spares a node without the right the wait for an answer. The
+    // rule at the hub, with topics spelled out, is what binds.
     let kind = key.split('/').nth(2);
     rights(identity).asks.iter().any(|pattern| pattern.split('/').next() == kind)
 }
 
-/// The rules for whoever has the rights, for its teams and boats.
+/// The rules for nodes with these rights, for their teams and boats.
 struct Subject {
     id: String,
     rights: &'static Rights,
@@ -123,11 +126,11 @@ struct Subject {
 }
 
 impl Subject {
-    /// Topics of these patterns.
+    /// Topics that match these patterns.
     fn keys(&self, game: &GameName, patterns: &[&str]) -> Vec<String> {
-        // A rule that denies `frame` does not deny `*`, which means `frame` among others; a
-        // rule that allows `order/*` does not allow `**`. So there are only rules that allow,
-        // and none has a wildcard where something goes out.
+        // A rule that denies `frame` does not deny `*`, although `*` includes `frame`; a rule that
+        // allows `order/*` does not allow `**`. Therefore all rules allow, and none has a wildcard
+        // in the outgoing direction.
         let spelled_out = |pattern: &&str| -> Vec<String> {
             if pattern.contains("{team}") {
                 self.teams.iter().map(|team| pattern.replace("{team}", team)).collect()
@@ -140,10 +143,10 @@ impl Subject {
         patterns.iter().flat_map(spelled_out).map(|topic| topic::matching(game, &topic)).collect()
     }
 
-    /// The rules: messages of these kinds, in these directions (as seen from the hub), on these topics.
+    /// Access rules for kinds of messages, directions (as seen from the hub) and topics.
     fn rules(&self, game: &GameName) -> Vec<Value> {
         let Rights { publishes, hears, asks, answers } = self.rights;
-        // Whoever does not know the game's name looks for all games.
+        // A node that does not know the game's name searches for all games.
         let tokens = vec![topic::all_alive(game), topic::everyone_alive()];
         let rules: [(&[&str], &[&str], Vec<String>); 10] = [
             (&["put"], &["ingress"], self.keys(game, publishes)),
@@ -153,10 +156,10 @@ impl Subject {
             (&["reply"], &["egress"], self.keys(game, asks)),
             (&["declare_queryable", "reply"], &["ingress"], self.keys(game, answers)),
             (&["query"], &["egress"], self.keys(game, answers)),
-            // That somebody subscribes or answers here is no secret: publishers must know it.
+            // Subscriptions and queryables here are no secret: publishers must know of them.
             (&["declare_subscriber", "declare_queryable"], &["egress"], vec![topic::matching(game, "**")]),
-            // Only outward: a token that others show in the sim's name would be believed.
-            // Agents and gateways have none for the same reason; the hub sees their links.
+            // Outward only: a token that another node shows in the sim's name would be believed.
+            // Agents and gateways show none for the same reason; the hub sees their links.
             (&["liveliness_token"], &["egress"], vec![topic::all_alive(game)]),
             (&["liveliness_query", "declare_liveliness_subscriber"], &["ingress", "egress"], tokens),
         ];
@@ -173,7 +176,7 @@ impl Subject {
     }
 }
 
-/// Those whom a game knows, with or without keys.
+/// The subjects that a game knows, with or without keys.
 fn subjects(scenario: &Scenario, has_keys: bool) -> Vec<Subject> {
     let names = |boats: Vec<&Vehicle>| -> Vec<String> { boats.into_iter().map(|boat| boat.name.clone()).collect() };
     let teams: Vec<String> = scenario.teams.iter().map(|team| team.name.clone()).collect();
@@ -193,7 +196,7 @@ fn subjects(scenario: &Scenario, has_keys: bool) -> Vec<Subject> {
         let own = names(scenario.vehicles.iter().filter(|boat| boat.team.index() == i).collect());
         subjects.push(subject(Identity::Team(team.clone()), std::slice::from_ref(team), &own));
     }
-    // Keys may be made for one gateway on each boat, or for one machine that has all of them.
+    // Keys may be made for one gateway per boat, or for one machine that runs all gateways.
     let externals = names(scenario.externals().map(|boat| &scenario.vehicles[boat.index()]).collect());
     for boat in &externals {
         subjects.push(subject(Identity::Gateway(Some(boat.clone())), &[], std::slice::from_ref(boat)));
@@ -220,8 +223,8 @@ pub(crate) fn control(game: &GameName, scenario: &Scenario, has_keys: bool) -> V
         }
     };
     json!({
-        // Deny by default: what a later zenoh adds, or somebody makes up, is closed until it is
-        // written down above.
+        // Deny by default: anything that a later zenoh adds or a node invents stays closed until a
+        // rule above opens it.
         "enabled": true, "default_permission": "deny", "rules": rules,
         "subjects": all.iter().map(subject).collect::<Vec<Value>>(), "policies": policies,
     })

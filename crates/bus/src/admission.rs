@@ -1,10 +1,12 @@
 //! Keeps room at a hub's port for new nodes, however many other connections there are.
 //!
-//! A connection waits until zenoh has made a link of it. Of those that wait there are so many at most: for one more, another is
-//! ended, by the rule of [`Connections`]. zenoh's TLS listener (1.10, `tls-listener` 0.11) needs more than that: while the process
-//! can open no more files it only tries to accept, and closes none of the connections that it has, so that it would never
-//! recover. When files run short, the port is closed for a moment, and the files that are kept are lent to what has come through
-//! already: then the listener has nothing more to accept, and closes what was ended.
+//! A connection is pending until zenoh has made it a link. The number of pending connections is
+//! limited: a newcomer beyond it ends another one, chosen by the rule of [`Connections`]. zenoh's
+//! TLS listener (1.10, `tls-listener` 0.11) needs more than that: once the process has run out of
+//! file descriptors, the listener only tries to accept and closes none of its connections, so it
+//! would never recover. When descriptors run short, the port is closed briefly and the reserved
+//! descriptors are lent to connections accepted already. The listener then has nothing more to
+//! accept, and closes the ended ones.
 
 use crate::descriptor::{self, Ends, Kind};
 use crate::open_files::OpenFiles;
@@ -18,27 +20,28 @@ use zenoh::sample::SampleKind;
 use zenoh::session::LinkEvent;
 use zenoh::{Session, Wait};
 
-/// How often the port is looked at, and how often while many wait there.
+/// How often the port is checked, and how often while many connections are pending.
 const LOOK: Duration = Duration::from_millis(100);
 const LOOK_OFTEN: Duration = Duration::from_millis(10);
 
-/// The connections that are links.
+/// The connections that have become links.
 type Links = Mutex<BTreeSet<Ends>>;
 
-/// What is known of the port.
+/// The state of the port.
 struct Port {
     numbers: Vec<u16>,
-    /// zenoh keeps them open as long as the session.
+    /// zenoh keeps them open until the session closes.
     listeners: Vec<RawFd>,
     files: OpenFiles,
     waiting_max: usize,
     waiting: Connections,
-    /// Of each connection that waits.
+    /// One slot for each pending connection.
     slots: BTreeMap<Ends, Slot>,
     is_closed: bool,
 }
 
-/// Begins to keep room at these ports of a session for as long as it is open: `waiting_max` connections may wait.
+/// Starts keeping room at these ports for as long as the session is open; at most `waiting_max`
+/// connections may be pending.
 pub(crate) fn begin(session: &Session, numbers: Vec<u16>, files: OpenFiles, waiting_max: usize) -> zenoh::Result<()> {
     let links = Arc::new(Links::default());
     let watched = Arc::downgrade(&links);
@@ -46,23 +49,24 @@ pub(crate) fn begin(session: &Session, numbers: Vec<u16>, files: OpenFiles, wait
         let Some(ends) = linger::ends(event.link()) else { return };
         match event.kind() {
             SampleKind::Put => links.lock().insert(ends),
-            // By both addresses, since descriptors are reused: the same number may be another
-            // connection by now.
+            // Identified by both addresses, since descriptors are reused: the same number may
+            // be another connection by now.
             SampleKind::Delete => links.lock().remove(&ends),
         };
     };
     session.info().link_events_listener().history(true).callback(note).background().wait()?;
     let waiting = Connections::new(waiting_max);
     let listeners = listeners(&numbers);
-    // What the system has accepted already is to find room among the files that are kept, beside those that are lent still.
+    // Connections that the system has accepted already must fit into the reserved descriptors,
+    // beside those still on loan.
     let queue_max = i32::try_from(files.kept() / 4).unwrap_or(i32::MAX);
     for listener in &listeners {
-        // `listen` on a socket that listens already only changes the length of its queue.
+        // `listen` on a listening socket only changes the length of its queue.
         descriptor::with_socket(*listener, |socket| socket.listen(queue_max))?;
     }
     let slots = BTreeMap::new();
     let mut port = Port { numbers, listeners, files, waiting_max, waiting, slots, is_closed: false };
-    // The session has dropped its callback when it is closed.
+    // The session drops its callback when it closes.
     let look = move || {
         while let Some(links) = watched.upgrade() {
             let rest = port.look(&links);
@@ -74,10 +78,10 @@ pub(crate) fn begin(session: &Session, numbers: Vec<u16>, files: OpenFiles, wait
 }
 
 impl Port {
-    /// Finds who waits, ends those that are too many, and says when to look again.
+    /// Finds pending connections, ends the surplus, and returns when to check again.
     fn look(&mut self, links: &Links) -> Duration {
-        // Listing descriptors needs a descriptor itself. Where even that fails, the files that
-        // are kept are lent first.
+        // Listing descriptors needs a descriptor itself. If that fails, the reserved ones are lent
+        // first.
         let listed = descriptor::all().or_else(|_| {
             self.close(true);
             descriptor::all()
@@ -94,10 +98,11 @@ impl Port {
                 found.insert(ends, descriptor);
             }
         }
-        // What became a link meanwhile is known by now.
+        // Connections that became links meanwhile are known by now.
         let links = links.lock().clone();
         let lent: Vec<(Ends, RawFd)> = found.iter().map(|(ends, it)| (*ends, *it)).filter(|it| is_lent(it.1)).collect();
-        // Lent files come back before the port opens; the next flood needs them. A node whose link has one connects again.
+        // Lent descriptors return before the port opens, because the next flood needs them. A node
+        // whose link holds one reconnects.
         let are_too_many = lent.len() as u64 > self.files.kept() / 4;
         self.close(free < self.files.kept() / 2 || are_too_many);
         let goes = |ends: &Ends| self.is_closed && (are_too_many || !links.contains(ends));
@@ -105,8 +110,8 @@ impl Port {
         found.retain(|ends, _| !links.contains(ends));
         self.slots.retain(|ends, _| found.contains_key(ends));
         for (ends, descriptor) in found {
-            // Mapped IPv4 addresses count as what they are, or one host would have two shares
-            // of the port.
+            // Mapped IPv4 addresses count as IPv4; otherwise one host would have two shares of the
+            // port.
             let admit = || self.waiting.admit(ends.1.ip().to_canonical(), move || descriptor::end(descriptor, ends));
             self.slots.entry(ends).or_insert_with(admit);
         }
@@ -114,34 +119,36 @@ impl Port {
         if self.is_closed || are_many { LOOK_OFTEN } else { LOOK }
     }
 
-    /// Lets nobody connect for now, and lends the files that are kept; or the contrary.
+    /// Blocks new connections and lends the reserved descriptors, or undoes both.
     fn close(&mut self, is_closed: bool) {
         if self.is_closed != is_closed {
             self.is_closed = is_closed;
-            // In this order, since new connections would take the files that are lent.
+            // In this order, since new connections would take the lent descriptors.
             self.listeners.iter().for_each(|listener| filter(*listener, is_closed));
             self.files.lend(is_closed);
         }
     }
 }
 
-/// The sockets of this process that listen on one of these ports.
+/// This process's sockets that listen on one of these ports.
 fn listeners(ports: &[u16]) -> Vec<RawFd> {
     let is_one = |it: &RawFd| matches!(descriptor::kind(*it), Kind::Listener(port) if ports.contains(&port));
     descriptor::all().unwrap_or_default().into_iter().filter(is_one).collect()
 }
 
-/// Makes the system drop packets for a listener, or stops that. A client's TCP retries after a second.
+/// Makes the system drop packets for a listener, or stops that. A client's TCP retries after a
+/// second.
 #[cfg(target_os = "linux")]
 fn filter(listener: RawFd, is_closed: bool) {
-    /// `BPF_RET | BPF_K` of classic BPF (`linux/bpf_common.h`), with zero: nothing of the packet is taken.
+    /// `BPF_RET | BPF_K` of classic BPF (`linux/bpf_common.h`) with zero: accepts no byte of the
+    /// packet.
     const DROP: [socket2::SockFilter; 1] = [socket2::SockFilter::new(0x06, 0, 0, 0)];
     let change =
         |socket: &socket2::SockRef<'_>| if is_closed { socket.attach_filter(&DROP) } else { socket.detach_filter() };
-    // Where that cannot be done, a flood takes longer to be over.
+    // If this fails, a flood takes longer to clear.
     drop(descriptor::with_socket(listener, change));
 }
 
-/// Other systems have no such filter: there a flood takes longer to be over.
+/// Other systems have no such filter; there a flood takes longer to clear.
 #[cfg(not(target_os = "linux"))]
 fn filter(_listener: RawFd, _is_closed: bool) {}

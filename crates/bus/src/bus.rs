@@ -1,4 +1,5 @@
-//! A node on the network: publish, subscribe, queries, liveliness tokens, with the node's token and keys.
+//! A node on the network: publish, subscribe, queries and liveliness tokens, with its token and
+//! keys.
 
 use crate::keys::Bundle;
 use crate::net::is_loopback;
@@ -13,17 +14,17 @@ use serde::Serialize;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Which messages go first. None waits for a link: what a congested link cannot take at once is dropped, and who needs to be
-/// heard says it again.
+/// Message priority. No message waits for a link: what a congested link cannot take at once is
+/// dropped, and senders that must be heard repeat.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Priority {
-    /// What stops boats: before everything else, and at once.
+    /// Stops of boats: sent at once, before everything else.
     Urgent,
-    /// Everything that is sent at every decision.
+    /// Everything sent at every decision.
     Normal,
 }
 
-/// A node's session.
+/// The session of a node, with its token and keys. Clones share the session.
 #[derive(Clone)]
 pub struct Bus {
     pub(crate) session: Arc<dyn Session>,
@@ -39,7 +40,7 @@ impl Bus {
     /// Opens the hub of a game.
     ///
     /// # Errors
-    /// [`BusError`] if it cannot listen where it should.
+    /// [`BusError`] if it cannot listen at its endpoints.
     pub fn hub(net: &Net, game: &GameName, scenario: &Scenario) -> Result<Bus, BusError> {
         runtime().open_hub(net, game, scenario).map(|session| Bus::of(session, net))
     }
@@ -47,7 +48,7 @@ impl Bus {
     /// Connects to a hub.
     ///
     /// # Errors
-    /// [`BusError`] if nobody listens there now.
+    /// [`BusError`] if no hub listens there now.
     pub fn leaf(net: &Net) -> Result<Bus, BusError> {
         runtime().open_leaf(net).map(|session| Bus::of(session, net))
     }
@@ -63,23 +64,23 @@ impl Bus {
         self.keys.as_deref()
     }
 
-    /// Whether the hub is reached by loopback.
+    /// Whether the connection to the hub uses loopback.
     pub(crate) fn is_on_this_machine(&self) -> bool {
         self.is_on_this_machine
     }
 
-    /// The game's token, where it is known.
+    /// The game's token, if known.
     pub(crate) fn token(&self) -> Option<&Token> {
         self.token.as_ref()
     }
 
-    /// The same session, for a node that knows this token.
+    /// The same session, for a node with this token.
     #[must_use]
     pub fn with_token(self, token: Option<Token>) -> Bus {
         Bus { token, ..self }
     }
 
-    /// This session's own identifier, unique on the network.
+    /// This session's identifier, unique on the network.
     #[must_use]
     pub fn id(&self) -> String {
         self.session.id()
@@ -93,7 +94,7 @@ impl Bus {
         self.session.publisher(key, priority).map(Publisher)
     }
 
-    /// Calls `receive` with the bytes of everything published on `key`.
+    /// Calls `receive` with the bytes of every message published on `key`.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
@@ -105,7 +106,7 @@ impl Bus {
         self.session.subscribe(key, true, Box::new(receive))
     }
 
-    /// As [`Bus::subscribe`], but not with what this session publishes itself.
+    /// Like [`Bus::subscribe`], but without messages that this session publishes.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
@@ -117,7 +118,7 @@ impl Bus {
         self.session.subscribe(key, false, Box::new(receive))
     }
 
-    /// Shows that this node is there, under `key`, until dropped or dead.
+    /// Shows a liveliness token under `key` until it is dropped or the node dies.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
@@ -125,7 +126,8 @@ impl Bus {
         self.session.show_alive(key)
     }
 
-    /// Calls `receive` with the key of every node under `key` that comes (`true`) or goes, beginning with those that are there.
+    /// Calls `receive` with the key of every node under `key` that appears (`true`) or leaves,
+    /// starting with those present.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
@@ -137,7 +139,7 @@ impl Bus {
         self.session.watch_alive(key, Box::new(receive))
     }
 
-    /// Calls `receive` with the identifier of every node whose link to this hub is gone.
+    /// Calls `receive` with the identifier of every node that loses its link to this hub.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
@@ -145,7 +147,7 @@ impl Bus {
         self.session.watch_links(Box::new(receive))
     }
 
-    /// The keys of all nodes under `key` that are there now.
+    /// The keys of all nodes present under `key`.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
@@ -153,14 +155,14 @@ impl Bus {
         self.session.who_is_alive(key, limit)
     }
 
-    /// Closes the session, so that the others need not find out.
+    /// Closes the session, so that other nodes learn of it at once.
     pub fn close(&self) {
         self.session.close();
     }
 }
 
 impl Publisher {
-    /// Whether anybody listens; a message that nobody hears need not be made.
+    /// Whether the key has a subscriber; messages without one need not be encoded.
     #[must_use]
     pub fn is_heard(&self) -> bool {
         self.0.is_heard()
@@ -174,7 +176,7 @@ impl Publisher {
         self.send_encoded::<M>(codec::encode(message))
     }
 
-    /// Sends a per-tick message that is CDR already.
+    /// Sends a per-tick message that is already encoded as CDR.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
@@ -182,7 +184,7 @@ impl Publisher {
         self.0.send(bytes, Encoding::Cdr { schema: M::SCHEMA, version: M::VERSION })
     }
 
-    /// Sends bytes that are JSON.
+    /// Sends JSON bytes.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
@@ -190,7 +192,7 @@ impl Publisher {
         self.0.send(json, Encoding::Json)
     }
 
-    /// Sends bytes as they are.
+    /// Sends bytes without a stated encoding.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.

@@ -1,29 +1,30 @@
-//! The wall clock of everything that runs on the network: for pacing, and for waits that have a limit. The core is told the
-//! time and never reads a clock.
+//! The wall clock of everything that runs on the network: for pacing and timeouts. The core
+//! receives the time as an argument and never reads a clock.
 
 use crate::runtime::runtime;
 use std::time::{Duration, Instant};
 
-/// This moment.
+/// The current time.
 #[must_use]
 pub fn now() -> Instant {
     runtime().now()
 }
 
-/// How long ago `start` was.
+/// Time elapsed since `start`.
 #[must_use]
 pub fn since(start: Instant) -> Duration {
     now().saturating_duration_since(start)
 }
 
-/// How long this machine has been suspended since it was started, of which [`now`] knows nothing: the boot-time clock less the monotonic
-/// one, of Linux.
+/// How long this machine has been suspended since boot, which [`now`] does not count: on Linux, the
+/// boot-time clock minus the monotonic one.
 #[must_use]
 pub fn suspended() -> Duration {
     runtime().suspended()
 }
 
-/// Waits where there is no condition to wait for: between two attempts, or two pictures for a person.
+/// Sleeps where no condition can be waited for: between two attempts, or two pictures for a
+/// person.
 pub fn rest(time: Duration) {
     runtime().sleep(time);
 }

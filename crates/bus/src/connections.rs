@@ -1,5 +1,5 @@
-//! The open connections of a server that has room for so many: a newcomer always gets in, and whoever idles longest makes room
-//! for it.
+//! The open connections of a server with limited room: a newcomer always gets in, and the
+//! connection that has idled longest makes room for it.
 
 use parking_lot::Mutex;
 use std::collections::BTreeMap;
@@ -15,34 +15,35 @@ pub struct Connections {
 
 #[derive(Default)]
 struct Open {
-    /// Counts what happened; the least is what happened longest ago.
+    /// Logical clock of events; the lowest value is the oldest.
     count: u64,
-    /// By number.
+    /// By number of the slot.
     connections: BTreeMap<u64, Entry>,
 }
 
 struct Entry {
     from: IpAddr,
-    /// When something was last requested over it, by `count`.
+    /// `count` at the last request over it.
     used: u64,
     close: Box<dyn FnOnce() + Send>,
 }
 
-/// Room for one connection. Dropped, it is free again.
+/// Room for one connection, freed on drop.
 pub struct Slot {
     open: Arc<Mutex<Open>>,
     number: u64,
 }
 
 impl Connections {
-    /// Of which there are at most so many.
+    /// Room for at most `most` connections.
     #[must_use]
     pub fn new(most: usize) -> Connections {
         Connections { open: Arc::default(), most }
     }
 
-    /// Room for a connection from this address, which `close` ends. Where there is none, it takes that of another: of the
-    /// address that has the most, the connection that was used longest ago.
+    /// Takes a slot for a connection from this address; `close` ends the connection. If no slot is
+    /// free, it evicts another: of the address with the most connections, the least recently used
+    /// one.
     pub fn admit(&self, from: IpAddr, close: impl FnOnce() + Send + 'static) -> Slot {
         let mut open = self.open.lock();
         let mut surplus = Vec::new();
@@ -54,13 +55,13 @@ impl Connections {
         let number = open.count;
         open.connections.insert(number, Entry { from, used: number, close: Box::new(close) });
         drop(open);
-        // Outside of the lock: closing calls into whoever owns the connection, which may drop
-        // its slot, and that takes the lock.
+        // Outside the lock: closing calls into the connection's owner, which may drop its slot and
+        // so take the lock.
         surplus.into_iter().for_each(|entry| (entry.close)());
         Slot { open: Arc::clone(&self.open), number }
     }
 
-    /// Ends them all.
+    /// Ends all connections.
     pub fn close(&self) {
         let all = std::mem::take(&mut self.open.lock().connections);
         all.into_values().for_each(|entry| (entry.close)());
@@ -73,16 +74,15 @@ impl Open {
         self.connections.values().for_each(|entry| *by_address.entry(entry.from).or_insert(0) += 1);
         let share = |entry: &Entry| by_address.get(&entry.from).copied().unwrap_or(0);
         let most_idle =
-            // The address with the most connections first: a host that opens thousands makes
-            // room at its own cost, and one that has a single connection keeps it however long
-            // it idles.
+            // The address with the most connections first: a host that opens thousands makes room
+            // at its own cost, and a host with a single connection keeps it however long it idles.
             |(_, a): &(&u64, &Entry), (_, b): &(&u64, &Entry)| share(b).cmp(&share(a)).then(a.used.cmp(&b.used));
         self.connections.iter().min_by(most_idle).map(|(number, _)| *number)
     }
 }
 
 impl Slot {
-    /// Something is requested over it.
+    /// Marks the connection as used by a request.
     pub fn touch(&self) {
         let mut open = self.open.lock();
         open.count += 1;
@@ -107,7 +107,7 @@ mod tests {
     const STRANGER: IpAddr = IpAddr::V4(std::net::Ipv4Addr::new(10, 0, 0, 1));
     const OPERATOR: IpAddr = IpAddr::V4(std::net::Ipv4Addr::new(10, 0, 0, 2));
 
-    /// A connection, and whether it was closed.
+    /// A connection, and whether it has been closed.
     fn admit(connections: &Connections, from: IpAddr) -> (Slot, Arc<AtomicBool>) {
         let closed = Arc::new(AtomicBool::new(false));
         let close = Arc::clone(&closed);
@@ -125,7 +125,7 @@ mod tests {
         all[0].0.touch();
         all.push(admit(&connections, STRANGER));
         assert_eq!(closed(&all), [false, true, false, false]);
-        // Who has left makes room as well.
+        // A connection that has left makes room as well.
         all.remove(2);
         all.push(admit(&connections, STRANGER));
         assert_eq!(closed(&all), [false, true, false, false]);

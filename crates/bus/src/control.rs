@@ -1,4 +1,4 @@
-//! Controlling a game from outside of it.
+//! Controlling a game from another process.
 
 use crate::{ANSWER, Bus, BusError, Priority, Watched, clock, start_thread};
 use messages::topic::{self, GameName};
@@ -6,30 +6,30 @@ use messages::{Control, ControlReply};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// How long the sim may take to answer a stop before it is said again.
+/// How long the sim may take to answer a stop before the stop is repeated.
 const STOP_ANSWER: Duration = Duration::from_millis(200);
 
-/// How often a stop is said by those whom the sim does not answer.
+/// How often a node that may not query the sim publishes a stop.
 const SAID_UNASKED: u32 = 3;
 
-/// What the sim has answered to one of several questions.
+/// The sim's answer to one of several queries.
 type Answered = Watched<Option<Result<ControlReply, BusError>>>;
 
-/// Controls a game. What stops boats is published to everybody, gateways too, and needs no token; a link may lose it, so it is
-/// said again until the sim has answered. The rest is asked of the sim.
+/// Controls a game. Commands that stop boats are published to all nodes, including gateways, and
+/// need no token; since a link may lose them, they are repeated until the sim has answered. Other
+/// commands are queries to the sim.
 ///
 /// # Errors
-/// [`BusError`] if the sim refuses or does not answer (gateways may have heard a stop all the same), if it asks for a token that is
-/// not known, or if the session is closed.
+/// [`BusError`] if the sim refuses or does not answer (gateways may still have received a stop), if
+/// it requires a token that is not known, or if the session is closed.
 ///
 /// # Panics
 /// Never: a control is JSON.
 pub fn control(bus: &Bus, game: &GameName, control: Control) -> Result<(), BusError> {
     let key = topic::control(game);
     let reply: Option<ControlReply> =
-        // Pausing or ending a game can wait for a question and its challenge; a stop is
-        // published at once and asked for besides, since nothing that is published is sure to
-        // arrive.
+        // Pausing or ending a game can wait for a query and its challenge. A stop is published at
+        // once and sent as a query too, since published messages may be lost.
         if control.stops() { stop(bus, &key, control)? } else { bus.request(&key, &control, ANSWER)? };
     match reply {
         Some(Ok(())) => Ok(()),
@@ -47,7 +47,7 @@ fn stop(bus: &Bus, key: &str, control: Control) -> Result<Option<ControlReply>, 
         ask(bus, key, control, ANSWER.saturating_sub(clock::since(start)), &answered);
         answered.wait(STOP_ANSWER, Option::is_some);
         match answered.visit(Option::take) {
-            // Whoever may only look may stop all the same, and must not ask.
+            // Observers may stop a game too, but may not query the sim.
             Some(Err(BusError::NotAllowed { .. })) if said < SAID_UNASKED => clock::rest(STOP_ANSWER),
             Some(Err(BusError::NotAllowed { .. })) => return Ok(Some(Ok(()))),
             Some(reply) => return reply.map(Some),
@@ -58,16 +58,17 @@ fn stop(bus: &Bus, key: &str, control: Control) -> Result<Option<ControlReply>, 
     Ok(None)
 }
 
-/// Asks the sim. On a long way the next question goes out before the answer to this one is back.
+/// Queries the sim. On a slow link, the next query goes out before the answer to this one has
+/// arrived.
 fn ask(bus: &Bus, key: &str, control: Control, limit: Duration, answered: &Arc<Answered>) {
     let (bus, key, answered) = (bus.clone(), key.to_owned(), Arc::clone(answered));
-    // In a thread of its own, since a question blocks until it is answered or given up, and the
-    // stop must be said again meanwhile.
+    // In its own thread, since a query blocks until answered or timed out, and the stop must be
+    // repeated meanwhile.
     let asked = start_thread("stop-question", move || {
         if let Some(reply) = bus.request(&key, &control, limit).transpose() {
             answered.visit(|answered| *answered = Some(reply));
         }
     });
-    // Where there is no thread it is asked again.
+    // If no thread can be started, the next repeat queries again.
     drop(asked);
 }

@@ -1,20 +1,22 @@
-//! The descriptors of this process. zenoh does not give its sockets away: they are found here, by their addresses.
+//! The file descriptors of this process. zenoh does not expose its sockets, so they are found here
+//! by their addresses.
 
 use socket2::{SockRef, Type};
 use std::io;
 use std::net::{Shutdown, SocketAddr};
 use std::os::fd::{AsRawFd, BorrowedFd, RawFd};
 
-/// Where the system lists the descriptors of the process that asks: Linux has both, macOS and the BSDs the second.
+/// Where the system lists the calling process's descriptors: Linux has both, macOS and the BSDs the
+/// second.
 const FOLDERS: [&str; 2] = ["/proc/self/fd", "/dev/fd"];
 
-/// The two ends of a connection: ours, and that of the peer.
+/// The two ends of a connection: local and peer address.
 pub(crate) type Ends = (SocketAddr, SocketAddr);
 
-/// What a descriptor is.
+/// The kind of a descriptor.
 pub(crate) enum Kind {
     Connection(Ends),
-    /// A TCP socket that listens on this port.
+    /// A TCP socket listening on this port.
     Listener(u16),
     Other,
 }
@@ -22,31 +24,32 @@ pub(crate) enum Kind {
 /// The numbers of all descriptors.
 ///
 /// # Errors
-/// If the system lists none, or there is no descriptor left to read the list with.
+/// If the system lists none, or no descriptor is left to read the list with.
 pub(crate) fn all() -> io::Result<Vec<RawFd>> {
-    // Linux has the first, macOS and the BSDs the second. Where there is neither, links keep
-    // their linger time, and the port its limits of zenoh.
+    // Linux has the first, macOS and the BSDs the second. If neither exists, links keep their
+    // linger time and the port keeps zenoh's limits.
     let folder = std::fs::read_dir(FOLDERS[0]).or_else(|_| std::fs::read_dir(FOLDERS[1]))?;
     Ok(folder.flatten().filter_map(|entry| entry.file_name().to_str()?.parse().ok()).collect())
 }
 
-/// A descriptor as a socket, whatever it is: the system checks that at each call.
+/// A descriptor as a socket, whatever its kind: the system checks that at each call.
 #[expect(unsafe_code, reason = "zenoh does not give its sockets away: only their numbers can be known")]
 fn borrow<'a>(descriptor: RawFd) -> BorrowedFd<'a> {
-    // SAFETY: the number comes from the system, so it is not -1, and the descriptor is not closed through this. If another thread
-    // closes it meanwhile, calls fail. If its number is used anew, it has other addresses: a caller that changes the socket compares
-    // them first, on a duplicate or while zenoh keeps the socket open.
+    // SAFETY: the number comes from the system, so it is not -1, and the descriptor is not closed
+    // through this. If another thread closes it meanwhile, calls fail. If its number is reused, the
+    // addresses differ: callers that change the socket compare them first, on a duplicate or while
+    // zenoh keeps the socket open.
     unsafe { BorrowedFd::borrow_raw(descriptor) }
 }
 
-/// What this descriptor is now.
+/// The current kind of this descriptor.
 pub(crate) fn kind(descriptor: RawFd) -> Kind {
     let borrowed = borrow(descriptor);
     let socket = SockRef::from(&borrowed);
     let Some(local) = socket.local_addr().ok().and_then(|address| address.as_socket()) else { return Kind::Other };
     match socket.peer_addr() {
         Ok(peer) => peer.as_socket().map_or(Kind::Other, |peer| Kind::Connection((local, peer))),
-        // A listener has no peer; nor has a datagram socket, which is told apart by its type.
+        // Neither a listener nor a datagram socket has a peer; the socket type tells them apart.
         Err(_) if socket.r#type().is_ok_and(|kind| kind == Type::STREAM) => Kind::Listener(local.port()),
         Err(_) => Kind::Other,
     }
@@ -58,12 +61,13 @@ pub(crate) fn with_socket<T>(descriptor: RawFd, change: impl FnOnce(&SockRef<'_>
     change(&SockRef::from(&borrowed))
 }
 
-/// Ends a connection, if the descriptor is still of it; the owner finds out and closes it.
+/// Ends a connection if the descriptor still belongs to it; the owner notices and closes it.
 pub(crate) fn end(descriptor: RawFd, ends: Ends) {
-    // A duplicate stays what it is, though its owner may close the descriptor at any time.
+    // A duplicate keeps referring to the same socket, although the owner may close the descriptor
+    // at any time.
     let Ok(duplicate) = borrow(descriptor).try_clone_to_owned() else { return };
     if matches!(kind(duplicate.as_raw_fd()), Kind::Connection(found) if found == ends) {
-        // It may have ended by itself.
+        // It may have ended already.
         drop(SockRef::from(&duplicate).shutdown(Shutdown::Both));
     }
 }

@@ -1,17 +1,17 @@
-//! Numbers that nobody can guess. Challenges, tickets and names of sessions are drawn here.
+//! Unpredictable random numbers for challenges, tickets and session names.
 
 use crate::runtime::runtime;
 
-/// A number nobody can guess.
+/// An unpredictable random number.
 #[must_use]
 pub fn random_number() -> u64 {
     u64::from_le_bytes(random_bytes())
 }
 
-/// Bytes nobody can guess.
+/// Unpredictable random bytes.
 ///
 /// # Panics
-/// If the operating system has no randomness to give.
+/// If the operating system cannot provide randomness.
 #[must_use]
 pub fn random_bytes<const N: usize>() -> [u8; N] {
     let mut bytes = [0; N];

@@ -1,4 +1,4 @@
-//! Finding a game and joining it: what agents, gateways and observers do alike.
+//! Finding and joining a game, shared by agents, gateways and observers.
 
 use crate::keys::Identity;
 pub use crate::missing::{Missing, NotFound, Refusal};
@@ -10,12 +10,12 @@ use scenario::Scenario;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// How often to look again for what is not there.
+/// How often a search retries.
 const LOOK_AGAIN: Duration = Duration::from_millis(100);
-/// How long to wait for an answer.
+/// Timeout of a query.
 pub const ANSWER: Duration = Duration::from_secs(2);
 
-/// A search with a limit.
+/// A search with a time limit.
 pub struct GameSearch<'a> {
     wait: Duration,
     stop: &'a AtomicBool,
@@ -30,10 +30,11 @@ impl<'a> GameSearch<'a> {
         GameSearch { wait, stop, start: clock::now(), last: String::new() }
     }
 
-    /// Tries again until it works, the time is up, or it never will; reports what is missing whenever that changes.
+    /// Retries until it succeeds, times out or fails for good; reports what is missing whenever
+    /// that changes.
     ///
     /// # Errors
-    /// [`NotFound`] says what was missing to the end.
+    /// [`NotFound`] names what was still missing at the end.
     pub fn until<T>(
         &mut self,
         tell: &mut dyn FnMut(&str),
@@ -57,10 +58,11 @@ impl<'a> GameSearch<'a> {
         }
     }
 
-    /// A session at the place of the game (this one, or the only one there is), and the game with what it is.
+    /// A session at the place of the game (this one, or the only one running), and the game with
+    /// its details.
     ///
     /// # Errors
-    /// [`NotFound`] says what was missing to the end.
+    /// [`NotFound`] names what was still missing at the end.
     pub fn game(
         &mut self,
         tell: &mut dyn FnMut(&str),
@@ -72,10 +74,10 @@ impl<'a> GameSearch<'a> {
     }
 }
 
-/// One attempt at what [`GameSearch::game`] does; the next one gets the same `session`.
+/// One attempt of [`GameSearch::game`]; the next attempt gets the same `session`.
 ///
 /// # Errors
-/// As [`choose_game`], or if nobody listens there now.
+/// As [`choose_game`], or if no hub listens there now.
 pub fn find_game(
     place: &Place,
     named: Option<&GameName>,
@@ -83,17 +85,17 @@ pub fn find_game(
 ) -> Result<(Bus, GameName, GameInfo), Missing> {
     let bus = place.session(named, session)?;
     let (game, info) = choose_game(&bus, named)?;
-    // Its sim may have come after the session was opened.
-    // Looked up again with the game's name: without a name, the registry was asked for any
-    // game.
+    // The sim may have started after the session was opened. Look up again with the game's name:
+    // without a name, the registry was asked for any game.
     let token = place.net(Some(&game))?.token;
     Ok((bus.with_token(token), game, info))
 }
 
-/// The game of this name, or the only one on the network, with what it is.
+/// The game of this name, or the only one on the network, with its details.
 ///
 /// # Errors
-/// [`Missing`] if it is not there yet, if there are several to choose from, or if its sim is of another version.
+/// [`Missing`] if it is not there yet, if there are several to choose from, or if its sim has
+/// another version.
 pub fn choose_game(bus: &Bus, named: Option<&GameName>) -> Result<(GameName, GameInfo), Missing> {
     let game = named.map_or_else(|| only_game(bus), |game| Ok(game.clone()))?;
     let info = game_info(bus, &game)?;
@@ -104,8 +106,8 @@ pub fn choose_game(bus: &Bus, named: Option<&GameName>) -> Result<(GameName, Gam
 fn only_game(bus: &Bus) -> Result<GameName, Missing> {
     let games = games(bus)?;
     match games.as_slice() {
-        // One game is the usual case, and asking for its name would be a nuisance; with
-        // several, a guess could join boats to somebody else's game.
+        // One game is the usual case, and requiring its name would be a nuisance. With several, a
+        // guess could join boats to another person's game.
         [game] => Ok(game.clone()),
         [] => Err(Missing::Yet("no sim is on the network".to_owned())),
         several => {
@@ -125,7 +127,7 @@ fn listed(games: &[GameName]) -> String {
     games.iter().map(GameName::as_str).collect::<Vec<_>>().join(", ")
 }
 
-/// What the game is, from the sim.
+/// The game's details, from the sim.
 fn game_info(bus: &Bus, game: &GameName) -> Result<GameInfo, Missing> {
     let answer = bus.ask(&topic::scenario(game), Vec::new(), ANSWER)?;
     let Some(bytes) = answer else {
@@ -136,9 +138,9 @@ fn game_info(bus: &Bus, game: &GameName) -> Result<GameInfo, Missing> {
     Ok(understood(&bytes)?)
 }
 
-/// What a sim says its game is, once this program can believe it.
+/// The sim's description of its game, once validated.
 fn understood(answer: &[u8]) -> Result<GameInfo, Refusal> {
-    // The version first: of another version we may not understand the rest.
+    // The version first: the rest may be unreadable in another version.
     let value: serde_json::Value = serde_json::from_slice(answer).unwrap_or_default();
     let version = value.get("version").and_then(serde_json::Value::as_str).unwrap_or("unknown");
     if version != primitives::VERSION {
@@ -146,29 +148,29 @@ fn understood(answer: &[u8]) -> Result<GameInfo, Refusal> {
     }
     let not_understood = |e: String| Refusal::Version(format!("the sim's scenario is not understood: {e}"));
     let info: GameInfo = serde_json::from_slice(answer).map_err(|e| not_understood(e.to_string()))?;
-    // The rest of the program indexes teams and boats by what the scenario says, and this one
-    // comes from the network.
+    // The rest of the program indexes teams and boats by the scenario's references, and this
+    // scenario comes from the network.
     info.scenario.check_references().map_err(not_understood)?;
     Ok(info)
 }
 
-/// What comes of joining.
+/// The result of joining.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Joined {
-    /// To be shown with every message.
+    /// To be sent with every message.
     pub ticket: u64,
     /// The vehicles, in the order asked for.
     pub vehicles: Vec<VehicleId>,
-    /// Time of the game when it was answered.
+    /// Game time of the answer.
     pub now: SimTime,
-    /// When it was asked.
+    /// When the request was sent.
     pub asked: Instant,
 }
 
-/// Joins with these vehicles in this role, by the token that `place` says.
+/// Joins with these vehicles in this role, with the token from `place`.
 ///
 /// # Errors
-/// [`Missing`] if the sim does not answer, if somebody else has a vehicle, or if it says no.
+/// [`Missing`] if the sim does not answer or refuses, or if another node has a vehicle.
 pub fn join(
     bus: &Bus,
     place: &Place,
@@ -176,12 +178,12 @@ pub fn join(
     role: Role,
     vehicles: &[String],
 ) -> Result<Joined, Missing> {
-    // The hub would only drop what these keys do not allow: the node would wait for an answer
-    // that never comes, without a reason.
+    // The hub silently drops requests that these keys do not allow: the node would wait for an
+    // answer that never comes.
     check_keys(bus, scenario, role, vehicles)?;
     let bus = bus.clone().with_token(place.net(Some(game))?.token);
-    // The node's session is told, so that the sim believes the end of that link at once: a
-    // process that is killed closes its socket, and its boats hold in the same decision.
+    // Gives the sim the node's session, so that the sim acts at once when that link ends: a killed
+    // process closes its socket, and its boats hold in the same decision.
     let (version, node, asked) = (primitives::VERSION.to_owned(), bus.id(), clock::now());
     let request = JoinRequest { version, role, node, vehicles: vehicles.to_vec() };
     match bus.request(&topic::join(game, scenario, role, vehicles), &request, ANSWER)? {
@@ -192,12 +194,13 @@ pub fn join(
     }
 }
 
-/// Checks that the keys, if there are any, are those of whoever may join so: the hub does not let others ask.
+/// Checks that the keys, if any, allow joining in this role: the hub drops queries without the
+/// right.
 fn check_keys(bus: &Bus, scenario: &Scenario, role: Role, vehicles: &[String]) -> Result<(), Refusal> {
     let Some(keys) = bus.keys() else { return Ok(()) };
     let is_own = |name: &String| match (keys.identity(), role) {
         (Identity::Team(team), Role::Agent) => {
-            // A name that is unknown the sim will refuse.
+            // The sim refuses an unknown name itself.
             scenario.vehicle_by_name(name).is_none_or(|v| scenario.teams[scenario.team_of(v).index()].name == *team)
         }
         (Identity::Gateway(boat), Role::Gateway) => boat.as_ref().is_none_or(|boat| boat == name),

@@ -1,5 +1,5 @@
-//! Asking a gateway at its own control port, with or without a game: lines of JSON over TCP, each a request or an answer as on
-//! the network (`token`).
+//! Queries to a gateway at its own control port, with or without a game: lines of JSON over TCP,
+//! each a request or an answer as on the network (`token`).
 
 use crate::{BusError, Token, clock, token};
 use messages::external::{GatewayCommand, OperatorReply};
@@ -9,15 +9,16 @@ use std::time::{Duration, Instant};
 
 /// The key of requests at control ports, in proofs.
 pub const GATEWAY_PORT_KEY: &str = "gateway control port";
-/// The longest answer, bytes.
+/// Upper bound of an answer's length, bytes.
 pub(crate) const ANSWER_BYTES_MAX: u64 = 1 << 20;
-/// How often to try: a port under attack may drop a connection before it has read from it.
+/// Number of attempts: a port under attack may drop a connection before reading from it.
 const ATTEMPTS: usize = 3;
 
-/// Asks the gateway whose control port is `at`, within `limit`.
+/// Queries the gateway whose control port is `at`, within `limit`.
 ///
 /// # Errors
-/// [`BusError`] if it cannot be reached or does not answer, or if it asks for a token that is not known.
+/// [`BusError`] if it cannot be reached or does not answer, or if it requires a token that is not
+/// known.
 pub fn ask_gateway(
     at: SocketAddr,
     token: Option<&Token>,
@@ -25,7 +26,8 @@ pub fn ask_gateway(
     limit: Duration,
 ) -> Result<OperatorReply, BusError> {
     let deadline = clock::now() + limit;
-    // What only some may do is done once, even if the answer to it was lost: another release would be of another stop.
+    // Commands that need the token are sent once, even if the answer is lost: a second release
+    // could release a different stop.
     let attempts = if command.needs_token() { 1 } else { ATTEMPTS };
     let mut result = ask_once(at, token, command, deadline);
     for _ in 1..attempts {
@@ -45,11 +47,11 @@ fn ask_once(
 ) -> Result<OperatorReply, BusError> {
     let failed =
         |e: std::io::Error| BusError::Use { doing: "ask the gateway at", key: at.to_string(), reason: e.to_string() };
-    // No time at all is an error of its own.
+    // A timeout of zero would be an error.
     let left = || deadline.saturating_duration_since(clock::now()).max(Duration::from_millis(1));
     let stream = TcpStream::connect_timeout(&at, left()).map_err(failed)?;
-    // Nagle's algorithm would hold the second line back until the first is acknowledged, up to
-    // 40 ms on Linux.
+    // Nagle's algorithm would delay the second line until the first is acknowledged, up to 40 ms on
+    // Linux.
     stream.set_nodelay(true).map_err(failed)?;
     let mut reader = BufReader::new(&stream);
     let mut exchange = |mut payload: Vec<u8>| -> std::io::Result<Option<Vec<u8>>> {

@@ -6,14 +6,14 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-/// What both sides share.
+/// The state that both sides share.
 struct Queue<T> {
     items: Watched<VecDeque<T>>,
     capacity: usize,
     dropped: AtomicU64,
 }
 
-/// The sending side, for callbacks. Never blocks: what does not fit is dropped and counted.
+/// The sending side, for callbacks. Never blocks: items that do not fit are dropped and counted.
 pub struct InboxSender<T>(Arc<Queue<T>>);
 
 impl<T> Clone for InboxSender<T> {
@@ -33,18 +33,18 @@ pub fn inbox<T>(capacity: usize) -> (InboxSender<T>, Inbox<T>) {
 }
 
 impl<T> InboxSender<T> {
-    /// Hands `item` over.
+    /// Enqueues `item`, or drops and counts it if the queue is full.
     pub fn put(&self, item: T) {
         let is_dropped = !self.offer(item);
         self.0.dropped.fetch_add(u64::from(is_dropped), Ordering::Relaxed);
     }
 
-    /// Hands `item` over if there is room for it, and says whether there was.
+    /// Enqueues `item` if there is room, and returns whether there was.
     pub fn offer(&self, item: T) -> bool {
         let Queue { items, capacity, .. } = &*self.0;
         let surplus = items.visit(|items| {
-            // The newest is refused, not the oldest: what was accepted is acted upon in its
-            // order, and a flood loses its own messages.
+            // The newest is refused, not the oldest: accepted items are processed in order, and a
+            // flood loses its own messages.
             if items.len() >= *capacity {
                 return Some(item);
             }
@@ -56,18 +56,18 @@ impl<T> InboxSender<T> {
 }
 
 impl<T> Inbox<T> {
-    /// The next item, if one comes within `limit`.
+    /// Waits up to `limit` for the next item.
     pub fn take(&self, limit: Duration) -> Option<T> {
         self.0.items.wait(limit, |items| !items.is_empty());
         self.take_now()
     }
 
-    /// The next item, if one is there.
+    /// The next item, without waiting.
     pub fn take_now(&self) -> Option<T> {
         self.0.items.visit(VecDeque::pop_front)
     }
 
-    /// How many items did not fit so far.
+    /// How many items have not fitted so far.
     #[must_use]
     pub fn dropped(&self) -> u64 {
         self.0.dropped.load(Ordering::Relaxed)

@@ -1,9 +1,9 @@
-//! Cells that hold only the newest message each: a slow reader never works on stale ones.
+//! Cells that each hold only the newest message, so that a slow reader never works on stale ones.
 
 use crate::Watched;
 use std::time::Duration;
 
-/// Numbered cells, each with the newest item or nothing.
+/// Numbered cells, each with the newest item or empty.
 pub struct Latest<T>(Watched<Vec<Option<T>>>);
 
 impl<T> Latest<T> {
@@ -13,12 +13,12 @@ impl<T> Latest<T> {
         Latest(Watched::new((0..count).map(|_| None).collect()))
     }
 
-    /// Puts `item` into a cell, over whatever is there.
+    /// Stores `item` in a cell and overwrites its content.
     pub fn put(&self, cell: usize, item: T) {
         self.change(cell, |_| item);
     }
 
-    /// Puts into a cell what `next` makes of what is there.
+    /// Replaces the content of a cell by `next` of it.
     pub fn change(&self, cell: usize, next: impl FnOnce(Option<T>) -> T) {
         self.0.visit(|cells| {
             if let Some(cell) = cells.get_mut(cell) {
@@ -27,10 +27,11 @@ impl<T> Latest<T> {
         });
     }
 
-    /// Waits up to `limit` for an item; takes what is there, by cell. All `None` means that nothing came.
+    /// Waits up to `limit` for an item, then empties all cells and returns their items by cell. All
+    /// `None` means a timeout.
     pub fn take(&self, limit: Duration) -> Vec<Option<T>> {
         self.0.wait(limit, |cells| cells.iter().any(Option::is_some));
-        // All cells at once: an agent with boats of several teams works on the newest picture
+        // All cells at once: an agent with boats of several teams then works on the newest picture
         // of each.
         self.0.visit(|cells| cells.iter_mut().map(Option::take).collect())
     }

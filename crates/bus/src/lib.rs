@@ -1,10 +1,11 @@
-//! Squall over zenoh: the one crate that names it.
+//! Squall over zenoh: the only crate that depends on it.
 //!
-//! A game is a star: the sim's session is the *hub* (a zenoh router), agents and observers are *leaves*
-//! (zenoh clients with one link). By default the hub listens on loopback only and nobody
+//! A game is a star: the sim's session is the *hub* (a zenoh router); agents and observers are
+//! *leaves* (zenoh clients with one link). By default the hub listens on loopback only and no node
 //! scouts, so that two runs on one machine never meet.
 //!
-//! Everything here is blocking or calls back; callbacks run on zenoh's threads and must only hand over.
+//! Functions here block or call back. Callbacks run on zenoh's threads and must only hand data
+//! over.
 
 mod access;
 mod admission;

@@ -1,9 +1,11 @@
-//! Takes the linger option off the sockets of zenoh's links, so that closing one never waits for its peer.
+//! Disables the linger option on the sockets of zenoh's links, so that closing one never waits for
+//! its peer.
 //!
-//! zenoh gives every TCP and TLS socket a linger time of ten seconds. Linux then waits in `close` until the peer has taken
-//! what was sent to it, even where the socket is non-blocking; zenoh closes sockets in the threads that serve all its other
-//! links. So a peer that is cut off or stopped would hold up everybody for ten seconds. Without the option the system sends
-//! what is left on its own.
+//! zenoh gives every TCP and TLS socket a linger time of ten seconds. Linux then blocks in `close`
+//! until the peer has received all data, even on a non-blocking socket, and zenoh closes sockets in
+//! the threads that serve all its other links. A peer that is cut off or stopped would therefore
+//! block all others for ten seconds. Without the option the system sends the remaining data in the
+//! background.
 
 use crate::descriptor::{self, Ends, Kind};
 use std::os::fd::RawFd;
@@ -11,38 +13,38 @@ use zenoh::sample::SampleKind;
 use zenoh::session::{Link, LinkEvent};
 use zenoh::{Session, Wait};
 
-/// Takes the option off the socket of every link of a session, of those there are and of those to come.
+/// Disables the option on the socket of every link of a session, existing and future.
 pub(crate) fn disable(session: &Session) -> zenoh::Result<()> {
     let take = |event: LinkEvent| {
         if event.kind() == SampleKind::Put {
             disable_for(event.link());
         }
     };
-    // A new link is reported before it is read from, and while it is held open.
+    // A new link is reported before it is read from, and stays open during the callback.
     session.info().link_events_listener().history(true).callback(take).background().wait()
 }
 
-/// The ends of a link. One that is no connection has none.
+/// The addresses of a link's two ends; `None` if it is not a connection.
 pub(crate) fn ends(link: &Link) -> Option<Ends> {
     let address = |locator: &zenoh::config::Locator| locator.address().as_str().parse().ok();
     Some((address(link.src())?, address(link.dst())?))
 }
 
-/// Takes the option off the socket of a link. A link that is no connection, such as one over UDP, has none.
+/// Disables the option on the socket of a link. Links without a connection, such as UDP, have none.
 fn disable_for(link: &Link) {
     if let Some(ends) = ends(link) {
         descriptor::all().into_iter().flatten().for_each(|descriptor| disable_if(descriptor, ends));
     }
 }
 
-/// Takes the option off a descriptor if it is the socket between these two addresses. That stays open: zenoh holds its link
-/// while it reports it.
+/// Disables the option on a descriptor if it is the socket between these two addresses. The socket
+/// stays open: zenoh holds its link during the report.
 fn disable_if(descriptor: RawFd, ends: Ends) {
     if matches!(descriptor::kind(descriptor), Kind::Connection(found) if found == ends) {
-        // A socket that is closed already needs it no more.
-        // Off, not zero: with zero the system throws away what was sent last. Links that are
-        // never finished are not reported here; for those `.cargo/config.toml` compiles zenoh's
-        // linger time to nothing. `strace -f -T -e close` showed calls of 10.0 s before;
+        // A closed socket no longer needs it, so errors are ignored.
+        // Disabled, not zero: with zero the system discards the data sent last. Links that are
+        // never completed are not reported here; for those, `.cargo/config.toml` compiles zenoh's
+        // linger time to nothing. Before, `strace -f -T -e close` showed calls of 10.0 s;
         // `tests/process/network.rs` guards it.
         drop(descriptor::with_socket(descriptor, |socket| socket.set_linger(None)));
     }

@@ -1,4 +1,4 @@
-//! A lock on the link to a boat: of the gateways of this user on this machine, one has it.
+//! A lock on the link to a boat: only one gateway of this user on this machine can hold it.
 
 use crate::local_registry::private_folder;
 use std::fs::{File, OpenOptions, TryLockError};
@@ -7,46 +7,45 @@ use std::os::unix::fs::OpenOptionsExt;
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// A process number is shorter, bytes.
+/// Upper bound of a process number's length, bytes.
 const HOLDER_MAX: u64 = 32;
 
-/// The lock; however its process ends, it is free again.
+/// The lock; freed when its process ends, for whatever reason.
 #[derive(Debug)]
 pub struct LinkLock(#[expect(dead_code, reason = "the system holds the lock as long as the file is open")] File);
 
-/// Why a link cannot be locked.
+/// Why locking a link failed.
 #[derive(Debug, Error)]
 pub enum LinkLockError {
-    /// Another process has it.
+    /// Another process holds it.
     #[error("another gateway on this machine has the link {link}: {}", .holder.map_or("a process that is ending".to_owned(), |pid| format!("process {pid}")))]
     Held {
-        /// The link.
+        /// The address of the link, as the user typed it.
         link: String,
-        /// The process, if it has said so.
+        /// The holder's process number, if it recorded one.
         holder: Option<u32>,
     },
-    /// The file of the lock cannot be made.
+    /// The lock file cannot be created.
     #[error("the link {link} cannot be locked: {source}")]
     File {
-        /// The link.
+        /// The address of the link, as the user typed it.
         link: String,
-        /// Why.
+        /// The system's error.
         source: io::Error,
     },
 }
 
 impl LinkLock {
-    /// Locks the link of this address, as it is typed.
+    /// Locks the link with this address, as the user typed it.
     ///
     /// # Errors
-    /// [`LinkLockError::Held`] if another process has it.
+    /// [`LinkLockError::Held`] if another process holds it.
     pub fn take(link: &str) -> Result<LinkLock, LinkLockError> {
         let failed = |source| LinkLockError::File { link: link.to_owned(), source };
         let path = path(link).map_err(failed)?;
         let options = OpenOptions::new().read(true).write(true).create(true).mode(0o600).clone();
         let mut file = options.open(path).map_err(failed)?;
-        // A lock of the system and not a file that exists: it is gone when its process is,
-        // however that ended.
+        // A system lock, not the existence of a file: it ends with its process, however that ends.
         match file.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => {
@@ -59,7 +58,7 @@ impl LinkLock {
         Ok(LinkLock(file))
     }
 
-    /// The process that has the link now, if one has.
+    /// The process that holds the link, if any.
     #[must_use]
     pub fn holder(link: &str) -> Option<u32> {
         let mut file = OpenOptions::new().read(true).open(path(link).ok()?).ok()?;
@@ -76,7 +75,7 @@ fn read(file: &mut File) -> Option<u32> {
     text.trim().parse().ok()
 }
 
-/// The file of a link: a device by what it is, however it is called.
+/// The lock file of a link; a device is identified by itself, not by the path given.
 fn path(link: &str) -> io::Result<PathBuf> {
     let device = link.strip_prefix("serial://").map(|rest| rest.split('?').next().unwrap_or(rest));
     let real = device.and_then(|device| std::fs::canonicalize(device).ok()).map(|path| path.display().to_string());

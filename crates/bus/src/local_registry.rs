@@ -1,6 +1,7 @@
-//! The games and gateways that run on this machine: a small file each, so that `list`, `watch` and `tell` find them unasked.
+//! The games and gateways running on this machine, one small file each, so that `list`, `watch` and
+//! `tell` find them without an address.
 //!
-//! It is only a convenience: a node that is told where to connect never looks here.
+//! A convenience only: a node with a given address never reads it.
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -10,39 +11,39 @@ use std::net::SocketAddr;
 use std::os::unix::fs::{DirBuilderExt, MetadataExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
 
-/// Where a game on this machine can be reached.
+/// How to reach a game on this machine.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Entry {
-    /// The game.
+    /// The game's name.
     pub game: String,
-    /// Where its hub listens.
+    /// The endpoint of its hub.
     pub endpoint: String,
-    /// The sim's process.
+    /// Process number of the sim.
     pub pid: u32,
-    /// The game's token, for whoever may read the file: the same user.
+    /// The game's token, for processes of the same user, which may read the file.
     pub token: Option<String>,
 }
 
-/// Where a gateway on this machine takes operator commands.
+/// Where a gateway on this machine accepts operator commands.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct GatewayEntry {
-    /// The boat.
+    /// The boat's name.
     pub vehicle: String,
-    /// The game that it was told to join; without a name, the only one there is.
+    /// The game that it should join; if unset, the only one running.
     pub game: Option<String>,
     /// Its control port.
     pub control: SocketAddr,
-    /// The gateway's process.
+    /// Process number of the gateway.
     pub pid: u32,
-    /// The game's token, for whoever may read the file: the same user.
+    /// The game's token, for processes of the same user, which may read the file.
     pub token: Option<String>,
 }
 
-/// The endings of the files: one for each kind of entry.
+/// The file extensions, one for each kind of entry.
 const GAMES: &str = "json";
 const GATEWAYS: &str = "gateway";
 
-/// An entry that lasts as long as this is kept.
+/// An entry that is removed on drop.
 pub struct Registration(PathBuf);
 
 fn folder() -> PathBuf {
@@ -52,33 +53,33 @@ fn folder() -> PathBuf {
     }
 }
 
-/// Whether nobody but this user can have put something into the folder, or can read what is there.
+/// Whether only this user can write to the folder or read its files.
 fn is_private(folder: &Path) -> bool {
     fs::symlink_metadata(folder).is_ok_and(|about| {
-        // `symlink_metadata`, so that a link that somebody else put into `/tmp` is not
-        // followed. The files hold tokens.
+        // `symlink_metadata` does not follow a link that another user put into `/tmp`. The files
+        // hold tokens.
         about.is_dir() && about.uid() == rustix::process::geteuid().as_raw() && about.mode() & 0o077 == 0
     })
 }
 
-/// Enters a game.
+/// Registers a game.
 ///
 /// # Errors
-/// If the file cannot be written, or others can read what is in its folder.
+/// If the file cannot be written, or other users can read its folder.
 pub fn register(entry: &Entry) -> std::io::Result<Registration> {
     register_in(&folder(), &format!("{}-{}.{GAMES}", entry.game, entry.pid), entry)
 }
 
-/// Enters a gateway.
+/// Registers a gateway.
 ///
 /// # Errors
 /// As [`register`].
 pub fn register_gateway(entry: &GatewayEntry) -> std::io::Result<Registration> {
-    // The boat's name is not known to be fit for a file's; a process has one gateway.
+    // The boat's name may not be valid as a file name; a process has one gateway.
     register_in(&folder(), &format!("{}.{GATEWAYS}", entry.pid), entry)
 }
 
-/// The folder of what runs on this machine, which nobody but this user can look into.
+/// The registry's folder, which only this user can access.
 pub(crate) fn private_folder() -> std::io::Result<PathBuf> {
     let folder = folder();
     make_private(&folder)?;
@@ -102,7 +103,7 @@ fn register_in<E: Serialize>(folder: &Path, name: &str, entry: &E) -> std::io::R
 }
 
 impl Registration {
-    /// From now on the gateway is entered like this.
+    /// Replaces the gateway's entry.
     ///
     /// # Errors
     /// If the file cannot be written.
@@ -110,25 +111,25 @@ impl Registration {
         self.write(entry)
     }
 
-    /// Whoever reads meanwhile finds the entry of before.
+    /// Concurrent readers see the previous entry.
     fn write<E: Serialize>(&self, entry: &E) -> std::io::Result<()> {
         let unfinished = self.0.with_added_extension("new");
         let mut file = fs::OpenOptions::new().write(true).create(true).truncate(true).mode(0o600).open(&unfinished)?;
         file.write_all(&serde_json::to_vec(entry)?)?;
-        // Renamed when it is complete: others read the folder at any time, and half a file
-        // would be no game.
+        // Renamed when complete: others read the folder at any time, and would not recognise half a
+        // file.
         fs::rename(&unfinished, &self.0)
     }
 }
 
 impl Drop for Registration {
     fn drop(&mut self) {
-        // Somebody may have tidied up before us.
+        // Another process may have removed it already.
         drop(fs::remove_file(&self.0));
     }
 }
 
-/// All entries whose process still runs, by game; entries of dead processes are removed.
+/// All games whose process still runs, by name; removes entries of dead processes.
 #[must_use]
 pub fn list() -> Vec<Entry> {
     let mut entries: Vec<Entry> = list_in(&folder(), GAMES);
@@ -136,7 +137,7 @@ pub fn list() -> Vec<Entry> {
     entries
 }
 
-/// All gateways whose process still runs, by boat; entries of dead processes are removed.
+/// All gateways whose process still runs, by boat; removes entries of dead processes.
 #[must_use]
 pub fn gateways() -> Vec<GatewayEntry> {
     let mut entries: Vec<GatewayEntry> = list_in(&folder(), GATEWAYS);
@@ -145,29 +146,29 @@ pub fn gateways() -> Vec<GatewayEntry> {
 }
 
 fn list_in<E: DeserializeOwned>(folder: &Path, kind: &str) -> Vec<E> {
-    // Where others can write, they could send us to a game of theirs.
+    // Other users with write access could redirect us to their own game.
     let files = is_private(folder).then(|| fs::read_dir(folder).ok()).flatten();
     let files = files.into_iter().flatten().flatten().map(|file| file.path());
     let files = files.filter(|path| path.extension().is_some_and(|ending| ending == kind));
     files.filter_map(|path| live_entry(&path)).collect()
 }
 
-/// What every entry has.
+/// The part that every entry has.
 #[derive(Deserialize)]
 struct Process {
     pid: u32,
 }
 
-/// An entry is some hundred bytes.
+/// Size limit of an entry, bytes; typical entries have a few hundred.
 const ENTRY_MAX: u64 = 1 << 16;
 
 fn live_entry<E: DeserializeOwned>(path: &Path) -> Option<E> {
     let json = primitives::input_file::read(path, ENTRY_MAX).ok()?;
     let Process { pid } = serde_json::from_slice(&json).ok()?;
-    // Where there is no /proc we cannot tell, and believe the file.
+    // Without /proc the process is assumed to be alive.
     let dead = Path::new("/proc/self").exists() && !Path::new(&format!("/proc/{pid}")).exists();
     if dead {
-        // A process that was killed leaves its file behind; whoever finds it tidies up.
+        // A killed process leaves its file behind; the next reader removes it.
         drop(fs::remove_file(path));
         return None;
     }

@@ -1,38 +1,38 @@
-//! Why a game cannot be reached, yet or for good.
+//! Why a game cannot be reached, for now or for good.
 
 use crate::BusError;
 use std::time::Duration;
 use thiserror::Error;
 
-/// Why something is not there.
+/// Why something is missing.
 #[derive(Debug, Error)]
 pub enum Missing {
-    /// It may come.
+    /// It may appear later.
     #[error("{0}")]
     Yet(String),
-    /// It will not.
+    /// It never will.
     #[error(transparent)]
     Forever(#[from] Refusal),
 }
 
-/// Why a game cannot be joined, and asking again will not help.
+/// Why a game cannot be joined, where retrying does not help.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum Refusal {
-    /// The sim says no.
+    /// The sim refuses, for this reason.
     #[error("{0}")]
     Refused(String),
-    /// It speaks another version of Squall; this is what is known of it.
+    /// The sim has another version of Squall; the text describes it.
     #[error("not of one version: this program is {ours}, {0}", ours = primitives::VERSION)]
     Version(String),
 }
 
-/// Why a search ended without success.
+/// Why a search failed.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum NotFound {
-    /// The time is up; this was missing last.
+    /// The search timed out; the text names what was still missing.
     #[error("no game to join after {0:.0?}: {1}")]
     InTime(Duration, String),
-    /// It will never be there.
+    /// The search can never succeed.
     #[error(transparent)]
     Refused(#[from] Refusal),
 }
@@ -41,14 +41,13 @@ impl From<BusError> for Missing {
     fn from(error: BusError) -> Missing {
         match error {
             BusError::NeedsToken
-            // No waiting makes these better; a person has to do something. All others may pass:
-            // a sim that begins later, a cable that is plugged in.
+            // Waiting does not fix these; a person has to act. All others may pass, such as a sim
+            // that starts later or an unplugged cable.
             | BusError::WrongToken
             | BusError::Keys(_)
             | BusError::NeedsKeys(_)
             | BusError::NotAllowed { .. } => Missing::Forever(Refusal::Refused(error.to_string())),
-            // An answer that cannot be read comes from another version, and waiting does not
-            // change that.
+            // An unreadable answer comes from another version, and waiting does not change that.
             BusError::Request { .. } => Missing::Forever(Refusal::Version(error.to_string())),
             other => Missing::Yet(other.to_string()),
         }

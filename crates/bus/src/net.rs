@@ -1,4 +1,4 @@
-//! Where a node listens, whom it connects to, and whether it scouts.
+//! Where a node listens, where it connects, and whether it scouts.
 
 use crate::error::reason;
 use crate::keys::{Bundle, Identity};
@@ -13,15 +13,16 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use zenoh::Config;
 
-/// The port a hub takes when it is free and none is asked for.
+/// The port a hub takes if it is free and no other is requested.
 pub const DEFAULT_PORT: u16 = 7447;
 
-/// What zenoh does with a link. Only its own messages, such as declarations, wait for a congested one (in us), and not for
-/// long; a link that cannot take even those is closed. A batch has up to 64 kB: answers of a megabyte, and as many urgent
-/// messages as anybody can ask for at once, find room. A message that is put together from fragments has a limit.
+/// zenoh's settings for a link. Only its own messages, such as declarations, wait for a congested
+/// link (in us), and briefly; a link that cannot take even those is closed. A batch has up to 64
+/// kB: answers of a megabyte, and as many urgent messages as can be requested at once, fit in.
+/// Messages reassembled from fragments have a size limit.
 const LINKS: [(&str, &str); 5] = [
-    // zenoh would wait a millisecond for room before it drops. It waits in a thread that serves
-    // everybody, so one stopped observer would slow all down.
+    // zenoh would wait a millisecond for room before it drops. It waits in a thread that serves all
+    // nodes, so one stopped observer would slow down all.
     ("transport/link/tx/queue/congestion_control/drop/wait_before_drop", "0"),
     ("transport/link/tx/queue/congestion_control/block/wait_before_close", "100000"),
     ("transport/link/tx/queue/size/real_time", "16"),
@@ -29,76 +30,81 @@ const LINKS: [(&str, &str); 5] = [
     ("transport/link/rx/max_message_size", "16777216"),
 ];
 
-/// What comes in from other nodes is dropped where it would have to wait for a link that it goes out on. An answer goes by
-/// its question.
+/// Messages from other nodes are dropped if they would have to wait for their outgoing link. An
+/// answer follows the setting of its query.
 const NEVER_WAIT: &str =
     r#"[{messages: ["put", "delete", "query"], flows: ["ingress"], overwrite: {congestion_control: "drop"}}]"#;
 
-/// What a hub takes of others: a helm report fits into a message of 2 MB, a join request into a question of 64 kB, the orders
-/// for a thousand boats into 256 kB. Who connects has this long to say who it is.
+/// What a hub accepts from others: a helm report fits into a message of 2 MB, a join request into a
+/// query of 64 kB, the orders for a thousand boats into 256 kB. A connecting node has this long to
+/// identify itself.
 const MESSAGE_MAX: usize = 1 << 21;
 const QUESTION_MAX: usize = 1 << 16;
 const PUBLISHED_MAX: usize = 1 << 18;
 const ACCEPT_MS: usize = 5000;
-/// Nodes that are linked with a hub, and as many that are about to be: if the process may have four times as many files open.
+/// The most nodes linked to a hub, with as many pending: if the process may have four times as many
+/// files open.
 const NODES_MAX: usize = 1000;
 pub(crate) const FILES_MAX: u64 = 4 * NODES_MAX as u64;
 
-/// The longest zenoh configuration, bytes.
+/// Size limit of a zenoh configuration, bytes.
 const CONFIG_MAX: u64 = 1 << 20;
 
-/// How a node meets the others.
+/// How a node reaches the others.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Net {
     /// Endpoints to listen on, for example `tcp/0.0.0.0:7447`. Only a hub listens.
     pub listen: Vec<String>,
     /// Endpoints to connect to, for example `tcp/192.168.1.5:7447`.
     pub connect: Vec<String>,
-    /// Find and be found by multicast on the local network.
+    /// Whether to discover nodes, and be discovered, by multicast on the local network.
     pub lan: bool,
-    /// A zenoh configuration (JSON5) to begin with: access control, interfaces, buffers and the like.
+    /// A zenoh configuration (JSON5) to start from: access control, interfaces, buffers and the
+    /// like.
     pub config_file: Option<PathBuf>,
-    /// The game's token, where it is known.
+    /// The game's token, if known.
     pub token: Option<Token>,
-    /// The keys of this node, in a game with keys: its links are encrypted, and both sides show certificates. The process must
-    /// have called [`restart_for_keys`](crate::restart_for_keys) first.
+    /// The keys of this node, in a game with keys: its links are encrypted and mutually
+    /// authenticated. The process must have called [`restart_for_keys`](crate::restart_for_keys)
+    /// first.
     pub keys: Option<Arc<Bundle>>,
 }
 
 impl Net {
-    /// The endpoint at which nodes on the same machine reach a hub that listens here.
+    /// The endpoint at which nodes on the same machine reach this hub.
     #[must_use]
     pub fn local_endpoint(&self) -> Option<String> {
         let first = self.endpoints(&self.listen).into_iter().next()?;
         Some(first.replace("/0.0.0.0:", "/127.0.0.1:").replace("/[::]:", "/[::1]:"))
     }
 
-    /// The zenoh configuration of the hub of a game, for so many nodes.
+    /// The zenoh configuration of a game's hub for at most `nodes` nodes.
     pub(crate) fn hub(&self, game: &GameName, scenario: &Scenario, nodes: usize) -> Result<Config, BusError> {
         if let Some(keys) = self.keys.as_ref().filter(|keys| *keys.identity() != Identity::Sim) {
             let reason = format!("a sim is served with the keys of sim, these are those of {}", keys.identity());
             return Err(BusError::Keys(format!("{}: {reason}", keys.folder().display())));
         }
         let mut config = self.base()?;
-        // A file that has rules of its own knows better.
+        // A file with its own rules takes precedence.
         if config.get_json("access_control/enabled").ok().as_deref() != Some("true") {
             set(&mut config, "access_control", &access::control(game, scenario, self.keys.is_some()).to_string())?;
         }
-        // A star, no mesh: in lockstep everybody talks with the sim only, and a client needs no
+        // A star, not a mesh: in lockstep all nodes talk to the sim only, and a client needs no
         // open port.
         set(&mut config, "mode", "\"router\"")?;
         let listen: Vec<String> = self.endpoints(&self.listen).into_iter().map(with_handshake_time).collect();
         set(&mut config, "listen/endpoints", &json!(listen).to_string())?;
         set(&mut config, "connect/endpoints", &self.list(&self.connect))?;
-        // Our messages carry simulated time; a hybrid clock in every sample would only cost.
+        // Our messages carry simulated time; a hybrid clock in every sample would only add cost.
         set(&mut config, "timestamping/enabled", "false")?;
-        // Whatever a node asks for, what it sends through the hub waits for nobody: the others would wait with it.
+        // Whatever a node requests, its messages through the hub never wait; all others would wait
+        // with them.
         set(&mut config, "qos/network", NEVER_WAIT)?;
         limit_strangers(&mut config, game, nodes)?;
         Ok(config)
     }
 
-    /// The zenoh configuration of a leaf. It keeps trying to connect, and connects again after a cut.
+    /// The zenoh configuration of a leaf. It keeps trying to connect, and reconnects after a cut.
     pub(crate) fn leaf(&self) -> Result<Config, BusError> {
         if let Some(keys) = self.keys.as_ref().filter(|keys| *keys.identity() == Identity::Sim) {
             let reason =
@@ -109,8 +115,8 @@ impl Net {
         set(&mut config, "mode", "\"client\"")?;
         // Without an endpoint, a leaf on a local network scouts for a hub.
         set(&mut config, "connect/endpoints", &self.list(&self.connect))?;
-        // One attempt: the search for a game looks up where it is before each, since the next
-        // sim may be elsewhere and has another token.
+        // One attempt: the search for a game looks up its place before each, since the next sim may
+        // have another place and another token.
         set(&mut config, "connect/timeout_ms", "0")?;
         set(&mut config, "connect/exit_on_failure", "true")?;
         Ok(config)
@@ -121,13 +127,13 @@ impl Net {
             None => Config::default(),
             Some(path) => {
                 let refused = |reason| BusError::Open { what: path.display().to_string(), reason };
-                // The library would read whatever it is.
+                // The library would read any file, whatever its type and size.
                 primitives::input_file::read(path, CONFIG_MAX).map_err(|e| refused(e.to_string()))?;
                 Config::from_file(path).map_err(|e| refused(reason(&e)))?
             }
         };
-        // Two runs on one machine must never meet, and nobody joins by accident: both happen
-        // with zenoh's defaults.
+        // Two runs on one machine must never meet, and no node may join by accident: zenoh's
+        // defaults allow both.
         set(&mut config, "scouting/multicast/enabled", if self.lan { "true" } else { "false" })?;
         set(&mut config, "scouting/gossip/enabled", "false")?;
         for (key, value) in LINKS {
@@ -137,21 +143,21 @@ impl Net {
             check_threads_for_keys()?;
             let [authority, certificate, key] = keys.files();
             let tls = json!({
-                // Names stay checked although addresses on a dock change: zenoh (1.10.2) trusts
-                // the public authorities beside ours, and none of them certifies `localhost` or
-                // a private address.
+                // Names stay verified although addresses on a dock change: zenoh (1.10.2) trusts
+                // the public authorities besides ours, and none of them certifies `localhost` or a
+                // private address.
                 "root_ca_certificate": authority, "enable_mtls": true, "verify_name_on_connect": true,
                 "listen_certificate": certificate, "listen_private_key": key,
                 "connect_certificate": certificate, "connect_private_key": key,
             });
             set(&mut config, "transport/link/tls", &tls.to_string())?;
-            // Nor by an endpoint that was learnt from others is anything spoken but TLS.
+            // Endpoints learnt from other nodes must use TLS too.
             set(&mut config, "transport/link/protocols", r#"["tls"]"#)?;
         }
         Ok(config)
     }
 
-    /// Endpoints as zenoh is told them: with keys, TCP is TLS.
+    /// Endpoints in zenoh's form: with keys, TCP becomes TLS.
     pub(crate) fn endpoints(&self, endpoints: &[String]) -> Vec<String> {
         let told = |endpoint: &String| match endpoint.strip_prefix("tcp/") {
             Some(address) if self.keys.is_some() => format!("tls/{address}"),
@@ -160,7 +166,7 @@ impl Net {
         endpoints.iter().map(told).collect()
     }
 
-    /// The ports on which it listens.
+    /// The ports on which this node listens.
     pub(crate) fn ports(&self) -> Vec<u16> {
         self.listen.iter().filter_map(|endpoint| address(endpoint).rsplit(':').next()?.parse().ok()).collect()
     }
@@ -170,35 +176,34 @@ impl Net {
     }
 }
 
-/// A TLS endpoint whose handshakes may take as long as what comes after them.
+/// A TLS endpoint whose handshake has the same timeout as the steps after it.
 fn with_handshake_time(endpoint: String) -> String {
     if !endpoint.starts_with("tls/") {
         return endpoint;
     }
     let separator = if endpoint.contains('#') { ';' } else { '#' };
-    // The TLS listener has a time of its own beside `accept_timeout`. It also waits 0.1 s after
-    // each handshake that fails, in which nobody gets in; `.cargo/config.toml` sets that to
-    // nothing when zenoh is compiled.
+    // The TLS listener has a separate timeout besides `accept_timeout`. It also waits 0.1 s after
+    // each failed handshake, when no other node can connect; `.cargo/config.toml` compiles that to
+    // nothing.
     format!("{endpoint}{separator}tls_handshake_timeout_ms={ACCEPT_MS}")
 }
 
-/// How many nodes a hub that may have these files open has room for.
+/// The number of nodes for which a hub with these open files has room.
 pub(crate) fn nodes_max(files: OpenFiles) -> usize {
     usize::try_from(files.usual / 4).map_or(NODES_MAX, |nodes| nodes.min(NODES_MAX))
 }
 
-/// Keeps within bounds what nodes that are linked with a hub, or try to be, can make it hold.
+/// Limits the memory and files that nodes linked to a hub, or connecting to it, can make it hold.
 fn limit_strangers(config: &mut Config, game: &GameName, nodes: usize) -> Result<(), BusError> {
     let all = topic::matching(game, "**");
     let smaller = |messages: &[&str], size: usize| json!({ "messages": messages, "flows": ["ingress"], "key_exprs": [&all], "size_limit": size });
     let filters = json!([smaller(&["put", "delete"], PUBLISHED_MAX), smaller(&["query"], QUESTION_MAX)]);
     for (key, value) in [
         ("transport/unicast/max_sessions", nodes.to_string()),
-        // zenoh would refuse the newcomer: we end somebody else first (`crate::admission`).
+        // zenoh would refuse the newcomer; `crate::admission` ends another connection first.
         ("transport/unicast/accept_pending", (2 * nodes).to_string()),
         ("transport/unicast/accept_timeout", ACCEPT_MS.to_string()),
-        // Smaller than a leaf's: the fragments of a message are kept until it is complete, for
-        // each link.
+        // Smaller than a leaf's: each link keeps the fragments of a message until it is complete.
         ("transport/link/rx/max_message_size", MESSAGE_MAX.to_string()),
         ("low_pass_filter", filters.to_string()),
     ] {
@@ -221,7 +226,7 @@ pub(crate) fn address(endpoint: &str) -> &str {
     address.split(['?', '#']).next().unwrap_or(address)
 }
 
-/// Whether an endpoint, for example `tcp/127.0.0.1:7447`, can be reached from this machine only.
+/// Whether an endpoint, for example `tcp/127.0.0.1:7447`, is reachable from this machine only.
 #[must_use]
 pub fn is_loopback(endpoint: &str) -> bool {
     let address = address(endpoint);
@@ -231,15 +236,16 @@ pub fn is_loopback(endpoint: &str) -> bool {
     }
 }
 
-/// Where [`free_port`] looks: registered ports that systems do not give to outgoing connections (Linux begins at 32768, others
-/// at 49152; RFC 6335). A port of theirs can be taken between looking and listening, even by a client that retries to reach
-/// the very port that is to be listened on.
+/// The range of [`free_port`]: registered ports that systems do not give to outgoing connections
+/// (Linux starts at 32768, others at 49152; RFC 6335). A port in those ranges can be taken between
+/// the check and `listen`, even by a client that retries to reach that very port.
 const FREE_PORTS: std::ops::Range<u16> = 20_000..32_768;
 
-/// A loopback TCP port that was free a moment ago: the default port if it is, any other if not.
+/// A loopback TCP port that was free a moment ago: the default port if free and preferred,
+/// otherwise another.
 ///
 /// # Errors
-/// If no port that was tried is free.
+/// If none of the ports tried is free.
 pub fn free_port(prefer_default: bool) -> std::io::Result<u16> {
     let is_free = |port: u16| TcpListener::bind(("127.0.0.1", port)).and_then(|listener| listener.local_addr());
     if prefer_default && let Ok(free) = is_free(DEFAULT_PORT) {
@@ -274,7 +280,8 @@ mod tests {
         }
     }
 
-    /// A client whose own port is the one it wants to reach is connected to itself, and nobody can listen there.
+    /// A client whose own port is its target port connects to itself, and blocks the port for
+    /// listeners.
     #[test]
     fn who_retries_to_reach_a_free_port_does_not_take_it() {
         let port = free_port(false).unwrap();

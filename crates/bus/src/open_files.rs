@@ -1,39 +1,40 @@
-//! How many files a hub may have open. Some of those that the system allows are kept for when all others are taken.
+//! The limit of open files of a hub. Some of the files that the system allows are reserved for when
+//! all others are taken.
 
 use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 
-/// How many are kept, if the system allows eight times as many.
+/// The number reserved, if the system allows at least eight times as many.
 const KEPT: u64 = 128;
 
-/// The limits of this process.
+/// The limits of this process, numbers of files.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OpenFiles {
-    /// As long as nobody opens too many.
+    /// The limit in normal operation.
     pub(crate) usual: u64,
-    /// With those that are kept.
+    /// The limit including the reserve.
     most: u64,
 }
 
 impl OpenFiles {
-    /// Allows this process to open so many files, or as many as the system lets it, and keeps some.
+    /// Raises the limit to `wanted` files, or as far as the system permits, and reserves some.
     pub(crate) fn reserve(wanted: u64) -> OpenFiles {
         let limits = getrlimit(Resource::Nofile);
         let [current, maximum] = [limits.current, limits.maximum].map(|limit| limit.unwrap_or(u64::MAX));
-        // The limit is lowered by what is kept, so that the system itself refuses the files:
-        // `accept` in zenoh cannot be asked to leave some.
+        // The limit is lowered by the reserve, so that the system itself refuses files: zenoh's
+        // `accept` cannot be told to leave some.
         let kept = KEPT.min(maximum / 8);
         let most = maximum.min(current.max(wanted).saturating_add(kept));
         let files = OpenFiles { usual: most - kept, most };
-        // Where the system does not let it, all stays as it was.
+        // If the system refuses, the limits stay unchanged.
         if set(files.usual) { files } else { OpenFiles { usual: current, most: current } }
     }
 
-    /// How many are kept.
+    /// The number of reserved files.
     pub(crate) fn kept(self) -> u64 {
         self.most - self.usual
     }
 
-    /// Lets this process open those too that are kept, or no more of them.
+    /// Opens the reserve to this process, or closes it again.
     pub(crate) fn lend(self, is_lent: bool) {
         set(if is_lent { self.most } else { self.usual });
     }

@@ -1,4 +1,4 @@
-//! Questions and answers over a session.
+//! Queries and answers over a session.
 
 use crate::keys::Bundle;
 use crate::parcel::Parcel;
@@ -8,11 +8,11 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::time::Duration;
 
-/// A query of another node, to be answered once.
+/// A query from another node, to be answered once.
 pub struct Query {
     asker: Box<dyn PendingQuery>,
     question: Parcel,
-    /// The token of the node that was asked.
+    /// The token of the node that received the query.
     token: Option<Token>,
 }
 
@@ -31,8 +31,8 @@ impl Bus {
         self.session.answer(key, Box::new(receive))
     }
 
-    /// Asks at `key`, where only the sim may answer; gives its answer if that comes within `limit`. Answers go behind
-    /// everything else, and one that a congested link cannot take is dropped.
+    /// Queries `key`, where only the sim may answer; returns its answer if it arrives within
+    /// `limit`. Answers have the lowest priority, and a congested link drops them.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
@@ -40,11 +40,11 @@ impl Bus {
         self.ask_at(Priority::Normal, key, Parcel::new(payload), limit, |_| true)
     }
 
-    /// As [`Bus::ask`], at a key where other nodes answer. In a game without keys anybody may: if this node knows the token,
-    /// only the answer of a node that knows it too counts.
+    /// Like [`Bus::ask`], at a key where other nodes answer. In a game without keys any node may
+    /// answer: if this node knows the token, only answers that prove the token count.
     ///
     /// # Errors
-    /// [`BusError`] if the session is closed, or if nobody but nodes without the token has answered.
+    /// [`BusError`] if the session is closed, or if only nodes without the token have answered.
     pub fn ask_node(&self, key: &str, payload: Vec<u8>, limit: Duration) -> Result<Option<Vec<u8>>, BusError> {
         self.ask_node_at(Priority::Normal, key, payload, limit)
     }
@@ -56,13 +56,13 @@ impl Bus {
         payload: Vec<u8>,
         limit: Duration,
     ) -> Result<Option<Vec<u8>>, BusError> {
-        // With keys, access control lets nobody else answer.
+        // With keys, access control lets no other node answer.
         let Some(token) = self.token.as_ref().filter(|_| self.keys.is_none()) else {
             return self.ask_at(priority, key, Parcel::new(payload), limit, |_| true);
         };
-        // Any node may declare that it answers for a boat's gateway, and zenoh gives a question
-        // to the first that claims completeness: a stranger could swallow an E-stop and answer
-        // "safed". So all are asked, and only a sealed answer counts. A relay in the sim would
+        // Any node may declare that it answers for a boat's gateway, and zenoh routes a query to
+        // the first that claims completeness: a stranger could swallow an E-stop and answer
+        // "safed". So all are queried, and only a sealed answer counts. A relay in the sim would
         // have made each command depend on the sim's loop.
         let question = Parcel::question(payload);
         let mut refused = false;
@@ -74,7 +74,7 @@ impl Bus {
         if answer.is_none() && refused { Err(BusError::Unsealed { key: key.to_owned() }) } else { Ok(answer) }
     }
 
-    /// The first answer that is accepted.
+    /// The first answer that `accept` accepts.
     fn ask_at(
         &self,
         priority: Priority,
@@ -87,13 +87,13 @@ impl Bus {
         Ok(answer.map(|answer| answer.bytes))
     }
 
-    /// Asks the sim at `key` for something that may need the game's token, and proves that this node knows it if asked to;
-    /// gives the first answer that comes within `limit`, of each question. They go before everything else: some of them
-    /// command boats.
+    /// Sends a request to the sim at `key` that may need the game's token, and proves knowledge of
+    /// it if challenged. Returns the first answer; `limit` applies to each query. Requests have the
+    /// highest priority, since some of them command boats.
     ///
     /// # Errors
-    /// [`BusError`] if the session is closed, if a token is needed and there is none or another one, if the keys of this node are
-    /// not of somebody who may ask this, or if the answer is not understood.
+    /// [`BusError`] if the session is closed, if a required token is missing or wrong, if the keys
+    /// of this node do not allow the request, or if the answer cannot be read.
     pub fn request<B: Serialize, T: DeserializeOwned>(
         &self,
         key: &str,
@@ -105,10 +105,12 @@ impl Bus {
         token::request(self.token.as_ref(), key, body, ask)
     }
 
-    /// As [`Bus::request`], of a node that is not the sim: in a game without keys, one that knows the token.
+    /// Like [`Bus::request`], to a node other than the sim: in a game without keys, one that knows
+    /// the token.
     ///
     /// # Errors
-    /// As [`Bus::request`], and if this node has neither the token nor keys: nobody could prove to it who answers.
+    /// As [`Bus::request`], and if this node has neither the token nor keys: it could not verify
+    /// who answers.
     pub fn request_node<B: Serialize, T: DeserializeOwned>(
         &self,
         key: &str,
@@ -134,25 +136,25 @@ impl Bus {
 }
 
 impl Query {
-    /// The key that was asked.
+    /// The key of the query.
     #[must_use]
     pub fn key(&self) -> &str {
         self.asker.key()
     }
 
-    /// What is asked.
+    /// The content of the query.
     #[must_use]
     pub fn payload(&self) -> &[u8] {
         &self.question.bytes
     }
 
-    /// Answers with bytes that are JSON, as a node that knows the token of its session.
+    /// Answers with JSON bytes, sealed with the token of the session's node.
     pub fn answer(self, json: Vec<u8>) {
         let token = self.token.clone();
         self.answer_as(json, token.as_ref());
     }
 
-    /// Answers with bytes that are JSON, as a node that knows this token now.
+    /// Answers with JSON bytes, sealed with this token.
     pub fn answer_as(self, json: Vec<u8>, token: Option<&Token>) {
         let answer = self.question.answer(self.key(), json, token);
         self.asker.answer(answer);

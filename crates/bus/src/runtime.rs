@@ -1,7 +1,9 @@
-//! What nodes run on: the clock, randomness, waiting, threads and the opening of sessions, behind one interface.
+//! The environment of nodes: the clock, randomness, waiting, threads and the opening of sessions,
+//! behind one interface.
 //!
-//! A program has [`System`]. Tests of whole games replace all of it at once (`crates/simulated_network`), so the code of a node is the
-//! same in both to the byte, and no program contains a simulated network.
+//! Programs use [`System`]. Tests of whole games replace all of it at once
+//! (`crates/simulated_network`), so node code is identical in both, and no program contains a
+//! simulated network.
 
 use crate::session::Session;
 use crate::zenoh_session::ZenohSession;
@@ -13,60 +15,63 @@ use std::sync::{Arc, OnceLock};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// What nodes run on.
+/// The environment of nodes.
 pub trait Runtime: Send + Sync {
-    /// This moment.
+    /// The current time.
     fn now(&self) -> Instant;
 
-    /// How long the machine has been suspended since it was started.
+    /// How long the machine has been suspended since boot.
     fn suspended(&self) -> Duration;
 
-    /// Lets this much time pass.
+    /// Blocks for this long.
     fn sleep(&self, time: Duration);
 
-    /// Fills `bytes` with random ones.
+    /// Fills `bytes` with random data.
     fn fill_random(&self, bytes: &mut [u8]);
 
-    /// Starts a thread of this node. Gives no handle where nobody can join it: its end is then waited for by [`Runtime::wait`].
+    /// Starts a thread of this node. Returns no handle if it cannot be joined; [`Runtime::wait`]
+    /// then waits for its end.
     ///
     /// # Errors
-    /// If the system has no thread to give.
+    /// If the system cannot start a thread.
     fn spawn(&self, name: &str, body: Box<dyn FnOnce() + Send>) -> io::Result<Option<JoinHandle<()>>>;
 
-    /// Says that the value at `address` has changed.
+    /// Signals that the value at `address` has changed.
     fn notify(&self, address: usize);
 
-    /// Waits until the value at `address` changes or the deadline passes (none: for ever), and says whether there is time left. `None`:
-    /// this runtime leaves waiting to condition variables.
+    /// Waits until the value at `address` changes or the deadline passes (`None`: no deadline), and
+    /// returns whether time is left. Returns `None` if this runtime leaves waiting to condition
+    /// variables.
     fn wait(&self, address: usize, deadline: Option<Instant>) -> Option<bool>;
 
-    /// Whether nodes can be reached by sockets of their own, beside their sessions.
+    /// Whether nodes can be reached by sockets of their own, besides their sessions.
     fn has_sockets(&self) -> bool;
 
-    /// Opens the session of the hub of a game.
+    /// Opens the hub session of a game.
     ///
     /// # Errors
-    /// [`BusError`] if it cannot listen where it should.
+    /// [`BusError`] if it cannot listen at its endpoints.
     fn open_hub(&self, net: &Net, game: &GameName, scenario: &Scenario) -> Result<Arc<dyn Session>, BusError>;
 
-    /// Opens a session that is connected to a hub.
+    /// Opens a session connected to a hub.
     ///
     /// # Errors
-    /// [`BusError`] if nobody listens there now.
+    /// [`BusError`] if no hub listens there now.
     fn open_leaf(&self, net: &Net) -> Result<Arc<dyn Session>, BusError>;
 }
 
-/// What this process runs on, where that is not [`System`].
+/// The runtime of this process, if it is not [`System`].
 static REPLACED: OnceLock<&'static dyn Runtime> = OnceLock::new();
 
-/// What this process runs on.
+/// The runtime of this process.
 pub(crate) fn runtime() -> &'static dyn Runtime {
-    // One for the process, not one passed to each constructor: a boat's supervisor, an inbox and a
-    // stop order would all have to hold it, and two could meet in one node.
+    // One per process, not passed to each constructor: a boat's supervisor, an inbox and a stop
+    // order would all have to hold it, and two could meet in one node.
     REPLACED.get().copied().unwrap_or(&System)
 }
 
-/// Lets this process run on something else than [`System`]: before it does anything on the network. Only the first call counts.
+/// Replaces [`System`] in this process. Call it before any use of the network; only the first call
+/// counts.
 pub fn replace_runtime(runtime: &'static dyn Runtime) {
     REPLACED.get_or_init(|| runtime);
 }
@@ -85,11 +90,10 @@ impl Runtime for System {
         {
             use rustix::time::{ClockId, clock_gettime};
             let read = |id| Duration::try_from(clock_gettime(id)).unwrap_or_default();
-            // In this order the difference is never too large.
+            // Read in this order, the difference is never too large.
             let boot_time = read(ClockId::Boottime);
-            // `CLOCK_MONOTONIC` stands still while a machine is suspended, `CLOCK_BOOTTIME` does
-            // not: the difference is the time that a closed lid has cost, for which a sim blames
-            // nobody.
+            // `CLOCK_MONOTONIC` stops while a machine is suspended, `CLOCK_BOOTTIME` does not. The
+            // difference is time lost to a closed lid, for which a sim blames no node.
             boot_time.saturating_sub(read(ClockId::Monotonic))
         }
         #[cfg(not(target_os = "linux"))]

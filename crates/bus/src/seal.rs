@@ -1,33 +1,32 @@
-//! The seal of an answer: proof that the node that answers knows the game's token.
+//! The seal of an answer: proof that the answering node knows the game's token.
 //!
-//! Without keys, any node may declare that it answers at the topic of a boat. A question therefore goes to all of them and
-//! carries a nonce as its attachment; the attachment of an answer is the HMAC-SHA256, under the game's token, of nonce, key,
-//! question and answer. An answer that was made for another question, or by a node without the token, does not count.
+//! Without keys, any node may declare that it answers at the topic of a boat. A query therefore
+//! goes to all of them and carries a nonce as its attachment. The attachment of an answer is the
+//! HMAC-SHA256, under the game's token, of nonce, key, query and answer. Answers made for another
+//! query, or by a node without the token, do not count.
 
 use crate::parcel::Parcel;
 use crate::{Token, random_bytes};
 
-/// The first part of what is sealed: no proof of a request begins like this.
+/// The first part of the sealed data; no proof of a request begins with it.
 const TAG: &[u8] = b"answer";
 
 impl Parcel {
-    /// A question whose answers are to be sealed.
+    /// A query whose answers must be sealed.
     pub(crate) fn question(bytes: Vec<u8>) -> Parcel {
-        // 128 bits: no two questions ever share one, so an answer that was recorded fits no
-        // later question.
+        // 128 bits: no two queries ever share a nonce, so a recorded answer fits no later query.
         Parcel { bytes, attachment: random_bytes::<16>().to_vec() }
     }
 
-    /// The answer of a node that knows `token`, if it knows one, to this question at `key`.
+    /// The answer to this query at `key`, sealed if the node knows a token.
     pub(crate) fn answer(&self, key: &str, bytes: Vec<u8>, token: Option<&Token>) -> Parcel {
-        // A question without a nonce is from a node without the token, which could not check a
-        // seal.
+        // A query without a nonce is from a node without the token, which could not verify a seal.
         let token = token.filter(|_| !self.attachment.is_empty());
         let attachment = token.map(|token| token.hmac(&self.sealed(key, &bytes))).unwrap_or_default();
         Parcel { bytes, attachment }
     }
 
-    /// Whether `answer` was given to this question at `key` by a node that knows `token`.
+    /// Whether `answer` was made for this query at `key` by a node that knows `token`.
     pub(crate) fn is_answered_by(&self, key: &str, answer: &Parcel, token: &Token) -> bool {
         !self.attachment.is_empty() && token.verifies(&self.sealed(key, &answer.bytes), &answer.attachment)
     }

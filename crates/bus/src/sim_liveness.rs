@@ -1,7 +1,8 @@
-//! Whether the sim of a game is still there, for agents, gateways and pages alike.
+//! Whether the sim of a game is still alive, for agents, gateways and pages alike.
 //!
-//! Two signs tell: the sim's liveliness token, and messages from it. A sim that dies is heard until its token goes; where
-//! the link to it is cut, it falls silent first, and its token goes when the network gives the link up.
+//! Two signs decide: the sim's liveliness token, and messages from it. A dying sim is heard until
+//! its token goes. If the link to it is cut, it falls silent first, and its token goes when the
+//! network drops the link.
 
 use crate::{Bus, BusError, Declaration, Watched, clock};
 use messages::topic::{self, GameName};
@@ -12,46 +13,47 @@ use std::time::{Duration, Instant};
 /// How long a sim may be silent before it counts as dead.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Patience {
-    /// In any case.
+    /// Upper bound in every case.
     pub silence: Duration,
-    /// Where it was heard until its token went: the link may only have been opened anew.
+    /// If it was heard until its token went: the link may only have been reopened.
     pub missing: Duration,
-    /// Where it was never heard, and its token went: it has died, or the link is cut.
+    /// If it was never heard and its token went: it has died, or the link is cut.
     pub unheard: Duration,
 }
 
 impl Patience {
-    /// That of whoever plays in the game: it waits this long for a silent sim, and five seconds for one that was heard until its
-    /// token went.
+    /// The patience of nodes that play in the game: `silence` for a silent sim, and five seconds
+    /// for one that was heard until its token went.
     #[must_use]
     pub fn of_player(silence: Duration) -> Patience {
         Patience { silence, missing: Duration::from_secs(5), unheard: silence }
     }
 }
 
-/// How it is with a sim.
+/// The state of a sim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SimState {
-    /// It is there, or not missed for long enough.
+    /// Present, or not yet missing for long enough.
     Alive,
-    /// Another sim serves a game of the same name, and knows nothing of us.
+    /// Another sim serves a game of the same name and does not know this node.
     Replaced,
-    /// Nothing was heard of it for this long.
+    /// Silent for this long.
     Dead(Duration),
 }
 
-/// What is known of the sim: which one it is, and when it was heard and missed.
+/// Observations of the sim: its identity, and when it was heard and missed.
 #[derive(Clone, Debug)]
 struct SimLiveness {
     patience: Patience,
     heard_at: Instant,
-    /// Whether it was ever heard. Before its game begins it may say nothing for any time: its token stands for it.
+    /// Whether it was ever heard. Before its game begins it may be silent for any time; its token
+    /// then counts instead.
     is_heard: bool,
-    /// When its token was first missed.
+    /// When its token was first found missing.
     missed_at: Option<Instant>,
-    /// The sim that we go by: the first that was seen, by the key of its token.
+    /// The sim in use: the first one seen, by the key of its token.
     ours: Option<String>,
-    /// The tokens that are there.
+    /// The tokens present.
     tokens: BTreeSet<String>,
     is_replaced: bool,
 }
@@ -66,7 +68,7 @@ impl SimLiveness {
         (self.heard_at, self.is_heard) = (now, true);
     }
 
-    /// A token has come or gone.
+    /// Records that a token has appeared or gone.
     fn take_token(&mut self, key: &str, is_there: bool) {
         if is_there {
             let ours = self.ours.get_or_insert_with(|| key.to_owned());
@@ -77,13 +79,14 @@ impl SimLiveness {
         }
     }
 
-    /// Goes by a sim that is there now, whichever was ours before. Says whether there is one.
+    /// Chooses a sim that is present now, whichever was ours before. Returns whether one is
+    /// present.
     fn choose(&mut self) -> bool {
         (self.ours, self.is_replaced) = (self.tokens.first().cloned(), false);
         self.ours.is_some()
     }
 
-    /// Whether the token of our sim is there; nothing if no sim was ever seen.
+    /// Whether the token of our sim is present; `None` if no sim was ever seen.
     fn is_there(&self) -> Option<bool> {
         self.ours.as_ref().map(|ours| self.tokens.contains(ours))
     }
@@ -97,9 +100,9 @@ impl SimLiveness {
         }
         self.missed_at = if self.is_there() == Some(false) { self.missed_at.or(Some(now)) } else { None };
         let Patience { silence, missing, unheard } = self.patience;
-        // What came first decides. A sim that dies is heard until its token goes; where the
-        // link was cut, silence came first, zenoh gives the link up after 10 s, and an agent
-        // that left then would be missing when the cable is back.
+        // The order decides. A dying sim is heard until its token goes. If the link is cut, silence
+        // comes first and zenoh drops the link after 10 s; an agent that left then would be missing
+        // once the cable is back.
         let is_cut_off = |missed: Instant| missed.saturating_duration_since(self.heard_at) > missing;
         let limit = match self.missed_at {
             Some(_) if !self.is_heard => silence.min(unheard),
@@ -118,7 +121,7 @@ pub struct SimWatch {
 }
 
 impl SimWatch {
-    /// Watches from now on, for as long as this is kept.
+    /// Watches from now on, until dropped.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
@@ -130,24 +133,25 @@ impl SimWatch {
         Ok(SimWatch { liveness, _tokens: tokens })
     }
 
-    /// The sim was heard just now.
+    /// Records that the sim was heard just now.
     pub fn hears(&self) {
         self.liveness.visit(|liveness| liveness.hear(clock::now()));
     }
 
-    /// How it is with the sim now. Whoever hears nothing of it goes by its token.
+    /// The sim's current state. Callers that receive no messages rely on its token.
     #[must_use]
     pub fn state(&self) -> SimState {
         self.liveness.visit(|liveness| liveness.state(clock::now()))
     }
 
-    /// Waits up to `limit` for a sim, and goes by that one from then on. Says whether one is there.
+    /// Waits up to `limit` for a sim and uses it from then on. Returns whether one is present.
     #[must_use]
     pub fn find(&self, limit: Duration) -> bool {
         self.liveness.wait(limit, |liveness| !liveness.tokens.is_empty()) && self.liveness.visit(SimLiveness::choose)
     }
 
-    /// Waits up to `limit` until our sim has lost its token or another one has come. Says whether that is so.
+    /// Waits up to `limit` until our sim has lost its token or another one has appeared. Returns
+    /// whether either happened.
     #[must_use]
     pub fn is_lost(&self, limit: Duration) -> bool {
         self.liveness.wait(limit, |liveness| liveness.is_replaced || liveness.is_there() != Some(true))
@@ -160,8 +164,8 @@ mod tests {
 
     const SILENCE: u64 = 60;
 
-    /// For each second from the beginning: whether the sim is heard, and whether its token is there. Gives the second at
-    /// which it counts as dead.
+    /// Simulates seconds from the start: whether the sim is heard, and whether its token is
+    /// present. Returns the second at which it counts as dead.
     fn died(silence_s: u64, is_heard: impl Fn(u64) -> bool, is_there: impl Fn(u64) -> bool) -> Option<u64> {
         let start = clock::now();
         let mut sim = SimLiveness::new(Patience::of_player(Duration::from_secs(silence_s)), start);
@@ -197,7 +201,7 @@ mod tests {
 
     #[test]
     fn a_link_that_is_cut_is_waited_for() {
-        // The network gives a link up after ten seconds.
+        // The network drops a link after ten seconds.
         let is_there = |s| !(30..55).contains(&s);
         assert_eq!(died(SILENCE, |s| s <= 20 || s >= 55, is_there), None);
         assert_eq!(died(SILENCE, |s| s <= 20, |s| s < 30), Some(81), "but not forever");

@@ -5,7 +5,8 @@ use messages::external::GatewayStatus;
 use messages::topic::{self, GameName};
 
 impl Bus {
-    /// Calls `take` with every status of this boat's gateway; what is not understood, or is about another boat, is dropped.
+    /// Calls `take` with every status of this boat's gateway; drops unreadable statuses and those
+    /// of other boats.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
@@ -18,7 +19,8 @@ impl Bus {
         let name = vehicle.to_owned();
         self.subscribe(topic::status(game, vehicle), move |bytes| {
             let status = serde_json::from_slice::<GatewayStatus>(bytes).ok();
-            // Operators read the name in the status: one that does not fit its key is nobody's.
+            // Operators read the name in the status; a status whose name does not match its key is
+            // invalid.
             status.filter(|status| status.vehicle == name).into_iter().for_each(&take);
         })
     }

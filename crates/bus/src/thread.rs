@@ -1,25 +1,25 @@
-//! Threads of a node beside its first one.
+//! Threads of a node besides its main one.
 
 use crate::Watched;
 use crate::runtime::runtime;
 use std::sync::Arc;
 use std::thread::JoinHandle;
 
-/// Starts a thread that nobody waits for.
+/// Starts a detached thread.
 ///
 /// # Errors
-/// If the system has no thread to give.
+/// If the system cannot start a thread.
 pub fn start_thread(name: &str, body: impl FnOnce() + Send + 'static) -> std::io::Result<()> {
     runtime().spawn(name, Box::new(body)).map(drop)
 }
 
-/// A thread that is waited for when this is dropped. What it does must end then.
+/// A thread that is joined on drop. Its work must end by then.
 pub struct NodeThread {
     is_done: Arc<Watched<bool>>,
     handle: Option<JoinHandle<()>>,
 }
 
-/// Says that a thread is done, however it ends.
+/// Signals the end of a thread, even after a panic.
 struct Done(Arc<Watched<bool>>);
 
 impl Drop for Done {
@@ -32,7 +32,7 @@ impl NodeThread {
     /// Starts a thread.
     ///
     /// # Errors
-    /// If the system has no thread to give.
+    /// If the system cannot start a thread.
     pub fn start(body: impl FnOnce() + Send + 'static) -> std::io::Result<NodeThread> {
         let is_done = Arc::new(Watched::new(false));
         let done = Done(Arc::clone(&is_done));
@@ -47,9 +47,9 @@ impl NodeThread {
 
 impl Drop for NodeThread {
     fn drop(&mut self) {
-        // Before `join`: not every runtime gives a handle.
+        // Before `join`: not every runtime returns a handle.
         self.is_done.wait(std::time::Duration::MAX, |is_done| *is_done);
-        // A thread that panicked has nothing to give back.
+        // A panicked thread has no result.
         self.handle.take().map(JoinHandle::join).into_iter().for_each(drop);
     }
 }

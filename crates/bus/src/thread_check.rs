@@ -1,15 +1,16 @@
-//! Whether a process has the threads that a node with keys must have.
+//! Whether a process has the zenoh threads required for a node with keys.
 
 use crate::BusError;
 use crate::zenoh_threads::{KEYS_RUNTIME, RUNTIME_VARIABLE};
 use std::os::unix::process::CommandExt;
 use std::process::Command;
 
-/// Starts this program again, in the same process and with the same arguments, with the threads that a node with keys must have.
-/// Returns at once if it has them. It is to be called before anything else is done: nothing of this process is left.
+/// Restarts this program in the same process, with the same arguments and the threads required for
+/// a node with keys. Returns at once if it has them. Call it first of all: the restart discards all
+/// state of the process.
 ///
 /// # Errors
-/// [`BusError::Threads`] if the program cannot be started again.
+/// [`BusError::Threads`] if the program cannot be restarted.
 pub fn restart_for_keys() -> Result<(), BusError> {
     if has_threads_for_keys() {
         return Ok(());

@@ -1,8 +1,9 @@
-//! The token of a game: who knows it may join, control and operate.
+//! The token of a game, which grants the right to join, control and operate.
 //!
-//! It never travels. Whoever is asked for something that needs it answers with a challenge, a number used once; the request comes
-//! again with the HMAC-SHA256 (RFC 2104, FIPS 180-4), under the token, of the challenge, the key and the request as it is sent:
-//! each with its length before it, as 64 bits, little-endian.
+//! It is never sent. A request that needs it is answered with a challenge, a number used once. The
+//! request is then repeated with the HMAC-SHA256 (RFC 2104, FIPS 180-4), under the token, of the
+//! challenge, the key and the request as sent, each preceded by its length as 64 bits,
+//! little-endian.
 
 use crate::{BusError, clock, random_bytes};
 use hmac::{Hmac, KeyInit, Mac};
@@ -20,33 +21,34 @@ use thiserror::Error;
 
 /// The environment variable that holds the token for the commands of a game.
 pub const TOKEN_VARIABLE: &str = "SQUALL_TOKEN";
-/// How long after the challenge a proof counts: a node that intercepts one cannot use it later. A round trip takes less.
+/// How long after the challenge a proof is valid: an intercepted one cannot be used later. A round
+/// trip takes less.
 const GOOD_FOR: Duration = Duration::from_millis(900);
-/// How often a request is tried whose proofs come too late, as from a machine that is busy.
+/// Attempts at a request whose proofs arrive too late, as from a busy machine.
 pub const ATTEMPTS: usize = 5;
-/// Challenges that are open at once; the oldest go first.
+/// Upper bound of open challenges; the oldest are discarded first.
 const OPEN_MAX: usize = 1024;
 
 /// A game's secret: 256 random bits.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Token([u8; 32]);
 
-/// Why a text is no token.
+/// A text that is not a token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("a game's token is 64 hexadecimal digits, as `squall sim` shows it; this has {0} characters, or others")]
 pub struct NotAToken(usize);
 
 impl Token {
-    /// A new one.
+    /// A new random token.
     ///
     /// # Panics
-    /// If the operating system has no randomness to give.
+    /// If the operating system cannot provide randomness.
     #[must_use]
     pub fn random() -> Token {
         Token(random_bytes())
     }
 
-    /// Its 64 hexadecimal digits: whoever reads them may do everything.
+    /// Its 64 hexadecimal digits, which grant every right to their reader.
     #[must_use]
     pub fn hex(&self) -> String {
         hex(&self.0)
@@ -55,9 +57,8 @@ impl Token {
     fn mac(&self, parts: &[&[u8]]) -> Hmac<Sha256> {
         let mut mac = Hmac::<Sha256>::new_from_slice(&self.0).expect("a key of any length will do");
         for part in parts {
-            // With its length, so that no two lists of parts look alike.
-            // A password in a message could be read and used again; a number used once, and a
-            // MAC under the secret, cannot.
+            // With its length, so that no two lists of parts look alike. A password in a message
+            // could be read and reused; a number used once, and a MAC under the secret, cannot.
             mac.update(&(part.len() as u64).to_le_bytes());
             mac.update(part);
         }
@@ -69,10 +70,11 @@ impl Token {
         self.mac(parts).finalize().into_bytes().to_vec()
     }
 
-    /// Whether `mac` is the HMAC-SHA256 of these parts under the token; takes the same time for every wrong one.
+    /// Whether `mac` is the HMAC-SHA256 of these parts under the token; takes equally long for
+    /// every wrong one.
     pub(crate) fn verifies(&self, parts: &[&[u8]], mac: &[u8]) -> bool {
-        // `verify_slice` takes the same time wherever the difference is; `==` would tell an
-        // attacker, byte by byte.
+        // `verify_slice` takes constant time; `==` would reveal the position of the first
+        // difference to an attacker.
         self.mac(parts).verify_slice(mac).is_ok()
     }
 
@@ -96,25 +98,25 @@ impl FromStr for Token {
     }
 }
 
-/// Not what it is: it must not end in a log.
+/// Hides the value, which must not end up in a log.
 impl std::fmt::Debug for Token {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str("Token(…)")
     }
 }
 
-/// The token that a node goes by now, where it can change while the node runs. Whoever has a copy sees the change.
+/// A node's current token, which can change while the node runs. All copies see the change.
 #[derive(Clone, Debug, Default)]
 pub struct CurrentToken(Arc<Mutex<Option<Token>>>);
 
 impl CurrentToken {
-    /// The token, if there is one now.
+    /// The current token, if any.
     #[must_use]
     pub fn get(&self) -> Option<Token> {
         self.0.lock().clone()
     }
 
-    /// From now on it is this one.
+    /// Replaces the token.
     pub fn set(&self, token: Option<Token>) {
         *self.0.lock() = token;
     }
@@ -126,14 +128,14 @@ impl From<Option<Token>> for CurrentToken {
     }
 }
 
-/// That whoever sends this knows the token.
+/// Proof that the sender knows the token.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Proof {
     pub(crate) challenge: String,
     pub(crate) mac: String,
 }
 
-/// A request as it travels: JSON, the body as its sender spelled it.
+/// The wire format of a request: JSON, with the body as its sender spelled it.
 #[derive(Debug, Serialize, Deserialize)]
 struct Request {
     body: Box<RawValue>,
@@ -141,7 +143,7 @@ struct Request {
     proof: Option<Proof>,
 }
 
-/// An answer as it travels: JSON.
+/// The wire format of an answer: JSON.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum Answer<T> {
@@ -149,16 +151,17 @@ enum Answer<T> {
     Answer(T),
 }
 
-/// A request with no proof yet.
+/// A request without a proof.
 pub(crate) fn first<T: Serialize>(body: &T) -> Vec<u8> {
     json(&Request { body: spelled(body), proof: None })
 }
 
-/// Asks on `key`, by `ask`, for something that may need the token, and proves that it is known if asked to; gives the answer,
-/// or nothing if none comes.
+/// Sends a request on `key` through `ask`, and proves knowledge of the token if challenged; returns
+/// the answer, or `None` if none arrives.
 ///
 /// # Errors
-/// What `ask` says, or [`BusError`] if a token is needed and there is none or another one, or if the answer is not understood.
+/// The errors of `ask`, or [`BusError`] if a required token is missing or wrong, or if the answer
+/// cannot be read.
 pub fn request<B: Serialize, T: DeserializeOwned>(
     token: Option<&Token>,
     key: &str,
@@ -178,12 +181,12 @@ pub fn request<B: Serialize, T: DeserializeOwned>(
     Err(BusError::WrongToken)
 }
 
-/// What an answer means.
+/// The meaning of an answer.
 pub(crate) enum Answered<T> {
     Answer(T),
-    /// Ask again with this.
+    /// Repeat the request in this form.
     Again(Vec<u8>),
-    /// It needs a token, and there is none.
+    /// The request needs a token, and none is known.
     NeedsToken,
 }
 
@@ -205,23 +208,23 @@ pub(crate) fn read<B: Serialize, T: DeserializeOwned>(
     })
 }
 
-/// An answer to a request that was let through.
+/// The answer to a granted request.
 pub fn answer<T: Serialize>(answer: &T) -> Vec<u8> {
     json(&Answer::Answer(answer))
 }
 
-/// What becomes of a request.
+/// The result of checking a request.
 #[derive(Debug)]
 pub enum Checked<T> {
-    /// It may be done.
+    /// The request may be carried out.
     Granted(T),
-    /// The answer to it: a challenge.
+    /// The answer to send: a challenge.
     Challenged(Vec<u8>),
-    /// It is no request of this kind.
+    /// Not a request of this kind.
     Garbage(serde_json::Error),
 }
 
-/// Lets requests through whose sender knows the token. It lives where requests are answered.
+/// Admits requests whose sender knows the token. It lives where requests are answered.
 #[derive(Debug, Default)]
 pub struct Guard {
     token: CurrentToken,
@@ -229,13 +232,13 @@ pub struct Guard {
 }
 
 impl Guard {
-    /// One for this token; without one everything is let through.
+    /// A guard for this token; without one it admits every request.
     #[must_use]
     pub fn new(token: impl Into<CurrentToken>) -> Guard {
         Guard { token: token.into(), open: VecDeque::new() }
     }
 
-    /// Checks a request on `key`, where it needs a proof.
+    /// Checks a request on `key`; some requests need a proof.
     pub fn check<T: DeserializeOwned>(
         &mut self,
         key: &str,
@@ -258,8 +261,7 @@ impl Guard {
         if let Some(proof) = proof
             && let Some(i) = self.open.iter().position(|(challenge, _)| *challenge == proof.challenge)
         {
-            // Before the proof is looked at: a challenge is good for one attempt, right or
-            // wrong.
+            // Before the proof is verified: a challenge is valid for one attempt, right or wrong.
             self.open.remove(i);
             if token.is_proven(&proof, key, body.get().as_bytes()) {
                 return Checked::Granted(request);
@@ -308,7 +310,7 @@ mod tests {
         guard.check(key, payload, |_| true)
     }
 
-    /// What a node with this token sends when it was challenged.
+    /// The reply of a node with this token to a challenge.
     fn proven(guard: &mut Guard, token: &Token, body: &str) -> Vec<u8> {
         let Checked::Challenged(challenge) = check(guard, KEY, &first(&body)) else { panic!("it needs a proof") };
         match read::<_, String>(Some(token), KEY, &body, &challenge).expect("an answer") {
@@ -396,11 +398,11 @@ mod tests {
         for bad in ["", "12", &"g".repeat(64), &"0".repeat(63), &"0".repeat(66)] {
             assert_eq!(bad.parse::<Token>(), Err(NotAToken(bad.len())), "{bad}");
         }
-        // By Python's `hmac`, as in docs/agents.md.
+        // Computed with Python's `hmac`, as in docs/agents.md.
         let token: Token = "0123456789abcdef".repeat(4).parse().expect("64 digits");
         let proof = token.prove("4f0c".repeat(8), KEY, br#"{"vehicles": ["blue_one"]}"#);
         assert_eq!(proof.mac, "c5c85c75544a5893559866cd73c08baec4f04276dd346c726a156e722f60ac4f");
-        // RFC 4231, test case 1, of the MAC itself.
+        // RFC 4231, test case 1, of the MAC alone.
         let mut mac = Hmac::<Sha256>::new_from_slice(&[0x0b; 20]).expect("a key");
         mac.update(b"Hi There");
         let want = "b0344c61d8db38535ca8afceaf0bf12b881dc200c9833da726e9376c2e32cff7";

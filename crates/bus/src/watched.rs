@@ -1,11 +1,11 @@
-//! A value that callbacks change, and that a node reads, or waits on until something holds for it.
+//! A value that callbacks change, and that a node reads or waits on until a condition holds.
 
 use crate::clock;
 use crate::runtime::runtime;
 use parking_lot::{Condvar, Mutex};
 use std::time::Duration;
 
-/// Something that one thread changes and another waits for.
+/// A value that one thread changes and another waits for.
 #[derive(Default)]
 pub struct Watched<T> {
     state: Mutex<T>,
@@ -13,13 +13,13 @@ pub struct Watched<T> {
 }
 
 impl<T> Watched<T> {
-    /// Begins with this value.
+    /// Starts with this value.
     #[must_use]
     pub fn new(state: T) -> Watched<T> {
         Watched { state: Mutex::new(state), changed: Condvar::new() }
     }
 
-    /// Reads or changes the value, and wakes those who wait.
+    /// Reads or changes the value, and wakes waiting threads.
     pub fn visit<R>(&self, visit: impl FnOnce(&mut T) -> R) -> R {
         let result = visit(&mut self.state.lock());
         self.changed.notify_all();
@@ -46,7 +46,7 @@ impl<T> Watched<T> {
         !self.changed.wait_while_for(&mut state, |state| !holds(state), limit).timed_out()
     }
 
-    /// By which a runtime knows what is waited for.
+    /// The address by which a runtime identifies this value.
     fn address(&self) -> usize {
         std::ptr::from_ref(self).addr()
     }

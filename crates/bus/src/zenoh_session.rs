@@ -1,4 +1,4 @@
-//! A session of zenoh.
+//! A session on zenoh.
 
 use crate::error::reason;
 use crate::keys;
@@ -17,10 +17,10 @@ use zenoh::qos::{self, CongestionControl};
 use zenoh::query::{ConsolidationMode, QueryTarget};
 use zenoh::sample::{Locality, SampleKind};
 
-/// A session of zenoh.
+/// A zenoh session.
 pub(crate) struct ZenohSession(zenoh::Session);
 
-/// Sends on one key.
+/// Sends on one zenoh key.
 struct ZenohSender {
     publisher: zenoh::pubsub::Publisher<'static>,
     is_heard: Arc<AtomicBool>,
@@ -46,7 +46,7 @@ impl ZenohSession {
     pub(crate) fn leaf(net: &Net) -> Result<ZenohSession, BusError> {
         let endpoints = net.endpoints(&net.connect);
         open(net.leaf()?, format!("to connect to {}", endpoints.join(", "))).map_err(|error| {
-            // zenoh does not say why.
+            // zenoh does not report the cause.
             let of_keys = endpoints.iter().find_map(|endpoint| match &net.keys {
                 Some(keys) => keys::refusal(endpoint, keys),
                 None => keys::is_tls(endpoint).then(|| BusError::NeedsKeys(endpoint.clone())),
@@ -67,9 +67,9 @@ impl Session for ZenohSession {
     }
 
     fn publisher(&self, key: String, priority: Priority) -> Result<Box<dyn Sender>, BusError> {
-        // What must arrive is said again by whoever said it: in lockstep the sim repeats
-        // pictures and agents repeat answers, and in real time a newer message follows. A
-        // message that waits would hold up the thread that serves all links.
+        // Senders repeat what must arrive: in lockstep the sim repeats pictures and agents repeat
+        // answers, and in real time a newer message follows. A waiting message would block the
+        // thread that serves all links.
         let builder = self.0.declare_publisher(key.clone()).congestion_control(CongestionControl::Drop);
         let builder = match priority {
             Priority::Urgent => builder.priority(qos::Priority::RealTime).express(true),
@@ -111,11 +111,12 @@ impl Session for ZenohSession {
             Priority::Normal => qos::Priority::DataLow,
         };
         let query = self.0.get(key).payload(question.bytes).timeout(limit);
-        // All who answer are asked, and each answer is seen when it comes: one that says nothing holds up nobody.
+        // All queryables are queried, and each answer is passed on as it arrives: a silent one
+        // delays no other.
         let query = query.target(QueryTarget::All).consolidation(ConsolidationMode::None);
         let query = query.attachment((!question.attachment.is_empty()).then_some(question.attachment));
-        // `express`: not held back to fill a batch. A question is small, and somebody waits for
-        // its answer.
+        // `express`: not held back to fill a batch. A query is small, and its sender waits for the
+        // answer.
         let query = query.congestion_control(CongestionControl::Drop).priority(priority).express(true);
         let replies = query.wait().map_err(failed("ask at", key))?;
         let answers = std::iter::from_fn(|| replies.recv().ok()).filter_map(|reply| reply.into_result().ok());
@@ -137,8 +138,8 @@ impl Session for ZenohSession {
     }
 
     fn watch_links(&self, receive: OnLinkLost) -> Result<Declaration, BusError> {
-        // The link, not a liveliness token: anybody could show a token in the name of an agent,
-        // and a link that ends is known at once where the process died.
+        // The link, not a liveliness token: any node could show a token in the name of an agent,
+        // and the link of a dead process ends at once.
         let callback = move |event: zenoh::session::TransportEvent| {
             if event.kind() == SampleKind::Delete {
                 receive(event.transport().zid().to_string());
@@ -158,7 +159,7 @@ impl Session for ZenohSession {
     }
 
     fn close(&self) {
-        // A session that cannot be closed is as gone as one that can.
+        // A session that fails to close is as gone as a closed one.
         drop(self.0.close().wait());
     }
 }
@@ -186,7 +187,7 @@ impl PendingQuery for zenoh::query::Query {
     }
 
     fn answer(self: Box<Self>, answer: Parcel) {
-        // Unlike published messages, answers are JSON: they are rare, and read by people.
+        // Unlike published messages, answers are JSON: they are rare, and people read them.
         let reply =
             self.reply(self.key_expr().clone(), answer.bytes).encoding(zenoh::bytes::Encoding::APPLICATION_JSON);
         let reply = reply.attachment((!answer.attachment.is_empty()).then_some(answer.attachment));

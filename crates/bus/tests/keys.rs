@@ -1,4 +1,4 @@
-//! Keys of a game: who gets in, what each may do, and what is said to who does not get in.
+//! Keys of a game: which nodes are admitted, what each may do, and what the refused ones are told.
 
 use bus::keys::{Bundle, Identity, make};
 use bus::{Bus, BusError, Net, Priority, Query, Watched, clock};
@@ -17,7 +17,7 @@ fn game() -> GameName {
     GameName::new("keys").expect("a name")
 }
 
-/// Blue one and red one are real boats.
+/// A scenario in which blue one and red one are real boats.
 fn scenario() -> Scenario {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/mixed_2v2.toml");
     scenario::load(&file).unwrap_or_else(|e| panic!("{e}"))
@@ -27,7 +27,7 @@ fn team(name: &str) -> Identity {
     Identity::Team(name.to_owned())
 }
 
-/// Keys for everybody, for a sim at these hosts, valid for this long.
+/// Keys for all identities, for a sim at these hosts, valid for this long.
 fn keys(hosts: &[&str], valid: Duration) -> tempfile::TempDir {
     bus::restart_for_keys().expect("the tests start again");
     let folder = tempfile::tempdir().expect("a folder");
@@ -43,7 +43,7 @@ fn bundle(keys: &tempfile::TempDir, identity: &str) -> Option<Arc<Bundle>> {
     Some(Arc::new(Bundle::load(&keys.path().join(identity)).expect("good keys")))
 }
 
-/// A hub, and the endpoint at which it is reached.
+/// A hub, and its endpoint.
 fn hub(keys: Option<Arc<Bundle>>) -> (Result<Bus, BusError>, String) {
     let endpoint = format!("tcp/127.0.0.1:{}", bus::free_port(false).expect("a port"));
     let net = Net { listen: vec![endpoint.clone()], keys, ..Net::default() };
@@ -100,7 +100,7 @@ fn handshakes_that_fail_keep_nobody_out() {
             stranger
         })
         .collect();
-    // zenoh would let nobody in for a tenth of a second after each, and gives up after ten.
+    // zenoh would refuse all connections for 0.1 s after each failure, and stop after ten.
     let start = clock::now();
     leaf(&endpoint, bundle(&own, "observer")).expect("it is let in");
     assert!(clock::since(start) < Duration::from_secs(8), "{:?}", clock::since(start));
@@ -155,7 +155,8 @@ fn keys_are_for_their_owner_only_and_never_written_over() {
     assert_eq!(Bundle::load(&own.path().join("sim")).expect("good keys").hosts(), ["localhost"]);
 }
 
-/// Whether what `from` publishes is heard at `to`. Whether it is not, is known when something else has come that was sent later.
+/// Whether `to` receives what `from` publishes. It does not if a message sent later has arrived
+/// alone.
 fn is_heard(from: &Bus, to: &Bus, word: &str, free: &str) -> bool {
     let heard = Arc::new(Watched::new((false, false)));
     let [of_word, of_free] = [Arc::clone(&heard), Arc::clone(&heard)];
@@ -172,7 +173,7 @@ fn is_heard(from: &Bus, to: &Bus, word: &str, free: &str) -> bool {
         asked.send_raw(vec![1]).expect("open");
         sure.send_raw(vec![1]).expect("open");
     }
-    // Once more, now that all are known to each other.
+    // Once more, now that all nodes know each other.
     asked.send_raw(vec![1]).expect("open");
     heard.visit(|(_, free)| *free = false);
     sure.send_raw(vec![1]).expect("open");
@@ -185,7 +186,7 @@ fn check(who: &str, did: bool, words: &str, what: &str) {
     assert_eq!(did, may, "{who} {what}");
 }
 
-/// What the sim publishes, and who hears it.
+/// Topics that the sim publishes, and who receives them.
 const HEARD: [(&str, &str); 9] = [
     ("frame", "gateway gateway-red_one observer operator"),
     ("picture/blue", "team-blue observer operator"),
@@ -197,7 +198,7 @@ const HEARD: [(&str, &str); 9] = [
     ("nav/red_one", ""),
     ("released", "team-blue team-red gateway gateway-red_one observer operator"),
 ];
-/// What others publish, and whom the sim hears.
+/// Topics that others publish, and whose messages the sim receives.
 const PUBLISHED: [(&str, &str); 17] = [
     ("order/blue/x", "team-blue"),
     ("order/red/x", "team-red"),
@@ -217,7 +218,7 @@ const PUBLISHED: [(&str, &str); 17] = [
     ("run", ""),
     ("released", ""),
 ];
-/// What others ask, and to whom the sim answers.
+/// Keys that others query, and whom the sim answers.
 const ASKED: [(&str, &str); 11] = [
     ("scenario", "team-blue team-red gateway gateway-red_one observer operator"),
     ("events", "observer operator"),
@@ -264,7 +265,7 @@ fn each_may_do_what_its_part_needs_and_no_more() {
         let asked: Result<Option<u8>, BusError> = bus.request(&topic::control(&game()), &1, Duration::from_millis(150));
         assert_eq!(matches!(asked, Err(BusError::NotAllowed { .. })), *name != "operator", "{name} is told so at once");
     }
-    // A question of an operator reaches the gateway of the boat, and no other's.
+    // An operator's query reaches the gateway of the boat, and no other.
     let operator = &nodes[5].1;
     for (i, who) in [(0, false), (2, true), (3, true), (4, false)] {
         let _queryable = nodes[i].1.answer(topic::matching(&game(), "operate/red_one"), answer).expect("open");

@@ -1,4 +1,4 @@
-//! What is wrong with scenario files, each with the line that it is about.
+//! Explains errors in scenario files, each with the line in question.
 
 use crate::style;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
@@ -6,10 +6,10 @@ use anyhow::Error;
 use primitives::printable;
 use scenario::{Problem, Problems};
 
-/// Columns of a line that is shown.
+/// The width limit of a quoted line, columns.
 const COLUMNS: usize = 100;
 
-/// An error with all its causes; of files in full.
+/// An error with all its causes; for scenario files, with all problems.
 pub fn error(error: &Error) -> String {
     let Some(problems) = error.chain().find_map(|cause| cause.downcast_ref()) else {
         return printable::message(&format!("{error:#}"));
@@ -21,7 +21,7 @@ pub fn error(error: &Error) -> String {
     before.collect::<String>() + &self::problems(problems)
 }
 
-/// All that is wrong, with the lines.
+/// All problems, with their lines.
 pub fn problems(Problems(problems): &Problems) -> String {
     problems.iter().map(problem).collect::<Vec<_>>().join("\n")
 }
@@ -35,7 +35,7 @@ fn problem(problem: &Problem) -> String {
     format!("{told}\n{shown}")
 }
 
-/// What is underlined of a line, in bytes: a word, or a text with its quotes.
+/// The part of a line to underline, in bytes: a word, or a text with its quotes.
 fn span(source: &str, column: usize) -> Option<std::ops::Range<usize>> {
     let start = source.char_indices().nth(column.saturating_sub(1)).map(|(at, _)| at)?;
     let rest = &source[start..];

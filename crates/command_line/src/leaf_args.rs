@@ -19,7 +19,7 @@ pub struct KeysArgs {
 }
 
 impl KeysArgs {
-    /// The keys that are given.
+    /// Loads the given keys.
     ///
     /// # Errors
     /// If they cannot be read.
@@ -28,7 +28,8 @@ impl KeysArgs {
     }
 }
 
-/// Begins this program again with the threads that a process with keys must have, if it is given keys and has others.
+/// Restarts this program with the threads required for a process with keys, if it is given keys and
+/// has other threads.
 pub fn restart_with_threads_for_keys() -> Result<()> {
     let is_keys = |word: OsString| word.to_str().is_some_and(|word| word == "--keys" || word.starts_with("--keys="));
     if std::env::args_os().skip(1).any(is_keys) {
@@ -45,11 +46,11 @@ pub struct TokenArgs {
     token_file: Option<PathBuf>,
 }
 
-/// A token file is a line of text; what is longer is another file, bytes.
+/// Size limit of a token file, bytes: it is one line of text, so a longer file is another file.
 const TOKEN_FILE_MAX: u64 = 4096;
 
 impl TokenArgs {
-    /// The token that is given.
+    /// The given token.
     pub fn token(&self) -> Result<Option<Token>> {
         let (text, place) = match (&self.token_file, std::env::var(TOKEN_VARIABLE)) {
             (Some(file), _) => {
@@ -86,18 +87,19 @@ pub struct LeafArgs {
 }
 
 impl LeafArgs {
-    /// The token that is given.
+    /// The given token.
     pub fn token(&self) -> Result<Option<Token>> {
         self.token.token()
     }
 
-    /// The keys that are given.
+    /// The given keys.
     pub fn keys(&self) -> Result<Option<Arc<Bundle>>> {
         self.keys.load()
     }
 
-    /// The gateways of this machine that may be meant. Where a game elsewhere is asked for, those that were told its name;
-    /// but a command that stops boats is meant for one gateway too many rather than for one too few.
+    /// The gateways on this machine that may be meant. If the game is elsewhere, those that were
+    /// given its name; but a command that stops boats rather addresses one gateway too many than
+    /// one too few.
     pub fn local_gateways(&self, stops: bool) -> Vec<bus::GatewayEntry> {
         let is_elsewhere = !stops && (self.lan || !self.connect.is_empty());
         let is_meant = |entry: &bus::GatewayEntry| match (&self.game, &entry.game) {
@@ -107,18 +109,18 @@ impl LeafArgs {
         bus::local_gateways().into_iter().filter(is_meant).collect()
     }
 
-    /// Where to connect: as asked for, or where this machine's local registry says.
+    /// Where to connect: the given endpoints, or those in this machine's local registry.
     pub fn net(&self) -> Result<Net> {
         self.net_of(None, self.keys()?)
     }
 
-    /// The same, for nodes that outlive a game, or come before it.
+    /// The same, for nodes that outlive a game or start before it.
     pub fn place(&self) -> Result<Place> {
         let (leaf, keys) = (self.clone(), self.keys()?);
         Ok(Place::new(move |game| leaf.net_of(game, keys.clone()).map_err(|e| format!("{e:#}"))))
     }
 
-    /// Where this game is, or else that which is asked for.
+    /// The place of this game, or else of the given one.
     fn net_of(&self, game: Option<&GameName>, keys: Option<Arc<Bundle>>) -> Result<Net> {
         let game = game.or(self.game.as_ref());
         let mut connect = self.connect.clone();
@@ -134,7 +136,7 @@ impl LeafArgs {
     }
 }
 
-/// Where the game of this machine listens.
+/// The endpoint of the game on this machine.
 fn local_endpoint(games: &[bus::Entry]) -> Result<String> {
     match games {
         [] => Ok(format!("tcp/127.0.0.1:{}", bus::DEFAULT_PORT)),

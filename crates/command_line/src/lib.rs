@@ -1,4 +1,5 @@
-//! What the command-line programs share: arguments, text for people, errors in full, the request to stop.
+//! Shared by the command-line programs: arguments, text for people, complete errors, the request to
+//! stop.
 
 pub mod clock;
 pub mod explain;

@@ -1,6 +1,6 @@
-//! Numbers from the command line, within limits.
+//! Range-checked numbers from the command line.
 
-/// Reads a number from the command line, within limits.
+/// Parses a number from the command line and checks its range.
 pub fn within(low: f64, high: f64, unit: &'static str) -> impl Fn(&str) -> Result<f64, String> + Clone {
     move |text: &str| {
         let number = text.parse().map_err(|_| format!("{text:?} is not a number, expected {low} to {high} {unit}"))?;
@@ -9,7 +9,7 @@ pub fn within(low: f64, high: f64, unit: &'static str) -> impl Fn(&str) -> Resul
     }
 }
 
-/// A number of seconds from the command line.
+/// Parses a number of seconds from the command line.
 ///
 /// # Errors
 /// If it is not a number from 0 to a million.

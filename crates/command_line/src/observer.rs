@@ -1,4 +1,4 @@
-//! An observer: a session that watches a game and asks about it.
+//! An observer: a session that watches a game and queries it.
 
 use crate::leaf_args::LeafArgs;
 use anyhow::{Context, Result};
@@ -8,30 +8,30 @@ use messages::GameInfo;
 use messages::topic::{self, GameName};
 use primitives::VehicleId;
 
-/// A session in a game that runs.
+/// A session in a running game.
 pub struct Observer {
-    /// The session.
+    /// The session on the network.
     pub bus: Bus,
-    /// The game.
+    /// The name of the game.
     pub game: GameName,
-    /// What the sim says of it.
+    /// The sim's description of the game.
     pub info: GameInfo,
 }
 
 impl Observer {
-    /// Connects to a game that runs.
+    /// Connects to a running game.
     pub fn connect(leaf: &LeafArgs) -> Result<Observer> {
         let bus = Bus::leaf(&leaf.net()?).context("no game to watch")?;
         let (game, info) = game_search::choose_game(&bus, leaf.game.as_ref())?;
         Ok(Observer { bus, game, info })
     }
 
-    /// The vehicle of this name.
+    /// The index of the vehicle with this name.
     pub fn vehicle(&self, name: &str) -> Result<VehicleId> {
         Ok(self.info.scenario.vehicle_named(name)?)
     }
 
-    /// Whether the game's sim is still there.
+    /// Whether the game's sim is still present.
     pub fn is_on(&self) -> Result<bool> {
         Ok(!self.bus.who_is_alive(&topic::all_alive(&self.game), bus::ANSWER)?.is_empty())
     }

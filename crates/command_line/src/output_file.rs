@@ -1,19 +1,19 @@
-//! Files that commands write, with errors that name them.
+//! Output files of commands, with errors that name them.
 
 use anyhow::{Context, Result};
 use serde::Serialize;
 use std::fs::OpenOptions;
 use std::path::Path;
 
-/// Writes a file; `what` stands in the error.
+/// Writes a file; errors call it `what`.
 pub fn write(path: &Path, what: &str, bytes: impl AsRef<[u8]>) -> Result<()> {
     std::fs::write(path, bytes).with_context(|| format!("cannot write {what} to {}", path.display()))
 }
 
-/// Whether a file can be written, to be asked before hours of games; it is as before then.
+/// Checks that a file is writable, before hours of games; leaves it unchanged.
 pub fn check(path: &Path, what: &str) -> Result<()> {
     let is_new = match std::fs::metadata(path) {
-        // A pipe would be waited for.
+        // Opening a pipe would block.
         Ok(metadata) if !metadata.is_file() && !metadata.is_dir() => return Ok(()),
         found => found.is_err(),
     };
@@ -25,13 +25,13 @@ pub fn check(path: &Path, what: &str) -> Result<()> {
     Ok(())
 }
 
-/// Writes a value as JSON that people can read.
+/// Writes a value as formatted JSON.
 pub fn write_json(path: &Path, what: &str, value: &impl Serialize) -> Result<()> {
     let text = serde_json::to_string_pretty(value).with_context(|| format!("{what} is not JSON"))?;
     write(path, what, text + "\n")
 }
 
-/// A folder that is there.
+/// Creates a folder if it does not exist.
 pub fn make_folder(dir: &Path) -> Result<()> {
     std::fs::create_dir_all(dir).with_context(|| format!("cannot make the folder {}", dir.display()))
 }

@@ -1,19 +1,19 @@
-//! The program that runs: its name, and how people type its gateway commands.
+//! The running program: its name, and the prefix of its gateway commands.
 
 use std::sync::OnceLock;
 
-/// What a program says of itself.
+/// The name and command prefix of a program.
 #[derive(Debug)]
 pub struct Program {
-    /// Its name, before everything that goes wrong.
+    /// Its name, the prefix of all error messages.
     pub name: &'static str,
-    /// What people type before a gateway command.
+    /// The prefix of a gateway command as the user types it.
     pub gateway: &'static str,
 }
 
 static PROGRAM: OnceLock<Program> = OnceLock::new();
 
-/// Says which program this is. The first time counts: `main` does it before anything else.
+/// Sets the running program. `main` calls this first; later calls have no effect.
 pub fn set(program: Program) {
     drop(PROGRAM.set(program));
 }
@@ -22,17 +22,17 @@ fn this() -> &'static Program {
     PROGRAM.get_or_init(|| Program { name: "squall", gateway: "squall gateway" })
 }
 
-/// Its name.
+/// The program's name.
 pub fn name() -> &'static str {
     this().name
 }
 
-/// How its gateway commands begin: `squall gateway` or `squall-gateway`.
+/// The prefix of its gateway commands: `squall gateway` or `squall-gateway`.
 pub fn gateway() -> &'static str {
     this().gateway
 }
 
-/// A text in which `{gateway}` is how its gateway commands begin.
+/// Replaces `{gateway}` in a text by the prefix of gateway commands.
 pub fn text(template: &str) -> String {
     template.replace("{gateway}", gateway())
 }

@@ -1,17 +1,17 @@
-//! A recording that somebody names, opened; and a remark about what is damaged in it.
+//! Opens a recording given by the user, and reports damage in it.
 
 use crate::terminal;
 use anyhow::{Context, Result};
 use recording::{Bag, Recording};
 use std::path::Path;
 
-/// Opens the recording of a game `to` do something, as an error would say: "replay".
+/// Opens the recording of a game; errors name the purpose `to`, for example "replay".
 pub fn open(file: &Path, to: &str) -> Result<Recording> {
     let bag = open_any(file, to)?;
     Recording::of_bag(bag).with_context(|| format!("cannot {to} {}", file.display()))
 }
 
-/// Opens a recording, whatever it is of.
+/// Opens a recording of any kind.
 pub fn open_any(file: &Path, to: &str) -> Result<Bag> {
     let bag = Bag::open(file).with_context(|| format!("cannot {to} {}", file.display()))?;
     if let [first, ..] = bag.damage() {

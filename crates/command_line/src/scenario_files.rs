@@ -1,4 +1,5 @@
-//! The scenario files that the program has inside of itself, and what a word of the command line names: a path, or the name of one.
+//! The built-in scenario files, and the resolution of file arguments: a path, or the name of a
+//! file.
 
 use crate::program;
 use anyhow::{Result, anyhow, bail};
@@ -9,16 +10,16 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 static FILES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../scenarios");
-/// The folder in which files are looked for by name, here and in folders above.
+/// The folder searched for named files, in the current folder and its parents.
 const FOLDER: &str = "scenarios";
 
 /// The kinds of files that the program knows.
 static KINDS: OnceLock<&[Kind]> = OnceLock::new();
 
-/// What is inside of the program stands in for what is not on the disk. The program knows these kinds of files: a file of another
-/// kind than is asked for is recognised by them.
+/// Makes the built-in files available where files on the disk are missing. The program knows these
+/// kinds of files, and uses them to recognise a file of the wrong kind.
 pub fn install(kinds: &'static [Kind]) {
-    // Who came first has the same ones: there is one program in a process.
+    // An earlier caller installed the same kinds: a process runs one program.
     let _ = KINDS.set(kinds);
     set_built_in(|name| FILES.get_file(name).map(include_dir::File::contents));
 }
@@ -27,17 +28,18 @@ fn kinds() -> &'static [Kind] {
     KINDS.get().copied().unwrap_or_default()
 }
 
-/// What a file inside of the program says, if there is one of this name.
+/// The contents of the built-in file of this name, if it exists.
 pub fn contents(kind: Kind, name: &str) -> Option<&'static [u8]> {
     FILES.get_file(format!("{}/{name}.toml", kind.folder())).map(include_dir::File::contents)
 }
 
-/// The file of a kind that a word names: a path, or a name in the folder `scenarios` here, in one above, or inside of the program.
+/// The file of a kind that an argument names: a path, or a name in the folder `scenarios` here, in
+/// a parent folder, or built in.
 pub fn find(word: &str, kind: Kind) -> Result<PathBuf> {
     find_beside(word, kind, None)
 }
 
-/// The same, where a name is first looked for in a folder.
+/// The same, but searches the folder `beside` first for a name.
 pub fn find_beside(word: &str, kind: Kind, beside: Option<&Path>) -> Result<PathBuf> {
     let given = PathBuf::from(word);
     if word.contains(['/', '\\']) || given.extension().is_some_and(|end| end == "toml") || given.is_file() {
@@ -58,7 +60,7 @@ pub fn find_beside(word: &str, kind: Kind, beside: Option<&Path>) -> Result<Path
     let folders: Vec<PathBuf> = beside.map(Path::to_owned).into_iter().chain(above).collect();
     let file = format!("{word}.toml");
     if let Some(path) = folders.iter().map(|folder| folder.join(&file)).find(|path| path.is_file()) {
-        // As people would write it, so that it is read again as it was printed.
+        // As a user would type it, so that the printed path can be read again.
         return Ok(path.strip_prefix(&here).map(Path::to_owned).unwrap_or(path));
     }
     let inside = Path::new(FOLDER).join(kind.folder()).join(file);
@@ -79,7 +81,7 @@ fn unknown(word: &str, kind: Kind, folders: &[PathBuf]) -> anyhow::Error {
     anyhow!("there is no {kind} {word}{list}")
 }
 
-/// Where a file of a kind is asked for.
+/// The places where a file of a kind is accepted.
 fn where_it_goes(kind: Kind) -> String {
     let place = match kind.name() {
         "game" => "squall run plays it",
@@ -95,7 +97,7 @@ fn where_it_goes(kind: Kind) -> String {
     format!(": {}", program::text(place))
 }
 
-/// The names of the files of a kind inside of the program.
+/// The names of the built-in files of a kind.
 pub fn names(kind: Kind) -> BTreeSet<String> {
     let files = FILES.get_dir(kind.folder()).into_iter().flat_map(Dir::files);
     files.filter_map(|file| name_of(file.path())).collect()
@@ -115,7 +117,7 @@ fn name_of(path: &Path) -> Option<String> {
 macro_rules! finders {
     ($($name:ident $kind:expr,)*) => {
         $(
-            /// What an argument for a file of this kind names.
+            /// Resolves an argument for a file of this kind.
             pub fn $name(word: &str) -> Result<PathBuf> {
                 find(word, $kind)
             }
@@ -125,10 +127,10 @@ macro_rules! finders {
 
 finders! { field Kind::FIELD, game Kind::GAME, sea Kind::SEA, strategy Kind::STRATEGY, }
 
-/// What an argument for a file that is read as `F` names.
+/// Resolves an argument for a file that is read as `F`.
 ///
 /// # Errors
-/// There is no such file.
+/// If no such file exists.
 pub fn file_of<F: ScenarioFile>(word: &str) -> Result<PathBuf> {
     find(word, Kind::of::<F>())
 }

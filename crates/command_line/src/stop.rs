@@ -1,4 +1,4 @@
-//! The request to stop: Ctrl-C, SIGTERM, or the end of the process that started us.
+//! The request to stop: Ctrl-C, SIGTERM, or the end of the parent process.
 
 use crate::clock;
 use anyhow::Context;
@@ -9,12 +9,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
-/// What a shell says of a program that Ctrl-C ended.
+/// The exit code of a program ended by Ctrl-C, as shells report it.
 pub fn interrupted() -> ExitCode {
     ExitCode::from(130)
 }
 
-/// A flag that Ctrl-C or SIGTERM sets; pressed a second time they end the process at once.
+/// A flag that Ctrl-C or SIGTERM sets; a second one ends the process at once.
 pub fn on_ctrl_c() -> anyhow::Result<Arc<AtomicBool>> {
     let stop = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stop);
@@ -27,7 +27,7 @@ pub fn on_ctrl_c() -> anyhow::Result<Arc<AtomicBool>> {
     Ok(stop)
 }
 
-/// The same flag; in a child, the end of standard input sets it too.
+/// The same flag; in a child process, the end of standard input sets it too.
 pub fn on_ctrl_c_or_parent(for_parent: bool) -> anyhow::Result<Arc<AtomicBool>> {
     let stop = on_ctrl_c()?;
     if for_parent {
@@ -36,14 +36,14 @@ pub fn on_ctrl_c_or_parent(for_parent: bool) -> anyhow::Result<Arc<AtomicBool>> 
     Ok(stop)
 }
 
-/// Sets the flag when standard input ends: a child whose parent has died, however it died, must not stay. Gives what the
-/// parent sends before, line by line.
+/// Sets the flag when standard input ends: a child must not outlive its parent, however that died.
+/// Returns the lines that the parent sends before.
 pub fn with_parent(stop: &Arc<AtomicBool>) -> Receiver<String> {
     let flag = Arc::clone(stop);
     let (sender, lines) = channel();
     std::thread::spawn(move || {
         for line in std::io::stdin().lock().split(b'\n').map_while(Result::ok) {
-            // Not every child listens.
+            // Not every child reads the lines.
             drop(sender.send(String::from_utf8_lossy(&line).into_owned()));
         }
         flag.store(true, Ordering::Relaxed);
@@ -51,13 +51,13 @@ pub fn with_parent(stop: &Arc<AtomicBool>) -> Receiver<String> {
     lines
 }
 
-/// Whether the flag is set, after a little while.
+/// Waits briefly, and returns whether the flag is set.
 pub fn is_set_soon(stop: &AtomicBool) -> bool {
     clock::rest(Duration::from_millis(100));
     stop.load(Ordering::Relaxed)
 }
 
-/// Waits for the flag.
+/// Waits until the flag is set.
 pub fn wait(stop: &AtomicBool) {
     while !is_set_soon(stop) {}
 }

@@ -1,31 +1,32 @@
-//! Colours on the terminal: teams, and how bad something is. What writes leaves them out where nobody can see them.
+//! Terminal colours: teams, and the severity of messages. The writer omits them where they cannot
+//! be shown.
 
 use scenario::Scenario;
 use std::collections::BTreeMap;
 
-/// The first and the second team.
+/// The colours of the first and the second team.
 const TEAMS: [&str; 2] = ["\x1b[94m", "\x1b[91m"];
 const BAD: &str = "\x1b[1;31m";
 const WARNING: &str = "\x1b[33m";
 const GOOD: &str = "\x1b[32m";
 const PLAIN: &str = "\x1b[0m";
 
-/// Text of a team.
+/// Text in a team's colour.
 pub fn team(team: usize, text: &str) -> String {
     within(TEAMS[team % TEAMS.len()], text)
 }
 
-/// Text about what went wrong.
+/// Text about a failure.
 pub fn bad(text: &str) -> String {
     within(BAD, text)
 }
 
-/// Text about what may go wrong.
+/// Text about a possible failure.
 pub fn warning(text: &str) -> String {
     within(WARNING, text)
 }
 
-/// Text about what is as it should be.
+/// Text about a success.
 pub fn good(text: &str) -> String {
     within(GOOD, text)
 }
@@ -39,14 +40,14 @@ fn within(colour: &str, text: &str) -> String {
 pub struct Names(BTreeMap<String, usize>);
 
 impl Names {
-    /// Those of this game.
+    /// The names in this scenario.
     pub fn of(scenario: &Scenario) -> Names {
         let teams = scenario.teams.iter().enumerate().map(|(i, team)| (team.name.clone(), i));
         let boats = scenario.vehicles.iter().map(|vehicle| (vehicle.name.clone(), vehicle.team.index()));
         Names(boats.chain(teams).collect())
     }
 
-    /// Text in which each word that is one of these names has its team's colour.
+    /// Text in which each of these names has its team's colour.
     pub fn paint(&self, text: &str) -> String {
         let is_end = |character: char| !(character.is_ascii_alphanumeric() || character == '_');
         let word = |piece: &str| {

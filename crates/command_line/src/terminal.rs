@@ -1,4 +1,5 @@
-//! Text for people: to standard output and standard error, with colours where a terminal shows them.
+//! Text for people, on standard output and standard error, with colours if the terminal supports
+//! them.
 
 use crate::program;
 use crate::style;
@@ -6,32 +7,34 @@ use anstream::AutoStream;
 use primitives::printable;
 use std::io::Write;
 
-/// Prints text. A reader that went away is no reason to stop a game.
+/// Prints text. Ignores a closed output, which must not stop a game.
 pub fn print(text: &str) {
     is_read(text);
 }
 
-/// Prints text that may have colours.
+/// Prints text that may contain colours.
 pub fn show(text: &str) {
     is_written("", &printable::coloured(text));
 }
 
-/// Prints text, and says whether anybody still reads. Nothing in it steers the terminal.
+/// Prints text without terminal control sequences, and returns whether the output is still open.
 pub fn is_read(text: &str) -> bool {
     is_written("", &printable::text(text))
 }
 
-/// Prints over the line that was printed last without an end.
+/// Overwrites the last line that was printed without a newline.
 pub fn overwrite(text: &str) {
     is_written("\r\x1b[K", &printable::coloured(text));
 }
 
-/// Shows a page, which may have colours, instead of all that was on the terminal, and says whether anybody still looks.
+/// Replaces the terminal's content by a page, which may contain colours, and returns whether the
+/// output is still open.
 pub fn is_seen(page: &str) -> bool {
     is_written("\x1b[H\x1b[J", &printable::coloured(page))
 }
 
-/// When texts have colours; left to itself where a terminal shows them and `NO_COLOR` does not forbid it.
+/// Sets when texts have colours; with `Auto`, if the terminal supports them and `NO_COLOR` is
+/// unset.
 pub fn set_colour(choice: clap::ColorChoice) {
     let choice = match choice {
         clap::ColorChoice::Auto => anstream::ColorChoice::Auto,
@@ -41,7 +44,7 @@ pub fn set_colour(choice: clap::ColorChoice) {
     choice.write_global();
 }
 
-/// Writes what steers the terminal, and a text whose colours are left out where nobody can see them.
+/// Writes control sequences and a text, without its colours where they cannot be shown.
 fn is_written(control: &str, text: &str) -> bool {
     let mut out = std::io::stdout().lock();
     let is_steered = out.write_all(control.as_bytes()).is_ok();
@@ -49,13 +52,13 @@ fn is_written(control: &str, text: &str) -> bool {
     is_steered && out.write_all(text.as_bytes()).and_then(|()| out.flush()).is_ok()
 }
 
-/// Prints what went wrong, a text that may have colours.
+/// Prints an error, which may contain colours.
 pub fn complain(text: &str) {
     let text = printable::coloured_message(text);
     drop(writeln!(anstream::stderr(), "{} {text}", style::bad(&format!("{}:", program::name()))));
 }
 
-/// Prints something to standard error, where it does not mix with results.
+/// Prints a text to standard error, where it does not mix with results.
 pub fn remark(text: &str) {
     drop(writeln!(anstream::stderr(), "{}", printable::message(text)));
 }

@@ -1,4 +1,4 @@
-//! A mean, and how well it is known.
+//! Means and their confidence intervals.
 
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, StudentsT};
@@ -8,17 +8,17 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 pub struct Estimate {
     /// The mean.
     pub mean: f64,
-    /// The lower end of the interval; none with a single observation.
+    /// The lower bound of the interval; `None` with a single observation.
     pub low: Option<f64>,
-    /// The upper end.
+    /// The upper bound; `None` with a single observation.
     pub high: Option<f64>,
 }
 
 impl Estimate {
-    /// The estimate from `observations`, at least one.
+    /// The estimate from `observations`, of which there must be at least one.
     ///
     /// # Panics
-    /// If there are none.
+    /// If `observations` is empty.
     #[must_use]
     pub fn of(observations: &[f64]) -> Estimate {
         let count = observations.len();
@@ -26,15 +26,16 @@ impl Estimate {
         let mean = observations.iter().sum::<f64>() / count as f64;
         let squares: f64 = observations.iter().map(|observation| (observation - mean) * (observation - mean)).sum();
         let degrees = count as f64 - 1.0;
-        // Over seeds: all games of a seed have the same sea, and an entry that is lucky with it
-        // is so from both sides and against all. It says what other seeds would have given, not
-        // other opponents, which are chosen and not drawn.
+        // Over seeds: all games of a seed have the same sea, which favours an entry from both sides
+        // and against all opponents alike. The interval covers other seeds, not other opponents,
+        // which are chosen and not drawn.
         let half = quantile(degrees).map(|quantile| quantile * (squares / degrees / count as f64).sqrt());
         Estimate { mean, low: half.map(|half| mean - half), high: half.map(|half| mean + half) }
     }
 
-    /// The ratio of two sums over independent observations, each of a part and its whole, with its interval by linearisation (Cochran,
-    /// Sampling Techniques, 1977, section 2.11); none if the wholes are nothing.
+    /// The ratio of two sums over independent observations, each of a part and its whole, with its
+    /// interval by linearisation (Cochran, Sampling Techniques, 1977, section 2.11); `None` if the
+    /// wholes are zero.
     #[must_use]
     pub fn of_ratio(observations: &[(f64, f64)]) -> Option<Estimate> {
         let whole: f64 = observations.iter().map(|(_, whole)| whole).sum();
@@ -55,7 +56,8 @@ impl Estimate {
     }
 }
 
-/// How many standard errors reach to the end of a 95 % interval, by Student's t; none without a degree of freedom.
+/// The half width of a 95 % interval in standard errors, by Student's t; `None` without a degree of
+/// freedom.
 pub(crate) fn quantile(degrees: f64) -> Option<f64> {
     StudentsT::new(0.0, 1.0, degrees).ok().map(|student| student.inverse_cdf(0.975))
 }
@@ -64,12 +66,12 @@ pub(crate) fn quantile(degrees: f64) -> Option<f64> {
 mod tests {
     use super::*;
 
-    /// Tables give four digits after the point.
+    /// Tables give four decimal places.
     const TABLE: f64 = 0.00005;
 
     #[test]
     fn the_interval_is_that_of_the_tables_of_student() {
-        // Observations 0 and 1 in equal numbers: the deviation is known, the quantile follows.
+        // Equally many observations of 0 and 1: the deviation is known, and the quantile follows.
         for (count, quantile) in [(2, 12.7062), (4, 3.1824), (10, 2.2622), (30, 2.0452), (100, 1.9842), (1000, 1.9623)]
         {
             let observations: Vec<f64> = (0..count).map(|i| f64::from(i % 2)).collect();
@@ -82,14 +84,14 @@ mod tests {
 
     #[test]
     fn a_ratio_is_the_share_of_successes_with_the_interval_of_a_proportion() {
-        // 700 of 1000 trials that do not depend on each other, and 1000 that do not count.
+        // 700 successes in 1000 independent trials, and 1000 trials that do not count.
         let trials: Vec<(f64, f64)> =
             (0..2000).map(|i| if i < 1000 { (f64::from(u8::from(i < 700)), 1.0) } else { (0.0, 0.0) }).collect();
         let estimate = Estimate::of_ratio(&trials).expect("trials");
         let want = 1.9612 * (0.7_f64 * 0.3 / 1000.0).sqrt();
         let half = estimate.half_width().unwrap_or(f64::NAN);
         assert!((estimate.mean - 0.7).abs() < 1e-12 && (half - want).abs() < 0.0001, "{estimate:?}, not {want}");
-        // The same share in every observation is known exactly, however large each is.
+        // A share that is equal in every observation is known exactly, whatever the wholes.
         let equal = Estimate::of_ratio(&[(1.0, 2.0), (4.0, 8.0), (2.0, 4.0)]).expect("wholes");
         assert!(equal.mean == 0.5 && equal.half_width().is_some_and(|half| half.abs() < 1e-12), "{equal:?}");
         assert_eq!(Estimate::of_ratio(&[(0.0, 0.0); 3]), None);

@@ -1,12 +1,12 @@
-//! How many threads play games.
+//! The number of threads that play games.
 
 use std::num::NonZeroUsize;
 
-/// Threads for each core, at most: more of them only take turns.
+/// Upper bound of threads per core: more only take turns.
 const PER_CORE_MAX: usize = 4;
 
-/// The threads that are worth having for so many games: as many as somebody asked for, or one for each core; no more than four for each core,
-/// nor than there are games.
+/// The useful number of threads for this many games: the requested number, or one per core; at most
+/// four per core, and at most one per game.
 #[must_use]
 pub fn threads(asked: Option<NonZeroUsize>, games: usize) -> NonZeroUsize {
     let cores = std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);

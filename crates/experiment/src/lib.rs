@@ -1,7 +1,8 @@
-//! Experiments: many games, what is measured of each, and what all of them say together.
+//! Experiments: many games, the measurements of each, and statistics over all.
 //!
-//! A plan says which games there are. The pipeline plays them on all cores and hands over a row for each, in order. Reports are made of rows:
-//! [`tournament`] ranks strategies against each other, and remembers the games of a league; [`sweep`] varies a scenario.
+//! A plan lists the games. The pipeline plays them on all cores and returns a row for each, in
+//! order. Reports are made from rows: [`tournament`] ranks strategies and keeps the games of a
+//! league; [`sweep`] varies a scenario.
 
 mod estimate;
 mod jobs;

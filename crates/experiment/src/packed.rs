@@ -1,4 +1,4 @@
-//! A plan of many games with all that they need, for a process on another machine.
+//! A plan of many games with all required files, for a process on another machine.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
@@ -9,38 +9,38 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use thiserror::Error;
 
-/// A sweep or a tournament with all that its games need: where it is unpacked no file is read.
+/// A sweep or a tournament with all required files; unpacking it reads no others.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Packed {
-    /// The checked file, JSON.
+    /// The checked file as JSON.
     pub spec: String,
-    /// Every file that its games need, in the order in which it asks for them: those that name others first. In JSON a file is its path
-    /// and its text, or its bytes in base64.
+    /// All required files in the order in which they are requested: a file comes before those it
+    /// names. In JSON a file is its path and its text, or its bytes in base64.
     #[serde(serialize_with = "write_files", deserialize_with = "read_files")]
     pub files: Vec<(PathBuf, Vec<u8>)>,
     /// The plan's digest.
     pub digest: String,
 }
 
-/// Why a plan cannot be unpacked.
+/// An error while unpacking a plan.
 #[derive(Debug, Error)]
 pub enum UnpackError {
-    /// The checked file is none.
+    /// The checked file is invalid JSON.
     #[error("the packed plan cannot be read: {0}")]
     Spec(#[from] serde_json::Error),
     /// The game cannot be read from the packed files.
     #[error("{0}")]
     Game(#[from] Problems),
-    /// It is another one here.
+    /// The unpacked plan has another digest.
     #[error(
         "the games are others here than where they were packed: expected digest {expected}, found {found}; \
          both need the same version of Squall, here it is {}",
         primitives::VERSION
     )]
     Other {
-        /// The digest where it was packed.
+        /// The digest at packing.
         expected: String,
-        /// The one here.
+        /// The digest after unpacking.
         found: String,
     },
 }
@@ -49,7 +49,7 @@ impl Packed {
     /// Packs the plan of a checked file.
     ///
     /// # Panics
-    /// If `spec` is no JSON: its maps have keys that are no texts.
+    /// If `spec` cannot be written as JSON because its maps have keys that are not texts.
     #[must_use]
     pub fn new(spec: &impl Serialize, files: Vec<(PathBuf, Arc<[u8]>)>, digest: String) -> Packed {
         Packed {
@@ -59,10 +59,11 @@ impl Packed {
         }
     }
 
-    /// The plan that `plan` makes of the checked file and its files; `digest` identifies it.
+    /// The plan that `plan` makes from the checked file and the packed files; `digest` identifies
+    /// it.
     ///
     /// # Errors
-    /// [`UnpackError`]: it is damaged, or another version of Squall packed it.
+    /// [`UnpackError`] if it is damaged or was packed by another version of Squall.
     pub fn unpack<S: DeserializeOwned, P>(
         self,
         plan: impl FnOnce(&S, Arc<Files>) -> Result<P, Problems>,
@@ -70,12 +71,12 @@ impl Packed {
     ) -> Result<P, UnpackError> {
         let plan = plan(&serde_json::from_str(&self.spec)?, Arc::new(Files::kept(self.files)))?;
         let found = digest(&plan);
-        // The digest of plan and files says whether two versions mean the same games.
+        // The digest of plan and files shows whether two versions agree on the games.
         if found == self.digest { Ok(plan) } else { Err(UnpackError::Other { expected: self.digest, found }) }
     }
 }
 
-/// A file as it stands in JSON.
+/// The JSON form of a file.
 #[derive(Serialize, Deserialize)]
 struct PackedFile {
     path: PathBuf,

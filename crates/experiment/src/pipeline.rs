@@ -1,7 +1,7 @@
-//! Games of an experiment: played on several threads, handed over in their order.
+//! Plays the games of an experiment on several threads and returns them in order.
 //!
-//! Tournaments, leagues and sweeps say which games there are and what is measured of them; this plays them. What comes of it does not
-//! depend on the number of threads.
+//! Tournaments, leagues and sweeps define the games and their measurements; this plays them.
+//! Results do not depend on the number of threads.
 
 use agent::MindRunner;
 use rules::count::Counts;
@@ -13,16 +13,16 @@ use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{SyncSender, sync_channel};
 
-/// How a game ended.
+/// The result of a game.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Game {
-    /// Points of the first team and of the second.
+    /// Points of the first and the second team.
     pub score: [u32; 2],
-    /// What each of them did.
+    /// Event counts of each team.
     pub counts: [Counts; 2],
-    /// Which of them won; none is a draw.
+    /// The index of the winning team; `None` for a draw.
     pub winner: Option<usize>,
-    /// How long it was, simulated s.
+    /// Duration, simulated s.
     pub duration_s: f64,
     /// Digest of the final state and of all events, hex.
     pub digest: String,
@@ -41,7 +41,7 @@ impl Game {
     }
 }
 
-/// Whether somebody wants no more games.
+/// Whether either flag asks to stop.
 #[derive(Clone, Copy)]
 pub(crate) struct Stop<'a>([&'a AtomicBool; 2]);
 
@@ -51,8 +51,8 @@ impl Stop<'_> {
     }
 }
 
-/// Plays a scenario of a seed; `see` is shown the contest before every decision and at the end, and the minds that have led there. The error says why
-/// it could not start.
+/// Plays a scenario with a seed. `see` receives the contest before every decision and at the end,
+/// with the minds that led there. The error says why the game could not start.
 pub(crate) fn play_game(
     scenario: &Scenario,
     seed: u64,
@@ -66,19 +66,20 @@ pub(crate) fn play_game(
     Ok(Game::new(scenario, outcome.map_err(|why| why.to_string())?))
 }
 
-/// Plays games by their numbers from 0 to before `count` on so many threads, until all are played or `stop` is set, and gives each row to `take`,
-/// in order. `play` plays one, with what the thread keeps from game to game. Games that `stop` cut short are not among the rows, nor any
-/// after those.
+/// Plays the games numbered from 0 to `count` - 1 on several threads, until all are played or
+/// `stop` is set, and passes each row to `take` in order. `play` plays one game, with the state
+/// that its thread keeps between games. Games cut short by `stop`, and all after them, yield no
+/// rows.
 ///
 /// # Errors
-/// What `take` says: then no more are played.
+/// The error of `take`, which ends the games.
 pub(crate) fn play_in_order<K: Default, R: Send, E>(
     count: usize,
     (threads, stop): (NonZeroUsize, &AtomicBool),
     play: impl Fn(&mut K, usize, Stop<'_>) -> R + Sync,
     mut take: impl FnMut(R) -> Result<(), E>,
 ) -> Result<(), E> {
-    /// Rows that may wait to be taken.
+    /// Upper bound of rows queued for `take`.
     const QUEUE: usize = 64;
     let next = AtomicUsize::new(0);
     let refused = AtomicBool::new(false);
@@ -101,7 +102,7 @@ pub(crate) fn play_in_order<K: Default, R: Send, E>(
     })
 }
 
-/// What one thread does: the next game that nobody has taken, until there is none.
+/// The loop of one thread: plays the next unassigned game until none is left.
 fn work<K: Default, R>(
     (next, count): (&AtomicUsize, usize),
     play: &impl Fn(&mut K, usize, Stop<'_>) -> R,
@@ -115,7 +116,7 @@ fn work<K: Default, R>(
             return;
         }
         let row = play(&mut kept, i, stop);
-        // A game that was stopped is no game.
+        // A stopped game is incomplete.
         if stop.is_set() || sender.send((i, row)).is_err() {
             return;
         }

@@ -1,4 +1,5 @@
-//! A sweep in a folder: whole, cut off and taken up again, on any number of threads; what is wrong with it is said before a game.
+//! A sweep in a folder: complete, or interrupted and resumed, on any number of threads; errors are
+//! reported before any game.
 
 use experiment::sweep::Sweep;
 use experiment::sweep::{self, Condition, FindError, Journal, Plan, Study, StudyError, UntilError};
@@ -11,7 +12,7 @@ fn shipped(file: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(file).canonicalize().expect("it can be")
 }
 
-/// A sweep of two entries over two axes with short games, and more lines.
+/// A sweep of two entries over two axes with short games, plus `more` lines.
 fn text(more: &str) -> String {
     let [game, two, easy, pav01] = [
         "games/surveyor_2v2.toml",
@@ -34,7 +35,7 @@ fn plan_of(folder: &Path, more: &str) -> Plan {
     Plan::new(&load_file::<Sweep>(&path).unwrap_or_else(|problems| panic!("{problems}"))).expect("it can be")
 }
 
-/// Plays a study from where it is to before the game `to`.
+/// Plays a study from its current game up to, but not including, `to`.
 fn go_on(study: &mut Study, plan: &Plan, to: usize, jobs: usize) {
     let (from, jobs) = (study.done(), NonZeroUsize::new(jobs).expect("it can be"));
     sweep::play(plan, (from, to), jobs, &AtomicBool::new(false), |played| study.add(plan, &played)).expect("it can be");
@@ -71,7 +72,8 @@ fn a_study_that_was_cut_anywhere_and_taken_up_again_is_the_same_bytes_on_any_num
     let packed = serde_json::from_slice(&want[3].1).expect("a packed plan");
     assert_eq!(Plan::unpack(packed).expect("it is this version's").digest(), plan.digest());
 
-    // Of the last line of either table, and of lines before it, any number of bytes may be missing.
+    // Any number of bytes may be missing from the last line of either table, and from lines before
+    // it.
     let cut = dir.path().join("cut");
     for (games, boats) in [(0, 0), (1, 0), (40, 0), (0, 1), (0, 700), (900, 100)] {
         let _ = std::fs::remove_dir_all(&cut);
@@ -90,7 +92,7 @@ fn a_study_that_was_cut_anywhere_and_taken_up_again_is_the_same_bytes_on_any_num
         assert!(files(&cut) == want, "cut by {games} and {boats} bytes");
     }
 
-    // A full disk leaves empty files, or none; and any digit may change.
+    // A full disk leaves files empty or missing, and any digit may change.
     let lines = |name: &str| std::fs::read_to_string(whole.join(name)).unwrap().lines().count();
     for name in ["games.csv", "boats.csv", "sums.txt", "plan.json"] {
         for damage in ["empty", "none", "a digit", "no head"] {
@@ -139,7 +141,7 @@ fn a_game_of_the_report_is_the_one_that_its_command_plays() {
     let played = played.expect("a game");
     assert_eq!((job.point, job.entry, job.seed, job.side), (2, 1, 6, 0));
     let command = plan.command(&job);
-    // What the program makes of these words: the same files, values and seed.
+    // The parsed form of these words: the same files, values and seed.
     let setting = |key: &str, value: &str| format!("--set '{key}={value}'");
     for part in [setting("sea.wind.speed_m_s", "9"), setting("game.duration_s", "30"), "--seed 6".to_owned()] {
         assert!(command.contains(&part), "{command}");
@@ -181,7 +183,7 @@ fn all_points_play_the_same_seeds_and_designs_cover_the_space() {
     for design in ["latin_hypercube", "sobol"] {
         let mut winds = winds(&with(design));
         winds.sort_by(f64::total_cmp);
-        // One in each of 30 pieces of a Latin hypercube; a Sobol sequence is about as even.
+        // One in each of 30 intervals of a Latin hypercube; a Sobol sequence is about as even.
         let piece = |wind: &f64| ((wind - 1.0) / 8.0 * 30.0) as usize;
         let spare = if design == "sobol" { 2 } else { 0 };
         for (i, wind) in winds.iter().enumerate() {
@@ -227,7 +229,8 @@ fn a_folder_keeps_one_sweep_and_says_so() {
 
 #[test]
 fn the_breaking_point_is_found_where_it_is() {
-    // A team whose boats are outside of the field for longer the longer the game: the condition depends on the time alone.
+    // A team's boats are outside the field for longer in longer games: the condition depends on the
+    // duration alone.
     let dir = tempfile::tempdir().unwrap();
     let more = "[[axis]]\nkey = \"sea.wind.speed_m_s\"\nvalues = [3]\n";
     let path = dir.path().join("until.toml");
@@ -278,7 +281,7 @@ fn a_search_that_was_stopped_anywhere_goes_on_without_playing_its_games_again() 
     assert_eq!(find(&mut journal, &AtomicBool::new(false), 99).unwrap(), want);
     assert_eq!(std::fs::read(&file).unwrap(), std::fs::read(whole.join("search.csv")).unwrap());
 
-    // A digit of a game in the middle changes: that game is played again.
+    // With a changed digit, a game in the middle is played again.
     drop(journal);
     let mut bytes = std::fs::read(&file).unwrap();
     let middle = (bytes.len() / 2..).find(|i| bytes[*i].is_ascii_digit()).unwrap();
@@ -288,7 +291,7 @@ fn a_search_that_was_stopped_anywhere_goes_on_without_playing_its_games_again() 
     assert_eq!(journal.games(), 119);
     assert_eq!(find(&mut journal, &AtomicBool::new(false), 99).unwrap(), want);
 
-    // A breaking point asks for other games: none is lost.
+    // A breaking point requires other games; no known game is lost.
     let condition = Condition::parse("easy.score < 1", plan.sweep()).unwrap();
     let stop = AtomicBool::new(false);
     sweep::breaking_point(
@@ -303,7 +306,7 @@ fn a_search_that_was_stopped_anywhere_goes_on_without_playing_its_games_again() 
     assert!(journal.games() > 120);
     drop(journal);
     let mut again = Journal::resume(&cut, &plan).unwrap();
-    // With nobody to play them all games are there.
+    // With no thread to play, all games must be in the journal.
     let stopped = (NonZeroUsize::MIN, &AtomicBool::new(true));
     sweep::breaking_point(&plan, &condition, Some("sea.wind.speed_m_s"), &mut again, stopped, |_| {}).unwrap();
     let other = plan_of(dir.path(), WIND);

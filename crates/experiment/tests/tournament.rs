@@ -1,4 +1,5 @@
-//! Tournaments: the same on any number of threads, fair to both sides, and with honest intervals.
+//! Tournaments: reproducible on any number of threads, fair to both sides, and with honest
+//! intervals.
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 use experiment::Game;
@@ -86,7 +87,7 @@ fn every_seed_is_played_from_both_sides_and_is_the_game_of_these_strategies() {
         assert_eq!(game.digest, outcome.digest, "{of:?}");
         assert_eq!(game.score, [outcome.score.teams["blue"], outcome.score.teams["red"]], "{of:?}");
     }
-    // The one that attacks never loses to the one that lies still, but as the second team it finds it in its way.
+    // The attacker never loses to the idle entry, but as the second team it finds it in its way.
     let report = Report::new(&plan, &records);
     let names: Vec<&str> = report.entries.iter().map(|row| row.name.as_str()).collect();
     assert_eq!((names[0], report.entries[0].losses), ("easy_attackers_1", 0), "{names:?}");
@@ -112,7 +113,8 @@ fn record(seed: u64, sides: [usize; 2], score: [u32; 2]) -> Record {
 fn the_two_games_of_a_seed_are_one_observation() {
     const ROUNDING: f64 = 1e-6;
     let plan = Plan::new(&tournament("attack_1v1", 6, &["pav01", "idle"])).unwrap();
-    // The first entry has 2 and 4, then 5 and 5, then 6 and 8: 3, 5 and 7 a seed. Mean 5, standard deviation 2.
+    // The first entry has 2 and 4, then 5 and 5, then 6 and 8: 3, 5 and 7 per seed. Mean 5,
+    // standard deviation 2.
     let records = [
         record(7, [0, 1], [2, 3]),
         record(7, [1, 0], [1, 4]),
@@ -129,7 +131,7 @@ fn the_two_games_of_a_seed_are_one_observation() {
     assert!((low - (5.0 - half)).abs() < ROUNDING && (high - (5.0 + half)).abs() < ROUNDING, "{low} to {high}");
     assert_eq!([first.wins, first.draws, first.losses], [4, 1, 1]);
     assert_eq!([second.wins, second.draws, second.losses], [1, 1, 4]);
-    // Whoever was the first team grabbed once: half a grab a game, and no doubt about it.
+    // The first team always grabbed once: half a grab per game, with no uncertainty.
     assert_eq!((first.grabs.mean, first.grabs.low, first.grabs.high), (0.5, Some(0.5), Some(0.5)));
     let [there, back] = &report.matrix[..] else { panic!("{report:?}") };
     assert_eq!((there.row.as_str(), there.column.as_str(), there.wins), ("pav01_0", "idle_1", 4));
@@ -141,8 +143,8 @@ fn the_two_games_of_a_seed_are_one_observation() {
 fn all_opponents_of_a_seed_are_one_observation() {
     const ROUNDING: f64 = 1e-6;
     let plan = Plan::new(&tournament("attack_1v1", 6, &["pav01", "idle", "easy_attackers"])).unwrap();
-    // Against one opponent the first entry always has 10 points more than against the other: that is no doubt about
-    // its mean, which is 6, 7 and 8 in the three seeds.
+    // The first entry always has 10 points more against one opponent than against the other. That
+    // adds no uncertainty to its mean, which is 6, 7 and 8 in the three seeds.
     let seed = |seed: u64, score: u32| {
         let game = |sides: [usize; 2], score: [u32; 2]| record(seed, sides, score);
         [
@@ -167,7 +169,7 @@ fn a_challenger_plays_everybody_and_nobody_else_plays() {
     let all = tournament("attack_1v1", 6, &["idle", "easy_attackers", "pav01"]);
     let plan = Plan::new(&Tournament { challenger: Some("easy_attackers_1".to_owned()), ..all }).unwrap();
     assert_eq!((plan.games_per_seed(), plan.games()), (4, 12));
-    // Against the idle team two games are won and four drawn; against pav01 two are won and four lost.
+    // Two wins and four draws against the idle team; two wins and four losses against pav01.
     let score = |seed: u64, sides: [usize; 2]| match (seed, sides) {
         (7, [1, _]) => [2, 1],
         (7, [_, 1]) => [0, 3],
@@ -203,7 +205,7 @@ fn equal_entries_are_equal_to_the_last_digit() {
     };
     let plan = Plan::new(&tournament).unwrap();
     let records = records(&plan, 2);
-    // Wind and waves favour a side: there is something to cancel.
+    // Wind and waves favour a side, so there is something to cancel.
     let is_drawn = |record: &Record| record.result.as_ref().unwrap().score.windows(2).all(|pair| pair[0] == pair[1]);
     assert!(!records.iter().all(is_drawn));
     let report = Report::new(&plan, &records);
@@ -227,7 +229,7 @@ fn a_tournament_that_is_stopped_keeps_whole_seeds() {
     });
     assert_eq!(records.len(), shown);
     assert!((3..40).contains(&shown), "{shown} games");
-    // Whatever was under way, three games are one seed and a half.
+    // Whatever games were running, three games are one seed and a half.
     let report = Report::new(&plan, &records[..3]);
     assert_eq!((report.seeds_counted, report.games_left_out, report.games_unplayed), (1, 1, 37));
     assert_eq!((report.entries[0].games, report.entries[0].score.low), (2, None));
@@ -252,7 +254,7 @@ fn boats_that_do_not_fit_into_their_spawn_area_fail_the_game_and_not_the_tournam
     let dir = tempfile::tempdir().unwrap();
     let game = dir.path().join("crowd.toml");
     let base = shipped("games/pav01_vs_pav01.toml").canonicalize().unwrap();
-    // Two boats lie in the rectangle that a third would have to keep clear of them in.
+    // Two boats lie in the rectangle in which a third would have to keep clear of them.
     let boats = "[[vehicle]]\nname = \"a\"\nteam = \"blue\"\nat = [20.5, 50]\n\
                  [[vehicle]]\nname = \"b\"\nteam = \"blue\"\nat = [22.4, 50]\n\
                  [[fleet]]\nteam = \"red\"\ncount = 1\n\

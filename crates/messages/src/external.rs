@@ -1,9 +1,9 @@
 //! The messages between the sim, the gateway of a real boat, and its operators.
 //!
-//! A vehicle whose scenario says `source = "external"` has no physics: its gateway reports where it is
-//! ([`NavReport`]), and the sim, which knows whose orders count and what the referee lets the boat do, sends the effective
-//! command ([`ExternalOrder`]). Commands of operators ([`OperatorCommand`]) and the status of a gateway
-//! ([`GatewayStatus`]) are JSON.
+//! A vehicle whose scenario says `source = "external"` has no physics. Its gateway reports its
+//! navigation ([`NavReport`]). The sim knows whose orders count and what the referee allows, and
+//! sends the effective command ([`ExternalOrder`]). Operator commands ([`OperatorCommand`]) and
+//! gateway status ([`GatewayStatus`]) are JSON.
 
 use crate::picture::Nav;
 use crate::{Message, Stamp, VehicleOrder};
@@ -14,31 +14,31 @@ use primitives::time::SimTime;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Where a real boat is, from its gateway.
+/// Navigation of a real boat, reported by its gateway.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NavReport {
-    /// Time: that of the game as the gateway last received it. Number: counts the reports.
+    /// Game time as the gateway last received it, and a sequence number that counts the reports.
     pub stamp: Stamp,
-    /// The ticket that the sim gave when the gateway joined.
+    /// The ticket that the sim issued when the gateway joined.
     pub ticket: u64,
-    /// Whose navigation it is.
+    /// The reported boat.
     pub vehicle: VehicleId,
-    /// Whether it can be relied on; what is not valid is where the boat last was.
+    /// Whether the fix is reliable. If not, `nav` is the last known navigation.
     pub valid: bool,
-    /// How old the fix was when this was sent, ns.
+    /// Age of the fix when the report was sent, ns.
     pub age_ns: i64,
     /// Position, heading and velocity.
     pub nav: Nav,
 }
 
-/// What a real boat is to do, from the sim.
+/// The effective command for a real boat, from the sim.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ExternalOrder {
     /// Time and decision of the game.
     pub stamp: Stamp,
-    /// The time of the picture that the agent answered with this: it grows as long as the agent decides.
+    /// The time of the picture that the agent answered. It advances while the agent decides.
     pub given_ns: SimTime,
-    /// The order, as far as the referee lets the boat follow it.
+    /// The order, as far as the referee allows it.
     pub order: VehicleOrder,
 }
 
@@ -55,11 +55,11 @@ impl Message for ExternalOrder {
 /// Bytes between a gateway and its boat.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LinkBytes {
-    /// Time: that of the game as the gateway last received it. Number: counts these messages.
+    /// Game time as the gateway last received it, and a sequence number that counts these messages.
     pub stamp: Stamp,
     /// The boat.
     pub vehicle: VehicleId,
-    /// Whether they go to the boat.
+    /// Whether the bytes go to the boat.
     pub outward: bool,
     /// The bytes.
     pub data: Vec<u8>,
@@ -70,8 +70,8 @@ impl Message for LinkBytes {
     const VERSION: u8 = 1;
 }
 
-/// What a gateway reports for others. The sim passes it on if it comes with the ticket of the boat's gateway, and nobody else
-/// may publish it: so nobody forges it, and nobody hears the ticket.
+/// A gateway report for other nodes. The sim forwards it if it carries the ticket of the boat's
+/// gateway. Nobody else may publish it, so it cannot be forged and the ticket stays secret.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Reported {
     /// [`GatewayStatus`], as JSON.
@@ -84,13 +84,14 @@ impl Reported {
     /// All kinds.
     pub const ALL: [Reported; 2] = [Reported::Status, Reported::Link];
 
-    /// A report as it travels: the ticket, 64 bits, little-endian, then the message as it is passed on.
+    /// Encodes a report: the ticket (64 bits, little-endian), then the message that the sim
+    /// forwards.
     #[must_use]
     pub fn with_ticket(ticket: u64, message: &[u8]) -> Vec<u8> {
         [&ticket.to_le_bytes(), message].concat()
     }
 
-    /// The ticket of a report and the message, if it is long enough to have one.
+    /// Splits a report into ticket and message; none if it is too short for a ticket.
     #[must_use]
     pub fn split_ticket(report: &[u8]) -> Option<(u64, &[u8])> {
         let (ticket, message) = report.split_first_chunk()?;
@@ -124,26 +125,26 @@ impl fmt::Display for Reported {
 pub enum OperatorCommand {
     /// Return the status.
     Status,
-    /// Follow orders from now on, if everything that this needs is there.
+    /// Follow orders from now on, if nothing required is missing.
     Arm,
-    /// Do not follow orders any more: standby.
+    /// Stop following orders: standby.
     Disarm,
-    /// Standby, and nothing else until this is released.
+    /// Standby, and no other command until release.
     EStop,
-    /// The E-stop is over; the boat stays safed.
+    /// End the E-stop; the boat stays safed.
     Release,
-    /// Hold the position by the boat's own controller.
+    /// Hold position with the boat's own controller.
     StationKeep,
-    /// Go to the emergency recovery point by the boat's own controller.
+    /// Go to the emergency recovery point with the boat's own controller.
     GoToErp,
-    /// Upload a mission and sail it by the boat's own controller.
+    /// Upload a mission and run it with the boat's own controller.
     Mission(Mission),
     /// Another mode of the boat's own controller.
     Mode(BoatMode),
 }
 
-/// A mode of a Surveyor's own controller beyond station keeping, recovery and missions. What it does in all but the first is not
-/// published.
+/// A mode of a Surveyor's own controller beyond station keeping, recovery and missions. Only the
+/// first is documented by the vendor.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BoatMode {
@@ -200,7 +201,7 @@ impl fmt::Display for OperatorCommand {
 }
 
 impl OperatorCommand {
-    /// Whether only who knows the game's token may give it: everybody may look and stop.
+    /// Whether the command requires the game's token. Status and stops do not.
     #[must_use]
     pub fn needs_token(&self) -> bool {
         !matches!(self, OperatorCommand::Status | OperatorCommand::Disarm | OperatorCommand::EStop)
@@ -213,27 +214,27 @@ impl OperatorCommand {
 pub enum FleetCommand {
     /// Stop, and stay stopped.
     EStop,
-    /// The stop is over.
+    /// End the stop.
     Release,
 }
 
-/// What is asked at the control port of a gateway.
+/// A request to the control port of a gateway.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GatewayCommand {
     /// A command for one boat.
     Boat {
-        /// Its name: another boat's gateway refuses.
+        /// The boat's name; the gateway of another boat refuses.
         name: String,
         /// The command.
         command: OperatorCommand,
     },
-    /// A command for all boats, whichever this gateway's is.
+    /// A command for all boats, including this gateway's.
     Fleet(FleetCommand),
 }
 
 impl GatewayCommand {
-    /// Whether only who knows the game's token may give it.
+    /// Whether the command requires the game's token.
     #[must_use]
     pub fn needs_token(&self) -> bool {
         match self {
@@ -243,7 +244,7 @@ impl GatewayCommand {
     }
 }
 
-/// A mission that a boat sails by itself.
+/// A mission that a boat runs by itself.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mission {
     /// Throttle, per cent.
@@ -259,7 +260,7 @@ pub struct Mission {
 pub struct OperatorReply {
     /// Why the command was refused.
     pub refused: Option<String>,
-    /// The status now.
+    /// The current status.
     pub status: GatewayStatus,
 }
 
@@ -268,18 +269,19 @@ pub struct OperatorReply {
 pub struct GatewayStatus {
     /// The boat.
     pub vehicle: String,
-    /// Where its control port listens, an address and a port; earlier versions have none.
+    /// Address and port of its control port; earlier versions have none.
     #[serde(default)]
     pub control: Option<String>,
     /// Time since the gateway began, s.
     pub at_s: f64,
-    /// The link to the boat: `up`, or why it is not.
+    /// The link to the boat: `up`, or the reason why it is down.
     pub link: String,
     /// The supervisor's state.
     pub state: String,
-    /// What is missing for arming, in words.
+    /// What is missing for arming, in plain words.
     pub missing: Vec<String>,
-    /// What is wrong in the boat itself now, in words: error code, leak, currents; earlier versions have none.
+    /// The boat's current alarms, in plain words: error code, leak, currents; earlier versions have
+    /// none.
     #[serde(default)]
     pub alarms: Vec<String>,
     /// The failsafes so far, newest last. Recordings of earlier versions call them trips.
@@ -287,13 +289,13 @@ pub struct GatewayStatus {
     pub failsafes: Vec<FailsafeReport>,
     /// The control mode that the boat reports: the Surveyor's letter.
     pub mode: Option<char>,
-    /// Who the boat reports is in control.
+    /// The operator that the boat reports to be in control.
     pub operator: Option<String>,
     /// Navigation, if there is any.
     pub nav: Option<Nav>,
     /// Age of the last good fix, s.
     pub nav_age_s: Option<f64>,
-    /// Where the boat may be, once a game says where the field is; earlier versions have none.
+    /// The geofence, once a game defines the field; earlier versions have none.
     #[serde(default)]
     pub geofence: Option<GeofenceReport>,
     /// Age of mode and operator, s; earlier versions have none.
@@ -306,36 +308,38 @@ pub struct GatewayStatus {
     pub battery_age_s: Option<f64>,
     /// The sentence that was sent last.
     pub last_sent: String,
-    /// In a dry run, what would have been sent last, if anything: what is sent is standby.
+    /// In a dry run, the sentence that would have been sent last, if any. The gateway sends standby
+    /// instead.
     #[serde(default)]
     pub would_send: Option<String>,
-    /// Counts of everything, by name.
+    /// All counters, by name.
     pub counts: Vec<(String, u64)>,
-    /// Median and 99th percentile in µs of: sentence in to topic out, order in to sentence out. What was not measured
-    /// yet is missing.
+    /// Median and 99th percentile in µs of two latencies: sentence in to topic out, and order in to
+    /// sentence out. Missing until measured.
     pub latency_us: [Option<[f64; 2]>; 2],
 }
 
 /// The geofence of a boat, and how near the boat is to it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GeofenceReport {
-    /// The corners of the water where the boat may be, in order.
+    /// The corners of the permitted water, in order.
     pub outline: Vec<Ned>,
-    /// The corners of each part of it where the boat must not be.
+    /// The corners of each keep-out.
     pub keep_out: Vec<Vec<Ned>>,
-    /// The boat's distance to the nearest edge of either, m; negative where it must not be.
+    /// Distance to the nearest edge of geofence or keep-outs, m; negative where the boat must not
+    /// be.
     pub clearance_m: Option<f64>,
-    /// How far the boat would go if it were stopped now, m.
+    /// Stopping distance from the current motion, m.
     pub stopping_m: Option<f64>,
-    /// Where it would come to rest.
+    /// Predicted stopping position.
     pub stops_at: Option<Ned>,
 }
 
-/// A failsafe: the boat was stopped.
+/// A failsafe event: the supervisor stopped the boat.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FailsafeReport {
     /// Time since the gateway began, s.
     pub at_s: f64,
-    /// The cause, in words.
+    /// The cause, in plain words.
     pub cause: String,
 }

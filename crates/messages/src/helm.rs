@@ -1,66 +1,70 @@
-//! What a helm tells of itself to those who ask: its mode, its behaviours, and why it steers as it does.
+//! Report of a helm on request: its mode, its behaviours and the reasons for its decision.
 
 use primitives::id::VehicleId;
 use primitives::time::SimTime;
 use scenario::Scenario;
 use serde::{Deserialize, Serialize};
 
-/// A helm at one decision.
+/// The state of a helm at one decision.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HelmReport {
-    /// Whose helm.
+    /// The boat of the helm.
     pub vehicle: VehicleId,
     /// The time of the decision.
     pub at: SimTime,
-    /// The program it goes by.
+    /// The name of its strategy program.
     pub program: String,
-    /// The mode, with those that it is a part of: `defending:loitering`.
+    /// The mode with its parent modes: `defending:loitering`.
     pub mode: String,
-    /// The chosen heading, compass degrees; none if the boat holds. With the drift it makes the course.
+    /// The chosen heading, compass degrees; none if the boat holds. Adding the drift gives the
+    /// course.
     pub course_deg: Option<f64>,
     /// The chosen speed through the water, m/s; none if the boat holds.
     pub speed_m_s: Option<f64>,
-    /// By how much the boat lies beside the heading that it is told, as the helm sees it, degrees clockwise: the order is so
-    /// much less than the heading chosen. Recordings of earlier versions have none, nor the drift.
+    /// Offset of the boat's heading from the ordered heading as the helm estimates it, degrees
+    /// clockwise. The helm subtracts it from the chosen heading. Recordings of earlier versions
+    /// have neither this nor the drift.
     #[serde(default)]
     pub heading_offset_deg: f64,
-    /// The drift as the helm sees it.
+    /// The drift as estimated by the helm.
     #[serde(default)]
     pub drift: DriftReport,
     /// Why the boat holds, if it does.
     pub hold: Option<String>,
     /// The weighted sum of utilities at the decision.
     pub value: Option<f64>,
-    /// How many courses were weighed: the first is north, and they go clockwise.
+    /// Number of candidate courses, clockwise from north.
     pub courses: usize,
-    /// How many speeds, from 0.
+    /// Number of candidate speeds, from 0.
     pub speeds: usize,
-    /// The highest of them, m/s.
+    /// The highest candidate speed, m/s.
     pub speed_max_m_s: f64,
     /// All behaviours, by name.
     pub behaviours: Vec<BehaviourReport>,
-    /// The variables.
+    /// The helm's variables.
     pub variables: Vec<VariableReport>,
-    /// The trained policies that its behaviours ask.
+    /// The trained policies that its behaviours query.
     #[serde(default)]
     pub policies: Vec<PolicyReport>,
     /// The objective functions of the decision.
     pub functions: Vec<FunctionReport>,
 }
 
-/// What wind, waves and current add to a boat's way through the water, as its helm sees it.
+/// Velocity that wind, waves and current add to a boat's motion through the water, as its helm
+/// estimates it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct DriftReport {
     /// Towards north, m/s.
     pub north_m_s: f64,
     /// Towards east, m/s.
     pub east_m_s: f64,
-    /// Standard deviation of the velocity about that, m/s.
+    /// Standard deviation of the velocity about that mean, m/s.
     pub spread_m_s: f64,
 }
 
 impl HelmReport {
-    /// The weighted sum of these functions by course and speed; those without utilities add nothing.
+    /// The weighted sum of these functions by course and speed; functions without utilities add
+    /// nothing.
     #[must_use]
     pub fn sum<'a>(&self, functions: impl Iterator<Item = &'a FunctionReport>) -> Vec<f64> {
         let mut total = vec![0.0; self.courses * self.speeds];
@@ -80,7 +84,7 @@ pub struct BehaviourReport {
     pub kind: String,
     /// Whether it runs, and whether it influences the helm.
     pub run_state: RunState,
-    /// Its weight now; 0 if it does not run.
+    /// Its current weight; 0 if it does not run.
     pub weight: f64,
 }
 
@@ -88,41 +92,41 @@ pub struct BehaviourReport {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RunState {
-    /// It may not run.
+    /// Its conditions do not permit it to run.
     Idle,
-    /// It runs, but produces no objective function.
+    /// It runs but produces no objective function.
     Running,
     /// It runs and influences the helm.
     Active,
-    /// It is done.
+    /// It has completed.
     Complete,
 }
 
 /// A trained policy at its last decision.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PolicyReport {
-    /// The behaviour that asks it.
+    /// The behaviour that queries it.
     pub behaviour: String,
-    /// Its file.
+    /// Its model file.
     pub model: String,
-    /// The course that it proposes, compass degrees; none if it proposes nothing.
+    /// The proposed course, compass degrees; none without a proposal.
     pub course_deg: Option<f64>,
-    /// The speed that it proposes, m/s.
+    /// The proposed speed, m/s.
     pub speed_m_s: Option<f64>,
-    /// The option that it chooses, if it chooses among those of the strategy.
+    /// The chosen option, if it chooses among options of the strategy.
     #[serde(default)]
     pub option: Option<String>,
-    /// Why it proposes nothing, if it does not.
+    /// The reason why it proposes nothing, if so.
     pub fault: Option<String>,
-    /// How sure it was of each discrete action; empty where actions are continuous.
+    /// Probability of each discrete action; empty for continuous actions.
     pub probabilities: Vec<f32>,
-    /// The numbers that it was given at its last decision, in the order of its observation space.
+    /// Its inputs at the last decision, in the order of its observation space.
     pub observed: Vec<f32>,
 }
 
 impl PolicyReport {
-    /// What its actions ask for with how much certainty, the likeliest first, and what its numbers are called; nothing where the scenario
-    /// does not have the model.
+    /// Labels the discrete actions with their probabilities, most probable first, and the inputs.
+    /// Empty if the scenario lacks the model.
     #[must_use]
     pub fn words(&self, scenario: &Scenario, vehicle: VehicleId) -> PolicyWords {
         let Some(model) = scenario.strategy_of(vehicle).models().find(|model| model.name == self.model) else {
@@ -137,12 +141,12 @@ impl PolicyReport {
     }
 }
 
-/// The numbers of a policy's decision with what they are.
+/// Labelled actions and inputs of a policy's decision.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PolicyWords {
-    /// What discrete actions ask for, and how sure the policy was of each.
+    /// Meaning and probability of each discrete action.
     pub actions: Vec<(String, f32)>,
-    /// What it was given.
+    /// Name and value of each input.
     pub observed: Vec<(String, f32)>,
 }
 
@@ -158,21 +162,21 @@ pub struct VariableReport {
 /// An objective function.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FunctionReport {
-    /// Whose it is.
+    /// The behaviour that produced it.
     pub behaviour: String,
-    /// The boat it is about.
+    /// The contact that it is about.
     pub contact: Option<VehicleId>,
     /// Its weight.
     pub weight: f64,
-    /// Its utility at the decision, 0 to 100; none before somebody looks.
+    /// Its utility at the decision, 0 to 100; none until evaluated.
     pub utility: Option<f32>,
-    /// Its utilities, a row of speeds for each course; empty unless they were asked for.
+    /// Its utilities, one row of speeds per course; empty unless requested.
     pub utilities: Vec<f32>,
 }
 
-/// What is asked of a helm.
+/// A query to a helm.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct HelmQuestion {
-    /// Whether the utilities are wanted, not only the weights.
+    /// Whether to include the utilities, not only the weights.
     pub functions: bool,
 }

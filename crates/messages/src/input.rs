@@ -1,4 +1,4 @@
-//! What a contest is given as it goes on. From it a game can be played again without its agents.
+//! Inputs of a contest in progress. They suffice to replay a game without its agents.
 
 use crate::order::Order;
 use crate::picture::Nav;
@@ -8,18 +8,18 @@ use primitives::time::SimTime;
 use scenario::Scenario;
 use serde::{Deserialize, Serialize};
 
-/// One thing that a game was given. Their order counts.
+/// One input of a game. The order of inputs matters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Input {
-    /// The teams were shown their pictures: boats looked round and reported.
+    /// The teams received their pictures: boats observed and reported.
     Pictured,
     /// A vehicle was sent an order.
     Ordered {
-        /// Whose.
+        /// The vehicle.
         vehicle: VehicleId,
-        /// Which.
+        /// The order.
         order: Order,
-        /// The time of the picture that it answers; [`SimTime::NEVER`] where that was not written down.
+        /// Time of the answered picture; [`SimTime::NEVER`] if not recorded.
         given_at: SimTime,
     },
     /// A vehicle was made to hold.
@@ -28,27 +28,27 @@ pub enum Input {
     AgentLost(VehicleId),
     /// A vehicle's agent is back.
     AgentBack(VehicleId),
-    /// A gateway reported where its boat was.
+    /// A gateway reported its boat's navigation.
     Reported {
-        /// Which boat.
+        /// The boat.
         vehicle: VehicleId,
-        /// Where, and how it moved.
+        /// Its navigation.
         nav: Nav,
-        /// When that was.
+        /// Time of the fix.
         fix_at: SimTime,
-        /// Whether it can be relied on.
+        /// Whether the fix is reliable.
         valid: bool,
     },
-    /// All boats were stopped, or that was over.
+    /// The E-stop for all boats was set or released.
     EStopped(bool),
-    /// All boats were made to hold, or that was over.
+    /// Holding of all boats was set or released.
     Halted(bool),
-    /// It was played until the next decision.
+    /// The game advanced to the next decision.
     Played,
 }
 
 impl Input {
-    /// Whether it can be given to this game: the game has the vehicle, and times are within reason.
+    /// Whether the input fits this game: the game has the vehicle, and times are within bounds.
     #[must_use]
     pub fn is_of(self, scenario: &Scenario) -> bool {
         let has = |vehicle: VehicleId| vehicle.index() < scenario.vehicles.len();
@@ -62,20 +62,20 @@ impl Input {
     }
 }
 
-/// Everything that a game was given since the frame before, in order.
+/// All inputs of a game since the previous frame, in order.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Inputs {
-    /// That of the frame that came of it.
+    /// The stamp of the resulting frame.
     pub stamp: Stamp,
-    /// In order.
+    /// The inputs, in order.
     pub inputs: Vec<InputRecord>,
 }
 
 impl Inputs {
-    /// The version that did not hold yet which picture an order answers.
+    /// The version that did not yet record which picture an order answers.
     const WITHOUT_GIVEN_AT: u8 = 1;
 
-    /// Each input, if it is known and of this game.
+    /// Each input, or none where it is unknown or not of this game.
     pub fn of(&self, scenario: &Scenario) -> impl Iterator<Item = Option<Input>> {
         let is_old = self.stamp.version <= Inputs::WITHOUT_GIVEN_AT;
         self.inputs.iter().map(move |record| match record.input().filter(|input| input.is_of(scenario))? {
@@ -90,13 +90,13 @@ impl Inputs {
 /// An input as numbers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct InputRecord {
-    /// Which: the constants of `InputRecord.msg`.
+    /// The kind: a constant of `InputRecord.msg`.
     pub kind: u8,
-    /// Whose, or -1.
+    /// Vehicle index, or -1.
     pub vehicle: i32,
-    /// For a report: when the boat was there; for an order: the time of the picture that it answers, ns.
+    /// For a report the time of the fix, for an order the time of the answered picture, ns.
     pub at_ns: SimTime,
-    /// What belongs to it.
+    /// The arguments of the kind.
     pub numbers: Vec<f64>,
 }
 
@@ -134,7 +134,7 @@ impl From<Input> for InputRecord {
 }
 
 impl InputRecord {
-    /// The input, if kind and numbers are ones we know.
+    /// Decodes the input, if kind and numbers are known.
     #[must_use]
     pub fn input(&self) -> Option<Input> {
         let vehicle = u16::try_from(self.vehicle).ok().map(VehicleId);

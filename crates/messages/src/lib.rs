@@ -1,8 +1,8 @@
-//! What goes over the wire every tick: one struct a topic, in step with `msg/*.msg`.
+//! Wire messages of every tick: one struct per topic, in step with `msg/*.msg`.
 //!
-//! The structs keep to what ROS 2 can say (fixed-width numbers, lists, nested messages), so that
-//! tools which know the `.msg` files read our bytes without us. `-1` stands for "none".
-//! The low-rate control plane ([`JoinRequest`], [`JoinReply`], [`Control`]) is JSON.
+//! The structs use only types that ROS 2 has (fixed-width numbers, lists, nested messages). Tools
+//! that know the `.msg` files can therefore decode our bytes without us. `-1` means "none". The
+//! low-rate control plane ([`JoinRequest`], [`JoinReply`], [`Control`]) is JSON.
 
 pub mod external;
 pub mod helm;
@@ -29,28 +29,28 @@ use scenario::Scenario;
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
-/// The truth about everything, for observers.
+/// The true state of the game, for observers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Frame {
-    /// When.
+    /// Time and decision of the frame.
     pub stamp: Stamp,
-    /// By vehicle.
+    /// Boats, by vehicle index.
     pub vehicles: Vec<VehicleTruth>,
     /// The sea in the middle of the field.
     pub sea: SeaView,
-    /// By flag.
+    /// Flags, by flag index.
     pub flags: Vec<FlagView>,
     /// Points, by team.
     pub score: Vec<u32>,
-    /// What happened since the frame before.
+    /// Events since the previous frame.
     pub events: Vec<EventRecord>,
-    /// Whether people ashore have stopped all boats, or make them hold.
+    /// Whether operators have stopped all boats or make them hold.
     pub stopped: bool,
     /// Whether the game is over.
     pub over: bool,
 }
 
-/// Wind and current at a place, as velocities over the ground, and the height of the water.
+/// Wind and current at a place, as velocities over the ground, and the water level.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SeaView {
     /// Wind towards north, 10 m above the water, m/s.
@@ -61,16 +61,16 @@ pub struct SeaView {
     pub current_north_m_s: f64,
     /// Current towards east, m/s.
     pub current_east_m_s: f64,
-    /// How much higher the water stands than in calm, m.
+    /// Height of the water above calm level, m.
     pub elevation_m: f64,
 }
 
-/// The truth about one boat.
+/// The true state of one boat.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct VehicleTruth {
-    /// Where it is and how it moves over the ground.
+    /// Its position and motion over the ground.
     pub nav: Nav,
-    /// How far the waves have lifted it, m.
+    /// Heave due to waves, m.
     pub heave_m: f64,
     /// Roll, starboard down, rad.
     pub roll_rad: f64,
@@ -86,37 +86,38 @@ pub struct VehicleTruth {
     pub carrying: i16,
     /// Whether it is out of action by power play.
     pub disabled: bool,
-    /// Whether it is outside of the field.
+    /// Whether it is outside the field.
     pub outside: bool,
     /// Whether its agent is lost.
     pub agent_lost: bool,
-    /// Whether its numbers went bad.
+    /// Whether its state became non-finite.
     pub quarantined: bool,
-    /// Whether it is a real one whose last report is too old.
+    /// Whether it is a real boat whose last report is too old.
     pub nav_lost: bool,
 }
 
-/// The orders of one agent process, for all boats it minds.
+/// The orders of one agent process, for all its boats.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Orders {
-    /// The picture that they answer.
+    /// The stamp of the answered picture.
     pub stamp: Stamp,
-    /// The ticket that the sim gave when the agent joined.
+    /// The ticket that the sim issued when the agent joined.
     pub ticket: u64,
-    /// One order a boat.
+    /// One order per boat.
     pub orders: Vec<VehicleOrder>,
 }
 
-/// One order for one boat. Numbers that its kind does not have are zero.
+/// One order for one boat. Fields that its kind does not use are zero.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct VehicleOrder {
     /// The boat.
     pub vehicle: VehicleId,
     /// 0 hold, 1 steer, 2 thrust, 3 turn.
     pub kind: u8,
-    /// To steer: the heading, rad clockwise from north. To turn: by how much, rad clockwise.
+    /// For steer: the heading, rad clockwise from north. For turn: the change of heading, rad
+    /// clockwise.
     pub heading_rad: f64,
-    /// To steer and to turn: the speed ahead, m/s.
+    /// For steer and turn: the speed ahead, m/s.
     pub speed_m_s: f64,
     /// Thrust of the port thruster, -1 to 1.
     pub port: f64,
@@ -137,7 +138,7 @@ impl VehicleOrder {
         }
     }
 
-    /// The order, if its kind is one we know.
+    /// Decodes the order, if its kind is known.
     #[must_use]
     pub fn order(&self) -> Option<Order> {
         match self.kind {
@@ -151,7 +152,7 @@ impl VehicleOrder {
 }
 
 impl Frame {
-    /// What happened since the frame before, but for what names something that is not in the game.
+    /// Events since the previous frame, without those that refer to things outside the game.
     pub fn logged<'a>(&'a self, scenario: &'a Scenario) -> impl Iterator<Item = Logged> + 'a {
         self.events.iter().filter_map(EventRecord::logged).filter(|logged| scenario.has(logged.event))
     }
@@ -167,30 +168,30 @@ impl Message for Orders {
     const VERSION: u8 = 2;
 }
 
-/// What minds tell their team: the values of shared variables, as of one decision.
+/// Team messages of minds: the values of shared variables at one decision.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Say {
-    /// When, and after which decision.
+    /// Time and decision of the values.
     pub stamp: Stamp,
-    /// The words of all boats that one process minds.
+    /// The words of all boats of one process.
     pub words: Vec<Word>,
 }
 
 /// A shared variable of one boat.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Word {
-    /// Whose.
+    /// The boat.
     pub vehicle: VehicleId,
-    /// Which: a hash of its name and of what it can be.
+    /// The variable: a hash of its name and its possible values.
     pub key: u64,
-    /// Its value: truths are 0 and 1, texts count from 0.
+    /// Its value: booleans are 0 and 1, texts are indices from 0.
     pub value: f64,
 }
 
-/// What a policy outside of the helm proposes for a boat.
+/// The proposal of a policy outside the helm for a boat.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PolicyProposal {
-    /// For which decision.
+    /// Time and decision of the proposal.
     pub stamp: Stamp,
     /// The boat.
     pub vehicle: VehicleId,
@@ -210,100 +211,101 @@ impl Message for PolicyProposal {
     const VERSION: u8 = 1;
 }
 
-/// What an agent or a gateway asks of the sim before anything else.
+/// First request of an agent or a gateway to the sim.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct JoinRequest {
     /// The node's version of Squall.
     pub version: String,
-    /// What it wants to be.
+    /// The requested role.
     pub role: Role,
     /// A name for the process, unique on the network.
     pub node: String,
-    /// The vehicles it wants, by name.
+    /// Names of the requested vehicles.
     pub vehicles: Vec<String>,
 }
 
-/// What a node that joins does for its vehicles.
+/// The role of a joining node for its vehicles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, strum::Display)]
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
 pub enum Role {
-    /// Decides for them.
+    /// Decides for the vehicles.
     Agent,
     /// Connects real boats.
     Gateway,
 }
 
-/// What the sim answers.
+/// The sim's reply to a join request.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum JoinReply {
     /// The node has joined.
     Granted {
-        /// To be shown with every order or report.
+        /// The ticket that every order or report must carry.
         ticket: u64,
-        /// The vehicles, in the order asked for.
+        /// The vehicles, in the requested order.
         vehicles: Vec<VehicleId>,
-        /// Time of the game: what was made before it was not made for this node.
+        /// Game time of joining. Earlier messages were not meant for this node.
         now_ns: SimTime,
     },
-    /// Not now: somebody else has the vehicle. Asking again later may help.
+    /// Another node has the vehicle. A later retry may succeed.
     Busy {
         /// The vehicle.
         vehicle: String,
     },
-    /// No, and asking again will not help.
+    /// Refused for good: a retry will not help.
     Refused {
-        /// Why.
+        /// The reason.
         reason: String,
     },
 }
 
-/// What the shore asks of a game.
+/// A control command for a game.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Control {
     /// Ends the game now.
     Stop,
-    /// Stands still until resumed. Real boats hold meanwhile.
+    /// Pauses the game. Real boats hold meanwhile.
     Pause,
-    /// Goes on.
+    /// Resumes a paused game.
     Resume,
-    /// Where it is paused: plays one decision.
+    /// In a paused game, plays one decision.
     Step,
-    /// Plays so many simulated seconds a second; none is as fast as can be. A game in lockstep plays no faster than that,
-    /// one by the clock as fast as that. A game with real boats keeps its pace.
+    /// Limits the speed to this many simulated seconds per second; none removes the limit. A
+    /// lockstep game plays no faster than that, a clocked game exactly that fast. A game with real
+    /// boats keeps its pace.
     Speed(Option<f64>),
-    /// All boats hold for now, the game goes on.
+    /// Makes all boats hold while the game continues.
     Halt,
-    /// They may go on.
+    /// Ends the hold.
     GoOn,
-    /// All boats stop, real and simulated, and stay stopped.
+    /// Stops all boats, real and simulated, until released.
     EStop,
-    /// The stop is over. Real boats have to be armed again.
+    /// Ends the E-stop. Real boats have to be armed again.
     Release,
 }
 
-/// What the sim answers to a [`Control`] that is asked of it: why it was refused, if it was.
+/// The sim's reply to a [`Control`] request: the reason if it was refused.
 pub type ControlReply = Result<(), String>;
 
 impl Control {
-    /// Whether it stops boats, or the game's clock for them: that anybody may do.
+    /// Whether it stops boats or pauses the game: such commands need no token.
     #[must_use]
     pub fn stops(self) -> bool {
         matches!(self, Control::EStop | Control::Halt)
     }
 
-    /// The speeds that may be asked for, simulated seconds a second.
+    /// The permitted speeds, simulated seconds per second.
     pub const SPEEDS: RangeInclusive<f64> = 0.01..=1000.0;
 }
 
-/// What a sim says of its game to anyone who asks.
+/// Public description of a game by its sim.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GameInfo {
     /// The sim's version of Squall.
     pub version: String,
     /// How the game is paced.
     pub pace: String,
-    /// The checked scenario, with the seed of this game.
+    /// The validated scenario, with the seed of this game.
     pub scenario: Scenario,
 }

@@ -1,54 +1,55 @@
-//! Orders: what a mind asks of its boat.
+//! Orders: what a mind requests from its boat.
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// One order for one boat; it is in force until the next one comes, or until it expires.
+/// One order for one boat, in force until the next one arrives or it expires.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum Order {
-    /// Thrusters to zero: the safe order, and what a boat does without an agent.
+    /// Thrusters to zero: the safe order, and the order of a boat without an agent.
     #[default]
     Hold,
-    /// The front seat's own loops steer this course.
+    /// The front seat's own controllers steer this heading.
     Steer {
         /// Desired heading, radians clockwise from north.
         heading_rad: f64,
         /// Desired speed ahead over the ground, m/s; never negative.
         speed_m_s: f64,
     },
-    /// The two thrusters directly, each in -1 (full astern) to 1 (full ahead).
+    /// Sets both thrusters directly, each from -1 (full astern) to 1 (full ahead).
     Thrust {
         /// Port thruster.
         port: f64,
         /// Starboard thruster.
         starboard: f64,
     },
-    /// The front seat's own loops turn, and go on turning: at every tick as if the heading ordered were this far from the
-    /// one the boat has.
+    /// The front seat's own controllers turn continuously: at every tick, the ordered heading is
+    /// this far from the current one.
     Turn {
-        /// By how much, radians clockwise, -pi to pi: half a turn to either side is two different orders.
+        /// Change of heading, radians clockwise, -pi to pi: half a turn to either side is two
+        /// different orders.
         by_rad: f64,
         /// Desired speed ahead over the ground, m/s; never negative.
         speed_m_s: f64,
     },
 }
 
-/// Why an order cannot be followed.
+/// Reason why an order is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum BadOrder {
     /// A number in it is NaN or infinite.
     #[error("a number is not finite")]
     NotFinite,
-    /// A number is outside of what the order allows.
+    /// A number is outside the permitted range.
     #[error("a number is out of range (speed 0 to 100 m/s, turn -pi to pi rad, thrust -1 to 1)")]
     OutOfRange,
 }
 
 impl Order {
-    /// Whether every number is one a boat can be given.
+    /// Checks that every number is in range.
     ///
     /// # Errors
-    /// [`BadOrder`] says what is wrong.
+    /// [`BadOrder`] names the defect.
     pub fn check(self) -> Result<Order, BadOrder> {
         let (a, b, range_ok) = match self {
             Order::Hold => return Ok(self),

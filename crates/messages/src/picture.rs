@@ -1,6 +1,6 @@
-//! What a team may know: its own boats, what it sees of the others, the flags, the score.
+//! The picture of a team: its own boats, its contacts, the flags, the score.
 //!
-//! An agent decides from this and nothing else. It is the same on the sea and in simulation.
+//! An agent decides from the picture alone. It is the same at sea and in simulation.
 
 use primitives::frame::{Body, Ned, Pose, ned_from_body};
 use primitives::id::{FlagId, TeamId, VehicleId};
@@ -11,28 +11,28 @@ use rules::Ability;
 use rules::event::EventRecord;
 use serde::{Deserialize, Serialize};
 
-/// What one team knows at one decision tick.
+/// The knowledge of one team at one decision.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Picture {
-    /// When, and which tick orders must answer.
+    /// Time and decision that orders must answer.
     pub stamp: Stamp,
-    /// Whose picture this is.
+    /// Index of the team.
     pub team: u8,
-    /// The team's own boats, by rising vehicle index.
+    /// The team's own boats, by ascending vehicle index.
     pub own: Vec<OwnBoat>,
-    /// The other boats as the team knows them, by rising vehicle index.
+    /// The other boats as the team knows them, by ascending vehicle index.
     pub contacts: Vec<Contact>,
-    /// By flag.
+    /// Flags, by flag index.
     pub flags: Vec<FlagView>,
     /// Points, by team.
     pub score: Vec<u32>,
-    /// What happened to the team's boats and flags since the picture before.
+    /// Events of the team's boats and flags since the previous picture.
     pub events: Vec<EventRecord>,
     /// Whether the game is over.
     pub over: bool,
 }
 
-/// A boat's own navigation: where it is and how it moves over the ground.
+/// A boat's own navigation: its position and motion over the ground.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Nav {
     /// North of the datum, m.
@@ -78,28 +78,28 @@ impl Nav {
 /// Gyro and accelerometers, along the boat's axes: ahead, to starboard, down.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Imu {
-    /// Rate of turn about the axis ahead, rad/s.
+    /// Rotation rate about the axis ahead, rad/s.
     pub roll_rate_rad_s: f64,
-    /// About the axis to starboard, rad/s.
+    /// Rotation rate about the axis to starboard, rad/s.
     pub pitch_rate_rad_s: f64,
-    /// About the axis down, rad/s.
+    /// Rotation rate about the axis down, rad/s.
     pub yaw_rate_rad_s: f64,
     /// Specific force ahead, m/s².
     pub ahead_m_s2: f64,
-    /// To starboard, m/s².
+    /// Specific force to starboard, m/s².
     pub starboard_m_s2: f64,
-    /// Down, m/s²: minus gravity at rest.
+    /// Specific force down, m/s²: minus gravity at rest.
     pub down_m_s2: f64,
 }
 
 /// One of the team's own boats.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OwnBoat {
-    /// Which.
+    /// Its vehicle index.
     pub vehicle: VehicleId,
-    /// Its navigation, as its sensors tell it.
+    /// Its navigation, as measured by its sensors.
     pub nav: Nav,
-    /// When the last satellite fix in it was taken, ns.
+    /// Time of the last satellite fix used, ns.
     pub fix_ns: SimTime,
     /// Gyro and accelerometers.
     pub imu: Imu,
@@ -109,20 +109,20 @@ pub struct OwnBoat {
     pub carrying: i16,
     /// Whether it is out of action by power play.
     pub disabled: bool,
-    /// Whether it is outside of the field.
+    /// Whether it is outside the field.
     pub outside: bool,
-    /// From when on it may tag again, ns.
+    /// Time from which it may tag again, ns.
     pub tag_ready_ns: SimTime,
 }
 
-/// Another team's boat, as known.
+/// A boat of another team, as known.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Contact {
-    /// Which.
+    /// Its vehicle index.
     pub vehicle: VehicleId,
     /// Its team.
     pub team: TeamId,
-    /// When it was seen so, ns.
+    /// Time of the sighting, ns.
     pub seen_ns: SimTime,
     /// North of the datum, m.
     pub north_m: f64,
@@ -143,7 +143,7 @@ pub struct Contact {
 /// One flag.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FlagView {
-    /// The vehicle that carries it, or -1: it is at its home.
+    /// The vehicle that carries it, or -1 if it is at home.
     pub carrier: i32,
 }
 
@@ -153,12 +153,12 @@ impl Message for Picture {
 }
 
 impl Picture {
-    /// No number in a picture is larger than this, in the units of the message. The helm's functions take ten times as much: sums
-    /// and differences of a few such numbers.
+    /// Upper bound of the magnitude of numbers in a picture, in the units of the message. The
+    /// helm's functions accept ten times as much, for sums and differences of a few such numbers.
     const NUMBER_MAX: f64 = 1e6;
 
-    /// Takes out the boats of which a number is none, or out of all bounds, and gives how many there were: a mind is to decide on
-    /// the others.
+    /// Removes boats with a non-finite or out-of-range number and returns their count. A mind can
+    /// then decide on the others.
     pub fn remove_bad_numbers(&mut self) -> u64 {
         let count = |picture: &Picture| picture.own.len() + picture.contacts.len();
         let before = count(self);
@@ -185,7 +185,7 @@ impl Picture {
 }
 
 impl OwnBoat {
-    /// A boat in play of which only the navigation is known.
+    /// A boat in play with only its navigation known.
     #[must_use]
     pub fn new(vehicle: VehicleId, nav: Nav) -> OwnBoat {
         OwnBoat {
@@ -208,7 +208,7 @@ impl OwnBoat {
     }
 }
 
-/// A flag or none as the messages say it.
+/// Encodes an optional flag as in the messages: -1 is none.
 #[must_use]
 pub fn number_of_flag(flag: Option<FlagId>) -> i16 {
     flag.map_or(-1, |flag| i16::from(flag.0))

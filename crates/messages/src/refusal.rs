@@ -1,4 +1,5 @@
-//! Why messages of other programs were not used, counted by reason: the same for agents, gateways and the sim.
+//! Why messages of other programs were refused, counted by reason: the same for agents, gateways
+//! and the sim.
 
 use crate::Message;
 use primitives::codec::{self, DecodeError};
@@ -8,38 +9,40 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::Add;
 
-/// Why a message, or a part of it, was not used.
+/// Why a message, or a part of it, was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Refusal {
-    /// Bytes that are no such message.
+    /// Bytes that do not decode as the message.
     Garbage,
     /// A message of another version.
     Version,
-    /// A ticket that nobody holds (any more).
+    /// A ticket that is unknown or has expired.
     Ticket,
-    /// Orders for a tick that is over, or still to come; a report that came after a later one.
+    /// Orders for a past or future decision, or a report older than one already received.
     WrongTick,
-    /// Something about a vehicle that the sender does not have, or that is not there.
+    /// A vehicle that does not exist or does not belong to the sender.
     NotYours,
-    /// Numbers that are not finite or out of range, or an order of an unknown kind: the boat holds then.
+    /// Non-finite or out-of-range numbers, or an unknown kind of order: the boat then holds.
     BadNumber,
-    /// An agent gave no order for a vehicle of its own. The boat holds.
+    /// An agent gave no order for one of its vehicles. The boat holds.
     Missing,
-    /// Requests of people that the game cannot follow: another speed with real boats, a step of a game that is not paused.
+    /// Operator requests that the game cannot follow: another speed with real boats, a step of a
+    /// game that is not paused.
     OutOfPlace,
     /// Messages that came faster than they could be read.
     Flood,
     /// More team messages of one boat than a boat has variables.
     Surplus,
-    /// A team message that was waited for in vain, from a boat that had sent one at the decision before.
+    /// A team message that did not arrive in time, from a boat that had sent one at the previous
+    /// decision.
     TeamMessageMissing,
-    /// A decision for which a policy's proposal was waited for in vain.
+    /// A decision for which a policy's proposal did not arrive in time.
     ProposalMissing,
 }
 
 impl Refusal {
-    /// All of them, with what people read.
+    /// All reasons, with their texts for people.
     const ALL: [(Refusal, &str); 12] = [
         (Refusal::Garbage, "not understood"),
         (Refusal::Version, "of another version"),
@@ -56,7 +59,7 @@ impl Refusal {
     ];
 }
 
-/// How often something was refused, or never came, by reason. In JSON an object with a number for each.
+/// Counts of refused or missing messages, by reason. In JSON an object with one number per reason.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(into = "BTreeMap<Refusal, u64>", from = "BTreeMap<Refusal, u64>")]
 pub struct Refusals([u64; Refusal::ALL.len()]);
@@ -72,19 +75,19 @@ impl Refusals {
         self.0[refusal as usize] += count;
     }
 
-    /// How many there were for this reason.
+    /// The count for this reason.
     #[must_use]
     pub fn of(&self, refusal: Refusal) -> u64 {
         self.0[refusal as usize]
     }
 
-    /// How many there were in all.
+    /// The total count.
     #[must_use]
     pub fn total(&self) -> u64 {
         self.0.iter().sum()
     }
 
-    /// The message in `bytes`, if it is one; if not, the reason is counted.
+    /// Decodes the message in `bytes`; counts the reason on failure.
     pub fn decode<M: Message + DeserializeOwned>(&mut self, bytes: &[u8]) -> Option<M> {
         let decoded = codec::decode(bytes);
         if let Err(error) = &decoded {
@@ -123,7 +126,7 @@ impl Add for Refusals {
 }
 
 impl fmt::Display for Refusals {
-    /// The reasons that occurred: `2 x not understood, 1 x for another tick`.
+    /// The reasons with non-zero counts: `2 x not understood, 1 x for another tick`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let occurred = Refusal::ALL.iter().filter(|(refusal, _)| self.of(*refusal) > 0);
         let texts: Vec<String> = occurred.map(|(refusal, text)| format!("{} x {text}", self.of(*refusal))).collect();

@@ -1,23 +1,24 @@
-//! The state of a game's run: what depends on the machine and the people, not on the game.
+//! The state of a game's run: what depends on the machine and its operators, not on the game.
 
 use serde::{Deserialize, Serialize};
 
-/// How the run of a game stands, from its sim to whoever looks on. JSON.
+/// The state of a game's run, from its sim to observers. JSON.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RunState {
-    /// What it is about now.
+    /// The current phase.
     pub phase: Phase,
     /// Simulated time, s.
     pub now_s: f64,
-    /// How it was started to be paced: `lockstep`, `realtime` or a factor such as `4x`.
+    /// The pace it was started with: `lockstep`, `realtime` or a factor such as `4x`.
     pub pace: String,
-    /// Simulated seconds a second: what is aimed at, or in lockstep what is not exceeded. None is as fast as can be.
+    /// Target speed, or upper limit in lockstep, in simulated seconds per second; none is
+    /// unlimited.
     pub speed: Option<f64>,
-    /// Simulated seconds a second, lately.
+    /// Recent speed, simulated seconds per second.
     pub rate: f64,
-    /// Vehicles without an agent, while they are waited for.
+    /// Vehicles whose agents the game is waiting for.
     pub minds: Vec<String>,
-    /// Real boats that were not heard of, while they are waited for.
+    /// Real boats whose first report the game is waiting for.
     pub gateways: Vec<String>,
     /// Messages refused so far.
     pub refused: u64,
@@ -27,36 +28,36 @@ pub struct RunState {
     pub recording: Option<RecordingState>,
 }
 
-/// What a run is about.
+/// The phase of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Phase {
-    /// Agents or real boats are waited for.
+    /// The game waits for agents or real boats.
     #[default]
     Waiting,
-    /// The game is on.
+    /// The game is running.
     Playing,
-    /// Somebody paused it.
+    /// The game is paused.
     Paused,
     /// It has ended.
     Over,
 }
 
-/// How a recording stands.
+/// The state of a recording.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RecordingState {
-    /// The file, as the sim's machine names it.
+    /// The file's path on the sim's machine.
     pub file: String,
     /// Bytes written so far.
     pub bytes: u64,
-    /// Messages that the disk was too slow for.
+    /// Messages dropped because the disk was too slow.
     pub dropped: u64,
-    /// Why nothing is written any more, if so.
+    /// Why writing stopped, if so.
     pub failed: Option<String>,
 }
 
 impl RecordingState {
-    /// What is wrong with it, in words, if anything is.
+    /// The recording's problem in plain words, if any.
     #[must_use]
     pub fn problem(&self) -> Option<String> {
         let file = &self.file;

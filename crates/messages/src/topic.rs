@@ -1,21 +1,21 @@
-//! The key expressions of a game. Nothing else spells them.
+//! The key expressions of a game, which no other module spells out.
 //!
-//! All keys begin with `squall/<game>/`, so that games on one network never meet.
+//! All keys begin with `squall/<game>/`, so that games on one network do not interfere.
 
 use crate::Role;
 use crate::external::Reported;
 use primitives::id::{TeamId, VehicleId};
 use scenario::Scenario;
 
-/// A game's name on the network: small letters, digits, `_` and `-`.
+/// A game's name on the network: lower-case letters, digits, `_` and `-`.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct GameName(String);
 
 impl GameName {
-    /// The name, if it can be part of a key.
+    /// Validates the name as part of a key.
     ///
     /// # Errors
-    /// Says what is allowed.
+    /// States which characters are allowed.
     pub fn new(name: &str) -> Result<GameName, String> {
         let allowed = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_' || c == '-';
         if (1..=64).contains(&name.len()) && name.chars().all(allowed) {
@@ -32,13 +32,13 @@ impl GameName {
     }
 }
 
-/// All topics of a game that match `pattern`, in which `*` stands for one word and `**` for any number of them.
+/// All topics of a game that match `pattern`: `*` matches one word, `**` any number of words.
 #[must_use]
 pub fn matching(game: &GameName, pattern: &str) -> String {
     format!("squall/{}/{pattern}", game.0)
 }
 
-/// The truth for observers (publish).
+/// The true state for observers (publish).
 #[must_use]
 pub fn frame(game: &GameName) -> String {
     format!("squall/{}/frame", game.0)
@@ -65,13 +65,13 @@ pub fn all_orders(game: &GameName) -> String {
     format!("squall/{}/order/**", game.0)
 }
 
-/// What the minds of a team tell each other (publish, subscribe).
+/// Messages between the minds of a team (publish, subscribe).
 #[must_use]
 pub fn say(game: &GameName, scenario: &Scenario, team: TeamId) -> String {
     format!("squall/{}/say/{}", game.0, scenario.teams[team.index()].name)
 }
 
-/// What a policy outside proposes for a boat (publish).
+/// Proposals of an external policy for a boat (publish).
 #[must_use]
 pub fn policy(game: &GameName, scenario: &Scenario, vehicle: VehicleId) -> String {
     format!("squall/{}/policy/{}", game.0, scenario.vehicles[vehicle.index()].name)
@@ -83,25 +83,25 @@ pub fn helm(game: &GameName, scenario: &Scenario, vehicle: VehicleId) -> String 
     format!("squall/{}/helm/{}", game.0, scenario.vehicles[vehicle.index()].name)
 }
 
-/// Where a real boat is, from its gateway (publish).
+/// Navigation of a real boat, from its gateway (publish).
 #[must_use]
 pub fn nav(game: &GameName, scenario: &Scenario, vehicle: VehicleId) -> String {
     format!("squall/{}/nav/{}", game.0, scenario.vehicles[vehicle.index()].name)
 }
 
-/// Where all real boats are (subscribe).
+/// Navigation of all real boats (subscribe).
 #[must_use]
 pub fn all_nav(game: &GameName) -> String {
     format!("squall/{}/nav/*", game.0)
 }
 
-/// What a real boat is to do, from the sim (publish).
+/// Commands for a real boat, from the sim (publish).
 #[must_use]
 pub fn external_order(game: &GameName, scenario: &Scenario, vehicle: VehicleId) -> String {
     format!("squall/{}/external/{}", game.0, scenario.vehicles[vehicle.index()].name)
 }
 
-/// What a gateway reports for others, to the sim alone (publish): see [`Reported`].
+/// Gateway reports for other nodes, sent to the sim alone (publish): see [`Reported`].
 #[must_use]
 pub fn report(game: &GameName, what: Reported, vehicle: &str) -> String {
     format!("squall/{}/report/{what}/{vehicle}", game.0)
@@ -113,31 +113,31 @@ pub fn link(game: &GameName, vehicle: &str) -> String {
     format!("squall/{}/link/{vehicle}", game.0)
 }
 
-/// How a gateway and its boat are, from the sim (publish).
+/// Status of a gateway and its boat, from the sim (publish).
 #[must_use]
 pub fn status(game: &GameName, vehicle: &str) -> String {
     format!("squall/{}/status/{vehicle}", game.0)
 }
 
-/// Where people ask something of a boat's gateway (query).
+/// Operator commands to a boat's gateway (query).
 #[must_use]
 pub fn operate(game: &GameName, vehicle: &str) -> String {
     format!("squall/{}/operate/{vehicle}", game.0)
 }
 
-/// Where anybody stops a real boat: a command that needs no token (publish).
+/// Stops of a real boat, which need no token (publish).
 #[must_use]
 pub fn stop(game: &GameName, vehicle: &str) -> String {
     format!("squall/{}/stop/{vehicle}", game.0)
 }
 
-/// How the run of the game stands (publish).
+/// The state of the game's run (publish).
 #[must_use]
 pub fn run(game: &GameName) -> String {
     format!("squall/{}/run", game.0)
 }
 
-/// Everything that has happened so far (query).
+/// All events so far (query).
 #[must_use]
 pub fn events(game: &GameName) -> String {
     format!("squall/{}/events", game.0)
@@ -149,8 +149,8 @@ pub fn water(game: &GameName) -> String {
     format!("squall/{}/water", game.0)
 }
 
-/// Where a node asks to join in this role with these vehicles (query): agents at the place of their team, gateways at that of
-/// their boat. Who names vehicles of several teams, several boats, or what is no vehicle, has no place of its own.
+/// Join requests for this role and these vehicles (query): agents use their team's key, gateways
+/// their boat's. Requests for several teams, several boats or unknown vehicles use a common key.
 #[must_use]
 pub fn join(game: &GameName, scenario: &Scenario, role: Role, vehicles: &[String]) -> String {
     let known = vehicles.iter().map(|name| scenario.vehicle_by_name(name));
@@ -167,31 +167,31 @@ pub fn join(game: &GameName, scenario: &Scenario, role: Role, vehicles: &[String
     format!("squall/{}/join/{role}{place}", game.0)
 }
 
-/// Where all nodes ask to join (query).
+/// All join requests (query).
 #[must_use]
 pub fn all_join(game: &GameName) -> String {
     format!("squall/{}/join/**", game.0)
 }
 
-/// What the game is (query).
+/// The game's description (query).
 #[must_use]
 pub fn scenario(game: &GameName) -> String {
     format!("squall/{}/scenario", game.0)
 }
 
-/// Where the game is controlled: what stops boats is published by anybody, everything else is asked of the sim (query).
+/// Control of the game: anybody may publish stops; all other commands are queries to the sim.
 #[must_use]
 pub fn control(game: &GameName) -> String {
     format!("squall/{}/control", game.0)
 }
 
-/// That an E-stop is over, from the sim (publish).
+/// Release of an E-stop, from the sim (publish).
 #[must_use]
 pub fn released(game: &GameName) -> String {
     format!("squall/{}/released", game.0)
 }
 
-/// That the sim of a game is there (liveliness token).
+/// Presence of a game's sim (liveliness token).
 #[must_use]
 pub fn alive(game: &GameName, sim: &str) -> String {
     format!("squall/{}/alive/sim/{sim}", game.0)
@@ -209,7 +209,7 @@ pub fn everyone_alive() -> String {
     "squall/*/alive/sim/*".to_owned()
 }
 
-/// The game and the sim that an [`alive`] key names.
+/// The game and the sim in an [`alive`] key.
 #[must_use]
 pub fn parse_alive(key: &str) -> Option<(GameName, String)> {
     let (game, sim) = key.strip_prefix("squall/")?.split_once("/alive/sim/")?;

@@ -1,11 +1,11 @@
-//! The waves of a game as an observer draws them.
+//! The waves of a game, for observers to draw.
 
 use serde::{Deserialize, Serialize};
 
-/// The waves of a game: the sum of these.
+/// The waves of a game, which add up.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Water {
-    /// None in calm water.
+    /// The waves; empty in calm water.
     pub waves: Vec<PlaneWave>,
 }
 

@@ -1,4 +1,4 @@
-//! Messages: in step with their `.msg` files, the same after a journey, refused when damaged.
+//! Messages: in step with their `.msg` files, unchanged by a round trip, refused when damaged.
 
 use messages::external::{ExternalOrder, LinkBytes, NavReport};
 use messages::input::Inputs;
@@ -14,13 +14,13 @@ use rules::event::{Event, Logged, TagCause};
 use serde_reflection::{ContainerFormat, Format, Registry, Samples, Tracer, TracerConfig};
 use std::path::Path;
 
-/// A message's schema, noted in `tracer`.
+/// Traces a message's format; returns its schema.
 fn traced<M: Message + serde::de::DeserializeOwned>(tracer: &mut Tracer) -> &'static str {
     tracer.trace_type::<M>(&Samples::new()).expect("a plain struct");
     M::SCHEMA
 }
 
-/// All messages: what they are made of, and their schemas.
+/// The formats of all messages, and their schemas.
 fn registry() -> (Registry, [&'static str; 10]) {
     let mut tracer = Tracer::new(TracerConfig::default());
     let schemas = [
@@ -58,7 +58,7 @@ fn ros_type(format: &Format) -> String {
     }
 }
 
-/// Type and name of the fields in a `.msg` file, constants left out.
+/// Type and name of the fields in a `.msg` file, without constants.
 fn fields_of(definition: &str) -> Vec<(String, String)> {
     let code = definition.lines().map(|line| line.split('#').next().unwrap_or_default().trim());
     let fields = code.filter(|line| !line.is_empty() && !line.contains('='));
@@ -158,7 +158,7 @@ fn inputs_are_read_as_they_were_written_before_orders_had_a_time_and_no_older() 
     }
 }
 
-/// A message comes back as it was; cut short, lengthened or of another version it is refused.
+/// A message survives a round trip; truncated, lengthened or of another version it is refused.
 fn survives_or_is_refused<M>(message: &M)
 where
     M: Message + serde::Serialize + serde::de::DeserializeOwned + PartialEq + std::fmt::Debug,
@@ -194,7 +194,7 @@ fn reports_of_real_boats_and_their_orders_survive_and_damaged_ones_are_refused()
 
 #[test]
 fn words_and_proposals_are_cdr_as_other_programs_write_it() {
-    // Written by hand from the CDR rules: every number stands at a multiple of its size.
+    // Written by hand from the CDR rules: every number is aligned to its size.
     let mut start = vec![0, 1, 0, 0];
     start.extend(1_250_000_000_i64.to_le_bytes());
     start.extend(12_u64.to_le_bytes());

@@ -1,10 +1,10 @@
-//! Angles, and the two borders at which degrees become radians.
+//! Angles, and the two conversions between degrees and radians.
 
 use std::f64::consts::{PI, TAU};
 
-/// An angle brought into -pi (excluded) to pi (included).
+/// Wraps an angle to -pi (excluded) to pi (included).
 ///
-/// The common case, an angle that is already there, costs two comparisons.
+/// The common case, an angle already in range, costs two comparisons.
 #[inline]
 #[must_use]
 pub fn wrap_pi(angle_rad: f64) -> f64 {

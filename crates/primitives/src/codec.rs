@@ -1,7 +1,7 @@
-//! Messages to bytes and back: CDR, little-endian, with the 4-byte encapsulation header.
+//! Encodes and decodes messages: CDR, little-endian, with the 4-byte encapsulation header.
 //!
-//! This is what ROS 2 and its tools read. Every message begins with a [`Stamp`], and the version in
-//! it is looked at before anything else, so that a newer peer is a clear error and not nonsense.
+//! ROS 2 and its tools read this format. Every message begins with a [`Stamp`], whose version is
+//! checked first: a newer peer then causes a clear error instead of garbage.
 
 use crate::stamp::{Message, Stamp};
 use byteorder::LittleEndian;
@@ -9,7 +9,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use thiserror::Error;
 
-/// What every message begins with: CDR, little-endian, plain.
+/// The header of every message: plain CDR, little-endian.
 pub const ENCAPSULATION: [u8; 4] = [0, 1, 0, 0];
 
 /// Why bytes are not a message.
@@ -18,7 +18,7 @@ pub enum DecodeError {
     /// The first four bytes are not the header of little-endian CDR.
     #[error("not CDR little-endian: the bytes begin with {found:02x?}, expected 00 01 00 00")]
     Encapsulation {
-        /// The first bytes found, four at most.
+        /// The first bytes found, at most four.
         found: Vec<u8>,
     },
     /// The sender speaks another version of this message.
@@ -28,7 +28,7 @@ pub enum DecodeError {
         schema: &'static str,
         /// The sender's version.
         found: u8,
-        /// Ours.
+        /// Our version.
         expected: u8,
     },
     /// The bytes do not fit the message's layout.
@@ -36,28 +36,28 @@ pub enum DecodeError {
     Layout {
         /// The message's name.
         schema: &'static str,
-        /// What does not fit.
+        /// The mismatch.
         reason: String,
     },
 }
 
-/// The bytes of `message`.
+/// Encodes `message`.
 ///
 /// # Panics
 /// Never: every message is a plain struct of numbers, lists and strings.
 #[must_use]
 pub fn encode<M: Message + Serialize>(message: &M) -> Vec<u8> {
-    // Room for most: growing costs as much as writing.
+    // Large enough for most messages: growing costs as much as writing.
     let mut bytes = Vec::with_capacity(4096);
     bytes.extend(ENCAPSULATION);
     cdr_encoding::to_writer::<M, LittleEndian, _>(&mut bytes, message).expect("a plain struct always encodes");
     bytes
 }
 
-/// The message in `bytes`.
+/// Decodes the message in `bytes`.
 ///
 /// # Errors
-/// [`DecodeError`] says which part is wrong; bytes after the end of the message are one.
+/// [`DecodeError`] names the invalid part; bytes after the end of the message are an error.
 pub fn decode<M: Message + DeserializeOwned>(bytes: &[u8]) -> Result<M, DecodeError> {
     let schema = M::SCHEMA;
     let body = bytes

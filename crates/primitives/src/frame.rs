@@ -1,4 +1,5 @@
-//! The two frames a boat lives in, the field's north-east-down and its own body, with the rotation between them.
+//! The two coordinate frames of a boat, the field's north-east-down and its own body, with the
+//! rotation between them.
 //!
 //! Inside Squall positions are NED: `north_m` and `east_m` from the datum, headings in radians
 //! clockwise from north. Files, the terminal and Python use x east, y north and compass degrees.
@@ -7,7 +8,7 @@ use crate::math;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A vector in the horizontal plane of the field: north and east, in metres or metres a second.
+/// A vector in the horizontal plane of the field: north and east, in metres or metres per second.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Ned {
     /// Towards true north.
@@ -25,7 +26,7 @@ pub struct Body {
     pub starboard: f64,
 }
 
-/// Where a boat is and where it points.
+/// Position and heading of a boat.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Pose {
     /// Position of midships from the datum, m.
@@ -34,18 +35,18 @@ pub struct Pose {
     pub psi_rad: f64,
 }
 
-/// How a boat moved in the last tick: its midships before and after it.
+/// A boat's motion in the last tick, as the positions of its midships before and after.
 #[derive(Clone, Copy, Debug)]
 pub struct Leg {
-    /// Where it was.
+    /// Position before the tick.
     pub from: Ned,
-    /// Where it is.
+    /// Position after the tick.
     pub to: Ned,
 }
 
 /// A heading as its sine and cosine: the rotation between a boat's own frame and the field's.
 ///
-/// Worked out once a tick and boat; what turns vectors then needs no sine or cosine of its own.
+/// Computed once per tick and boat, so that rotating vectors needs no further sine or cosine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rotation {
     /// Sine of the heading.
@@ -114,7 +115,7 @@ impl Ned {
         self.distance_squared(other).sqrt()
     }
 
-    /// The one of `places` that is nearest to here; the first of equals.
+    /// The nearest of `places`; the first of equals.
     #[must_use]
     pub fn nearest_of(self, places: impl Iterator<Item = Ned>) -> Option<Ned> {
         places.min_by(|x, y| self.distance_squared(*x).total_cmp(&self.distance_squared(*y)))
@@ -127,7 +128,7 @@ impl Ned {
         math::atan2(other.east - self.east, other.north - self.north)
     }
 
-    /// Whether both parts are finite numbers.
+    /// Whether both components are finite.
     #[inline]
     #[must_use]
     pub fn is_finite(self) -> bool {
@@ -152,10 +153,10 @@ impl std::ops::Sub for Ned {
 }
 
 impl Rotation {
-    /// Of a boat that points north: both frames are parallel.
+    /// The rotation for heading north: both frames are parallel.
     pub const NORTH: Rotation = Rotation { sin: 0.0, cos: 1.0 };
 
-    /// Of a heading, radians clockwise from north.
+    /// The rotation for a heading, radians clockwise from north.
     #[inline]
     #[must_use]
     pub fn from_heading(psi_rad: f64) -> Rotation {
@@ -163,14 +164,14 @@ impl Rotation {
         Rotation { sin, cos }
     }
 
-    /// Of a compass heading in degrees, exact at quarter turns.
+    /// The rotation for a compass heading in degrees, exact at quarter turns.
     #[must_use]
     pub fn from_heading_deg(heading_deg: f64) -> Rotation {
         let (sin, cos) = math::sin_cos_deg(heading_deg);
         Rotation { sin, cos }
     }
 
-    /// Of the heading that lies `by` further clockwise.
+    /// The rotation for a heading further clockwise by `by`.
     #[inline]
     #[must_use]
     pub fn turned(self, by: Rotation) -> Rotation {
@@ -201,7 +202,7 @@ impl Pose {
     }
 }
 
-/// A body vector seen in the field's frame.
+/// Converts a body vector to the field's frame.
 #[inline]
 #[must_use]
 pub fn ned_from_body(rotation: Rotation, body: Body) -> Ned {
@@ -211,7 +212,7 @@ pub fn ned_from_body(rotation: Rotation, body: Body) -> Ned {
     }
 }
 
-/// A vector of the field's frame seen from the boat.
+/// Converts a vector of the field's frame to body axes.
 #[inline]
 #[must_use]
 pub fn body_from_ned(rotation: Rotation, ned: Ned) -> Body {

@@ -1,4 +1,4 @@
-//! Who is who: small indices into the scenario's lists.
+//! Identities: small indices into the scenario's lists.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,14 +18,14 @@ pub struct TeamId(pub u8);
 pub struct FlagId(pub u8);
 
 impl VehicleId {
-    /// The index as the lists want it.
+    /// The index as a `usize`, for list access.
     #[inline]
     #[must_use]
     pub fn index(self) -> usize {
         usize::from(self.0)
     }
 
-    /// The vehicle at `index` of a list the scenario has checked to be short enough.
+    /// The vehicle at `index`. The scenario has already checked the length of the list.
     #[inline]
     #[must_use]
     pub fn at(index: usize) -> VehicleId {
@@ -35,7 +35,7 @@ impl VehicleId {
 }
 
 impl TeamId {
-    /// The index as the lists want it.
+    /// The index as a `usize`, for list access.
     #[inline]
     #[must_use]
     pub fn index(self) -> usize {
@@ -44,7 +44,7 @@ impl TeamId {
 }
 
 impl FlagId {
-    /// The index as the lists want it.
+    /// The index as a `usize`, for list access.
     #[inline]
     #[must_use]
     pub fn index(self) -> usize {

@@ -1,29 +1,31 @@
-//! A file that somebody names, read up to a limit. Only files: a pipe may never end, and a device is no place for data.
+//! Reads a user's input file up to a size limit. Regular files only: a pipe may never end, and
+//! devices do not hold data.
 
 use std::fs::{File, Metadata, OpenOptions};
 use std::io::{Error, ErrorKind, Read};
 use std::os::unix::fs::OpenOptionsExt;
 use std::path::Path;
 
-/// Opens a file to read it.
+/// Opens a file for reading.
 ///
 /// # Errors
-/// What the system says, or that it is no file.
+/// The system's error, or that it is not a regular file.
 pub fn open(path: &Path) -> Result<File, Error> {
-    // A pipe is not even opened: that waits for whoever writes.
+    // A pipe is not even opened: opening it blocks until it has a writer.
     is_file(&std::fs::metadata(path)?)?;
-    // Some files of `/proc` never end although they are files: reading `kmsg` waits for the kernel to
-    // say something. For files on a disk this flag means nothing.
+    // Some regular files of `/proc` never end: reading `kmsg` waits for the kernel's next message.
+    // For files on a disk this flag has no effect.
     let flags = rustix::fs::OFlags::NONBLOCK.bits() as i32;
     let file = OpenOptions::new().read(true).custom_flags(flags).open(path)?;
     is_file(&file.metadata()?)?;
     Ok(file)
 }
 
-/// Reads a file of at most so many bytes. What its size is said to be does not count: files of `/proc` have none.
+/// Reads a file of at most `bytes_max` bytes. The reported size is ignored, because files of
+/// `/proc` report 0.
 ///
 /// # Errors
-/// What the system says, that it is no file, or that it is longer.
+/// The system's error, that it is not a regular file, or that it is too long.
 pub fn read(path: &Path, bytes_max: u64) -> Result<Vec<u8>, Error> {
     let mut bytes = vec![];
     let length = open(path)?.take(bytes_max.saturating_add(1)).read_to_end(&mut bytes).map_err(|error| {
@@ -36,7 +38,7 @@ pub fn read(path: &Path, bytes_max: u64) -> Result<Vec<u8>, Error> {
     Ok(bytes)
 }
 
-/// The same, of a text.
+/// The same for a text.
 ///
 /// # Errors
 /// As above, or that it is not UTF-8.
@@ -68,11 +70,11 @@ mod tests {
     #[test]
     #[cfg(target_os = "linux")]
     fn what_has_no_end_is_not_read() {
-        // Both say that they have no bytes. The first is read eight bytes at a time.
+        // Both report a size of 0. The first must be read in units of eight bytes.
         assert_eq!(std::fs::metadata("/proc/self/pagemap").expect("it is there").len(), 0);
         let endless = read(Path::new("/proc/self/pagemap"), 1023).expect_err("it is refused");
         assert_eq!(endless.kind(), ErrorKind::FileTooLarge);
-        // Root alone may open it; others are refused at once.
+        // Only root may open it; others are refused at once.
         assert!(read(Path::new("/proc/kmsg"), 1 << 20).is_err());
         assert_eq!(read(Path::new("/dev/zero"), 10).expect_err("it is refused").kind(), ErrorKind::InvalidInput);
     }

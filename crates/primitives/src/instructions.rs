@@ -1,37 +1,38 @@
-//! Which instructions of the processor the longest loops use, chosen while the program runs.
+//! Selects at run time which processor instructions the hottest loops use.
 //!
-//! The program is compiled for every processor of its kind. The loops that take most of the time, those of a helm's solver and
-//! those over the components of waves, are compiled again for processors that have wider registers: the same operations, one by
-//! one, on more numbers at a time. No operation is fused with another or put elsewhere, so all of them come to the same bits.
+//! The program is compiled for the baseline of each architecture. The hottest loops, in a helm's
+//! solver and over the wave components, are also compiled for processors with wider registers: the
+//! same operations, one by one, on more numbers at a time. No operation is fused or reordered, so
+//! all variants give the same bits.
 
-/// A set of instructions that this machine has.
+/// An instruction set that this machine supports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Instructions(Set);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Set {
-    /// What every processor of this kind has.
+    /// Supported by every processor of the architecture.
     Baseline,
-    /// Registers of 256 bits.
+    /// 256-bit registers.
     #[cfg(target_arch = "x86_64")]
     Avx2,
-    /// Registers of 512 bits.
+    /// 512-bit registers.
     #[cfg(target_arch = "x86_64")]
     Avx512,
 }
 
-/// A calculation that is compiled for each set of instructions. What it calls must be inlined into it, or that part stays as
-/// it is for all.
+/// A calculation compiled for each instruction set. Functions it calls must be inlined into it;
+/// otherwise they stay at the baseline.
 pub trait Kernel {
-    /// What it comes to.
+    /// The result.
     type Output;
 
-    /// Does it. To be marked `#[inline(always)]`.
+    /// Runs the calculation. Mark it `#[inline(always)]`.
     fn run(self) -> Self::Output;
 }
 
 impl Instructions {
-    /// All sets that this machine has, the plainest first.
+    /// All instruction sets that this machine supports, baseline first.
     #[must_use]
     pub fn of_this_machine() -> Vec<Instructions> {
         #[cfg_attr(not(target_arch = "x86_64"), expect(unused_mut, reason = "there is one"))]
@@ -52,13 +53,13 @@ impl Instructions {
         sets
     }
 
-    /// The fastest set that this machine has.
+    /// The fastest instruction set that this machine supports.
     #[must_use]
     pub fn best() -> Instructions {
         Instructions::of_this_machine().pop().unwrap_or(Instructions(Set::Baseline))
     }
 
-    /// Does a calculation with these instructions.
+    /// Runs a calculation with these instructions.
     #[inline]
     #[cfg_attr(
         target_arch = "x86_64",
@@ -70,7 +71,8 @@ impl Instructions {
     pub fn run<K: Kernel>(self, kernel: K) -> K::Output {
         match self.0 {
             Set::Baseline => with_baseline(kernel),
-            // SAFETY: only `of_this_machine` makes this value, on a processor that has these instructions.
+            // SAFETY: only `of_this_machine` creates this value, on a processor with these
+            // instructions.
             #[cfg(target_arch = "x86_64")]
             Set::Avx2 => unsafe { with_avx2(kernel) },
             // SAFETY: as above.
@@ -80,7 +82,8 @@ impl Instructions {
     }
 }
 
-/// Not inlined, as the others cannot be: what is done with the result has no say in how the kernel is compiled.
+/// Not inlined, because the others cannot be either: otherwise the caller's use of the result would
+/// affect how the kernel is compiled.
 #[inline(never)]
 fn with_baseline<K: Kernel>(kernel: K) -> K::Output {
     kernel.run()

@@ -39,10 +39,11 @@ pub fn exp(x: f64) -> f64 {
     libm::exp(x)
 }
 
-/// The value at `x` of the line through `points`, which rise in x, exact at each of them; beyond its ends it is level.
+/// Linear interpolation at `x` through `points` with ascending x, exact at each point and constant
+/// beyond the ends.
 ///
 /// # Panics
-/// If there is no point.
+/// If `points` is empty.
 #[must_use]
 pub fn interpolate(points: impl IntoIterator<Item = (f64, f64)>, x: f64) -> f64 {
     let mut points = points.into_iter();
@@ -64,7 +65,8 @@ pub fn length(x: f64, y: f64) -> f64 {
     (x * x + y * y).sqrt()
 }
 
-/// A number with so many places; −0.0 is a zero to everybody but a text comparison.
+/// Formats a number with `places` decimals; −0.0 becomes 0, because text comparisons tell them
+/// apart.
 #[must_use]
 pub fn decimal(number: f64, places: usize) -> String {
     let text = format!("{number:.places$}");

@@ -1,7 +1,7 @@
-//! Which boats are near one another: every pair within a reach, in a stated order.
+//! Finds pairs of boats within a reach, in a defined order.
 //!
-//! Small fleets are compared all with all. Larger ones are sorted into square cells first, so that the
-//! cost grows with the number of boats and of near pairs, not with the square of the fleet.
+//! In small fleets, every pair is compared. Larger fleets are first sorted into square cells, so
+//! that the cost grows with the number of boats and near pairs, not with the square of the fleet.
 
 use crate::frame::Ned;
 
@@ -16,7 +16,7 @@ pub struct Pair {
     pub distance_squared: f64,
 }
 
-/// Finds near pairs; keeps its memory between calls.
+/// Finds near pairs; reuses its memory between calls.
 #[derive(Clone, Debug, Default)]
 pub struct Near {
     pairs: Vec<Pair>,
@@ -24,7 +24,7 @@ pub struct Near {
     keys: Vec<u64>,
 }
 
-/// Up to this many boats are compared all with all.
+/// Up to this many boats, every pair is compared.
 const FEW: usize = 32;
 
 impl Near {
@@ -58,8 +58,8 @@ impl Near {
         let mut row_to_the_north = 0;
         for (i, &key) in self.keys.iter().enumerate() {
             let (here, a) = (at(vehicle(key)), key as u16);
-            // Forward half of the neighbourhood: the rest of this cell and the one to the east, then the
-            // three cells to the north. As we go on through the list, so do both.
+            // Forward half of the neighbourhood: the rest of this cell and the one to the east,
+            // then the three cells to the north. All of these positions advance with the list.
             let cell = key & !u64::from(u16::MAX);
             let (start, end) = (cell + ROW - COLUMN, cell + ROW + 2 * COLUMN);
             while self.keys.get(row_to_the_north).is_some_and(|key| *key < start) {
@@ -83,9 +83,9 @@ const ROW: u64 = 1 << 40;
 
 /// A vehicle and its cell in one number: 24 bits of row, 24 of column, 16 of vehicle.
 fn key(at: Ned, reach_m: f64, vehicle: u16) -> u64 {
-    // A shade wider than the reach, so that rounding never puts near boats two cells apart.
+    // Slightly wider than the reach, so that rounding never puts near boats two cells apart.
     let cell_m = reach_m * 1.000_001;
-    // Boats that are astray for millions of cells share the outermost one, which is searched like any other.
+    // Boats millions of cells away share the outermost cell, which is searched like any other.
     let cell = |metres: f64| ((metres / cell_m).floor().clamp(-8e6, 8e6) + 8_388_608.0) as u64;
     cell(at.north) * ROW + cell(at.east) * COLUMN + u64::from(vehicle)
 }

@@ -1,22 +1,24 @@
-//! Normal numbers from random bits: the ziggurat of Marsaglia and Tsang (2000), with layer and place in it drawn from
-//! different bits (Doornik 2005).
+//! Normal numbers from random bits: the ziggurat of Marsaglia and Tsang (2000), with layer and
+//! position drawn from different bits (Doornik 2005).
 //!
-//! The bell is covered by 256 layers of one area. In 98 of 100 draws a table and a comparison give the number; only
-//! what falls beside the bell's edge takes an exponential. It is spelled out here because every tick asks for
-//! dozens of them and a library may change its algorithm under the same seed.
+//! The bell curve is covered by 256 layers of equal area. In 98 of 100 draws a table look-up and a
+//! comparison give the number; only draws beyond the curve's edge need an exponential. We implement
+//! it here because every tick draws dozens of them and a library may change its algorithm for the
+//! same seed.
 
 use std::sync::LazyLock;
 
 const LAYERS: usize = 256;
-/// Where the lowest layer's tail begins, and the area of every layer: the numbers with which the 256th layer ends at 0.
+/// Where the lowest layer's tail begins, and the area of every layer. With these values the 256th
+/// layer ends at 0.
 const TAIL_FROM: f64 = 3.654_152_885_361_009;
 const AREA: f64 = 0.004_928_673_233_974_658;
 
-/// The layers from below, and what closes them at the top.
+/// The layers from the bottom, and a closing entry at the top.
 static LAYER: LazyLock<[Layer; LAYERS + 1]> = LazyLock::new(|| {
     let layer = |edge| Layer { edge, bell: bell(edge) };
     let mut layers = [layer(0.0); LAYERS + 1];
-    // The lowest is as wide as a box of its area would be.
+    // The lowest is as wide as a rectangle of its area.
     (layers[0], layers[1]) = (layer(AREA / bell(TAIL_FROM)), layer(TAIL_FROM));
     for i in 2..LAYERS {
         let below = layers[i - 1];
@@ -29,11 +31,11 @@ static LAYER: LazyLock<[Layer; LAYERS + 1]> = LazyLock::new(|| {
 struct Layer {
     /// Its right edge.
     edge: f64,
-    /// The bell over that: where the layer begins.
+    /// The height of the bell curve at the edge: where the layer begins.
     bell: f64,
 }
 
-/// The bell over `x`, 1 at its top.
+/// The bell curve at `x`, 1 at its top.
 fn bell(x: f64) -> f64 {
     libm::exp(-0.5 * x * x)
 }
@@ -44,14 +46,15 @@ pub(crate) fn unit(bits: u64) -> f64 {
     (bits >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-/// A normal number of mean 0 and variance 1. `bits(n)` is the nth time that 64 random bits are asked for, from 0.
+/// A normal number of mean 0 and variance 1. `bits(n)` is the nth request for 64 random bits, from
+/// 0.
 #[inline]
 pub(crate) fn normal(mut bits: impl FnMut(u64) -> u64) -> f64 {
     let first = bits(0);
     inside(first).unwrap_or_else(|layer_x| try_on(layer_x, bits))
 }
 
-/// The number if it lies under the next layer; otherwise the layer and what was drawn in it.
+/// The number if it lies under the next layer; otherwise the drawn layer and position.
 #[inline]
 fn inside(drawn: u64) -> Result<f64, (usize, f64)> {
     let (layers, layer) = (&*LAYER, (drawn % LAYERS as u64) as usize);
@@ -59,7 +62,7 @@ fn inside(drawn: u64) -> Result<f64, (usize, f64)> {
     if x.abs() < layers[layer + 1].edge { Ok(x) } else { Err((layer, x)) }
 }
 
-/// Goes on until a number is found.
+/// Retries until a number is accepted.
 #[cold]
 #[inline(never)]
 fn try_on(first: (usize, f64), mut bits: impl FnMut(u64) -> u64) -> f64 {
@@ -81,8 +84,8 @@ fn try_on(first: (usize, f64), mut bits: impl FnMut(u64) -> u64) -> f64 {
     }
 }
 
-/// What becomes of an `x` that does not lie under the next layer: in the lowest layer a number from the tail; in others
-/// it stays if a height drawn from the layer is under the bell.
+/// Handles an `x` beyond the next layer. The lowest layer draws from the tail; the others accept
+/// `x` if a height drawn within the layer is under the bell curve.
 fn beside(x: f64, layer: usize, next: &mut impl FnMut() -> u64) -> Option<f64> {
     if layer > 0 {
         let (low, high) = (LAYER[layer].bell, LAYER[layer + 1].bell);
@@ -120,7 +123,7 @@ mod tests {
         let mut drawn: Vec<f64> = (0..n).map(|_| normal(|_| stream.bits())).collect();
         drawn.sort_by(f64::total_cmp);
         let share = |x: f64| 0.5 * libm::erfc(-x / std::f64::consts::SQRT_2);
-        // Kolmogorov and Smirnov, at one in a thousand.
+        // Kolmogorov-Smirnov test at a significance of 0.1 %.
         let off = drawn.iter().enumerate().map(|(i, x)| (share(*x) - (i as f64 + 0.5) / f64::from(n)).abs());
         assert!(off.fold(0.0, f64::max) < 1.95 / f64::from(n).sqrt());
         for edge in [3.0, TAIL_FROM, 4.2] {

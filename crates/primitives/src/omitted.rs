@@ -1,12 +1,12 @@
-//! Numbers that a file leaves out.
+//! Numbers omitted from a file.
 
 use serde::{Deserialize, Deserializer};
 
-/// A number, or NaN for one that a file leaves out, until the check of the file estimates it. Where a scenario is read
-/// again, all numbers must be there.
+/// Reads a number; an omitted one is NaN until validation of the file estimates it. A scenario that
+/// is read back must have all numbers.
 ///
 /// # Errors
-/// What is there is no number.
+/// If the value is not a number.
 pub fn number_or_nan<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     Ok(Option::deserialize(deserializer)?.unwrap_or(f64::NAN))
 }

@@ -1,21 +1,21 @@
-//! Text from files and from others, as a terminal may show it: what would steer the terminal is spelt out.
+//! Makes text from files and other nodes safe for a terminal: escapes its control sequences.
 
 use std::borrow::Cow;
 use std::fmt::Write;
 
-/// The longest line of a message, characters: nobody reads more.
+/// The longest line of a message, characters: longer ones go unread.
 const LINE_MAX: usize = 2000;
-/// Of a longer one, what is shown of its end.
+/// Characters shown of the end of a longer line.
 const TAIL: usize = 400;
 
-/// A text of many lines: control characters but for line breaks and tabs are spelt out as in JSON, and so are those that turn
-/// the direction of writing.
+/// A text of many lines. Escapes control characters except line breaks and tabs as in JSON, and
+/// characters that change the writing direction.
 #[must_use]
 pub fn text(text: &str) -> Cow<'_, str> {
     spelt(text, |character| !matches!(character, '\n' | '\t') && steers(character))
 }
 
-/// The same of a text that may have colours (`ESC [ numbers m`).
+/// The same for a text that may have colours (`ESC [ numbers m`).
 #[must_use]
 pub fn coloured(text: &str) -> String {
     let mut parts = text.split('\x1b');
@@ -29,19 +29,19 @@ pub fn coloured(text: &str) -> String {
     shown
 }
 
-/// One line of a message. Of a very long one the middle is left out.
+/// One line of a message. Omits the middle of a very long one.
 #[must_use]
 pub fn line(text: &str) -> String {
     shortened(&spelt(text, steers)).into_owned()
 }
 
-/// A message of one or more lines, each as above.
+/// A message of one or more lines, each treated as above.
 #[must_use]
 pub fn message(text: &str) -> String {
     text.split('\n').map(line).collect::<Vec<_>>().join("\n")
 }
 
-/// The same of a message that may have colours.
+/// The same for a message that may have colours.
 #[must_use]
 pub fn coloured_message(text: &str) -> String {
     text.split('\n').map(|line| shortened(&coloured(line)).into_owned()).collect::<Vec<_>>().join("\n")
@@ -68,7 +68,7 @@ fn spelt(text: &str, is_spelt: impl Fn(char) -> bool) -> Cow<'_, str> {
 }
 
 fn shortened(text: &str) -> Cow<'_, str> {
-    // Bytes are at least as many as characters, and known.
+    // The byte count is known, and no smaller than the character count.
     let surplus = if text.len() > LINE_MAX { text.chars().count().saturating_sub(LINE_MAX) } else { 0 };
     if surplus == 0 {
         return Cow::Borrowed(text);
@@ -78,7 +78,7 @@ fn shortened(text: &str) -> Cow<'_, str> {
     Cow::Owned(format!("{head} … ({surplus} characters) … {tail}"))
 }
 
-/// Adds a line to a text, without blanks at its end.
+/// Appends a line to a text, without trailing blanks.
 pub fn add_line(text: &mut String, args: std::fmt::Arguments<'_>) {
     text.push_str(args.to_string().trim_end_matches(' '));
     text.push('\n');

@@ -1,8 +1,8 @@
-//! A game that is the same up to a time and drawn anew from then on: one past, several futures.
+//! Reseeding: a game unchanged up to a time and redrawn after it, for one past and several futures.
 //!
-//! What is drawn after the time comes from another seed; what has been drawn by then, and what is drawn once for the whole game (the
-//! waves, where boats start, roles), stays. A process with a memory, such as gusts or the drift of a receiver, goes on from where it is,
-//! so the new future is one that the same past may have.
+//! Draws after the time use another seed. Earlier draws stay, and so do those made once for the
+//! whole game (waves, starting positions, roles). A process with memory, such as gusts or receiver
+//! drift, continues from its state, so the new future is a possible continuation of the same past.
 
 use crate::stream::Noise;
 use crate::time::SimTime;
@@ -20,11 +20,11 @@ pub struct Reseed {
     pub seed: u64,
 }
 
-/// The seed of a game, and those that take its place later.
+/// The seed of a game, and the seeds that replace it later.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Seeds {
     first: u64,
-    /// By rising time: what is drawn after it comes from this seed.
+    /// The times, ascending, with the seed of draws after each.
     later: Vec<(SimTime, u64)>,
 }
 
@@ -35,19 +35,19 @@ impl From<u64> for Seeds {
 }
 
 impl Seeds {
-    /// A seed, and what takes its place; by rising times.
+    /// The first seed and its replacements, by ascending time.
     #[must_use]
     pub fn new(first: u64, reseed: &[Reseed]) -> Seeds {
         Seeds { first, later: reseed.iter().map(|one| (SimTime::from_s(one.after_s), one.seed)).collect() }
     }
 
-    /// The seed of what is drawn once for the whole game.
+    /// The seed for draws made once for the whole game.
     #[must_use]
     pub fn first(&self) -> u64 {
         self.first
     }
 
-    /// Those that take its place: the seed of what is drawn after each time, by rising time.
+    /// The replacement seeds: the seed of draws after each time, by ascending time.
     #[must_use]
     pub fn later(&self) -> &[(SimTime, u64)] {
         &self.later
@@ -61,7 +61,7 @@ impl Seeds {
     }
 }
 
-/// A noise that another takes the place of at certain times.
+/// A noise that is replaced by others at certain times.
 #[derive(Clone, Debug)]
 pub struct TimedNoise {
     first: Noise,
@@ -69,13 +69,13 @@ pub struct TimedNoise {
 }
 
 impl TimedNoise {
-    /// What is drawn at `now` is drawn from this.
+    /// The noise for draws at `now`.
     #[inline]
     #[must_use]
     pub fn at(&self, now: SimTime) -> Noise {
-        // Another key from a time on, and no snapshot. The past is played again, at most twice
-        // the time of a branch; for that a branch is a game like any other, with a seed and a
-        // key on the command line, minds included.
+        // A new key from a time on instead of a snapshot. This replays the past, at most twice the
+        // time of a branch. In return, a branch is a game like any other, with a seed and a key on
+        // the command line, minds included.
         let begun = |(after, _): &&(SimTime, Noise)| *after < now;
         self.later.iter().rev().find(begun).map_or(self.first, |(_, noise)| *noise)
     }

@@ -1,22 +1,22 @@
-//! How every per-tick message begins, and what makes it one.
+//! The common start of per-tick messages, and the trait that defines them.
 
 use crate::time::SimTime;
 use serde::{Deserialize, Serialize};
 
 /// A per-tick message: named and versioned.
 pub trait Message {
-    /// The ROS 2 name of the message, as `Encoding` carries it.
+    /// The ROS 2 name of the message, used in `Encoding`.
     const SCHEMA: &'static str;
     /// The version of its layout.
     const VERSION: u8;
-    /// The oldest version that is still read: its layout is the same, but not what all of it means.
+    /// The oldest version still read: it has the same layout, but some fields differ in meaning.
     const OLDEST: u8 = Self::VERSION;
 }
 
-/// How every message begins.
+/// The first field of every message.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Stamp {
-    /// Simulated time at which the content holds, ns.
+    /// Simulated time for which the content is valid, ns.
     pub valid_ns: SimTime,
     /// Decision tick, counted from 0.
     pub seq: u64,

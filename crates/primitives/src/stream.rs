@@ -1,8 +1,8 @@
-//! Randomness: one seed a game, and from it an independent stream for every named use.
+//! Randomness: one seed per game, from which each named use derives an independent stream.
 //!
 //! A stream is ChaCha8 keyed by the seed and the stream's name, so a new consumer never shifts the
-//! numbers of another one. The few samplers are spelled out here rather than taken from a
-//! library that may change its algorithm under the same seed.
+//! numbers of another one. We implement the few samplers here because a library may change its
+//! algorithm for the same seed.
 
 use crate::normal::{normal, unit};
 use rand_chacha::ChaCha8Rng;
@@ -24,7 +24,7 @@ impl Stream {
         Stream(ChaCha8Rng::from_seed(key))
     }
 
-    /// A whole number, every one of the 2^64 equally likely.
+    /// A whole number, uniform over 2^64 values.
     pub fn bits(&mut self) -> u64 {
         self.0.next_u64()
     }
@@ -39,7 +39,7 @@ impl Stream {
         low + (high - low) * self.unit()
     }
 
-    /// A whole number below `bound`, by rejection: no number is favoured.
+    /// A uniform whole number below `bound`, by rejection.
     ///
     /// # Panics
     /// If `bound` is 0.
@@ -59,7 +59,7 @@ impl Stream {
         normal(|_| self.bits())
     }
 
-    /// Puts `items` into a random order (Fisher and Yates).
+    /// Shuffles `items` (Fisher and Yates).
     pub fn shuffle<T>(&mut self, items: &mut [T]) {
         for last in (1..items.len()).rev() {
             items.swap(last, self.below(last as u64 + 1) as usize);
@@ -67,10 +67,11 @@ impl Stream {
     }
 }
 
-/// Noise that can be looked up: a random number for every count, without a state.
+/// Stateless noise: a random number for every count.
 ///
-/// For what is drawn every tick. A world that is put back to an earlier tick finds the same numbers again. The mixing is
-/// the finaliser of SplitMix64 (Steele, Lea and Flood 2014), of a counter that starts at a key of the seed and the name.
+/// For draws at every tick. A world reset to an earlier tick finds the same numbers again. The
+/// mixing is the finaliser of SplitMix64 (Steele, Lea and Flood 2014), applied to a counter that
+/// starts at a key derived from seed and name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Noise(u64);
 
@@ -81,7 +82,7 @@ impl Noise {
         Noise(Stream::new(seed, name).bits())
     }
 
-    /// Every one of 2^64 whole numbers equally likely.
+    /// A whole number, uniform over 2^64 values.
     #[inline]
     #[must_use]
     pub fn bits(&self, count: u64) -> u64 {
@@ -98,23 +99,23 @@ impl Noise {
         unit(self.bits(count))
     }
 
-    /// Two independent normal numbers, of mean 0 and variance 1. Takes the place of two units, those of twice the count
-    /// and the one after it.
+    /// Two independent normal numbers, of mean 0 and variance 1. Uses up two units: those of twice
+    /// the count and of the next number.
     #[inline]
     #[must_use]
     pub fn normal_pair(&self, count: u64) -> (f64, f64) {
         (self.normal(2 * count), self.normal(2 * count + 1))
     }
 
-    /// A normal number of mean 0 and variance 1, in the place of a unit. What it may take of bits beyond the first is
-    /// drawn from those.
+    /// A normal number of mean 0 and variance 1, in place of a unit. Further bits, if needed,
+    /// derive from the first.
     #[must_use]
     pub fn normal(&self, count: u64) -> f64 {
         let first = self.bits(count);
         normal(|asked| if asked == 0 { first } else { Noise(first).bits(asked) })
     }
 
-    /// A number from the exponential distribution of mean 1.
+    /// An exponentially distributed number of mean 1.
     #[must_use]
     pub fn exponential(&self, count: u64) -> f64 {
         -libm::log(1.0 - self.unit(count))
@@ -145,7 +146,7 @@ mod tests {
         assert_eq!(got, PINNED);
     }
 
-    /// Read off once; changes only if old games become unplayable.
+    /// Recorded once; a change makes old games unplayable.
     const PINNED: [u64; 3] = [16_757_449_972_422_118_870, 3_474_384_729_306_545_788, 10_929_957_793_316_752_716];
 
     #[test]

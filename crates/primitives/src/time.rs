@@ -4,10 +4,10 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::ops::{Add, Mul, Sub};
 
-/// A moment or a span of simulated time in nanoseconds.
+/// A time or duration in simulated nanoseconds.
 ///
-/// Integers, so that ten thousand ticks of 50 ms are exactly 500 s on every machine. Sums stop at the ends, 292 years from the
-/// start: times come from files and from others, too.
+/// Integers make ten thousand ticks of 50 ms exactly 500 s on every machine. Sums saturate 292
+/// years from the start, because times also come from files and other nodes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct SimTime(pub i64);
@@ -15,9 +15,9 @@ pub struct SimTime(pub i64);
 impl SimTime {
     /// The start of the game.
     pub const ZERO: SimTime = SimTime(0);
-    /// Before anything that can happen in a game.
+    /// Earlier than anything in a game.
     pub const LONG_AGO: SimTime = SimTime(i64::MIN / 4);
-    /// After anything that can happen in a game.
+    /// Later than anything in a game.
     pub const NEVER: SimTime = SimTime(i64::MAX / 4);
 
     /// The nearest whole nanosecond to `seconds`.

@@ -1,4 +1,4 @@
-//! A recording of any kind, opened: its header, and its messages one by one, also where the file ends abruptly.
+//! An open recording of any kind: its header and its messages, even if the file is truncated.
 
 use crate::index::{Index, IndexEntry};
 use crate::json_string;
@@ -17,52 +17,52 @@ use thiserror::Error;
 /// Why a file cannot be opened or read as a recording.
 #[derive(Debug, Error)]
 pub enum RecordingError {
-    /// There is no such file, or it cannot be read.
+    /// The file does not exist or cannot be read.
     #[error("cannot read the recording {path}: {reason}", path = path.display())]
     File {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The system's error.
         reason: std::io::Error,
     },
-    /// It cannot be read any more.
+    /// It can no longer be read.
     #[error("the recording cannot be read on: {0}")]
     Unread(#[from] std::io::Error),
-    /// It is no recording of Squall.
+    /// It is not a recording of Squall.
     #[error("not a recording of a game or a gateway: {0}")]
     Foreign(String),
-    /// It is of another kind.
+    /// It is a recording of another kind.
     #[error("not a recording of a {wanted}: it is of a {found}")]
     Kind {
-        /// What was expected.
+        /// The expected kind.
         wanted: Kind,
-        /// What it is.
+        /// The kind found.
         found: Kind,
     },
-    /// It was made by another version, whose messages may mean something else.
+    /// It was made by another version, whose messages may differ in meaning.
     #[error("recorded by Squall {found}, this is {ours}", ours = primitives::VERSION)]
     Version {
-        /// The recorder's.
+        /// The recorder's version.
         found: String,
     },
-    /// Something in it is not what it should be.
+    /// A message does not decode.
     #[error("message {number} of {topic} is damaged: {reason}")]
     Damaged {
         /// The topic.
         topic: String,
-        /// Which, from 0.
+        /// Number of the message within the topic, from 0.
         number: u32,
-        /// What is wrong.
+        /// The decoding error.
         reason: DecodeError,
     },
-    /// Something in it is not the JSON that it should be.
+    /// A message does not have the expected JSON.
     #[error("message {number} of {topic} is not JSON: {reason}")]
     Json {
         /// The topic.
         topic: String,
-        /// Which, from 0.
+        /// Number of the message within the topic, from 0.
         number: u32,
-        /// What is wrong.
+        /// The parsing error.
         reason: serde_json::Error,
     },
 }
@@ -90,9 +90,9 @@ pub struct Bag {
 #[derive(Debug)]
 struct Channel {
     topic: String,
-    /// None for JSON.
+    /// The schema of CDR messages; none for JSON.
     schema: Option<String>,
-    /// Whether the message is JSON as the text of a string.
+    /// Whether the message is JSON in a string message.
     is_json: bool,
 }
 
@@ -103,30 +103,30 @@ pub struct RecordedMessage<'a> {
     pub topic: &'a str,
     /// The schema, for CDR; none for JSON.
     pub schema: Option<&'a str>,
-    /// Which of the topic, from 0.
+    /// Its number within the topic, from 0.
     pub number: u32,
     /// Time since the recording began, by the game's clock or the gateway's.
     pub at: SimTime,
-    /// UTC when it was recorded, ns since 1970.
+    /// UTC of recording, ns since 1970.
     pub utc_ns: u64,
-    /// The message; nothing, which no message is, where the file cannot be read any more.
+    /// The message; empty if the file can no longer be read (no real message is empty).
     pub bytes: Vec<u8>,
 }
 
 impl RecordedMessage<'_> {
-    /// The message, as what it is.
+    /// Decodes the message.
     ///
     /// # Errors
-    /// [`RecordingError::Damaged`] if it is something else.
+    /// [`RecordingError::Damaged`] if it does not decode.
     pub fn read<M: Message + DeserializeOwned>(&self) -> Result<M, RecordingError> {
         let damaged = |reason| RecordingError::Damaged { topic: self.topic.to_owned(), number: self.number, reason };
         codec::decode(&self.bytes).map_err(damaged)
     }
 
-    /// The JSON, as what it is.
+    /// Parses the JSON.
     ///
     /// # Errors
-    /// [`RecordingError::Json`] if it is something else.
+    /// [`RecordingError::Json`] if it does not parse.
     pub fn read_json<T: DeserializeOwned>(&self) -> Result<T, RecordingError> {
         let strange = |reason| RecordingError::Json { topic: self.topic.to_owned(), number: self.number, reason };
         serde_json::from_slice(&self.bytes).map_err(strange)
@@ -134,19 +134,19 @@ impl RecordedMessage<'_> {
 }
 
 impl Bag {
-    /// Opens the recording in a file.
+    /// Opens a recording file.
     ///
     /// # Errors
-    /// [`RecordingError`] if it cannot be read, is none, or is of another version.
+    /// [`RecordingError`] if it cannot be read, is not a recording, or is of another version.
     pub fn open(path: &Path) -> Result<Bag, RecordingError> {
         let file = |reason| RecordingError::File { path: path.to_owned(), reason };
         Bag::of_source(Source::open(path).map_err(file)?)
     }
 
-    /// Opens the recording that these bytes are.
+    /// Opens a recording in memory.
     ///
     /// # Errors
-    /// [`RecordingError`] if they are none, or of another version.
+    /// [`RecordingError`] if the bytes are not a recording, or of another version.
     pub fn of(bytes: Vec<u8>) -> Result<Bag, RecordingError> {
         Bag::of_source(Source::of(bytes))
     }
@@ -163,37 +163,37 @@ impl Bag {
         Ok(Bag { source, kind, facts, began_utc_ns, result, is_cut, damage, channels, index })
     }
 
-    /// What it is a recording of.
+    /// The kind of recording.
     #[must_use]
     pub fn kind(&self) -> Kind {
         self.kind
     }
 
-    /// A fact of the header; empty if it is not there.
+    /// A fact of the header; empty if missing.
     #[must_use]
     pub fn fact(&self, key: &str) -> &str {
         self.facts.get(key).map_or("", String::as_str)
     }
 
-    /// When it began: UTC, ns since 1970.
+    /// Start of the recording: UTC, ns since 1970.
     #[must_use]
     pub fn began_utc_ns(&self) -> u64 {
         self.began_utc_ns
     }
 
-    /// What was written at its end; none where the file ends before.
+    /// The facts written at its end; none if the file is truncated.
     #[must_use]
     pub fn result(&self) -> Option<&Facts> {
         self.result.as_ref()
     }
 
-    /// Whether the rest of the file is missing.
+    /// Whether the file is truncated.
     #[must_use]
     pub fn is_cut(&self) -> bool {
         self.is_cut
     }
 
-    /// Which of its bytes are not what was written, as far as checksums tell: what stands there may be wrong or missing.
+    /// Byte ranges whose checksums do not match: their content may be wrong or missing.
     #[must_use]
     pub fn damage(&self) -> &[Range<u64>] {
         &self.damage
@@ -205,7 +205,7 @@ impl Bag {
         self.source.length()
     }
 
-    /// All messages, in the order in which they were recorded.
+    /// All messages, in recording order.
     pub fn messages(&self) -> impl ExactSizeIterator<Item = RecordedMessage<'_>> {
         (0..self.index.count()).map(|place| self.message(place))
     }
@@ -215,7 +215,7 @@ impl Bag {
         self.places(topic).map(|place| self.message(place))
     }
 
-    /// The places of the messages of one topic, for [`Bag::message`].
+    /// The positions of the messages of one topic, for [`Bag::message`].
     pub fn places(&self, topic: &str) -> impl Iterator<Item = usize> {
         let wanted = self.channels.iter().find(|(_, channel)| channel.topic == topic).map(|(id, _)| *id);
         let is_wanted = move |place: &usize| {
@@ -224,10 +224,10 @@ impl Bag {
         (0..self.index.count()).filter(is_wanted)
     }
 
-    /// The message at a place.
+    /// The message at a position among all messages.
     ///
     /// # Panics
-    /// If there are fewer.
+    /// If `place` is out of range.
     #[must_use]
     pub fn message(&self, place: usize) -> RecordedMessage<'_> {
         let entry = self.index.entry(&self.source, place);
@@ -246,13 +246,13 @@ impl Bag {
         }
     }
 
-    /// From the first message to the last by the clock, ns.
+    /// Wall-clock time from the first to the last message, ns.
     #[must_use]
     pub fn span_utc_ns(&self) -> u64 {
         self.index.span_utc_ns()
     }
 
-    /// The topics that there are messages on, with their numbers of messages, by name.
+    /// The topics with messages, by name, with their message counts.
     #[must_use]
     pub fn topics(&self) -> BTreeMap<&str, usize> {
         let mut topics = BTreeMap::new();
@@ -264,7 +264,7 @@ impl Bag {
     }
 }
 
-/// What is found in a file.
+/// Collects the contents of a file.
 #[derive(Default)]
 struct Found {
     schemas: BTreeMap<u16, (String, String)>,
@@ -274,7 +274,7 @@ struct Found {
 }
 
 impl Found {
-    /// Takes a record, of a message with the place of its bytes, and where its chunk begins.
+    /// Adds a record. `place` is the byte range of a message, `chunk` the start of its chunk.
     fn take(&mut self, record: Record<'_>, place: &Range<u64>, chunk: u64) {
         self.index.add(&record, place, chunk);
         match record {
@@ -293,7 +293,7 @@ impl Found {
         }
     }
 
-    /// The header, once it is known that this program can believe it.
+    /// The header, after checking its checksum and version.
     fn header(&mut self) -> Result<(Kind, Facts), RecordingError> {
         let foreign = |reason: &str| RecordingError::Foreign(reason.to_owned());
         let header = Kind::ALL.into_iter().find_map(|kind| Some((kind, self.metadata.remove(kind.header())?)));

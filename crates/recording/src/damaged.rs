@@ -1,19 +1,19 @@
-//! Messages of a recording that are damaged: counted, and left out.
+//! Damaged messages of a recording: counted and skipped.
 
 use crate::RecordingError;
 use serde::{Deserialize, Serialize};
 
-/// How many messages are damaged, and what is wrong with the first.
+/// Count of damaged messages, with the first defect.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Damaged {
-    /// How many.
+    /// The count.
     pub count: u64,
-    /// Which is the first, and what is wrong with it.
+    /// The first damaged message and its defect.
     pub first: Option<String>,
 }
 
 impl Damaged {
-    /// What was read, if it could be; if not, one more is damaged.
+    /// Returns the value of a successful read; otherwise counts a damaged message.
     pub fn sound<T>(&mut self, read: Result<T, RecordingError>) -> Option<T> {
         let error = match read {
             Ok(message) => return Some(message),
@@ -24,13 +24,13 @@ impl Damaged {
         None
     }
 
-    /// These and those.
+    /// The sum of both counts.
     #[must_use]
     pub fn and(self, others: &Damaged) -> Damaged {
         Damaged { count: self.count + others.count, first: self.first.or_else(|| others.first.clone()) }
     }
 
-    /// All of it as a remark, if there are any.
+    /// A remark for people, if any message is damaged.
     #[must_use]
     pub fn remark(&self) -> Option<String> {
         let first = self.first.as_ref()?;

@@ -1,9 +1,9 @@
-//! Where the recording of a game goes: files are named by the time, the game and its seed.
+//! File names of recordings: time, game and seed.
 
 use crate::utc;
 use std::path::{Path, PathBuf};
 
-/// A file in this folder that is not there yet, for a game of this name and seed.
+/// An unused path in this folder for a game of this name and seed.
 #[must_use]
 pub fn free_path(folder: &Path, game: &str, seed: u64) -> PathBuf {
     let stem = format!("{}_{game}_{seed}", utc::file_stamp(utc::now_ns()));

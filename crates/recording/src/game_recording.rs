@@ -1,4 +1,4 @@
-//! The recording of a game: what it was, its frames, and how it ended.
+//! The recording of a game: its header, its frames and its ending.
 
 use crate::bag::{Bag, RecordedMessage, RecordingError};
 use crate::{Facts, Kind, Opening};
@@ -9,9 +9,9 @@ use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::OnceLock;
 
-/// The topic of the truth.
+/// The topic of frames.
 pub const FRAME: &str = "frame";
-/// The topic of what the game was given.
+/// The topic of the game's inputs.
 pub const INPUTS: &str = "inputs";
 
 /// The topic of a team's pictures.
@@ -20,29 +20,29 @@ pub fn picture(team: &str) -> String {
     format!("picture/{team}")
 }
 
-/// What a recording says of its game before anything happens.
+/// The header of a game's recording, known before the game starts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Header {
-    /// The commit that the program was built from.
+    /// The commit from which the program was built.
     pub commit: String,
     /// The game's name.
     pub game: String,
-    /// When it began: UTC, ns since 1970.
+    /// Start of the recording: UTC, ns since 1970.
     pub began_utc_ns: u64,
-    /// Version, pace, and the scenario with the seed and the values of all randomised parameters.
+    /// Version, pace, and the scenario with its seed and all randomised values.
     pub info: GameInfo,
     /// The waves.
     pub water: Water,
 }
 
-/// What a recording says in the end.
+/// The ending of a game's recording.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Ending {
     /// How the game ended.
     pub outcome: Outcome,
-    /// How it was run.
+    /// Report on how the game was run.
     pub run: serde_json::Value,
-    /// Messages that are missing, since the disk was too slow for them.
+    /// Messages dropped because the disk was too slow.
     pub dropped: u64,
 }
 
@@ -55,7 +55,7 @@ fn json(value: &impl Serialize) -> String {
 }
 
 impl Header {
-    /// How the recording of this game begins.
+    /// The opening of this game's recording.
     #[must_use]
     pub fn opening(&self) -> Opening {
         let scenario = &self.info.scenario;
@@ -92,7 +92,7 @@ impl Header {
 }
 
 impl Ending {
-    /// What is written of it. How many messages were dropped is known to whoever writes.
+    /// The facts of the ending, except the number of dropped messages, which the recorder adds.
     #[must_use]
     pub fn facts(&self) -> Facts {
         facts([
@@ -118,31 +118,32 @@ pub struct Recording {
     bag: Bag,
     header: Header,
     ending: Option<Ending>,
-    /// The places of the frames, once somebody asks for one.
+    /// The positions of the frames, computed on first use.
     frames: OnceLock<Vec<usize>>,
 }
 
 impl Recording {
-    /// Opens the recording of a game in a file.
+    /// Opens the recording of a game.
     ///
     /// # Errors
-    /// [`RecordingError`] if it cannot be read, is none of a game, or is of another version.
+    /// [`RecordingError`] if it cannot be read, is not the recording of a game, or is of another
+    /// version.
     pub fn open(path: &Path) -> Result<Recording, RecordingError> {
         Recording::of_bag(Bag::open(path)?)
     }
 
-    /// The recording of a game that these bytes are.
+    /// Opens the recording of a game in memory.
     ///
     /// # Errors
-    /// [`RecordingError`] as of a file.
+    /// [`RecordingError`] as for a file.
     pub fn of(bytes: Vec<u8>) -> Result<Recording, RecordingError> {
         Recording::of_bag(Bag::of(bytes)?)
     }
 
-    /// The recording of a game that this is.
+    /// Interprets a recording as that of a game.
     ///
     /// # Errors
-    /// [`RecordingError`] if it is of something else, or its header is not understood.
+    /// [`RecordingError`] if it is of another kind, or its header is invalid.
     pub fn of_bag(bag: Bag) -> Result<Recording, RecordingError> {
         if bag.kind() != Kind::Game {
             return Err(RecordingError::Kind { wanted: Kind::Game, found: bag.kind() });
@@ -152,13 +153,13 @@ impl Recording {
         Ok(Recording { header, ending, frames: OnceLock::new(), bag })
     }
 
-    /// The file and its messages.
+    /// The underlying recording.
     #[must_use]
     pub fn bag(&self) -> &Bag {
         &self.bag
     }
 
-    /// What it says of its game.
+    /// The header.
     #[must_use]
     pub fn header(&self) -> &Header {
         &self.header
@@ -170,28 +171,28 @@ impl Recording {
         &self.header.info.scenario
     }
 
-    /// How the game ended; none where the file ends before.
+    /// The ending; none if the file is truncated.
     #[must_use]
     pub fn ending(&self) -> Option<&Ending> {
         self.ending.as_ref()
     }
 
-    /// Whether the file ends before the game did.
+    /// Whether the file is truncated.
     #[must_use]
     pub fn is_cut(&self) -> bool {
         self.bag.is_cut() || self.ending.is_none()
     }
 
-    /// How many frames there are.
+    /// The number of frames.
     #[must_use]
     pub fn frame_count(&self) -> usize {
         self.bag.topics().get(FRAME).copied().unwrap_or(0)
     }
 
-    /// A frame, as recorded.
+    /// The `i`th frame, as recorded.
     ///
     /// # Panics
-    /// If there are fewer.
+    /// If `i` is out of range.
     #[must_use]
     pub fn frame(&self, i: usize) -> RecordedMessage<'_> {
         self.bag.message(self.frames.get_or_init(|| self.bag.places(FRAME).collect())[i])
@@ -200,7 +201,7 @@ impl Recording {
     /// All frames.
     ///
     /// # Errors
-    /// [`RecordingError::Damaged`] names the first that is none.
+    /// [`RecordingError::Damaged`] for each frame that does not decode.
     pub fn frames(&self) -> impl ExactSizeIterator<Item = Result<Frame, RecordingError>> {
         (0..self.frame_count()).map(|i| self.frame(i).read())
     }

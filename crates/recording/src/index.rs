@@ -1,6 +1,7 @@
-//! Where the messages of a file are: stretches of it, whose messages are looked for again when they are wanted.
+//! Index of the messages in a file: stretches of records, which are read again on demand.
 //!
-//! A recording of a day has ten million messages. A place of each would be hundreds of megabytes.
+//! A recording of a day has ten million messages. Storing each position would take hundreds of
+//! megabytes.
 
 use crate::records::{self, Record};
 use crate::source::Source;
@@ -12,12 +13,12 @@ use std::sync::Arc;
 /// The most messages in a stretch.
 const MESSAGES_MAX: usize = 256;
 
-/// A message in a file.
+/// The position of a message in a file.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct IndexEntry {
     pub(crate) channel: u16,
     pub(crate) number: u32,
-    /// The time of the recording's own clock, ns.
+    /// Time of the recording's own clock, ns.
     pub(crate) log_ns: u64,
     pub(crate) utc_ns: u64,
     pub(crate) from: u64,
@@ -25,7 +26,7 @@ pub(crate) struct IndexEntry {
 }
 
 impl IndexEntry {
-    /// The message of a record, with the place of its bytes; none of a record of another kind.
+    /// The entry of a message record with this byte range; none for other records.
     fn of(record: &Record<'_>, place: &Range<u64>) -> Option<IndexEntry> {
         let Record::Message { header, .. } = record else { return None };
         Some(IndexEntry {
@@ -34,39 +35,39 @@ impl IndexEntry {
             log_ns: header.log_time,
             utc_ns: header.publish_time,
             from: place.start,
-            // A record is read only if it is shorter.
+            // Longer records are not read.
             length: u32::try_from(place.end - place.start).unwrap_or(u32::MAX),
         })
     }
 }
 
-/// Messages that follow each other in a chunk, or outside of chunks.
+/// Consecutive messages in a chunk or outside chunks.
 #[derive(Debug)]
 struct Stretch {
-    /// How many messages are before it.
+    /// The number of messages before it.
     first: usize,
-    /// From its first record to the end of its last.
+    /// Byte range from its first record to the end of its last.
     place: Range<u64>,
 }
 
-/// Where the messages of a file are.
+/// The index of the messages in a file.
 #[derive(Debug, Default)]
 pub(crate) struct Index {
     stretches: Vec<Stretch>,
-    /// How many messages there are.
+    /// The number of messages.
     count: usize,
-    /// By channel.
+    /// Number of messages, by channel.
     counts: BTreeMap<u16, usize>,
-    /// The first and the last time by the clock, ns.
+    /// The first and the last wall-clock time, ns.
     span_utc_ns: Option<(u64, u64)>,
-    /// The chunk of the last message that was added, by its beginning.
+    /// Start of the chunk of the message added last.
     chunk: Option<u64>,
-    /// The stretch that was asked for last, and its messages.
+    /// The most recently used stretch, with its messages.
     recent: Mutex<Option<(usize, Arc<[IndexEntry]>)>>,
 }
 
 impl Index {
-    /// Adds the message of a record, if it is one: the next in the file, in the chunk that begins there.
+    /// Adds a record if it is a message: the next in the file, in the chunk that starts at `chunk`.
     pub(crate) fn add(&mut self, record: &Record<'_>, place: &Range<u64>, chunk: u64) {
         let Some(entry) = IndexEntry::of(record, place) else { return };
         let is_full = self.stretches.last().is_none_or(|last| self.count - last.first >= MESSAGES_MAX);
@@ -84,25 +85,25 @@ impl Index {
         self.span_utc_ns = Some((first.min(entry.utc_ns), last.max(entry.utc_ns)));
     }
 
-    /// How many messages there are.
+    /// The number of messages.
     pub(crate) fn count(&self) -> usize {
         self.count
     }
 
-    /// How many there are, by channel.
+    /// The number of messages, by channel.
     pub(crate) fn counts(&self) -> &BTreeMap<u16, usize> {
         &self.counts
     }
 
-    /// From the first message to the last by the clock, ns.
+    /// Wall-clock time from the first to the last message, ns.
     pub(crate) fn span_utc_ns(&self) -> u64 {
         self.span_utc_ns.map_or(0, |(first, last)| last - first)
     }
 
-    /// The message at a place among all; none where the file cannot be read any more.
+    /// The message at a position among all; none if the file can no longer be read.
     ///
     /// # Panics
-    /// If there are fewer.
+    /// If `place` is out of range.
     pub(crate) fn entry(&self, source: &Source, place: usize) -> Option<IndexEntry> {
         assert!(place < self.count, "message {place} of {}", self.count);
         let number = self.stretches.partition_point(|stretch| stretch.first <= place) - 1;
@@ -124,7 +125,7 @@ impl Index {
 fn entries_in(source: &Source, place: Range<u64>) -> Vec<IndexEntry> {
     let mut entries = Vec::new();
     let read = records::records_in(source, place, &mut |record, place| entries.extend(IndexEntry::of(&record, &place)));
-    // It was read before without an error: if it cannot be read any more, those that are missing are none.
+    // The first read succeeded; if this one fails, the missing messages count as unreadable.
     drop(read);
     entries
 }

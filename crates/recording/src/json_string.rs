@@ -1,24 +1,26 @@
-//! JSON in a recording: the text of a ROS 2 string, since tools of ROS 2 read files in which everything is CDR, and no others.
+//! JSON in a recording: wrapped in a ROS 2 string, because tools of ROS 2 read only files with all
+//! messages in CDR.
 
 use primitives::codec::ENCAPSULATION;
 
-/// The message that holds it.
-// Foxglove would plot JSON by itself, but rosbag tools refuse a file in which topics are
-// encoded in different ways, or one without a schema.
+/// The schema of the wrapper.
+// Foxglove could plot plain JSON, but rosbag tools refuse a file with mixed encodings or with
+// topics without a schema.
 pub(crate) const SCHEMA: &str = "std_msgs/msg/String";
 /// Its definition.
 pub(crate) const DEFINITION: &str = "string data\n";
 
-/// What stands before the text: that, and its length with the NUL after it.
+/// Size of the prefix: encapsulation header and length of the text, including its NUL.
 const BEFORE: usize = ENCAPSULATION.len() + 4;
 
-/// The message that holds this text.
+/// Wraps a text in a string message.
 pub(crate) fn wrap(text: &[u8]) -> Vec<u8> {
     let length = u32::try_from(text.len() + 1).unwrap_or(u32::MAX);
     [&ENCAPSULATION[..], &length.to_le_bytes(), text, &[0]].concat()
 }
 
-/// The text in a message; of one that is damaged all of it, which is no JSON.
+/// Unwraps the text of a message. A damaged message is returned whole, which does not parse as
+/// JSON.
 pub(crate) fn text_of(mut message: Vec<u8>) -> Vec<u8> {
     let text = BEFORE..message.len().saturating_sub(1);
     if message.get(text.clone()).is_some_and(|text| wrap(text) == message) {

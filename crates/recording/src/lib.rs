@@ -1,31 +1,33 @@
-//! Recordings of games and of gateways: MCAP files that tools of ROS 2 read as bags.
+//! Recordings of games and of gateways: MCAP files that ROS 2 tools read as bags.
 //!
-//! | topic of a game | what | as |
+//! | topic of a game | content | form |
 //! |---|---|---|
-//! | `frame` | the truth, at every decision | message |
-//! | `picture/<team>` | what a team's minds were shown | message |
-//! | `inputs` | before each frame, all that the game was given since the last: it can be played again from this | message |
-//! | `nav/<boat>`, `external/<boat>`, `link/<boat>` | of real boats: where they are, what they are to do, every byte of the link | message |
-//! | `say/<team>`, `policy/<boat>` | what minds and policies sent | message |
+//! | `frame` | the true state, at every decision | message |
+//! | `picture/<team>` | the picture of a team's minds | message |
+//! | `inputs` | before each frame, all inputs of the game since the last one: sufficient for a rerun | message |
+//! | `nav/<boat>`, `external/<boat>`, `link/<boat>` | of real boats: navigation, commands, every byte of the link | message |
+//! | `say/<team>`, `policy/<boat>` | messages of minds and policies | message |
 //! | `status/<boat>` | the state of gateways | JSON |
-//! | `control`, `run` | what operators requested, and the state of the run | JSON |
+//! | `control`, `run` | operator requests, and the state of the run | JSON |
 //!
-//! | topic of a gateway | what | as |
+//! | topic of a gateway | content | form |
 //! |---|---|---|
 //! | `link/<boat>` | every byte of the link, both ways | message |
-//! | `input`, `event` | everything else that the gateway was given, and what happened | JSON |
+//! | `input`, `event` | all other inputs of the gateway, and its events | JSON |
 //! | `payload/<name>` | every byte between a payload of the boat and its clients, both ways | message |
-//! | `values/<name>` | what a sensor among them measured, as far as its bytes are understood | JSON |
+//! | `values/<name>` | measurements of a sensor among them, as far as its bytes are understood | JSON |
 //!
-//! All of it is CDR, as the profile `ros2` demands: a message of ours, or a JSON object as the text of a
-//! `std_msgs/msg/String`. `log_time` is the time of the game or of the gateway's clock, counted from the UTC at which the
-//! recording began; `publish_time` is UTC when the message was recorded. Both in ns since 1970. `sequence` counts within a
-//! topic. Schemas are ROS 2 message definitions, complete. Chunks are not compressed and are written whole, so that a file
-//! that ends abruptly is good up to there.
+//! All messages are CDR, as the profile `ros2` demands: either one of ours, or a JSON object as the
+//! text of a `std_msgs/msg/String`. `log_time` is the time of the game or of the gateway's clock,
+//! counted from the UTC at which the recording began; `publish_time` is UTC when the message was
+//! recorded. Both are in ns since 1970. `sequence` counts within a topic. Schemas are complete ROS
+//! 2 message definitions. Chunks are not compressed and are written whole, so that a truncated file
+//! is valid up to its last chunk.
 //!
-//! The first metadata is the header, with a checksum of its own: `squall` of a game (version, commit, game, pace, seed,
-//! scenario, waves), `gateway` of a gateway (version, commit, boat, plan). A game also has `drawn` (the values of randomised
-//! parameters) and, unless the file ends abruptly, `result` (digest, outcome, run, how many messages were dropped).
+//! The first metadata is the header, with its own checksum: `squall` for a game (version, commit,
+//! game, pace, seed, scenario, waves), `gateway` for a gateway (version, commit, boat, plan). A
+//! game also has `drawn` (the randomised values) and, unless the file is truncated, `result`
+//! (digest, outcome, run, number of dropped messages).
 
 mod bag;
 mod damaged;
@@ -50,13 +52,13 @@ use std::collections::BTreeMap;
 use std::fmt::{Display, Formatter};
 use thiserror::Error;
 
-/// What a metadata record of a file holds.
+/// The contents of a metadata record.
 pub type Facts = BTreeMap<String, String>;
 
-/// The metadata at the end.
+/// Name of the metadata at the end.
 const RESULT: &str = "result";
 
-/// What a recording is of.
+/// The kind of recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A game.
@@ -68,7 +70,7 @@ pub enum Kind {
 impl Kind {
     const ALL: [Kind; 2] = [Kind::Game, Kind::Gateway];
 
-    /// The name of the metadata that is the header.
+    /// The name of the header metadata.
     const fn header(self) -> &'static str {
         match self {
             Kind::Game => "squall",
@@ -86,13 +88,14 @@ impl Display for Kind {
     }
 }
 
-/// The facts of every header: the version, when the recording began (UTC, ns since 1970), and a checksum of all facts.
+/// Facts of every header: the version, the start of the recording (UTC, ns since 1970), and a
+/// checksum of all facts.
 const VERSION: &str = "version";
 const BEGAN: &str = "began_utc_ns";
 const CHECKSUM: &str = "checksum";
 
-/// The CRC-32 of these facts but for the checksum itself. MCAP has one for each chunk, and one of the whole at its end;
-/// whether a header can be believed must be known of a file without an end, too.
+/// The CRC-32 of these facts, without the checksum itself. MCAP has checksums for each chunk and,
+/// at the end, for the whole file; the header needs its own because the end may be missing.
 fn checksum(facts: &Facts) -> String {
     let mut hasher = crc32fast::Hasher::new();
     for (key, value) in facts.iter().filter(|(key, _)| *key != CHECKSUM) {
@@ -101,13 +104,13 @@ fn checksum(facts: &Facts) -> String {
     hasher.finalize().to_string()
 }
 
-/// Why something cannot be recorded.
+/// Why recording failed.
 #[derive(Debug, Error)]
 pub enum RecordError {
-    /// It does not fit the format.
+    /// The data does not fit the format.
     #[error("the recording cannot be written: {0}")]
     Mcap(mcap::McapError),
-    /// There is no such file, it must not be written, or there is no room for it.
+    /// The file is missing or not writable, or the disk is full.
     #[error(transparent)]
     File(#[from] std::io::Error),
 }
@@ -115,7 +118,7 @@ pub enum RecordError {
 impl From<mcap::McapError> for RecordError {
     fn from(error: mcap::McapError) -> RecordError {
         match error {
-            // What the system says is what helps.
+            // The system's error is the helpful one.
             mcap::McapError::Io(error) => error.into(),
             other => RecordError::Mcap(other),
         }

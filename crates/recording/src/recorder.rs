@@ -1,4 +1,4 @@
-//! The thread that writes a recording while the game goes on, which never waits for it.
+//! The thread that writes a recording. The game never waits for it.
 
 use crate::writer::{Entry, Opening, Writer};
 use crate::{Facts, RecordError, utc};
@@ -12,36 +12,37 @@ use std::sync::{Arc, OnceLock};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// What was recorded is handed to the system this often. Each time a chunk is closed, of which the index that ends the file keeps some
-/// 500 bytes in memory: four times a second that was 5 MB an hour.
+/// Period of flushes to the system. Each flush closes a chunk, whose index entry stays in memory
+/// until the file ends, about 500 bytes. At four per second that was 5 MB an hour.
 const FLUSH: Duration = Duration::from_secs(1);
-/// So long the thread lets entries gather: to be woken for each would cost the game more than the writing does.
+/// Time for which the thread lets entries accumulate: waking for each one would cost the game more
+/// than the writing.
 const GATHER: Duration = Duration::from_millis(20);
-/// What is gathered for one write, bytes.
+/// Size of the write buffer, bytes.
 const BUFFER: usize = 1 << 16;
-/// Memory that entries may take up that wait for the disk, bytes.
+/// Memory limit of entries that wait for the disk, bytes.
 const WAITING_BYTES: usize = 128 << 20;
-/// How many they may be.
+/// Limit of the number of waiting entries.
 const WAITING: usize = 1 << 14;
 
-/// Writes a recording on a thread of its own. Dropped, it completes the file without a result.
+/// Writes a recording on its own thread. Dropping it completes the file without a result.
 pub struct Recorder {
     path: PathBuf,
     queue: Queue,
-    /// Until it ends.
+    /// None after the end.
     thread: Option<JoinHandle<()>>,
 }
 
-/// Records what may be left out, such as the pictures of a camera: it takes up no more than half of the queue, so that where the disk does
-/// not keep up everything else still finds room.
+/// Records optional data, such as camera images. It uses at most half of the queue, so that on a
+/// slow disk everything else still finds room.
 #[derive(Clone)]
 pub struct BulkRecorder(Queue);
 
-/// The way to the thread.
+/// The queue to the thread.
 #[derive(Clone)]
 struct Queue {
     jobs: SyncSender<Job>,
-    /// How much may wait for the disk, bytes.
+    /// Limit of waiting data, bytes.
     waiting_max: usize,
     shared: Arc<Shared>,
 }
@@ -56,28 +57,28 @@ struct Shared {
     bytes: AtomicU64,
     dropped: AtomicU64,
     bulk_dropped: AtomicU64,
-    /// Entries that wait, and the bytes that they take up.
+    /// Number and size of waiting entries.
     waiting: AtomicUsize,
     waiting_bytes: AtomicUsize,
     failed: OnceLock<String>,
 }
 
-/// A new file that a recording is to go into. If none does, it is removed again.
+/// A new file for a recording. Dropping it unused removes the file.
 #[derive(Debug)]
 pub struct NewFile {
     path: PathBuf,
-    /// None once it is used.
+    /// None after use.
     file: Option<File>,
 }
 
 impl NewFile {
-    /// Makes the file; an old one of this name is not touched.
+    /// Creates the file; never overwrites an existing one.
     ///
     /// # Errors
-    /// [`RecordError`] if it cannot be made, or the disk has no room for a beginning.
+    /// [`RecordError`] if it cannot be created, or the disk is full.
     pub fn create(path: &Path) -> Result<NewFile, RecordError> {
         let mut file = File::create_new(path)?;
-        // Whatever fails from here on, it is removed.
+        // If a later step fails, dropping `new` removes the file.
         let new = NewFile { path: path.to_owned(), file: Some(file.try_clone()?) };
         file.write_all(&[0; BUFFER])?;
         file.rewind()?;
@@ -89,17 +90,17 @@ impl NewFile {
 impl Drop for NewFile {
     fn drop(&mut self) {
         if self.file.is_some() {
-            // Then it stays; it is empty.
+            // If removal fails, an empty file remains.
             drop(std::fs::remove_file(&self.path));
         }
     }
 }
 
 impl Recorder {
-    /// Begins to record.
+    /// Starts recording.
     ///
     /// # Errors
-    /// [`RecordError`] if the file does not take the beginning.
+    /// [`RecordError`] if the opening cannot be written.
     ///
     /// # Panics
     /// Never: a new file is used once.
@@ -121,32 +122,32 @@ impl Recorder {
         let queue = Queue { jobs: sender, waiting_max, shared: Arc::default() };
         let (theirs, size_of) = (Arc::clone(&queue.shared), path.clone());
         let thread = std::thread::Builder::new().name("recorder".to_owned());
-        // In the sim's process, not as an observer on the network, which would have to be
-        // waited for or would miss messages. The game hands over copies; `benches/recording.rs`
-        // measures what that costs.
+        // In the sim's process instead of an observer on the network, which the sim would have to
+        // wait for or which would miss messages. The game passes copies; `benches/recording.rs`
+        // measures the cost.
         let thread = thread.spawn(move || write(writer, &jobs, &theirs, &size_of))?;
         Ok(Recorder { path, queue, thread: Some(thread) })
     }
 
-    /// Records something; drops it, and counts that, where the disk does not keep up.
+    /// Records an entry; drops and counts it if the disk is too slow.
     pub fn record(&self, entry: Entry) {
         let is_taken = self.queue.offer(entry, WAITING, self.queue.waiting_max);
         self.queue.shared.dropped.fetch_add(u64::from(!is_taken), Ordering::Relaxed);
     }
 
-    /// What records into the same file for others, as long as this recorder is there.
+    /// A recorder of optional data into the same file, valid as long as this recorder exists.
     #[must_use]
     pub fn bulk(&self) -> BulkRecorder {
         BulkRecorder(self.queue.clone())
     }
 
-    /// How many entries of its [`BulkRecorder`]s found no room.
+    /// The number of entries dropped by its [`BulkRecorder`]s.
     #[must_use]
     pub fn bulk_dropped(&self) -> u64 {
         self.queue.shared.bulk_dropped.load(Ordering::Relaxed)
     }
 
-    /// How it stands.
+    /// The state of the recording.
     #[must_use]
     pub fn state(&self) -> RecordingState {
         RecordingState {
@@ -157,17 +158,18 @@ impl Recorder {
         }
     }
 
-    /// Completes the file with this result, to which how much was dropped is added, and says how it stands then.
+    /// Completes the file with this result, to which it adds the number of dropped messages.
+    /// Returns the final state.
     pub fn end(mut self, mut result: Facts) -> RecordingState {
         result.insert("dropped".to_owned(), self.queue.shared.dropped.load(Ordering::Relaxed).to_string());
         self.complete(result);
         self.state()
     }
 
-    /// Completes the file, once. What bulk recorders record after that is dropped.
+    /// Completes the file, once. Later entries of bulk recorders are dropped.
     fn complete(&mut self, result: Facts) {
         let Some(thread) = self.thread.take() else { return };
-        // A thread that is gone has said why.
+        // If the thread has ended, it has already reported the reason.
         drop(self.queue.jobs.send(Job::End(result)));
         if thread.join().is_err() {
             self.queue.shared.failed.get_or_init(|| "its thread broke down".to_owned());
@@ -182,7 +184,7 @@ impl Drop for Recorder {
 }
 
 impl BulkRecorder {
-    /// Records something; drops it, and counts that, where half of the queue is full.
+    /// Records an entry; drops and counts it if half of the queue is full.
     pub fn record(&self, entry: Entry) {
         let is_taken = self.0.offer(entry, WAITING / 2, self.0.waiting_max / 2);
         self.0.shared.bulk_dropped.fetch_add(u64::from(!is_taken), Ordering::Relaxed);
@@ -190,13 +192,13 @@ impl BulkRecorder {
 }
 
 impl Queue {
-    /// Hands an entry over if no more than this wait then; whether it was taken.
+    /// Queues an entry if the queue then stays within these limits; returns whether it did.
     fn offer(&self, entry: Entry, entries_max: usize, bytes_max: usize) -> bool {
         let size = entry.size();
         let bytes = self.shared.waiting_bytes.fetch_add(size, Ordering::Relaxed) + size;
         let entries = self.shared.waiting.fetch_add(1, Ordering::Relaxed) + 1;
-        // What the disk is too slow for is dropped and counted: a game is never held up by it.
-        // `--check` names the gaps, and does not take them for a game that diverged.
+        // Entries that the disk is too slow for are dropped and counted, so they never delay a
+        // game. `--check` names the gaps and does not mistake them for divergence.
         let has_room = entries <= entries_max && bytes <= bytes_max;
         let is_taken = has_room && self.jobs.try_send(Job::Write(entry, utc::now_ns())).is_ok();
         if !is_taken {
@@ -207,14 +209,14 @@ impl Queue {
 }
 
 impl Shared {
-    /// An entry of this size waits no longer.
+    /// Removes an entry of this size from the count of waiting data.
     fn written(&self, size: usize) {
         self.waiting.fetch_sub(1, Ordering::Relaxed);
         self.waiting_bytes.fetch_sub(size, Ordering::Relaxed);
     }
 }
 
-/// Writes what comes until the end. What cannot be written is dropped, and why is told.
+/// Writes entries until the end. On a write error, it drops entries and reports the reason.
 fn write<W: Write + Seek>(mut writer: Writer<W>, jobs: &Receiver<Job>, shared: &Shared, path: &Path) {
     let mut flushed = now();
     let update_size = || {
@@ -254,7 +256,7 @@ fn write<W: Write + Seek>(mut writer: Writer<W>, jobs: &Receiver<Job>, shared: &
     update_size();
 }
 
-/// Lets entries gather. Whoever records need not wake anybody.
+/// Lets entries accumulate. The recording threads need not wake this one.
 #[expect(clippy::disallowed_methods, reason = "entries are written in batches, by the clock")]
 fn rest() {
     std::thread::sleep(GATHER);
@@ -274,7 +276,7 @@ mod tests {
     use std::io::{Cursor, ErrorKind, SeekFrom};
     use std::sync::Mutex;
 
-    /// A disk that takes nothing while somebody else has it.
+    /// A disk that blocks while another thread holds the lock.
     #[derive(Clone, Default)]
     struct Disk(Arc<Mutex<Cursor<Vec<u8>>>>);
 
@@ -293,7 +295,7 @@ mod tests {
         }
     }
 
-    /// A disk with room for so many bytes.
+    /// A disk with room for a limited number of bytes.
     struct Full(Cursor<Vec<u8>>, usize);
 
     impl Write for Full {

@@ -1,7 +1,7 @@
-//! The records of an MCAP file one by one, up to where it was cut.
+//! Reads the records of an MCAP file one by one, up to a truncation.
 //!
-//! The library's own readers hold a chunk to be one piece: of one that was cut nothing would be left. Our chunks are not
-//! compressed, so the records in it can be read as far as they go.
+//! The library's own readers treat a chunk as one unit and would lose a truncated one entirely. Our
+//! chunks are not compressed, so their records can be read up to the cut.
 
 use crate::RecordingError;
 use crate::source::Source;
@@ -10,28 +10,30 @@ use mcap::records::op;
 use std::fmt::Display;
 use std::ops::Range;
 
-/// Opcode and length before every record.
+/// Size of opcode and length before every record.
 const PREFIX: u64 = 9;
-/// In a chunk, before its checksum: times of the first and the last message, and size.
+/// Offset of the checksum in a chunk, after the times of the first and last message, and the size.
 const CHUNK_CRC_AT: u64 = 3 * 8;
-/// What stands before the bytes of a message: channel, number, and two times.
+/// Size of the fields before the bytes of a message: channel, number, and two times.
 const MESSAGE_HEADER: u64 = 2 + 4 + 8 + 8;
-/// And what stands before that.
+/// Size of everything before the bytes of a message.
 pub(crate) const MESSAGE_PREFIX: u64 = PREFIX + MESSAGE_HEADER;
-/// The longest record that is read: more than a message on the network may have, and than any scenario.
+/// The longest record read: longer than any network message or scenario.
 const RECORD_MAX: u64 = 64 << 20;
 
-/// How far a file goes, and what of it can be relied on.
+/// The readable extent of a file.
 #[derive(Debug)]
 pub(crate) struct Extent {
-    /// Whether the rest of the file is missing.
+    /// Whether the file is truncated.
     pub(crate) is_cut: bool,
-    /// The bytes that are not what was written, by the checksum of their chunk; if no chunk is to blame, all of them.
+    /// Byte ranges that do not match the checksum of their chunk; the whole file if no chunk is to
+    /// blame.
     pub(crate) damage: Vec<Range<u64>>,
 }
 
-/// Calls `take` with every schema, channel, message and metadata, those in chunks included. Of a message it gets the header
-/// alone, and the place of its bytes; of all of them the beginning of their chunk, or 0. Of a damaged chunk the records are given up to the first that makes no sense.
+/// Calls `take` with every schema, channel, message and metadata, including those in chunks. A
+/// message comes as its header and the byte range of its content; every record with the start of
+/// its chunk, or 0. A damaged chunk is read up to the first invalid record.
 pub(crate) fn for_each_record(
     source: &Source,
     mut take: impl FnMut(Record<'_>, Range<u64>, u64),
@@ -74,13 +76,14 @@ pub(crate) fn for_each_record(
     Ok(Extent { is_cut, damage })
 }
 
-/// Whether the checksum (CRC-32) that stands there is that of the bytes in `place`; 0 says that there is none.
+/// Whether the checksum (CRC-32) stored at `checksum_at` matches the bytes in `place`. A stored 0
+/// means no checksum.
 fn agrees(source: &Source, checksum_at: u64, place: Range<u64>) -> Result<bool, RecordingError> {
     let written = source.array(checksum_at)?.map_or(0, u32::from_le_bytes);
     Ok(written == 0 || written == source.checksum(place)?)
 }
 
-/// Opcode and body of the record there; the body may reach beyond what is there.
+/// Opcode and body of the record at `place`; the body may extend beyond the available bytes.
 fn record_at(source: &Source, place: u64, end: u64) -> Result<Option<(u8, Range<u64>)>, RecordingError> {
     let Some(from) = place.checked_add(PREFIX).filter(|from| *from <= end) else { return Ok(None) };
     let (opcode, length) = (source.array::<1>(place)?, source.array(place + 1)?.map(u64::from_le_bytes));
@@ -88,7 +91,7 @@ fn record_at(source: &Source, place: u64, end: u64) -> Result<Option<(u8, Range<
     Ok(opcode.map(|[opcode]| opcode).zip(body))
 }
 
-/// Calls `take` with the records in there, which is within a chunk, or without chunks.
+/// Calls `take` with the records in `place`, either within a chunk or in a file without chunks.
 pub(crate) fn records_in(
     source: &Source,
     inner: Range<u64>,
@@ -111,7 +114,8 @@ fn give(
     let damaged = |reason: &dyn Display| {
         RecordingError::Foreign(format!("the record at byte {} is damaged: {reason}", body.start))
     };
-    // What texts are in it, after how many bytes, and whether a list of texts follows. Other kinds are of no interest.
+    // Per opcode: the texts it contains, the bytes before them, and whether a list of texts
+    // follows. Other opcodes are ignored.
     let (fixed, texts, has_list) = match opcode {
         op::SCHEMA => (2, 3, false),
         op::CHANNEL => (4, 2, true),
@@ -125,7 +129,7 @@ fn give(
     }
     let bytes_from = if opcode == op::MESSAGE { body.end.min(body.start + MESSAGE_HEADER) } else { body.end };
     let content = source.read(body.start..bytes_from)?;
-    // The library makes room for as much as a length says before it looks whether that is there.
+    // The library allocates whatever a length field says before checking that the bytes exist.
     if texts_of(&content, fixed, texts, has_list).is_none() {
         return Err(damaged(&"a text in it is longer than the record"));
     }
@@ -134,7 +138,7 @@ fn give(
     Ok(())
 }
 
-/// Whether so many texts are in there, as long as they say; nothing if not.
+/// Checks that this many texts exist with their stated lengths; none if not.
 fn texts_of(content: &[u8], fixed: usize, texts: usize, has_list: bool) -> Option<()> {
     let mut rest = content.get(fixed..)?;
     for _ in 0..texts {
@@ -147,17 +151,17 @@ fn texts_of(content: &[u8], fixed: usize, texts: usize, has_list: bool) -> Optio
     Some(())
 }
 
-/// A text with its length before it, and what comes after it.
+/// Splits off a text with its length prefix; returns the text and the rest.
 fn text(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
     let (length, rest) = bytes.split_first_chunk::<4>()?;
     rest.split_at_checked(usize::try_from(u32::from_le_bytes(*length)).ok()?)
 }
 
-/// The place of the records in a chunk, as far as they are there.
+/// The byte range of the records in a chunk, as far as available.
 fn chunk_records(source: &Source, body: &Range<u64>) -> Result<Range<u64>, RecordingError> {
-    // The checksum is of what follows the name of the compression.
+    // The checksum covers everything after the name of the compression.
     const NUMBERS: u64 = CHUNK_CRC_AT + 4;
-    /// What of a name is told.
+    /// Longest name shown in a message.
     const NAME_MAX: u64 = 40;
     let end = source.length();
     let name_length = source.array(body.start + NUMBERS)?.map(|length| u64::from(u32::from_le_bytes(length)));

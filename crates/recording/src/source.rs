@@ -1,20 +1,21 @@
-//! The bytes of a recording, read piece by piece: of a file of any length no more than a buffer is in memory.
+//! The bytes of a recording, read piecewise: memory holds at most one buffer, however long the
+//! file.
 
 use parking_lot::Mutex;
 use std::io::{BufReader, Cursor, Error, ErrorKind, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::Path;
 
-/// What is read ahead, bytes. A chunk has many times that.
+/// Read-ahead, bytes. A chunk is many times larger.
 const BUFFER: usize = 64 << 10;
-/// Farther from every place than any distance, so that the next place is looked for anew.
+/// Marks an unknown position: far enough from any other that the next read always seeks.
 const UNKNOWN: u64 = u64::MAX;
 
-/// Where bytes come from: a file, or memory.
+/// A source of bytes: a file or memory.
 trait Bytes: Read + Seek + Send {}
 impl<T: Read + Seek + Send> Bytes for T {}
 
-/// The bytes of a recording, as long as it was when it was opened.
+/// The bytes of a recording, with the length it had when opened.
 pub(crate) struct Source {
     reader: Mutex<Reader>,
     length: u64,
@@ -22,7 +23,7 @@ pub(crate) struct Source {
 
 struct Reader {
     bytes: BufReader<Box<dyn Bytes>>,
-    /// Where it reads next.
+    /// The position of the next read.
     at: u64,
 }
 
@@ -33,14 +34,14 @@ impl std::fmt::Debug for Source {
 }
 
 impl Source {
-    /// Those of a file.
+    /// Opens a file.
     pub(crate) fn open(path: &Path) -> Result<Source, Error> {
         let file = primitives::input_file::open(path)?;
         let length = file.metadata()?.len();
         Ok(Source::new(Box::new(file), length))
     }
 
-    /// These.
+    /// Wraps bytes in memory.
     pub(crate) fn of(bytes: Vec<u8>) -> Source {
         let length = bytes.len() as u64;
         Source::new(Box::new(Cursor::new(bytes)), length)
@@ -50,14 +51,14 @@ impl Source {
         Source { reader: Mutex::new(Reader { bytes: BufReader::with_capacity(BUFFER, bytes), at: 0 }), length }
     }
 
-    /// How many there are.
+    /// The number of bytes.
     pub(crate) fn length(&self) -> u64 {
         self.length
     }
 
-    /// Those at this place.
+    /// Reads a range of bytes.
     pub(crate) fn read(&self, place: Range<u64>) -> Result<Vec<u8>, Error> {
-        // Room is made only for what is there.
+        // Allocate only for bytes that exist.
         let length = place.end.checked_sub(place.start).filter(|_| place.end <= self.length);
         let length = length.and_then(|length| usize::try_from(length).ok()).ok_or(ErrorKind::UnexpectedEof)?;
         let mut bytes = vec![0; length];
@@ -65,7 +66,7 @@ impl Source {
         Ok(bytes)
     }
 
-    /// So many of them, if they are there.
+    /// Reads `N` bytes at `at`, if they exist.
     pub(crate) fn array<const N: usize>(&self, at: u64) -> Result<Option<[u8; N]>, Error> {
         if at.checked_add(N as u64).is_none_or(|end| end > self.length) {
             return Ok(None);
@@ -75,7 +76,7 @@ impl Source {
         Ok(Some(bytes))
     }
 
-    /// Their checksum (CRC-32).
+    /// The checksum (CRC-32) of a range.
     pub(crate) fn checksum(&self, place: Range<u64>) -> Result<u32, Error> {
         let mut hasher = crc32fast::Hasher::new();
         let mut at = place.start;
@@ -96,7 +97,7 @@ impl Source {
 
 impl Reader {
     fn fill(&mut self, at: u64, bytes: &mut [u8]) -> Result<(), Error> {
-        // After an error nobody knows where it stands.
+        // After an error, the position is unknown.
         let from = std::mem::replace(&mut self.at, UNKNOWN);
         match i64::try_from(i128::from(at) - i128::from(from)) {
             Ok(distance) => self.bytes.seek_relative(distance)?,

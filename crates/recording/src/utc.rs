@@ -1,12 +1,13 @@
-//! UTC: the host's clock, read for stamps and names only, and its texts. Nothing in a game or a gateway is decided by it.
+//! UTC: the host's clock as text, for stamps and names only. No decision of a game or gateway
+//! depends on it.
 
 use time::UtcDateTime;
 
-/// The first three letters of weekdays from Monday on, and of months.
+/// Three-letter abbreviations of the weekdays from Monday on, and of the months.
 const DAYS: [&str; 7] = ["Mon", "Tue", "Wed", "Thu", "Fri", "Sat", "Sun"];
 const MONTHS: [&str; 12] = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"];
 
-/// Now, ns since 1970; 0 where the host's clock stands before that.
+/// The current time, ns since 1970; 0 if the host's clock is earlier than that.
 #[must_use]
 pub fn now_ns() -> u64 {
     u64::try_from(UtcDateTime::now().unix_timestamp_nanos()).unwrap_or(0)
@@ -19,7 +20,7 @@ fn parts(utc_ns: u64) -> (UtcDateTime, [u32; 6]) {
     (at, [year, u8::from(at.month()).into(), at.day().into(), at.hour().into(), at.minute().into(), at.second().into()])
 }
 
-/// As part of a file's name: `20261121T222000Z`.
+/// Format for file names: `20261121T222000Z`.
 #[must_use]
 pub fn file_stamp(utc_ns: u64) -> String {
     let (_, [year, month, day, hour, minute, second]) = parts(utc_ns);
@@ -33,7 +34,7 @@ pub fn text(utc_ns: u64) -> String {
     format!("{year:04}-{month:02}-{day:02} {hour:02}:{minute:02}:{second:02} UTC")
 }
 
-/// As C's `ctime` has it: `Sat Nov 21 22:20:00 2026`.
+/// Format of C's `ctime`: `Sat Nov 21 22:20:00 2026`.
 #[must_use]
 pub fn ctime(utc_ns: u64) -> String {
     let (at, [year, month, day, hour, minute, second]) = parts(utc_ns);

@@ -1,4 +1,4 @@
-//! Entries to the bytes of a recording.
+//! Encodes entries into a recording.
 
 use crate::{
     BEGAN, CHECKSUM, FRAME, Facts, INPUTS, Kind, RESULT, RecordError, VERSION, checksum, json_string, picture,
@@ -15,41 +15,41 @@ use std::sync::Arc;
 /// The size at which a chunk is closed, bytes.
 const CHUNK: u64 = 1 << 20;
 
-/// How a recording begins: what is known before anything happens.
+/// The opening of a recording: everything known before the start.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Opening {
-    /// What it is of.
+    /// The kind of recording.
     pub kind: Kind,
-    /// When it begins: UTC, ns since 1970.
+    /// Start of the recording: UTC, ns since 1970.
     pub began_utc_ns: u64,
-    /// The header; version, beginning and checksum are added.
+    /// The header facts; version, start and checksum are added.
     pub facts: Facts,
     /// Metadata that follows the header, by name.
     pub more: Vec<(&'static str, Facts)>,
-    /// The teams that there are pictures of, by number.
+    /// Names of the teams with recorded pictures, by team index.
     pub teams: Vec<String>,
 }
 
-/// Something to be recorded.
+/// An entry of a recording.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Entry {
     /// A decision of the game.
     Decision(Box<Decision>),
-    /// A message, in bytes.
+    /// An encoded message.
     Message {
         /// The topic, without the game's name.
         topic: String,
         /// The schema, for CDR; none for JSON.
         schema: Option<&'static str>,
-        /// The message.
+        /// The encoded message.
         bytes: Vec<u8>,
-        /// When: time of the game, or of the gateway's clock.
+        /// Time of the game, or of the gateway's clock.
         at: SimTime,
     },
 }
 
 impl Entry {
-    /// About how much memory it takes up, bytes.
+    /// Approximate memory use, bytes.
     pub(crate) fn size(&self) -> usize {
         match self {
             Entry::Decision(decision) => {
@@ -62,14 +62,14 @@ impl Entry {
     }
 }
 
-/// A decision of the game, and what led to it.
+/// A decision of the game with its inputs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Decision {
-    /// The truth, with the events since the decision before.
+    /// The frame, with the events since the previous decision.
     pub frame: Arc<Frame>,
-    /// The pictures that were shown since then, where they are not recorded as messages.
+    /// The pictures shown since then, unless recorded as messages.
     pub pictures: Vec<Picture>,
-    /// What the game was given since then, in order.
+    /// The game's inputs since then, in order.
     pub inputs: Vec<Input>,
 }
 
@@ -77,32 +77,32 @@ pub struct Decision {
 pub struct Writer<W: Write + Seek> {
     mcap: mcap::Writer<W>,
     began_utc_ns: u64,
-    /// The topics of pictures, by team.
+    /// The topics of pictures, by team index.
     pictures: Vec<String>,
-    /// Number and count of messages, by topic.
+    /// Channel number and message count, by topic.
     channels: BTreeMap<String, (u16, u32)>,
     /// Whether something has been written since the last flush.
     is_dirty: bool,
 }
 
 impl<W: Write + Seek> Writer<W> {
-    /// Begins a recording.
+    /// Starts a recording.
     ///
     /// # Errors
-    /// [`RecordError`] if the file does not take it.
+    /// [`RecordError`] if the file cannot be written.
     pub fn begin(file: W, opening: &Opening) -> Result<Writer<W>, RecordError> {
         let options = mcap::WriteOptions::new().profile("ros2").library(format!("squall {}", primitives::VERSION));
-        // A chunk is written when it is whole: what is on the disk is then never in need of mending.
-        // Compressed (zlib), a 2v2 game would be a quarter to half as long. But that needs C,
-        // and a file that was cut would lose everything from the cut chunk on.
+        // A chunk is written only when complete, so the file on disk never needs repair. With
+        // compression (zlib), a 2v2 game would be a quarter to half the size. But that needs C, and
+        // a truncated file would lose everything from the cut chunk on.
         let options = options.compression(None).chunk_size(Some(CHUNK)).disable_seeking(true);
         let mut mcap = options.create(file)?;
         let Opening { kind, began_utc_ns, facts, more, teams } = opening.clone();
         let mut header = facts;
         header.entry(VERSION.to_owned()).or_insert_with(|| primitives::VERSION.to_owned());
         header.insert(BEGAN.to_owned(), began_utc_ns.to_string());
-        // A checksum of the header's own: the one over the whole file is missing where the file
-        // is cut, and a header is believed as a whole or not at all.
+        // The header has its own checksum: a truncated file lacks the one over the whole file, and
+        // a header is accepted as a whole or not at all.
         header.insert(CHECKSUM.to_owned(), checksum(&header));
         for (name, facts) in std::iter::once((kind.header(), header)).chain(more) {
             mcap.write_metadata(&Metadata { name: name.to_owned(), metadata: facts })?;
@@ -112,10 +112,10 @@ impl<W: Write + Seek> Writer<W> {
         Ok(Writer { mcap, began_utc_ns, pictures, channels: BTreeMap::new(), is_dirty: false })
     }
 
-    /// Records something, at this time (UTC, ns).
+    /// Records an entry at this time (UTC, ns).
     ///
     /// # Errors
-    /// [`RecordError`] if the file does not take it.
+    /// [`RecordError`] if the file cannot be written.
     pub fn write(&mut self, entry: &Entry, utc_ns: u64) -> Result<(), RecordError> {
         self.is_dirty = true;
         match entry {
@@ -127,10 +127,10 @@ impl<W: Write + Seek> Writer<W> {
         }
     }
 
-    /// Hands what was recorded to the system, if there is anything new.
+    /// Flushes new data to the system.
     ///
     /// # Errors
-    /// [`RecordError`] if the file does not take it.
+    /// [`RecordError`] if the file cannot be written.
     pub fn flush(&mut self) -> Result<(), RecordError> {
         if std::mem::take(&mut self.is_dirty) {
             self.mcap.flush()?;
@@ -138,10 +138,10 @@ impl<W: Write + Seek> Writer<W> {
         Ok(())
     }
 
-    /// Completes the file, with a result where there is one.
+    /// Completes the file, with a result if there is one.
     ///
     /// # Errors
-    /// [`RecordError`] if the file does not take it.
+    /// [`RecordError`] if the file cannot be written.
     pub fn end(mut self, result: Facts) -> Result<W, RecordError> {
         if !result.is_empty() {
             self.mcap.write_metadata(&Metadata { name: RESULT.to_owned(), metadata: result })?;
@@ -157,8 +157,8 @@ impl<W: Write + Seek> Writer<W> {
         }
         let stamp = Stamp { version: Inputs::VERSION, ..decision.frame.stamp };
         let inputs = decision.inputs.iter().map(|input| (*input).into()).collect();
-        // Inputs and not only what came of them: so a game can be simulated again, with another
-        // version or a debugger beside it, and a field game with real boats too.
+        // Inputs as well as their results: a game, including a field game with real boats, can then
+        // be simulated again with another version or in a debugger.
         self.put_message(INPUTS, &Inputs { stamp, inputs }, stamp, utc_ns)?;
         self.put_message(FRAME, &*decision.frame, stamp, utc_ns)
     }
@@ -185,21 +185,21 @@ impl<W: Write + Seek> Writer<W> {
                 (id, 0)
             }
         };
-        // Simulated time, over which tools plot: a lockstep game of ten minutes that took a
-        // second and a half would be a spike otherwise. The clock's time is `publish_time`.
+        // Tools plot over simulated time: by the wall clock, a lockstep game of ten minutes that
+        // took a second and a half would be a spike. The wall-clock time is `publish_time`.
         let log_time = self.began_utc_ns.saturating_add(u64::try_from(at.0).unwrap_or(0));
         let header = MessageHeader { channel_id, sequence, log_time, publish_time: utc_ns };
         Ok(self.mcap.write_to_known_channel(&header, bytes)?)
     }
 
-    /// A channel for this topic.
+    /// Opens a channel for this topic.
     fn open(&mut self, topic: &str, schema: &str) -> Result<u16, RecordError> {
         let definition = match schema {
             json_string::SCHEMA => json_string::DEFINITION.to_owned(),
             ours => ros::full_definition(ours).unwrap_or_default(),
         };
         let schema_id = self.mcap.add_schema(schema, "ros2msg", definition.as_bytes())?;
-        // The profile asks for the qualities of service that were offered: there were none.
+        // The profile requires the offered quality of service: there was none.
         let qos = BTreeMap::from([("offered_qos_profiles".to_owned(), "[]".to_owned())]);
         Ok(self.mcap.add_channel(schema_id, topic, "cdr", &qos)?)
     }

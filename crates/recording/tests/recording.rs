@@ -1,4 +1,4 @@
-//! Recordings: what is written is read again, also from a file that was cut, and other files are refused.
+//! Recordings: a round trip, also through a truncated file, and refusal of other files.
 
 use messages::helm::HelmQuestion;
 use messages::input::{Input, Inputs};
@@ -29,7 +29,7 @@ fn ending() -> Ending {
     Ending { outcome, run: serde_json::json!({"pace": "lockstep"}), dropped: 0 }
 }
 
-/// The decision `seq`, at which the first boat is at `north_m`.
+/// The decision `seq`, with the first boat at `north_m`.
 fn decision(seq: u64, north_m: f64) -> Decision {
     let at = |seq: u64, version| Stamp { valid_ns: SimTime(seq as i64 * 100_000_000), seq, version };
     let nav = Nav { north_m, ..Nav::default() };
@@ -47,7 +47,7 @@ fn status() -> Entry {
     Entry::Message { topic: "status/blue_one".to_owned(), schema: None, bytes, at: SimTime(50_000_000) }
 }
 
-/// A recording of a few decisions; `north_m` are where the first boat was.
+/// A recording of a few decisions; `north_m` are the positions of the first boat.
 fn recorded(north_m: &[f64]) -> Vec<u8> {
     let mut writer = Writer::begin(Cursor::new(Vec::new()), &header().opening()).expect("it begins");
     for (seq, north_m) in north_m.iter().enumerate() {
@@ -107,7 +107,7 @@ fn the_file_is_one_that_the_library_reads() {
     assert_eq!(count, 15);
 }
 
-/// What was message, message by message.
+/// Topic, number and content of every message.
 fn all_of(recording: &Recording) -> Vec<(String, u32, Vec<u8>)> {
     recording.bag().messages().map(|message| (message.topic.to_owned(), message.number, message.bytes)).collect()
 }
@@ -131,7 +131,7 @@ fn any_message_of_many_is_found_in_any_order() {
         .collect();
     assert_eq!((want.len(), recording.bag().span_utc_ns()), (4 * 900 - 2, 899));
     assert!(all_of(&recording) == want, "one after the other they are not those that the library reads");
-    // 1013 has no factor in common with their number, so that each comes once.
+    // 1013 is coprime to their number, so each comes once.
     for i in 0..want.len() {
         let place = i * 1013 % want.len();
         let message = recording.bag().message(place);
@@ -146,7 +146,7 @@ fn any_message_of_many_is_found_in_any_order() {
 fn a_file_cut_at_any_byte_opens_up_to_the_cut() {
     let whole = recorded(&[1.0, 2.0, 3.0, 4.0]);
     let all = all_of(&Recording::of(whole.clone()).unwrap_or_else(|e| panic!("{e}")));
-    // Every message ends where its bytes do, but that a text has a NUL after it.
+    // Every message ends with its bytes, except that a text is followed by a NUL.
     let mut from = 0;
     let mut ends = Vec::new();
     for (topic, number, bytes) in &all {
@@ -216,7 +216,7 @@ fn a_recorder_writes_beside_the_game_and_can_be_read_meanwhile() {
     assert!(!recording.is_cut() && recording.frame_count() == 50);
 }
 
-/// A file with this record right at its beginning.
+/// A file that starts with this record.
 fn with_record(opcode: u8, content: &[u8]) -> Vec<u8> {
     let mut bytes = recorded(&[1.0]);
     let length = (content.len() as u64).to_le_bytes();
@@ -236,12 +236,13 @@ fn records_that_say_they_are_longer_than_they_are_do_no_harm() {
     }
 }
 
-/// Where this is first.
+/// The first position of `part` in `bytes`.
 fn place_of(part: &[u8], bytes: &[u8]) -> usize {
     bytes.windows(part.len()).position(|window| window == part).expect("it is there")
 }
 
-/// Where the first schema is, in the first chunk. Before that is the header, without which nothing opens.
+/// The position of the first schema, in the first chunk. The header is before it; without the
+/// header nothing opens.
 fn first_schema(bytes: &[u8]) -> usize {
     place_of(b"ros2msg", bytes)
 }

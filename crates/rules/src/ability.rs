@@ -1,23 +1,23 @@
-//! Who may do things to others, and who may tag: the same for the referee and for whoever reckons with it.
+//! Whether a boat may act on others, and whether it may tag: shared by the referee and the minds.
 
 use super::{Rules, VehicleStanding};
 use primitives::time::SimTime;
 
-/// What decides whether a boat may act.
+/// The facts that decide whether a boat may act.
 #[derive(Clone, Copy, Debug)]
 pub struct Ability {
-    /// It is tagged and not home again.
+    /// It is tagged and not freed yet.
     pub tagged: bool,
-    /// It is out of action for a while (power play).
+    /// It is temporarily out of action (power play).
     pub disabled: bool,
-    /// It is outside of the field.
+    /// It is outside the field.
     pub outside: bool,
-    /// It may tag from this time on.
+    /// The time from which it may tag.
     pub tag_ready: SimTime,
 }
 
 impl Ability {
-    /// Whether it may do things to others: tag, grab, capture.
+    /// Whether it may act on others: tag, grab, capture.
     #[inline]
     #[must_use]
     pub fn acts(self) -> bool {
@@ -33,21 +33,21 @@ impl Ability {
 }
 
 impl Rules {
-    /// From when on a boat may tag again that tagged at `tagged_at`.
+    /// The time from which a boat that tagged at `tagged_at` may tag again.
     #[must_use]
     pub fn tag_ready_after(&self, tagged_at: SimTime) -> SimTime {
         tagged_at + self.tag_cooldown
     }
 
-    /// The share of the time between two tags for which a boat that may tag from `tag_ready` on must still wait, 0 to 1. Below a
-    /// cooldown of 1 s it is a share of 1 s.
+    /// Remaining wait until `tag_ready` as a share of the tag cooldown, 0 to 1. A cooldown below 1
+    /// s counts as 1 s.
     #[must_use]
     pub fn tag_wait_share(&self, tag_ready: SimTime, now: SimTime) -> f64 {
         (tag_wait_s(tag_ready, now) / self.tag_cooldown.as_s().max(1.0)).min(1.0)
     }
 }
 
-/// How long a boat that may tag from `tag_ready` on must still wait, s; never below 0.
+/// Remaining wait until `tag_ready`, s; never below 0.
 #[must_use]
 pub fn tag_wait_s(tag_ready: SimTime, now: SimTime) -> f64 {
     (tag_ready - now).as_s().max(0.0)

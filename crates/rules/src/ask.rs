@@ -1,10 +1,10 @@
-//! Requests: what a boat asks the referee for, where the rules want it to ask.
+//! Requests of boats to the referee, for rules that require requests.
 
-/// What a boat asks for.
+/// The requests of one boat.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Asks {
-    /// For a tag.
+    /// Requests a tag.
     pub tag: bool,
-    /// For a flag.
+    /// Requests a flag.
     pub grab: bool,
 }

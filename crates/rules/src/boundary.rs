@@ -6,8 +6,8 @@ use primitives::frame::Ned;
 use primitives::id::VehicleId;
 
 impl Referee {
-    /// Notes who left the field and who came back. Outside of it nobody carries a flag and, with
-    /// `boundary_tags`, everybody is tagged.
+    /// Records boats that left the field or came back. Outside the field no boat carries a flag
+    /// and, with `boundary_tags`, every boat is tagged.
     pub(super) fn watch_boundary(&self, standing: &mut Standing, at: &impl Fn(usize) -> Ned, events: &mut Vec<Event>) {
         for i in 0..standing.vehicles.len() {
             let boat = &mut standing.vehicles[i];

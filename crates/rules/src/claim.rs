@@ -1,9 +1,9 @@
-//! Claims: what boats reach for at the same moment, and who gets it.
+//! Claims: competing attempts of boats in the same tick, and who succeeds.
 
 use super::{Resolution, TagChoice};
 use std::cmp::Ordering;
 
-/// Boat `by` reaches for `on` (a boat to tag, a flag to grab).
+/// Boat `by` claims `on` (a boat to tag, a flag to grab).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Claim {
     pub(super) by: u16,
@@ -17,12 +17,13 @@ impl Claim {
     }
 }
 
-/// Keeps the claims that are granted.
+/// Reduces the claims to the granted ones.
 ///
-/// Every boat reaches for one thing, the nearest or the first. At once: of all who reach for the same thing the nearest
-/// gets it, and who comes away empty-handed has lost nothing and may reach for something else at the next look; granted
-/// claims are in the order of what is claimed. In turn: a boat gets what no boat before it has, and reaches for nothing
-/// else; granted claims are in the order of the boats. Between equals the lower index decides.
+/// Each boat claims one target, the nearest or the first. At once: of all boats that claim the same
+/// target the nearest gets it; the others lose nothing and may claim another target at the next
+/// look. Granted claims are ordered by target. In turn: a boat gets its target if no boat before it
+/// has claimed it, and claims nothing else. Granted claims are ordered by boat. Ties go to the
+/// lower index.
 pub(super) fn settle(claims: &mut Vec<Claim>, choice: TagChoice, resolution: Resolution) {
     claims.sort_unstable_by(|x, y| {
         let wanted = if choice == TagChoice::Nearest { x.nearer(y) } else { Ordering::Equal };

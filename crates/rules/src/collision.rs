@@ -1,4 +1,4 @@
-//! Collisions: boats that come closer than they should.
+//! Collisions: boats closer than the collision distance.
 
 use super::{Notes, Referee, Standing};
 use crate::event::Event;
@@ -6,8 +6,7 @@ use primitives::id::VehicleId;
 use primitives::near::Pair;
 
 impl Referee {
-    /// Notes who has come too close to whom; once for as long as they stay close. Boats out of play are
-    /// as solid as any.
+    /// Records new collisions, once per encounter. Boats out of play are as solid as any.
     pub(super) fn watch_collisions(
         &self,
         standing: &mut Standing,
@@ -17,7 +16,8 @@ impl Referee {
     ) {
         let reach_squared = self.rules.collision_distance_m * self.rules.collision_distance_m;
         notes.touching.clear();
-        // Both lists are in the same order: one pass over the old one finds every pair of the new one.
+        // Both lists have the same order, so one pass over the old one finds every pair of the new
+        // one.
         let mut before = standing.touching.iter().peekable();
         for pair in near.iter().filter(|pair| pair.distance_squared < reach_squared) {
             let (first, second) = (VehicleId(pair.a), VehicleId(pair.b));

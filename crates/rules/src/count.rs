@@ -1,44 +1,45 @@
-//! Tallies of a game: what each boat and each team did.
+//! Tallies of a game: the deeds of each boat and each team.
 
 use crate::event::{Event, TagCause};
 use primitives::id::{TeamId, VehicleId};
 use serde::{Deserialize, Serialize};
 
-/// How often what happened.
+/// Counts of each kind of event.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counts {
-    /// Flags taken.
+    /// Flags grabbed.
     pub grabs: u32,
-    /// Flags brought in.
+    /// Flags captured.
     pub captures: u32,
     /// Opponents tagged.
     pub tags: u32,
-    /// Times tagged, by an opponent or the boundary.
+    /// Times tagged, by an opponent or by the boundary.
     pub tagged: u32,
     /// Times the boat left the field.
     pub out_of_bounds: u32,
-    /// Collisions the boat was in. A team's count adds up its boats', so one between team-mates is two.
+    /// Collisions that involved the boat. A team's count adds up its boats', so a collision between
+    /// team-mates counts twice.
     pub collisions: u32,
-    /// Times the boat's agent was lost. Older recordings have it under its former name.
+    /// Times the boat's agent was lost. Older recordings use its former name.
     #[serde(alias = "minds_lost")]
     pub agents_lost: u32,
 }
 
-/// The tally of a game, kept from its events.
+/// The tally of a game, computed from its events.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Tally {
-    /// By vehicle.
+    /// Counts, by vehicle index.
     pub vehicles: Vec<Counts>,
 }
 
 impl Tally {
-    /// Nothing has happened to any of `vehicles` boats.
+    /// The tally of `vehicles` boats before any event.
     #[must_use]
     pub fn new(vehicles: usize) -> Tally {
         Tally { vehicles: vec![Counts::default(); vehicles] }
     }
 
-    /// Takes one more event into account.
+    /// Adds one event.
     pub fn add(&mut self, event: Event) {
         let mut count = |vehicle: VehicleId, field: fn(&mut Counts) -> &mut u32| {
             *field(&mut self.vehicles[vehicle.index()]) += 1;

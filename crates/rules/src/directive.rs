@@ -1,30 +1,30 @@
-//! Directives: what the rules impose on a boat, for the world or a gateway to enforce.
+//! Directives: constraints that the rules impose on a boat, for the world or a gateway to enforce.
 
 use super::{Referee, Standing, TaggedBoat};
 use primitives::frame::Ned;
 use primitives::id::VehicleId;
 
-/// What the rules impose on one boat.
+/// The constraint that the rules impose on one boat.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Directive {
-    /// It does as its mind says, at no more than this share of its top speed.
+    /// It follows its mind, at no more than this share of its top speed.
     Free {
         /// Between 0 and 1.
         speed_factor: f64,
     },
-    /// It is tagged and driven straight home, whatever its mind says, at this share of its top speed.
+    /// It is tagged and driven straight home at this share of its top speed; its mind is ignored.
     DrivenHome {
-        /// Where it is freed.
+        /// The place where it is freed.
         to: Ned,
         /// Between 0 and 1.
         speed_factor: f64,
     },
-    /// It holds, whatever its mind says: out of action, or out of play for good.
+    /// It holds and its mind is ignored: temporarily out of action, or out of play for good.
     Hold,
 }
 
 impl Referee {
-    /// What the rules impose on a boat that is at `at`. Of two limits to its speed the lower one holds.
+    /// The constraint on a boat at `at`. Of two speed limits the lower one applies.
     #[inline]
     #[must_use]
     pub fn directive(&self, standing: &Standing, vehicle: VehicleId, at: Ned) -> Directive {

@@ -1,12 +1,12 @@
-//! The end: a score is reached or time is up.
+//! The end of a game: a winning score or the time limit.
 
 use super::{Referee, Standing};
 use crate::event::Event;
 use primitives::id::TeamId;
 
 impl Referee {
-    /// Ends the game when it is won or time is up. The highest score wins, even if two teams reach the
-    /// winning score at the same look; equal scores are a draw.
+    /// Ends the game when it is won or time is up. The highest score wins, even if two teams reach
+    /// the winning score in the same tick; equal scores are a draw.
     pub(super) fn end(&self, standing: &mut Standing, events: &mut Vec<Event>) {
         let best = standing.score.iter().copied().max().unwrap_or(0);
         let won = self.rules.win_score.is_some_and(|win_score| best >= win_score);

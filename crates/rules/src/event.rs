@@ -1,27 +1,27 @@
-//! What happened in a game, in the past tense.
+//! Events of a game, in the past tense.
 
 use primitives::id::{FlagId, TeamId, VehicleId};
 use primitives::time::SimTime;
 use serde::{Deserialize, Serialize};
 use strum::IntoStaticStr;
 
-/// An event, with the tick and the time at which it happened.
+/// An event with its tick and time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Logged {
     /// Physics tick, counted from 0 at the start of the game.
     pub tick: u64,
     /// Simulated time.
     pub at: SimTime,
-    /// What happened.
+    /// The event.
     pub event: Event,
 }
 
-/// How far somebody has read a log of events that grows.
+/// A reader's position in a growing event log.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct EventCursor(usize);
 
 impl EventCursor {
-    /// The events that were added to the log since it was read last.
+    /// The events added to the log since the last read.
     pub fn read<'a, E>(&mut self, log: &'a [E]) -> &'a [E] {
         let new = log.get(self.0..).unwrap_or_default();
         self.0 = log.len();
@@ -29,7 +29,7 @@ impl EventCursor {
     }
 }
 
-/// Why a boat was tagged.
+/// The cause of a tag.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum TagCause {
     /// An opponent came near enough on its own side.
@@ -38,54 +38,54 @@ pub enum TagCause {
     Boundary,
 }
 
-/// What happened.
+/// An event of a game.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, IntoStaticStr)]
 #[strum(serialize_all = "snake_case")]
 pub enum Event {
-    /// A boat took an opponent's flag.
+    /// A boat grabbed an opponent's flag.
     Grabbed {
-        /// Who took it.
+        /// The boat that grabbed it.
         vehicle: VehicleId,
-        /// Which flag.
+        /// The grabbed flag.
         flag: FlagId,
     },
-    /// A boat brought a flag in.
+    /// A boat captured a flag.
     Captured {
-        /// Who brought it.
+        /// The boat that captured it.
         vehicle: VehicleId,
-        /// Which flag.
+        /// The captured flag.
         flag: FlagId,
     },
     /// A boat was tagged.
     Tagged {
-        /// Who is tagged now.
+        /// The tagged boat.
         vehicle: VehicleId,
-        /// Why.
+        /// The cause of the tag.
         cause: TagCause,
     },
-    /// A tagged boat came home and plays again.
+    /// A tagged boat was freed and plays again.
     Untagged(VehicleId),
-    /// A carrier lost its flag, which is at its home again.
+    /// A carrier lost its flag, which is home again.
     FlagReturned {
-        /// Who lost it.
+        /// The boat that lost it.
         vehicle: VehicleId,
-        /// Which flag.
+        /// The returned flag.
         flag: FlagId,
     },
     /// A boat left the field.
     LeftField(VehicleId),
-    /// A boat came back onto the field.
+    /// A boat came back to the field.
     ReturnedToField(VehicleId),
     /// Two boats came closer than the collision distance.
     Collided {
-        /// The one with the lower index.
+        /// The boat with the lower index.
         first: VehicleId,
-        /// The one with the higher index.
+        /// The boat with the higher index.
         second: VehicleId,
     },
-    /// A boat came into the keep-out circle of its own flag.
+    /// A boat entered the keep-out circle of its own flag.
     EnteredKeepout(VehicleId),
-    /// A boat is out of action for a while (power play).
+    /// A boat is temporarily out of action (power play).
     Disabled(VehicleId),
     /// A boat is back in action.
     Enabled(VehicleId),
@@ -93,29 +93,29 @@ pub enum Event {
     AgentLost(VehicleId),
     /// A boat's agent is back.
     AgentBack(VehicleId),
-    /// A boat's numbers went bad: it lies still where it last was and plays no more.
+    /// A boat's state became non-finite: it stays at its last position and plays no more.
     Quarantined(VehicleId),
-    /// It is not known any more where a real boat is: it is to hold.
+    /// The position of a real boat is no longer known: it must hold.
     NavLost(VehicleId),
-    /// It is known again where a real boat is.
+    /// The position of a real boat is known again.
     NavBack(VehicleId),
-    /// Somebody ashore stopped all boats.
+    /// An operator stopped all boats.
     EStopped,
-    /// That stop is over.
+    /// An operator ended the E-stop.
     Released,
-    /// Somebody ashore makes all boats hold for now.
+    /// An operator makes all boats hold for now.
     Halted,
-    /// They may go on.
+    /// An operator ended the hold.
     WentOn,
     /// The game is over.
     Ended {
-        /// Who won; `None` is a draw.
+        /// The winning team; `None` is a draw.
         winner: Option<TeamId>,
     },
 }
 
 impl Event {
-    /// The boat it happened to: the first of two in a collision, nobody at the end of a game.
+    /// The affected boat: the first of two in a collision, none at the end of a game.
     #[must_use]
     pub fn vehicle(self) -> Option<VehicleId> {
         match self {
@@ -139,7 +139,7 @@ impl Event {
         }
     }
 
-    /// The second boat that it took: the tagger, or the other of two in a collision.
+    /// The second boat involved: the tagger, or the other of two in a collision.
     #[must_use]
     pub fn other(self) -> Option<VehicleId> {
         match self {
@@ -149,7 +149,7 @@ impl Event {
         }
     }
 
-    /// The flag that it is about.
+    /// The flag involved.
     #[must_use]
     pub fn flag(self) -> Option<FlagId> {
         match self {
@@ -159,16 +159,16 @@ impl Event {
     }
 }
 
-/// An event as two numbers.
+/// An event encoded as numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct EventRecord {
     /// Physics tick.
     pub tick: u64,
     /// Simulated time, ns.
     pub at_ns: SimTime,
-    /// What happened: the constants of `EventRecord.msg`.
+    /// The kind: a constant of `EventRecord.msg`.
     pub kind: u8,
-    /// The vehicle it happened to (the winning team, for `ENDED`), or -1.
+    /// The affected vehicle (the winning team, for `ENDED`), or -1.
     pub subject: i32,
     /// The flag, the tagger or the other vehicle, or -1.
     pub object: i32,
@@ -207,7 +207,7 @@ impl From<Logged> for EventRecord {
 }
 
 impl EventRecord {
-    /// The event, if kind and numbers are ones we know.
+    /// Decodes the event, if kind and numbers are known.
     #[must_use]
     pub fn logged(&self) -> Option<Logged> {
         let vehicle = u16::try_from(self.subject).ok().map(VehicleId);

@@ -1,4 +1,4 @@
-//! The field: one rectangle on the water, and everything that follows from it, derived once.
+//! The field: one rectangle on the water, and the geometry derived from it once.
 //!
 //! ```text
 //!        corner 1 ──────────────── corner 2        `along` runs from the first team's end to the
@@ -68,19 +68,19 @@ pub enum Walls {
     AllRound,
 }
 
-/// A flag and whose it is.
+/// A flag with its team.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Flag {
     /// The team that defends it.
     pub team: TeamId,
-    /// Where it stands when nobody carries it.
+    /// Its position while nobody carries it.
     pub home: Ned,
 }
 
-/// Something solid in the water.
+/// A solid obstacle in the water.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Obstacle {
-    /// A round one.
+    /// A circle.
     Circle {
         /// Its centre.
         centre: Ned,
@@ -89,13 +89,13 @@ pub enum Obstacle {
     },
     /// A polygon without self-crossings, corners in order (either way round).
     Polygon {
-        /// Its corners, three at least.
+        /// Its corners, at least three.
         corners: Vec<Ned>,
     },
 }
 
 impl Obstacle {
-    /// Whether a place is within it.
+    /// Whether it contains a place.
     #[must_use]
     pub fn contains(&self, at: Ned) -> bool {
         match self {
@@ -104,7 +104,7 @@ impl Obstacle {
         }
     }
 
-    /// The distance from its edge, m; 0 within.
+    /// The distance to it, m; 0 inside.
     #[must_use]
     pub fn distance(&self, at: Ned) -> f64 {
         match self {
@@ -120,7 +120,7 @@ pub fn sides(corners: &[Ned]) -> impl Iterator<Item = (Ned, Ned)> {
     corners.iter().copied().zip(corners.iter().copied().cycle().skip(1))
 }
 
-/// Whether a polygon contains a place: a line from there crosses its outline an odd number of times.
+/// Whether a polygon contains a place: a ray from there crosses its outline an odd number of times.
 #[must_use]
 pub fn is_within(corners: &[Ned], at: Ned) -> bool {
     let crossed = |(a, b): &(Ned, Ned)| {
@@ -136,7 +136,7 @@ pub fn distance_to_outline(corners: &[Ned], at: Ned) -> f64 {
     sides(corners).map(|(a, b)| distance_to_side(a, b, at)).fold(f64::INFINITY, f64::min)
 }
 
-/// The distance to the straight line from `a` to `b`, m.
+/// The distance to the line segment from `a` to `b`, m.
 #[must_use]
 pub fn distance_to_side(a: Ned, b: Ned, at: Ned) -> f64 {
     let (side, from_a) = (b - a, at - a);
@@ -145,7 +145,8 @@ pub fn distance_to_side(a: Ned, b: Ned, at: Ned) -> f64 {
     from_a.distance(side.scaled(share))
 }
 
-/// The distance between a polygon and the straight line from `a` to `b`, m; 0 where they have a point in common.
+/// The distance between a polygon's outline and the line segment from `a` to `b`, m; 0 if they
+/// intersect.
 #[must_use]
 pub fn distance_to_line(corners: &[Ned], (a, b): (Ned, Ned)) -> f64 {
     if is_within(corners, a) || sides(corners).any(|side| do_meet(side, (a, b))) {
@@ -155,7 +156,7 @@ pub fn distance_to_line(corners: &[Ned], (a, b): (Ned, Ned)) -> f64 {
     corners.iter().map(|corner| distance_to_side(a, b, *corner)).fold(of_ends, f64::min)
 }
 
-/// Whether two straight lines between points have a point in common.
+/// Whether two line segments have a point in common.
 #[must_use]
 pub fn do_meet((a, b): (Ned, Ned), (c, d): (Ned, Ned)) -> bool {
     let (c_side, d_side) = (turn(a, b, c), turn(a, b, d));
@@ -164,7 +165,8 @@ pub fn do_meet((a, b): (Ned, Ned), (c, d): (Ned, Ned)) -> bool {
     if apart(c_side, d_side) || apart(a_side, b_side) {
         return false;
     }
-    // Unless all are in one line, each segment reaches the other's line on both sides: they meet.
+    // Unless all points are collinear, the segments intersect if each reaches both sides of the
+    // other's line.
     let in_line = c_side == 0.0 && d_side == 0.0;
     let overlaps = |p: f64, q: f64, r: f64, s: f64| p.min(q) <= r.max(s) && r.min(s) <= p.max(q);
     !in_line || (overlaps(a.north, b.north, c.north, d.north) && overlaps(a.east, b.east, c.east, d.east))
@@ -176,28 +178,30 @@ pub fn turn(a: Ned, b: Ned, c: Ned) -> f64 {
     (b.north - a.north) * (c.east - a.east) - (b.east - a.east) * (c.north - a.north)
 }
 
-/// A convex region: the inside of a few straight edges. The edges belong to it.
+/// A convex region bounded by straight edges. The edges belong to it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Zone {
-    /// Unit normals that point out, each with the largest scalar product a point inside has with it.
+    /// Outward unit normals, each with the largest scalar product of any inside point with it.
     edges: Vec<(Ned, f64)>,
     /// The corners, in order.
     pub corners: Vec<Ned>,
 }
 
 impl Zone {
-    /// The convex polygon with these corners, given in order clockwise as seen on the chart.
+    /// The convex polygon with these corners, in clockwise order on the chart.
     fn new(corners: Vec<Ned>) -> Zone {
         let edge = |(a, b): (Ned, Ned)| {
             let (side, length) = (b - a, a.distance(b));
-            // A quarter turn to port of the side's direction: outward, since we go clockwise.
+            // A quarter turn to port of the side's direction: outward, because the corners are
+            // clockwise.
             let out = Ned { north: side.east / length, east: -side.north / length };
             (out, out.dot(a))
         };
         Zone { edges: sides(&corners).map(edge).collect(), corners }
     }
 
-    /// Whether `at` is inside or on an edge (to a nanometre, so that rounding does not decide).
+    /// Whether `at` is inside or on an edge, with a tolerance of 1 nm, so that rounding does not
+    /// decide.
     #[inline]
     #[must_use]
     pub fn contains(&self, at: Ned) -> bool {
@@ -205,10 +209,10 @@ impl Zone {
     }
 }
 
-/// The field with all that is derived from its plan.
+/// The field with all geometry derived from its plan.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Field {
-    /// What the field file states.
+    /// The contents of the field file.
     pub plan: Plan,
     /// Unit vector from the first team's end to the second's.
     pub along: Ned,
@@ -216,7 +220,7 @@ pub struct Field {
     pub across: Ned,
     /// The four corners, clockwise from corner 0.
     pub corners: [Ned; 4],
-    /// All flags; the first two are the teams' own.
+    /// All flags; the first two are the teams' default flags.
     pub flags: Vec<Flag>,
     /// Each team's own side, by team.
     pub zones: Vec<Zone>,
@@ -226,13 +230,14 @@ pub struct Field {
     pub scrimmage: [Ned; 2],
 }
 
-/// The columns of the named points, from the port side as a team looks at its opponent's end.
+/// The columns of the named points, from port to starboard facing the opponent's end.
 const COLUMNS: [(&str, f64); 5] = [("PP", 0.0), ("P", 0.25), ("C", 0.5), ("S", 0.75), ("SS", 1.0)];
-/// The rows of the named points, from the own end: back, flag, half, mid, centre, and theirs.
+/// The rows of the named points, from the own end: back, flag, half, mid, centre, and their mirror
+/// images.
 const ROWS: [&str; 9] = ["B", "F", "H", "M", "C", "MX", "HX", "FX", "BX"];
 
 impl Field {
-    /// Derives everything from the plan. Two teams: the first has the end at corner 0.
+    /// Derives all geometry from the plan. Of the two teams, the first has the end at corner 0.
     #[must_use]
     pub fn new(plan: Plan) -> Field {
         let along = Ned::toward_deg(plan.along_deg);
@@ -260,7 +265,7 @@ impl Field {
         self.plan.corner + self.along.scaled(along_m) + self.across.scaled(across_m)
     }
 
-    /// Where `at` lies on the field: (metres along, metres across).
+    /// Field coordinates of `at`: (metres along, metres across).
     #[inline]
     #[must_use]
     pub fn along_across(&self, at: Ned) -> (f64, f64) {
@@ -274,7 +279,7 @@ impl Field {
         (self.corners[0] + self.corners[2]).scaled(0.5)
     }
 
-    /// Whether `at` is on the field; the boundary itself is out.
+    /// Whether `at` is on the field, boundary excluded.
     #[inline]
     #[must_use]
     pub fn contains(&self, at: Ned) -> bool {
@@ -282,25 +287,26 @@ impl Field {
         x > 0.0 && x < self.plan.width_m && y > 0.0 && y < self.plan.depth_m
     }
 
-    /// How far inside of the nearest side of the field `at` is, m; below 0 outside.
+    /// Distance of `at` from the nearest side of the field, m; negative outside.
     #[must_use]
     pub fn inside_by_m(&self, at: Ned) -> f64 {
         let (x, y) = self.along_across(at);
         x.min(self.plan.width_m - x).min(y).min(self.plan.depth_m - y)
     }
 
-    /// Compass bearing in which `team` looks at its opponent's end, degrees.
+    /// Compass bearing from the end of `team` to its opponent's end, degrees.
     #[must_use]
     pub fn facing_deg(&self, team: TeamId) -> f64 {
         if team.index() == 0 { self.plan.along_deg } else { self.plan.along_deg + 180.0 }
     }
 
-    /// Where a boat of `team` at `at` steers for a corner of its own end: the nearer of the two points that lie `inset_m`
-    /// inside of both edges. The corners themselves are on the boundary: whoever makes for one from outside follows the
-    /// edge on the wrong side of it.
+    /// Target of a boat of `team` at `at` that heads for a corner of its own end: the nearer of the
+    /// two points `inset_m` inside both edges. The corners themselves are on the boundary: a boat
+    /// that heads for one from outside would follow the edge on the wrong side.
     #[must_use]
     pub fn inside_own_corner(&self, team: TeamId, at: Ned, inset_m: f64) -> Option<Ned> {
-        // Clockwise: the field lies to starboard of the way from the first corner to the second.
+        // Clockwise: the field is to starboard of the direction from the first corner to the
+        // second.
         let [first, second] = *self.own_corners.get(team.index())?;
         let ahead = (second - first).scaled(inset_m / first.distance(second));
         let inward = Ned { north: -ahead.east, east: ahead.north };
@@ -325,10 +331,11 @@ impl Field {
         Some(self.seen_from(team, along_m, self.plan.depth_m * column))
     }
 
-    /// The position `ahead_m` from the team's own end and `from_port_m` from the edge to its port side.
+    /// The position `ahead_m` from the team's own end and `from_port_m` from the edge on its port
+    /// side.
     #[must_use]
     pub fn seen_from(&self, team: TeamId, ahead_m: f64, from_port_m: f64) -> Ned {
-        // The first team looks along, so its port side is where `across` is largest.
+        // The first team faces along, so its port side is where `across` is largest.
         if team.index() == 0 {
             self.at(ahead_m, self.plan.depth_m - from_port_m)
         } else {
@@ -336,7 +343,7 @@ impl Field {
         }
     }
 
-    /// All names that [`Field::point`] knows.
+    /// All names that [`Field::point`] accepts.
     #[must_use]
     pub fn point_names() -> Vec<String> {
         COLUMNS.iter().flat_map(|(column, _)| ROWS.iter().map(move |row| format!("{column}{row}"))).collect()
@@ -412,7 +419,7 @@ mod tests {
 
     #[test]
     fn published_fields_come_out_where_they_were_sailed() {
-        // Corners and flags as the 2025 West Point and 2023 Jervis Bay missions list them.
+        // Corners and flags as listed in the 2025 West Point and 2023 Jervis Bay missions.
         let popolopen = Field::new(plan((225.4522, 42.2876), 20.0, 160.0, 80.0, 20.0));
         assert_near(popolopen.flags[0].home, 194.71, 74.76);
         assert_near(popolopen.flags[1].home, 235.75, 187.53);
@@ -423,7 +430,7 @@ mod tests {
 
     #[test]
     fn boats_steer_for_points_inside_of_their_own_corners() {
-        // The points for which the competition of 2026 steers: 10 m from both edges.
+        // The targets of boats in the 2026 competition: 10 m from both edges.
         let field = Field::new(plan((0.0, 0.0), 90.0, 160.0, 80.0, 20.0));
         for (team, from, want) in [
             (0, (40.0, 81.0), (10.0, 70.0)),

@@ -1,4 +1,4 @@
-//! Flags: grabbed by coming near, captured by bringing them in, home again when lost.
+//! Flags: grabbed within a radius, captured at the place of capture, returned home when lost.
 
 use super::claim::{Claim, settle};
 use super::{Acting, Look, Notes, Referee, Resolution, Standing, TagChoice};
@@ -6,10 +6,10 @@ use crate::event::Event;
 use primitives::id::{FlagId, VehicleId};
 
 impl Referee {
-    /// Gives flags to the opponents that are near enough, and ask where they have to; nobody has two.
+    /// Gives flags to opponents in reach, on request if the rules require it. No boat carries two.
     ///
-    /// A boat reaches for the nearest flag that can be taken; who of several boats at one flag gets it,
-    /// [`Resolution`] says. Only flags that were home all the time since the last look can be taken, but in turn.
+    /// A boat claims the nearest available flag; [`Resolution`] decides between several boats at
+    /// one flag. A flag is available only if it has been home since the last look, except in turn.
     pub(super) fn grab(&self, standing: &mut Standing, notes: &mut Notes, look: &Look<'_>, events: &mut Vec<Event>) {
         let reach_squared = self.rules.grab_radius_m * self.rules.grab_radius_m;
         notes.claims.clear();
@@ -43,11 +43,11 @@ impl Referee {
         }
     }
 
-    /// Counts the flags that carriers have brought in; they are home again. A flag grabbed at this look
-    /// counts at the next one at the earliest, even where the grab is already at the place of capture.
+    /// Scores the flags that carriers have brought in and returns them home. A flag grabbed at this
+    /// look counts at the next one at the earliest, even if the grab was at the place of capture.
     ///
-    /// With `capture_needs_own_flag`, all flags of the carrier's own team must be home after the grabs and
-    /// before the captures of this look.
+    /// With `capture_needs_own_flag`, all flags of the carrier's own team must be home after the
+    /// grabs and before the captures of this look.
     pub(super) fn capture(&self, standing: &mut Standing, notes: &mut Notes, look: &Look<'_>, events: &mut Vec<Event>) {
         notes.claims.clear();
         for (on, state) in standing.flags.iter().enumerate() {
@@ -73,7 +73,7 @@ impl Referee {
 }
 
 impl Standing {
-    /// Takes the flag from a boat that carries one and puts it back to its home.
+    /// Takes the flag from a carrier and returns it home.
     pub(super) fn drop_flag(&mut self, vehicle: VehicleId, events: &mut Vec<Event>) {
         if let Some(flag) = self.vehicles[vehicle.index()].carrying.take() {
             self.bring_home(flag);

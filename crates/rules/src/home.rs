@@ -1,4 +1,4 @@
-//! Home: where tagged boats are freed.
+//! Home: the place where tagged boats are freed.
 
 use super::{Referee, Standing, UntagOn};
 use crate::event::Event;
@@ -6,10 +6,10 @@ use primitives::frame::Ned;
 use primitives::id::VehicleId;
 
 impl Referee {
-    /// Frees the tagged boats that have come home, at the next look after the tag at the earliest.
+    /// Frees the tagged boats that are home, at the next look after the tag at the earliest.
     ///
-    /// Home ends at the boundary, although the corners' circles reach over it: a boat that was tagged for
-    /// leaving the field is not freed before it is back on it.
+    /// Home ends at the boundary, although the corners' circles extend beyond it. A boat tagged for
+    /// leaving the field is therefore not freed until it is back on the field.
     pub(super) fn untag(&self, standing: &mut Standing, at: &impl Fn(usize) -> Ned, events: &mut Vec<Event>) {
         for (i, boat) in standing.vehicles.iter_mut().enumerate() {
             let was_at_home = boat.at_home;

@@ -1,4 +1,4 @@
-//! Keep-out circles: a flag that is home keeps its own defenders at a distance.
+//! Keep-out circles: while a flag is home, its own defenders must keep their distance.
 
 use super::{Referee, Standing};
 use crate::event::Event;
@@ -6,8 +6,8 @@ use primitives::frame::Ned;
 use primitives::id::{TeamId, VehicleId};
 
 impl Referee {
-    /// The circle that a boat at `at` must stay out of, if there is one: centre and radius in m. Of several
-    /// flags of its own that are home it is the nearest one's.
+    /// The circle that a boat at `at` must stay out of, if any: centre and radius in m. If several
+    /// flags of its team are home, the nearest one's.
     #[must_use]
     pub fn keepout(&self, standing: &Standing, vehicle: VehicleId, at: Ned) -> Option<(Ned, f64)> {
         let radius_m = self.rules.flag_keepout_m;
@@ -17,7 +17,7 @@ impl Referee {
         at.nearest_of(self.own_flags_home(standing, self.team_of[vehicle.index()])).map(|centre| (centre, radius_m))
     }
 
-    /// Notes who has come into a keep-out circle, or was caught in one when the flag came home.
+    /// Records boats that entered a keep-out circle, or were inside one when the flag came home.
     pub(super) fn watch_keepouts(&self, standing: &mut Standing, at: &impl Fn(usize) -> Ned, events: &mut Vec<Event>) {
         let radius_m = self.rules.flag_keepout_m;
         if radius_m <= 0.0 {
@@ -35,7 +35,7 @@ impl Referee {
         }
     }
 
-    /// The homes of those of `team`'s flags that are home.
+    /// The home positions of those of `team`'s flags that are home.
     #[inline]
     fn own_flags_home(&self, standing: &Standing, team: TeamId) -> impl Iterator<Item = Ned> {
         self.field

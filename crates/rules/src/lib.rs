@@ -1,8 +1,8 @@
-//! The rules of the game, and the referee who applies them.
+//! The rules of the game, and the referee that applies them.
 //!
-//! [`Rules`] are data, from `scenarios/rules/*.toml`, whose keys they declare as the types of other scenario files do. The
-//! [`Referee`] sees where boats are and what time it is, never physics: the same referee judges a simulation, a replay and
-//! real water.
+//! [`Rules`] are data from `scenarios/rules/*.toml`. Their types declare the keys, as for other
+//! scenario files. The [`Referee`] sees positions and time, never physics: the same referee judges
+//! a simulation, a replay and a game on real water.
 
 mod ability;
 mod ask;
@@ -141,7 +141,8 @@ pub struct Rules {
 }
 
 impl Rules {
-    /// How near two boats must be to matter to each other by the rules, m: the reach of `near` in [`Referee::advance`].
+    /// Distance at which two boats become relevant to each other by the rules, m: the reach of
+    /// `near` in [`Referee::advance`].
     #[must_use]
     pub fn reach_m(&self) -> f64 {
         self.tag_radius_m.max(self.collision_distance_m)
@@ -163,7 +164,7 @@ pub struct Points {
 }
 
 impl Points {
-    /// What these are worth.
+    /// The points for these counts.
     #[must_use]
     pub fn of(&self, counts: &Counts) -> u32 {
         self.grab * counts.grabs + self.capture * counts.captures + self.tag * counts.tags

@@ -1,6 +1,7 @@
-//! Places by the rules: where a flag is captured, and where a tagged boat is freed.
+//! Places defined by the rules: where a flag is captured, and where a tagged boat is freed.
 //!
-//! The referee judges by these functions and agents steer by them. They depend on the field, the rules and a position alone.
+//! The referee judges by these functions and agents steer by them. They depend only on the field,
+//! the rules and a position.
 
 use super::{CaptureAt, Rules, SideJudged, UntagAt};
 use crate::field::Field;
@@ -8,7 +9,7 @@ use primitives::frame::{Leg, Ned};
 use primitives::id::TeamId;
 
 impl Rules {
-    /// Where a boat is judged to be when its side counts.
+    /// The position that decides which side a boat is on.
     #[inline]
     #[must_use]
     pub fn side_place(&self, leg: Leg) -> Ned {
@@ -18,7 +19,7 @@ impl Rules {
         }
     }
 
-    /// Whether a carrier of `team` that has moved along `leg` is where a flag is captured.
+    /// Whether a carrier of `team` that has moved along `leg` is at the place of capture.
     #[must_use]
     pub fn is_capture_place(&self, field: &Field, team: TeamId, leg: Leg) -> bool {
         match self.capture_at {
@@ -28,8 +29,9 @@ impl Rules {
         }
     }
 
-    /// Where a carrier of `team` at `at` steers to capture a flag: the nearest such place, and where any place on the own side
-    /// will do, the nearest own flag. None on a field without flags or corners of that team.
+    /// Target of a carrier of `team` at `at`: the nearest place of capture or, where any place on
+    /// the own side counts, the nearest own flag. None on a field without flags or corners of that
+    /// team.
     #[must_use]
     pub fn capture_place(&self, field: &Field, team: TeamId, at: Ned) -> Option<Ned> {
         match self.capture_at {
@@ -38,7 +40,7 @@ impl Rules {
         }
     }
 
-    /// Whether a tagged boat of `team` at `at` is where it is freed.
+    /// Whether a tagged boat of `team` at `at` is freed there.
     #[inline]
     #[must_use]
     pub fn is_untag_place(&self, field: &Field, team: TeamId, at: Ned) -> bool {
@@ -48,8 +50,8 @@ impl Rules {
         }
     }
 
-    /// Where a tagged boat of `team` at `at` steers to be freed: the nearest such place. None on a field without flags or
-    /// corners of that team.
+    /// Target of a tagged boat of `team` at `at`: the nearest place where it is freed. None on a
+    /// field without flags or corners of that team.
     #[must_use]
     pub fn untag_place(&self, field: &Field, team: TeamId, at: Ned) -> Option<Ned> {
         match self.untag_at {
@@ -58,7 +60,8 @@ impl Rules {
         }
     }
 
-    /// The centre of the nearest circle in which a tagged boat of `team` is freed; its radius is `untag_radius_m`.
+    /// The centre of the nearest circle in which a tagged boat of `team` is freed; its radius is
+    /// `untag_radius_m`.
     #[must_use]
     pub fn untag_centre(&self, field: &Field, team: TeamId, at: Ned) -> Option<Ned> {
         match self.untag_at {
@@ -78,8 +81,9 @@ fn is_near_own_corner(field: &Field, team: TeamId, at: Ned, radius_m: f64) -> bo
     field.own_corners(team).iter().any(|corner| at.distance_squared(*corner) < radius_m * radius_m)
 }
 
-/// How far inside of both edges boats steer that must come within `radius_m` of a corner, m. Half of it is 10 m where
-/// the competition of 2026 has 20 m, and leaves 3 tenths of the radius to spare.
+/// Inset from both edges for boats that must come within `radius_m` of a corner, m. With half the
+/// radius it is 10 m in the 2026 competition, which has 20 m, and leaves 3 tenths of the radius to
+/// spare.
 fn corner_inset_m(radius_m: f64) -> f64 {
     0.5 * radius_m
 }

@@ -1,4 +1,4 @@
-//! Power play: for a while each team is one boat short, never two teams at once.
+//! Power play: each team is one boat short for a while, never two teams at once.
 
 use super::{Referee, Standing};
 use crate::event::Event;
@@ -7,9 +7,9 @@ use primitives::stream::Stream;
 use primitives::time::SimTime;
 
 impl Referee {
-    /// Draws a boat of each team and when it is out of action. All orders of the teams and all positions
-    /// of the windows that fit into the game without overlapping are equally likely. A game too short for
-    /// all windows shares its time out between them.
+    /// Draws one boat of each team and its time out of action. All team orders and all positions of
+    /// the windows that fit into the game without overlap are equally likely. A game too short for
+    /// all windows divides its time among them.
     pub(super) fn draw_power_plays(&self, standing: &mut Standing, stream: &mut Stream) {
         if self.rules.power_play <= SimTime::ZERO {
             return;
@@ -27,7 +27,7 @@ impl Referee {
         stream.shuffle(&mut chosen);
         let (game, windows) = (self.rules.time_limit.0.max(0), chosen.len() as i64);
         let length = self.rules.power_play.0.min(game / windows);
-        // Ordered gaps that the windows leave between them are as random as the windows themselves.
+        // Sorting random gaps between the windows is equivalent to drawing the windows themselves.
         let spare = (game - length * windows) as u64;
         let mut gaps: Vec<u64> = chosen.iter().map(|_| stream.below(spare + 1)).collect();
         gaps.sort_unstable();
@@ -37,7 +37,7 @@ impl Referee {
         }
     }
 
-    /// Takes boats out of action and puts them back, by the windows drawn at the start.
+    /// Disables and enables boats by the windows drawn at the start.
     pub(super) fn switch_power_plays(&self, standing: &mut Standing, events: &mut Vec<Event>) {
         if self.rules.power_play <= SimTime::ZERO {
             return;

@@ -1,4 +1,4 @@
-//! What a team is shown of other boats.
+//! How a team learns about other boats.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -1,43 +1,43 @@
-//! How the game stands: who is tagged, who carries what, the score.
+//! The standing of a game: tagged boats, carried flags, the score.
 
 use super::Ability;
 use primitives::id::{FlagId, TeamId, VehicleId};
 use primitives::time::SimTime;
 use serde::{Deserialize, Serialize};
 
-/// The referee's whole memory.
+/// The referee's complete state.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Standing {
-    /// When the referee last looked.
+    /// Time of the referee's last look.
     pub now: SimTime,
-    /// By vehicle.
+    /// Boats, by vehicle index.
     pub vehicles: Vec<VehicleStanding>,
-    /// By flag.
+    /// Flags, by flag index.
     pub flags: Vec<FlagStanding>,
-    /// Points, by team.
+    /// Points, by team index.
     pub score: Vec<u32>,
-    /// Pairs of boats that are within the collision distance, lower index first, in order.
+    /// Pairs of boats within the collision distance, lower index first, sorted.
     pub touching: Vec<(VehicleId, VehicleId)>,
-    /// When each vehicle is out of action (power play): from, until; by vehicle.
+    /// Time out of action (power play) as from and until, by vehicle index.
     pub disabled: Vec<(SimTime, SimTime)>,
     /// Whether the game is over.
     pub over: bool,
 }
 
-/// How one boat stands.
+/// The standing of one boat.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct VehicleStanding {
-    /// Whether it takes part: a quarantined boat is only something to bump into.
+    /// Whether it takes part: a quarantined boat is a mere obstacle.
     pub in_play: bool,
     /// Whether it is tagged.
     pub tagged: bool,
-    /// When it was last tagged.
+    /// Time of its last tag.
     pub tagged_at: SimTime,
     /// The flag it carries.
     pub carrying: Option<FlagId>,
-    /// From when on it may tag again.
+    /// Time from which it may tag again.
     pub tag_ready: SimTime,
-    /// Whether it is outside of the field.
+    /// Whether it is outside the field.
     pub outside: bool,
     /// Whether it was in its untagging place, and on the field, at the last look.
     pub at_home: bool,
@@ -47,17 +47,17 @@ pub struct VehicleStanding {
     pub disabled: bool,
 }
 
-/// How one flag stands.
+/// The standing of one flag.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FlagStanding {
-    /// Who carries it; at its home when nobody does.
+    /// Its carrier; none if it is home.
     pub carrier: Option<VehicleId>,
-    /// When it was last taken or brought home.
+    /// Time of its last grab or return.
     pub moved_at: SimTime,
 }
 
 impl Standing {
-    /// Nothing has happened yet.
+    /// The standing before any event.
     pub(super) fn new(vehicles: usize, flags: usize, teams: usize) -> Standing {
         let vehicle = VehicleStanding {
             in_play: true,
@@ -89,7 +89,7 @@ impl Standing {
 }
 
 impl VehicleStanding {
-    /// Whether it may do things to others: tag, grab, capture.
+    /// Whether it may act on others: tag, grab, capture.
     #[inline]
     #[must_use]
     pub fn acts(&self) -> bool {

@@ -1,4 +1,4 @@
-//! Tags: a boat on its own side stops the intruders it can reach.
+//! Tags: a boat on its own side tags intruders in reach.
 
 use super::claim::{Claim, settle};
 use super::{Ability, Acting, Look, Notes, Referee, Standing};
@@ -7,10 +7,12 @@ use primitives::id::VehicleId;
 use primitives::near::Pair;
 
 impl Referee {
-    /// Tags intruders. Every boat tags as soon as it can, or asks for it as soon as it believes so.
+    /// Tags intruders, each as soon as possible: automatically, or on request as soon as the boat
+    /// believes it is in reach.
     ///
-    /// Each tagger reaches for one intruder; who of several gets the same one, [`super::Resolution`] says. Only
-    /// that one has its tag points and its cooldown: a failed or late tag costs nothing.
+    /// Each tagger claims one intruder; [`super::Resolution`] decides between several taggers of
+    /// the same one. Only the successful tagger gets the points and the cooldown: a failed or late
+    /// tag costs nothing.
     pub(super) fn tag(&self, standing: &mut Standing, notes: &mut Notes, look: &Look<'_>, events: &mut Vec<Event>) {
         let reach_squared = self.rules.tag_radius_m * self.rules.tag_radius_m;
         notes.claims.clear();
@@ -39,9 +41,9 @@ impl Referee {
 
     /// Whether `tagger` may tag `target`, apart from their distance.
     ///
-    /// The tagger is on its own side; the intruder is there too and is not on *its* own side. On the
-    /// scrimmage line, which is everybody's own side, a boat is therefore safe but can tag, and no boat is
-    /// ever both tagger and target.
+    /// The tagger is on its own side; the intruder is there too and not on *its* own side. The
+    /// scrimmage line belongs to both sides: a boat on it is safe but can tag, so no boat is ever
+    /// both tagger and target.
     fn may_tag(&self, standing: &Standing, tagger: usize, target: usize, look: &Look<'_>) -> bool {
         let (by, on) = (&standing.vehicles[tagger], &standing.vehicles[target]);
         let (own, other) = (self.team_of[tagger], self.team_of[target]);

@@ -1,3 +1,3 @@
-//! The page on which people ashore watch games, as they are played and from recordings.
+//! The page on which people ashore watch games, live or recorded.
 
 pub mod page;

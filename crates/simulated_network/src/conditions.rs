@@ -2,33 +2,34 @@
 
 use std::time::Duration;
 
-/// How the network is while it works.
+/// Delays, losses and limits of a working network.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Conditions {
-    /// Every message takes at least this long over a link.
+    /// The minimum delay of a message over a link.
     pub delay: Duration,
-    /// And up to this much longer. Over one link messages keep their order.
+    /// The maximum extra delay. Messages over one link stay in order.
     pub jitter: Duration,
     /// The share of published messages that a congested link drops.
     pub loss: f64,
-    /// The share of published messages that arrive damaged, and how.
+    /// The share of published messages that arrive damaged, from 0 to 1, and the kind of damage.
     pub damaged: (f64, Damage),
-    /// After this long without a sign of the other side a link is closed.
+    /// A link closes after hearing nothing from the other side for this long.
     pub lease: Duration,
-    /// How long a leaf without a link waits between two attempts to connect, at most.
+    /// The maximum wait of a leaf without a link between two attempts to connect.
     pub retry: Duration,
-    /// Messages that a link keeps while it is cut; more are dropped.
+    /// Upper bound of messages that a cut link queues; more are dropped.
     pub queue: usize,
-    /// A node that publishes is held up for at most this long, now and then: it computes, or others do.
+    /// The maximum pause before some published messages, as if the node or another process were
+    /// computing.
     pub pause: Duration,
 }
 
 /// How messages are damaged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Damage {
-    /// Cut short: whoever checks lengths notices.
+    /// Cut short, which a length check detects.
     Truncated,
-    /// One bit is another.
+    /// One bit flipped.
     BitFlip,
     /// Random bytes.
     Noise,

@@ -1,4 +1,4 @@
-//! What sessions declare.
+//! The declarations of sessions.
 
 use crate::packet::{Kind, Packet};
 use crate::query::RoutedQuery;
@@ -6,12 +6,12 @@ use std::collections::BTreeSet;
 use std::fmt;
 use std::sync::Arc;
 
-/// What is called with the bytes of a message, with a query, and with a token that has come or gone.
+/// Callbacks for the bytes of a message, for a query, and for a token that has appeared or gone.
 pub(crate) type TakeBytes = Arc<dyn Fn(&[u8]) + Send + Sync>;
 pub(crate) type TakeQuery = Arc<dyn Fn(RoutedQuery) + Send + Sync>;
 pub(crate) type TakeToken = Arc<dyn Fn(&str, bool) + Send + Sync>;
 
-/// Something that a session has declared, with what to call.
+/// A declaration of a session, with its callback.
 pub(crate) struct Declared {
     pub(crate) key: String,
     pub(crate) what: What,
@@ -24,7 +24,7 @@ pub(crate) enum What {
     },
     Queryable(TakeQuery),
     Token,
-    /// With the tokens that are known to be there.
+    /// With the tokens known to be present.
     Watch(TakeToken, BTreeSet<String>),
 }
 

@@ -5,31 +5,31 @@ use crate::packet::Local;
 use std::cmp::Ordering;
 use std::time::Duration;
 
-/// Something that happens at its time.
+/// An event at a virtual time.
 #[derive(Clone, Debug)]
 pub(crate) enum Event {
-    /// A thread that waits has waited long enough.
+    /// The wait of a thread has timed out.
     Wake {
         thread: usize,
         wait: u64,
     },
-    /// A node is started, for the first time or again.
+    /// A node starts, for the first time or again.
     Start {
         node: usize,
     },
     Fault(Fault),
-    /// The end of a fault.
+    /// A fault ends.
     FaultEnd {
         node: usize,
         what: FaultEnd,
     },
-    /// What has travelled long enough arrives at one end of a link.
+    /// A packet arrives at one end of a link.
     Arrive {
         link: usize,
         up: bool,
         arrival: u64,
     },
-    /// An end of a link has heard nothing for the lease, if the link is still as it was then.
+    /// An end of a link has heard nothing for the lease, if the link is unchanged since.
     LeaseOver {
         link: usize,
         at_hub: bool,
@@ -39,14 +39,14 @@ pub(crate) enum Event {
     Reconnect {
         session: usize,
     },
-    /// A session hears what it published itself, or what was there before it asked.
+    /// A session receives its own message, or a token that was present before it asked.
     Local {
         session: usize,
         local: Local,
     },
 }
 
-/// An event in the queue. Of several at one moment the one that was put in first comes first.
+/// An event in the queue. Events at the same time keep their order of insertion.
 pub(crate) struct Queued {
     pub(crate) at_ns: u64,
     pub(crate) order: u64,
@@ -69,14 +69,13 @@ impl PartialOrd for Queued {
 
 impl Ord for Queued {
     fn cmp(&self, other: &Queued) -> Ordering {
-        // The earliest is the greatest: the queue is a max-heap.
-        // The order of insertion decides among events of one moment: a heap by time alone would
-        // be free to take either, and the same seed would give two traces.
+        // The earliest is the greatest: the queue is a max-heap. The order of insertion breaks
+        // ties: a heap by time alone could take either event, and one seed would give two traces.
         (other.at_ns, other.order).cmp(&(self.at_ns, self.order))
     }
 }
 
-/// A time in ns; what is longer than five centuries is as long.
+/// A time in ns, limited to about five centuries.
 pub(crate) fn nanos(time: Duration) -> u64 {
     u64::try_from(time.as_nanos()).unwrap_or(u64::MAX)
 }

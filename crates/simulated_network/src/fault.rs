@@ -2,33 +2,33 @@
 
 use std::time::Duration;
 
-/// What goes wrong. Nodes are numbered in the order in which they were added.
+/// A fault. Nodes are numbered in the order in which they were added.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// Nothing goes between this node and the others for this long.
+    /// No traffic between this node and the others for a while.
     Cut {
-        /// Which.
+        /// The index of the node.
         node: usize,
-        /// How long.
+        /// The duration of the cut.
         time: Duration,
     },
-    /// The process is stopped (`SIGSTOP`) and goes on after this time.
+    /// The process is stopped (`SIGSTOP`) and continues after this time.
     Suspend {
-        /// Which.
+        /// The index of the node.
         node: usize,
-        /// How long.
+        /// The duration of the suspension.
         time: Duration,
     },
     /// The process dies.
     Kill {
-        /// Which.
+        /// The index of the node.
         node: usize,
-        /// How long after its end it is started again, if at all.
+        /// How long after its end it is restarted, if at all.
         restart: Option<Duration>,
     },
 }
 
-/// What has ended.
+/// The kind of fault that has ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum FaultEnd {
     Cut,

@@ -1,9 +1,12 @@
-//! A simulated network in virtual time, for tests: the unchanged node code runs over it deterministically, faults included.
+//! A simulated network in virtual time, for tests: it runs unmodified node code deterministically,
+//! faults included.
 //!
-//! Nodes are threads of this process that block only through `bus`. Exactly one of them runs at a time; when all wait,
-//! virtual time jumps to the next event. Which of several goes on, how long a message takes and what is lost is drawn from
-//! one seed: the same seed and the same nodes give the same trace. [`SimulatedNetwork`] is where a test begins; inside of a
-//! node [`bus::Bus`], [`bus::clock`] and everything that waits run on it, because it replaces the process's [`bus::Runtime`].
+//! Nodes are threads of this process that block only through `bus`. Exactly one of them runs at a
+//! time; when all wait, virtual time jumps to the next event. One seed determines which ready
+//! thread runs, how long messages take and which are lost: the same seed and the same nodes give
+//! the same trace. Tests start with [`SimulatedNetwork`]. Inside a node, [`bus::Bus`],
+//! [`bus::clock`] and everything that waits run on it, because it replaces the process's
+//! [`bus::Runtime`].
 
 mod call;
 mod conditions;

@@ -1,4 +1,5 @@
-//! The link of a leaf to its hub: it takes time, keeps the order, and is closed when either side is silent for the lease.
+//! The link of a leaf to its hub: it delays messages, keeps their order, and closes when either
+//! side is silent for the lease.
 
 use crate::call::Call;
 use crate::conditions::{Conditions, Damage};
@@ -10,13 +11,13 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// How long what waited behind a cut takes to be sent again, at most.
+/// The maximum time until packets queued behind a cut are retransmitted.
 const SENT_AGAIN: Duration = Duration::from_millis(200);
 /// The shortest time between two attempts to connect.
 const RETRY_LEAST: Duration = Duration::from_millis(100);
 
 impl State {
-    /// Opens a link, and tells the hub what the leaf has declared.
+    /// Opens a link, and gives the hub the leaf's declarations.
     pub(crate) fn connect(&mut self, leaf: usize, hub: usize) {
         let link = self.links.len();
         let (down, up, known) = (Direction::default(), Direction::default(), BTreeMap::new());
@@ -37,7 +38,7 @@ impl State {
         declares.into_iter().for_each(|packet| self.send(link, true, packet));
     }
 
-    /// The hub that a leaf can reach now.
+    /// The hub that a leaf can currently reach.
     pub(crate) fn reachable_hub(&self, leaf: usize) -> Option<usize> {
         let (node, endpoints) = (self.sessions[leaf].node, &self.sessions[leaf].endpoints);
         let hub = self.sessions.iter().position(|other| {
@@ -47,15 +48,14 @@ impl State {
         (!self.nodes[node].is_cut && !there.is_cut && !there.is_suspended).then_some(hub)
     }
 
-    /// Puts something on its way.
+    /// Sends a packet.
     pub(crate) fn send(&mut self, link: usize, up: bool, packet: Packet) {
         let is_open = if up { self.links[link].leaf_open } else { self.links[link].hub_open };
         let packet = match packet {
             _ if !is_open => return,
             Packet::Publish { key, bytes } => {
-                // Like zenoh's links: what is published never waits, so a link that is cut
-                // takes as many messages as its queue has room for, and loses the rest.
-                // Declarations and questions are kept.
+                // Like zenoh's links: published messages never wait, so a cut link takes as many as
+                // its queue holds and loses the rest. Declarations and queries are kept.
                 let is_full =
                     self.is_stopped(link, up) && self.links[link].direction(up).queue.len() >= self.conditions.queue;
                 if is_full || (self.conditions.loss > 0.0 && self.stream.unit() < self.conditions.loss) {
@@ -70,13 +70,13 @@ impl State {
         self.put(link, up, packet);
     }
 
-    /// Puts something on its way, whether or not its sender is still there.
+    /// Sends a packet, even if its sender has ended.
     fn put(&mut self, link: usize, up: bool, packet: Packet) {
         let Conditions { delay, jitter, .. } = self.conditions;
         let wait = delay + self.draw(jitter);
         let arrival_ns = self.now_ns + nanos(wait);
         let direction = self.links[link].direction(up);
-        // TCP keeps the order: with jitter alone a later packet could overtake.
+        // TCP keeps the order; with jitter alone, a later packet could overtake.
         let arrival_ns = arrival_ns.max(direction.last_ns);
         direction.last_ns = arrival_ns;
         direction.queue.push_back((arrival_ns, packet));
@@ -108,14 +108,14 @@ impl State {
         self.at(at_ns, Event::Arrive { link, up, arrival });
     }
 
-    /// Whether nothing arrives in this direction now.
+    /// Whether this direction is currently blocked.
     fn is_stopped(&self, link: usize, up: bool) -> bool {
         let [leaf, hub] = [self.links[link].leaf, self.links[link].hub].map(|end| &self.nodes[self.sessions[end].node]);
         let receiver = if up { hub } else { leaf };
         leaf.is_cut || hub.is_cut || receiver.is_suspended
     }
 
-    /// What has travelled long enough arrives.
+    /// Delivers the packets that are due.
     pub(crate) fn arrive(&mut self, link: usize, up: bool, arrival: u64) -> Vec<Call> {
         let is_stopped = self.is_stopped(link, up);
         let direction = self.links[link].direction(up);
@@ -128,7 +128,7 @@ impl State {
         }
         let Some((_, packet)) = direction.queue.pop_front() else { return vec![] };
         if self.links[link].silent_since_ns[usize::from(up)].is_some() {
-            // What was on its way is a sign, too.
+            // Packets in flight count as a sign of life too.
             self.begin_lease(link, up, self.conditions.lease);
         }
         let direction = self.links[link].direction(up);
@@ -147,7 +147,7 @@ impl State {
         (0..self.links.len()).filter(|i| touches(&self.links[*i])).collect()
     }
 
-    /// From now on one side of these links hears nothing.
+    /// One side of these links hears nothing from now on.
     pub(crate) fn begin_silence(&mut self, node: usize) {
         for link in self.links_of(node) {
             for at_hub in [false, true] {
@@ -160,7 +160,7 @@ impl State {
         }
     }
 
-    /// If an end of a link hears nothing for this long, its lease is over.
+    /// Ends the lease if an end of a link hears nothing for this long.
     fn begin_lease(&mut self, link: usize, at_hub: bool, wait: Duration) {
         let since_ns = self.now_ns;
         self.links[link].silent_since_ns[usize::from(at_hub)] = Some(since_ns);
@@ -176,7 +176,8 @@ impl State {
         self.close_end(link, at_hub)
     }
 
-    /// Both sides hear each other again: what was on its way goes on, and who has closed tells the other.
+    /// Both sides hear each other again: packets in flight continue, and a closed end notifies the
+    /// other.
     pub(crate) fn end_silence(&mut self, node: usize) {
         for link in self.links_of(node) {
             let Link { leaf, hub, leaf_open, hub_open, .. } = self.links[link];
@@ -192,7 +193,7 @@ impl State {
                 if !from && to && !is_silent {
                     self.put(link, up, Packet::Close);
                 }
-                // TCP sends again at intervals that grow, so after a cut what waited comes some
+                // TCP retransmits at growing intervals, so packets queued during a cut arrive some
                 // time after the cable is back.
                 let wait = self.draw(SENT_AGAIN);
                 if !self.is_stopped(link, up) && !self.links[link].direction(up).queue.is_empty() {
@@ -202,7 +203,7 @@ impl State {
         }
     }
 
-    /// One end of a link closes: what came over it is gone.
+    /// Closes one end of a link, and discards the state that it learnt over the link.
     pub(crate) fn close_end(&mut self, link: usize, at_hub: bool) -> Vec<Call> {
         let Link { leaf, leaf_open, hub_open, .. } = self.links[link];
         if at_hub {
@@ -242,7 +243,7 @@ impl State {
         vec![]
     }
 
-    /// A session closes, or its process ends: the others hear of it after what was sent before.
+    /// Closes a session, or ends its process. The others learn of it after the packets sent before.
     pub(crate) fn close(&mut self, session: usize) {
         if !std::mem::replace(&mut self.sessions[session].is_open, false) {
             return;

@@ -1,10 +1,10 @@
-//! Packets: what travels over links.
+//! Packets, which travel over links.
 
 use crate::query::Asked;
 use bus::Parcel;
 use std::sync::Arc;
 
-/// What travels over a link.
+/// A packet on a link.
 #[derive(Clone, Debug)]
 pub(crate) enum Packet {
     Publish {
@@ -32,7 +32,7 @@ pub(crate) enum Packet {
         key: String,
         payload: Parcel,
     },
-    /// An answer, or that no more will come.
+    /// An answer, or the end of the answers.
     Answer {
         query: u64,
         answer: Option<Parcel>,
@@ -44,7 +44,7 @@ pub(crate) enum Packet {
     Close,
 }
 
-/// What a session can declare, as the hub knows it.
+/// The kinds of declarations, as the hub distinguishes them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Subscriber,
@@ -53,7 +53,7 @@ pub(crate) enum Kind {
     Watch,
 }
 
-/// Something that a session takes from itself.
+/// A delivery from a session to itself.
 #[derive(Clone, Debug)]
 pub(crate) enum Local {
     Publish { key: Arc<str>, bytes: Arc<[u8]> },

@@ -2,15 +2,15 @@
 
 use std::time::Duration;
 
-/// A message as the hub sees it: what it publishes, and what reaches it.
+/// A published message at the hub: sent by it, or received.
 #[derive(Clone, Copy, Debug)]
 pub struct Published<'a> {
-    /// When.
+    /// Virtual time since the start.
     pub at: Duration,
-    /// Who published it, or takes it.
+    /// The node that publishes it, or receives it.
     pub node: &'a str,
-    /// On which key.
+    /// Its key.
     pub key: &'a str,
-    /// What.
+    /// Its content.
     pub bytes: &'a [u8],
 }

@@ -1,17 +1,17 @@
-//! A query on its way to those who answer it, and until it is answered.
+//! Queries in flight and queries not fully answered.
 
 use bus::Parcel;
 use std::sync::Arc;
 
-/// What is asked for.
+/// The subject of a query.
 #[derive(Clone, Debug)]
 pub(crate) enum Asked {
     Payload(Parcel),
-    /// Which tokens are there, as a list in JSON.
+    /// The tokens present, as a JSON list.
     Tokens,
 }
 
-/// A query that has reached a session which answers at its key.
+/// A query that has reached a session with a matching queryable.
 pub(crate) struct RoutedQuery {
     pub(crate) session: usize,
     pub(crate) query: u64,
@@ -19,11 +19,11 @@ pub(crate) struct RoutedQuery {
     pub(crate) payload: Parcel,
 }
 
-/// A query that has not been answered to the end.
+/// A query whose answers are not complete.
 pub(crate) struct PendingQuery {
     pub(crate) asker: usize,
-    /// How many may still answer.
+    /// How many sessions may still answer.
     pub(crate) open: usize,
-    /// What is called with each answer, and with none when no more will come.
+    /// Called with each answer, and with `None` after the last one.
     pub(crate) take: Arc<dyn Fn(Option<Parcel>) + Send + Sync>,
 }

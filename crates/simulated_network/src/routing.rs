@@ -1,4 +1,4 @@
-//! Routing: where the hub sends what travels over links.
+//! Routing at the hub.
 
 use crate::call::Call;
 use crate::declared::{Declared, TakeQuery, What};
@@ -13,7 +13,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 impl State {
-    /// The other ends of the links of a hub, on which something of this kind and key is declared.
+    /// The other ends of the hub's links with a declaration of this kind that matches the key.
     fn declared_beyond(&self, hub: usize, kind: Kind, key: &str, but: Option<usize>) -> Vec<(usize, u64)> {
         let mut found = Vec::new();
         for (i, link) in self.links.iter().enumerate() {
@@ -26,7 +26,7 @@ impl State {
         found
     }
 
-    /// What the subscribers of this session are called with.
+    /// The calls of this session's subscribers.
     fn calls_of_subscribers(&self, session: usize, key: &str, bytes: &Arc<[u8]>, is_own: bool) -> Vec<Call> {
         let mut calls: Vec<Call> = Vec::new();
         for declared in self.sessions[session].declared.values() {
@@ -41,7 +41,7 @@ impl State {
         calls
     }
 
-    /// A session publishes.
+    /// Publishes a message from a session.
     pub(crate) fn publish(&mut self, session: usize, key: &Arc<str>, bytes: &Arc<[u8]>) {
         let hears_own = |what: &What| matches!(what, What::Subscriber { hears_own: true, .. });
         let own = &self.sessions[session].declared;
@@ -57,10 +57,10 @@ impl State {
         }
     }
 
-    /// Sends it to all leaves that have subscribed.
+    /// Forwards a message to all leaves that have subscribed.
     fn forward(&mut self, hub: usize, key: &Arc<str>, bytes: &Arc<[u8]>, from: Option<usize>) {
-        // Never back by the link that it came from; and once for each link, however many
-        // subscribers are behind it, as zenoh does.
+        // Never back over its incoming link, and once per link, however many subscribers are behind
+        // it, as zenoh does.
         let mut to = self.declared_beyond(hub, Kind::Subscriber, key, from);
         to.dedup_by_key(|(link, _)| *link);
         for (link, _) in to {
@@ -77,15 +77,15 @@ impl State {
         }
     }
 
-    /// Whether anybody would hear what is published on a key.
+    /// Whether a key has a subscriber.
     pub(crate) fn is_heard(&self, session: usize, key: &str) -> bool {
-        // A leaf cannot know.
+        // A leaf cannot know, so it assumes that there is one.
         !self.sessions[session].is_hub
             || self.on_publish.is_some()
             || !self.declared_beyond(session, Kind::Subscriber, key, None).is_empty()
     }
 
-    /// Something reaches the hub.
+    /// Handles a packet at the hub.
     pub(crate) fn take_at_hub(&mut self, link: usize, packet: Packet) -> Vec<Call> {
         if !self.links[link].hub_open {
             return vec![];
@@ -120,7 +120,7 @@ impl State {
         }
     }
 
-    /// Something reaches a leaf.
+    /// Handles a packet at a leaf.
     pub(crate) fn take_at_leaf(&mut self, link: usize, packet: Packet) -> Vec<Call> {
         if !self.links[link].leaf_open {
             return vec![];
@@ -150,7 +150,7 @@ impl State {
         }
     }
 
-    /// The tokens under a key that a hub knows.
+    /// The tokens matching a key that a hub knows.
     fn tokens(&self, hub: usize, key: &str, but: Option<usize>) -> Vec<String> {
         let own = self.sessions[hub].declared.values().filter(|declared| matches!(declared.what, What::Token));
         let mut keys: Vec<String> = own.map(|declared| declared.key.clone()).filter(|at| keys_meet(at, key)).collect();
@@ -159,9 +159,9 @@ impl State {
         keys
     }
 
-    /// A token has come to the hub or is gone: everybody who watches is told.
+    /// Notifies all watchers that a token has appeared at the hub or gone.
     pub(crate) fn announce(&mut self, hub: usize, key: &str, is_there: bool, from: Option<usize>) -> Vec<Call> {
-        // A leaf that came back may be known by its old link still.
+        // A leaf that came back may still be known by its old link.
         if !is_there && self.tokens(hub, key, None).iter().any(|there| there == key) {
             return vec![];
         }
@@ -173,7 +173,7 @@ impl State {
         if from.is_some() { self.take_token(hub, key, is_there) } else { vec![] }
     }
 
-    /// A session hears of a token.
+    /// Notifies a session of a token.
     fn take_token(&mut self, session: usize, key: &str, is_there: bool) -> Vec<Call> {
         let node = self.sessions[session].node;
         self.note(if is_there { "sees" } else { "misses" }, node, key, &[]);
@@ -190,7 +190,7 @@ impl State {
         calls
     }
 
-    /// A leaf has lost its link, and with it everything that it knew to be there.
+    /// Discards all tokens that a leaf knows, after it has lost its link.
     pub(crate) fn forget_tokens(&mut self, leaf: usize) -> Vec<Call> {
         let watches = self.sessions[leaf].declared.values().filter_map(|declared| match &declared.what {
             What::Watch(_, known) => Some(known),
@@ -200,7 +200,7 @@ impl State {
         known.iter().flat_map(|key| self.take_token(leaf, key, false)).collect()
     }
 
-    /// The hub forgets what came over a link.
+    /// Discards all that the hub learnt over a link.
     pub(crate) fn forget(&mut self, link: usize) -> Vec<Call> {
         let hub = self.links[link].hub;
         let known = std::mem::take(&mut self.links[link].known);
@@ -223,14 +223,14 @@ impl State {
         }
     }
 
-    /// A watch at a hub begins with what is there.
+    /// Starts a watch at a hub with the tokens present.
     pub(crate) fn begin_watch(&mut self, session: usize, watch: u64, key: &str) {
         for key in self.tokens(session, key, None) {
             self.at(self.now_ns, Event::Local { session, local: Local::Token { watch, key } });
         }
     }
 
-    /// A hub passes a query on to all who answer at its key.
+    /// Forwards a query from a hub to all matching queryables.
     pub(crate) fn route(&mut self, hub: usize, query: u64, key: &str, asked: Asked, from: Option<usize>) -> Vec<Call> {
         let payload = match asked {
             Asked::Payload(payload) => payload,
@@ -261,7 +261,7 @@ impl State {
         calls
     }
 
-    /// Somebody who was asked has answered, or will not any more.
+    /// Handles an answer at the hub, or the end of a session's answers.
     pub(crate) fn answer_at_hub(&mut self, hub: usize, query: u64, answer: Option<Parcel>) -> Vec<Call> {
         let Some(pending) = self.queries.get_mut(&query) else { return vec![] };
         if answer.is_none() {
@@ -284,7 +284,7 @@ impl State {
         vec![]
     }
 
-    /// Whoever asked is answered.
+    /// Passes an answer to the querying session.
     fn answered(&mut self, query: u64, answer: Option<Parcel>) -> Vec<Call> {
         let Some(pending) = self.queries.get(&query) else { return vec![] };
         let take = Arc::clone(&pending.take);
@@ -292,7 +292,7 @@ impl State {
     }
 }
 
-/// Calls a queryable.
+/// The call of a queryable.
 fn asking(take: &TakeQuery, session: usize, query: u64, key: String, payload: Parcel) -> Call {
     let take = Arc::clone(take);
     Box::new(move || take(RoutedQuery { session, query, key, payload }))

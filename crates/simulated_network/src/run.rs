@@ -1,4 +1,4 @@
-//! A simulation from outside.
+//! Setting up and running a simulation.
 
 use crate::conditions::Conditions;
 use crate::event::{Event, nanos};
@@ -15,34 +15,34 @@ use std::hash::{DefaultHasher, Hasher};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// What came of a simulation.
+/// The result of a simulation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Run {
     /// How it ended.
     pub verdict: Verdict,
-    /// How long it took, in virtual time.
+    /// The virtual time it took.
     pub time: Duration,
-    /// A hash over everything that happened: the same for the same seed and nodes.
+    /// A hash over all events: the same for the same seed and nodes.
     pub trace: u64,
-    /// What happened, line by line, where that was asked for.
+    /// All events, one per line, if requested.
     pub lines: Vec<String>,
     /// The ends of nodes, in order.
     pub ends: Vec<NodeEnd>,
 }
 
-/// A simulated network, and the nodes on it.
+/// A simulated network and its nodes.
 pub struct SimulatedNetwork(Arc<World>);
 
 impl SimulatedNetwork {
-    /// A network on which everything that is drawn follows from `seed`.
+    /// A network whose random choices all follow from `seed`.
     #[must_use]
     pub fn new(seed: u64, conditions: Conditions) -> SimulatedNetwork {
         bus::replace_runtime(&SimulatedRuntime);
         let state = State {
             conditions,
             // turmoil and madsim simulate tokio, whose sockets and tasks neither our nodes nor
-            // zenoh use; shuttle has no time, and our protocols are made of limits. Hence a
-            // network of our own, below the same `Bus`.
+            // zenoh use; shuttle has no time, and our protocols rely on timeouts. Hence our own
+            // network, below the same `Bus`.
             stream: Stream::new(seed, "network"),
             now_ns: 0,
             limit_ns: 0,
@@ -61,15 +61,16 @@ impl SimulatedNetwork {
             on_take: None,
             verdict: Verdict::Ended,
             ends: vec![],
-            // With keys that are fixed, unlike a `RandomState`: two runs of one seed are
-            // compared by this number.
+            // With fixed keys, unlike `RandomState`: two runs of one seed are compared by this
+            // number.
             hash: DefaultHasher::new(),
             lines: None,
         };
         SimulatedNetwork(World::new(clock::now(), state))
     }
 
-    /// Adds a node, which begins with `body` at this time, and again whenever it is started again. Gives its number.
+    /// Adds a node that runs `body` from this time on, and again after each restart. Returns its
+    /// index.
     pub fn node(&self, at: Duration, name: &str, body: impl Fn() + Send + Sync + 'static) -> usize {
         let mut state = self.0.state.lock();
         let node = state.nodes.len();
@@ -89,29 +90,29 @@ impl SimulatedNetwork {
         node
     }
 
-    /// Something goes wrong at this time.
+    /// Schedules a fault.
     pub fn fault(&self, at: Duration, fault: Fault) {
         self.0.state.lock().at(nanos(at), Event::Fault(fault));
     }
 
-    /// Calls `see` with everything that the hub publishes, and with everything published that reaches it. It must not use
-    /// the network.
+    /// Calls `see` with every message that the hub publishes or receives. It must not use the
+    /// network.
     pub fn on_publish(&self, see: impl FnMut(Published<'_>) + Send + 'static) {
         self.0.state.lock().on_publish = Some(Box::new(see));
     }
 
-    /// Calls `see` with everything published that reaches a leaf, and with the name of that leaf's node. It must not use the
-    /// network.
+    /// Calls `see` with every published message that reaches a leaf, and with the name of that
+    /// leaf's node. It must not use the network.
     pub fn on_take(&self, see: impl FnMut(Published<'_>) + Send + 'static) {
         self.0.state.lock().on_take = Some(Box::new(see));
     }
 
-    /// Keeps what happens line by line.
+    /// Records all events as lines.
     pub fn keep_lines(&self) {
         self.0.state.lock().lines = Some(vec![]);
     }
 
-    /// Runs until all nodes have ended, or virtual time is up.
+    /// Runs until all nodes have ended or virtual time reaches `limit`.
     #[must_use]
     pub fn run(self, limit: Duration) -> Run {
         self.0.state.lock().limit_ns = nanos(limit);

@@ -1,4 +1,4 @@
-//! What nodes in a simulation run on. Threads outside of one run on the system.
+//! The runtime of nodes in a simulation. Threads outside a simulation use the system.
 
 use crate::scheduler::{self, current};
 use crate::session::SimulatedSession;
@@ -10,7 +10,7 @@ use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// What a process with simulated networks runs on.
+/// The runtime of a process with simulated networks.
 pub(crate) struct SimulatedRuntime;
 
 impl Runtime for SimulatedRuntime {
@@ -34,7 +34,7 @@ impl Runtime for SimulatedRuntime {
         if !scheduler::is_inside() {
             return System.fill_random(bytes);
         }
-        // They follow from the seed: no game could be repeated otherwise.
+        // They follow from the seed; otherwise no game could be repeated.
         for part in bytes.chunks_mut(8) {
             let drawn = scheduler::random_number().unwrap_or_default().to_le_bytes();
             part.copy_from_slice(&drawn[..part.len()]);
@@ -52,7 +52,7 @@ impl Runtime for SimulatedRuntime {
     }
 
     fn wait(&self, address: usize, deadline: Option<Instant>) -> Option<bool> {
-        // A condition variable would block the one thread that may run.
+        // A condition variable would block the only thread that may run.
         scheduler::is_inside().then(|| scheduler::wait_until(address, deadline))
     }
 

@@ -1,4 +1,5 @@
-//! Which thread runs: exactly one at a time. It hands over where it waits; when all wait, the next event happens.
+//! Chooses which thread runs: exactly one at a time. A thread yields when it waits; when all wait,
+//! the next event happens.
 
 use crate::event::Event;
 use crate::state::{Node, State, Status, Thread};
@@ -11,13 +12,13 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// The number of the thread that runs the whole simulation: it only waits for the end.
+/// The number of the thread that runs the whole simulation; it only waits for the end.
 const MAIN: usize = usize::MAX;
 
 thread_local! {
-    /// Where this thread is, if it is in a simulation.
+    /// The simulation and node of this thread, if any.
     static CURRENT: RefCell<Option<Current>> = const { RefCell::new(None) };
-    /// Whether this thread is calling somebody back because of an event.
+    /// Whether this thread is in a callback of an event.
     static IN_CALLBACK: Cell<bool> = const { Cell::new(false) };
 }
 
@@ -29,45 +30,45 @@ pub(crate) struct Current {
     thread: usize,
 }
 
-/// With this a thread of a node that is killed unwinds.
+/// The panic payload that unwinds the threads of a killed node.
 struct Killed;
 
 /// One simulation.
 pub(crate) struct World {
     start: Instant,
-    /// Virtual time, ns; changed only with the state locked.
+    /// Virtual time, ns; changed only while the state is locked.
     now_ns: AtomicU64,
     running: AtomicUsize,
     pub(crate) state: Mutex<State>,
     main: thread::Thread,
 }
 
-/// The simulation that this thread is in.
+/// The simulation of this thread.
 pub(crate) fn current() -> Option<Current> {
     CURRENT.with_borrow(Clone::clone)
 }
 
-/// Whether this thread is in a simulation.
+/// Whether this thread belongs to a simulation.
 pub(crate) fn is_inside() -> bool {
     CURRENT.with_borrow(Option::is_some)
 }
 
-/// Whether this thread is calling somebody back because of an event: then it must not wait.
+/// Whether this thread is in a callback of an event, where it must not wait.
 pub(crate) fn is_in_callback() -> bool {
     IN_CALLBACK.get()
 }
 
-/// This moment in virtual time, inside of a simulation.
+/// The current virtual time, inside a simulation.
 pub(crate) fn now() -> Option<Instant> {
     CURRENT.with_borrow(|current| current.as_ref().map(|current| current.world.now()))
 }
 
-/// A number that follows from the seed, inside of a simulation.
+/// A random number that follows from the seed, inside a simulation.
 pub(crate) fn random_number() -> Option<u64> {
     CURRENT.with_borrow(|current| current.as_ref().map(|current| current.world.state.lock().stream.bits()))
 }
 
-/// Something at this address has changed: whoever waits for it looks again.
+/// Wakes the threads that wait for a change at this address.
 pub(crate) fn wake(address: usize) {
     CURRENT.with_borrow(|current| {
         if let Some(current) = current {
@@ -76,23 +77,23 @@ pub(crate) fn wake(address: usize) {
     });
 }
 
-/// Waits until something at this address changes, at most until `deadline`; none is for ever. Says whether there is time
-/// left. Does not wait in a thread that unwinds.
+/// Waits until something at this address changes, or until `deadline` (`None`: no limit). Returns
+/// whether time is left. Does not wait in a thread that unwinds.
 pub(crate) fn wait_until(address: usize, deadline: Option<Instant>) -> bool {
     let Some(current) = current() else { return false };
     let world = &current.world;
     if thread::panicking() {
         return false;
     }
-    // On zenoh a callback that waits holds up all links; here it would deadlock, so the mistake
-    // is found by every test.
+    // On zenoh, a waiting callback blocks all links. Here it would deadlock, so every test detects
+    // the mistake.
     assert!(!is_in_callback(), "callbacks must only hand over");
     let deadline_ns = deadline.map(|deadline| world.ns_at(deadline));
     world.state.lock().block(current.thread, address, deadline_ns);
     world.pass_on(current.thread);
     if world.state.lock().threads[current.thread].is_killed {
-        // A killed node unwinds, so that its locks and sockets are given back; `resume_unwind`
-        // and not `panic`, which would print a report for each.
+        // A killed node unwinds, which releases its locks and sockets. `panic` would print a report
+        // for each; `resume_unwind` does not.
         resume_unwind(Box::new(Killed));
     }
     deadline.is_none_or(|deadline| world.now() < deadline)
@@ -112,7 +113,7 @@ impl World {
         u64::try_from(moment.saturating_duration_since(self.start).as_nanos()).unwrap_or(u64::MAX)
     }
 
-    /// Adds a thread to a node; it runs when its turn comes.
+    /// Adds a thread to a node; it runs when scheduled.
     pub(crate) fn spawn(self: &Arc<World>, node: usize, body: Box<dyn FnOnce() + Send>) -> usize {
         let mut state = self.state.lock();
         let thread = state.threads.len();
@@ -122,7 +123,7 @@ impl World {
         thread
     }
 
-    /// Lets others run until it is this thread's turn again.
+    /// Lets other threads run until this one is scheduled again.
     fn pass_on(self: &Arc<World>, me: usize) {
         let next = self.next();
         if next == me {
@@ -147,12 +148,12 @@ impl World {
 
     fn await_turn(&self, me: usize) {
         while self.running.load(Ordering::Acquire) != me {
-            // In a loop, since `park` may return for no reason.
+            // In a loop, since `park` may return spuriously.
             thread::park();
         }
     }
 
-    /// The thread whose turn it is: events happen until there is one.
+    /// Handles events until a thread is ready, and returns that thread.
     fn next(self: &Arc<World>) -> usize {
         loop {
             let mut state = self.state.lock();
@@ -166,7 +167,7 @@ impl World {
             self.now_ns.store(state.now_ns, Ordering::Relaxed);
             let to_drop = std::mem::take(&mut state.to_drop);
             drop(state);
-            // What is dropped may send, and with the state locked that would wait for itself.
+            // Dropping these may send, which would deadlock with the state locked.
             drop(to_drop);
             IN_CALLBACK.set(true);
             calls.into_iter().for_each(|call| call());
@@ -192,7 +193,7 @@ impl Current {
         self.world.spawn(self.node, body);
     }
 
-    /// The life of a thread of a node.
+    /// Runs a thread of a node from start to end.
     fn run(self, body: Box<dyn FnOnce() + Send>) {
         let (world, node, thread) = (Arc::clone(&self.world), self.node, self.thread);
         CURRENT.set(Some(self));
@@ -213,7 +214,7 @@ fn text_of(payload: &(dyn Any + Send)) -> String {
 }
 
 impl State {
-    /// Draws which of the threads that can go on does so.
+    /// Draws the next thread from the ready ones.
     fn draw_ready(&mut self) -> Option<usize> {
         let is_ready = |thread: &Thread, nodes: &[Node]| {
             thread.status == Status::Ready && (thread.is_killed || !nodes[thread.node].is_suspended)
@@ -225,8 +226,8 @@ impl State {
         let drawn = match ready.as_slice() {
             [] => None,
             [one] => Some(*one),
-            // Which of several goes on is drawn: a real system promises no order either, and a
-            // game that depends on one is found by another seed.
+            // The choice is random: a real system promises no order either, and another seed
+            // exposes a game that depends on one.
             several => Some(several[self.stream.below(several.len() as u64) as usize]),
         };
         self.ready = ready;

@@ -1,4 +1,4 @@
-//! A session on the simulated network: what [`bus::Bus`] does there.
+//! A session on the simulated network, behind [`bus::Bus`].
 
 use crate::call::Call;
 use crate::declared::{Declared, What};
@@ -14,11 +14,11 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// One in so many messages is held up before it is sent.
+/// One message in this many is delayed before it is sent.
 const PAUSES: u64 = 8;
-/// A leaf is there under this key and its identifier.
+/// Prefix of the token keys of linked leaves, followed by the leaf's identifier.
 const LINKS: &str = "link/";
-/// How long an attempt to connect to nobody takes.
+/// Duration of an attempt to connect where no hub listens.
 const CONNECT: Duration = Duration::from_secs(1);
 
 /// A session of a simulated node.
@@ -35,15 +35,15 @@ pub(crate) struct SimulatedSender {
     key: Arc<str>,
 }
 
-/// What has come of a query.
+/// The answers to a query so far.
 #[derive(Default)]
 struct Answers {
-    /// In the order in which they came; the asker takes them out.
+    /// In order of arrival; the querying session removes them.
     waiting: VecDeque<Parcel>,
     is_complete: bool,
 }
 
-/// Takes a declaration back when it is dropped.
+/// Withdraws a declaration on drop.
 pub(crate) struct Undeclare {
     session: SimulatedSession,
     id: u64,
@@ -58,7 +58,7 @@ pub(crate) struct SimulatedQuery {
 }
 
 impl SimulatedSession {
-    /// Opens a hub, inside of a simulation. Says so if another one listens there.
+    /// Opens a hub inside a simulation. Fails if another one listens at its endpoint.
     pub(crate) fn hub(net: &Net) -> Result<SimulatedSession, String> {
         let session = SimulatedSession::new(&net.listen, true)?;
         let state = session.world.state.lock();
@@ -77,12 +77,11 @@ impl SimulatedSession {
         Ok(session)
     }
 
-    /// Connects to a hub, inside of a simulation.
+    /// Connects to a hub inside a simulation.
     pub(crate) fn leaf(net: &Net) -> Result<SimulatedSession, String> {
         let session = SimulatedSession::new(&net.connect, false)?;
         let delay = session.world.state.lock().conditions.delay;
-        // A handshake goes there and back; zenoh takes more, but what happens meanwhile is the
-        // same.
+        // A handshake is one round trip; zenoh needs more, but the effect is the same.
         wait_until(0, session.world.now().checked_add(2 * delay));
         session.insert(format!("{LINKS}{}", session.id), What::Token);
         let mut state = session.world.state.lock();
@@ -122,7 +121,7 @@ impl SimulatedSession {
         Declaration::new(Undeclare { session: self.clone(), id: self.insert(key, what) })
     }
 
-    /// Declares for as long as the session is open.
+    /// Adds a declaration that lasts as long as the session. Returns its number.
     fn insert(&self, key: String, what: What) -> u64 {
         let mut state = self.world.state.lock();
         state.number += 1;
@@ -267,7 +266,7 @@ impl Sender for SimulatedSender {
 }
 
 impl SimulatedSender {
-    /// Now and then computing takes its time.
+    /// Pauses some of the time, as computation would.
     fn pause_now_and_then(&self) {
         if is_in_callback() {
             return;
@@ -298,7 +297,7 @@ impl Drop for Undeclare {
         }
         drop(state);
         calls.into_iter().for_each(|call| call());
-        // What a subscriber holds may itself use the network when it goes.
+        // Dropping a subscriber's state may use the network.
         drop(removed);
     }
 }

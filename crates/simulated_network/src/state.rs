@@ -1,4 +1,4 @@
-//! Everything that changes in a simulation.
+//! The mutable state of a simulation.
 
 use crate::call::Call;
 use crate::conditions::Conditions;
@@ -16,18 +16,18 @@ use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// A process: what it does, and how it is.
+/// A process: its code and its state.
 pub(crate) struct Node {
     pub(crate) name: String,
     pub(crate) body: Arc<dyn Fn() + Send + Sync>,
     pub(crate) is_running: bool,
     pub(crate) is_suspended: bool,
     pub(crate) is_cut: bool,
-    /// How many cuts and suspensions are in force: they may overlap.
+    /// The number of cuts and suspensions in force; they may overlap.
     pub(crate) cuts: u32,
     pub(crate) suspensions: u32,
     pub(crate) main_thread: Option<usize>,
-    /// A node that was killed starts again after this.
+    /// The time after which a killed node restarts.
     pub(crate) starts_again: Option<Duration>,
 }
 
@@ -36,7 +36,7 @@ pub(crate) struct Thread {
     pub(crate) node: usize,
     pub(crate) handle: Option<JoinHandle<()>>,
     pub(crate) status: Status,
-    /// Unwinds as soon as it goes on.
+    /// Whether it unwinds when it continues.
     pub(crate) is_killed: bool,
     /// How often it has waited.
     pub(crate) waits: u64,
@@ -44,9 +44,9 @@ pub(crate) struct Thread {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Status {
-    /// It can go on, or does.
+    /// Running or ready to run.
     Ready,
-    /// It waits for a change at this address.
+    /// Waiting for a change at this address.
     Waits {
         address: usize,
         wait: u64,
@@ -58,18 +58,18 @@ pub(crate) enum Status {
 pub(crate) struct SessionState {
     pub(crate) node: usize,
     pub(crate) is_open: bool,
-    /// Where a hub listens; where a leaf connects.
+    /// Where a hub listens, or where a leaf connects.
     pub(crate) endpoints: Vec<String>,
-    /// The link of a leaf, while it has one.
+    /// The current link of a leaf.
     pub(crate) link: Option<usize>,
     pub(crate) is_hub: bool,
     pub(crate) declared: BTreeMap<u64, Declared>,
 }
 
-/// What an observer of the wire is told.
+/// A callback for an observer of the network's messages.
 pub(crate) type OnPublish = Box<dyn FnMut(Published<'_>) + Send>;
 
-/// Everything that changes in a simulation.
+/// The mutable state of a simulation.
 pub(crate) struct State {
     pub(crate) conditions: Conditions,
     pub(crate) stream: Stream,
@@ -80,21 +80,22 @@ pub(crate) struct State {
     pub(crate) starts_due: usize,
     pub(crate) nodes: Vec<Node>,
     pub(crate) threads: Vec<Thread>,
-    /// Kept to save allocations.
+    /// Reused to save allocations.
     pub(crate) ready: Vec<usize>,
     pub(crate) sessions: Vec<SessionState>,
     pub(crate) links: Vec<Link>,
     pub(crate) queries: BTreeMap<u64, PendingQuery>,
-    /// To be dropped when the state is not locked: what callbacks hold may use the network when it goes.
+    /// To be dropped while the state is unlocked: data held by callbacks may use the network on
+    /// drop.
     pub(crate) to_drop: Vec<Declared>,
-    /// The last number that was given to a declaration or a query.
+    /// The last number given to a declaration or a query.
     pub(crate) number: u64,
     pub(crate) on_publish: Option<OnPublish>,
     pub(crate) on_take: Option<OnPublish>,
     pub(crate) verdict: Verdict,
     pub(crate) ends: Vec<NodeEnd>,
     pub(crate) hash: DefaultHasher,
-    /// What happened, line by line, where that is wanted.
+    /// All events, one per line, if requested.
     pub(crate) lines: Option<Vec<String>>,
 }
 
@@ -103,10 +104,10 @@ impl State {
         self.starts_due == 0 && self.threads.iter().all(|thread| thread.status == Status::Done)
     }
 
-    /// Takes something down in the trace.
+    /// Adds an event to the trace.
     pub(crate) fn note(&mut self, what: &str, node: usize, key: &str, bytes: &[u8]) {
-        // The bytes too: a game that took another course shows in the first message that
-        // differs, not only at its end.
+        // Includes the bytes: a game that diverges then shows in the first message that differs,
+        // not only at its end.
         (self.now_ns, what, node, key, bytes).hash(&mut self.hash);
         if let Some(lines) = &mut self.lines {
             let at_s = self.now_ns as f64 * 1e-9;
@@ -114,10 +115,10 @@ impl State {
         }
     }
 
-    /// Puts an event into the queue.
+    /// Schedules an event.
     pub(crate) fn at(&mut self, at_ns: u64, event: Event) {
         self.order += 1;
-        // A deadline that has passed already must not turn the clock back.
+        // A deadline that has already passed must not turn the clock back.
         self.events.push(Queued { at_ns: at_ns.max(self.now_ns), order: self.order, event });
     }
 
@@ -125,18 +126,18 @@ impl State {
         self.at(self.now_ns.saturating_add(nanos(wait)), event);
     }
 
-    /// A time between nothing and `most`.
+    /// A random time from zero to `most`.
     pub(crate) fn draw(&mut self, most: Duration) -> Duration {
         most.mul_f64(self.stream.unit())
     }
 
-    /// A fault begins.
+    /// Starts a fault.
     pub(crate) fn begin_fault(&mut self, fault: Fault) -> Vec<Call> {
         match fault {
             Fault::Cut { node, time } => {
                 self.note("is cut off", node, "", &[]);
                 self.nodes[node].cuts += 1;
-                // Drawn faults overlap: a node is well again when the last one is over.
+                // Random faults overlap: a node recovers when the last one ends.
                 if self.nodes[node].cuts == 1 {
                     self.nodes[node].is_cut = true;
                     self.begin_silence(node);
@@ -163,7 +164,7 @@ impl State {
         vec![]
     }
 
-    /// A fault ends.
+    /// Ends a fault.
     pub(crate) fn end_fault(&mut self, node: usize, what: FaultEnd) -> Vec<Call> {
         let node_state = &mut self.nodes[node];
         match what {
@@ -176,7 +177,7 @@ impl State {
         vec![]
     }
 
-    /// Kills a node: its threads unwind as soon as they go on, its links close.
+    /// Kills a node: its threads unwind when they continue, and its links close.
     pub(crate) fn kill(&mut self, node: usize) {
         self.nodes[node].is_running = false;
         for thread in &mut self.threads {
@@ -189,7 +190,7 @@ impl State {
         sessions.into_iter().for_each(|session| self.close(session));
     }
 
-    /// A thread has come to its end; with that of its first thread the node does.
+    /// Records the end of a thread; when its first thread ends, so does the node.
     pub(crate) fn thread_ended(&mut self, thread: usize, node: usize, panic: Option<String>) {
         self.threads[thread].status = Status::Done;
         if let Some(panic) = panic {

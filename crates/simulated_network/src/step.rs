@@ -1,4 +1,4 @@
-//! A step of a simulation: its next event happens.
+//! A step of a simulation: the next event.
 
 use crate::call::Call;
 use crate::event::Event;
@@ -8,7 +8,7 @@ use crate::verdict::Verdict;
 use std::sync::Arc;
 
 impl State {
-    /// The next event happens; gives what is to be called.
+    /// Handles the next event and returns the callbacks to call.
     pub(crate) fn step(&mut self, world: &Arc<World>) -> Vec<Call> {
         let Some(queued) = self.events.pop() else {
             self.give_up(Verdict::Deadlock(self.waiting()));
@@ -36,17 +36,17 @@ impl State {
         }
     }
 
-    /// Which nodes still run.
+    /// The names of the nodes that still run.
     fn waiting(&self) -> Vec<String> {
         let is_there = |thread: &&Thread| thread.status != Status::Done;
         self.threads.iter().filter(is_there).map(|thread| self.nodes[thread.node].name.clone()).collect()
     }
 
-    /// Ends the simulation: every node is killed, and nothing happens any more.
+    /// Ends the simulation: kills every node and clears all events.
     fn give_up(&mut self, verdict: Verdict) {
         self.verdict = verdict;
-        // All nodes are killed in place of left waiting, so that their threads end and the test
-        // can tell what they waited for.
+        // Kills all nodes instead of leaving them waiting, so that their threads end and the test
+        // can report what they waited for.
         self.events.clear();
         self.starts_due = 0;
         (0..self.nodes.len()).for_each(|node| self.nodes[node].starts_again = None);

@@ -5,11 +5,11 @@ use std::time::Duration;
 /// How a simulation ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// All nodes came to their end.
+    /// All nodes ended by themselves.
     Ended,
-    /// These nodes waited for something that could not come.
+    /// These nodes waited for something that could not happen.
     Deadlock(Vec<String>),
-    /// These nodes were still there at the limit.
+    /// These nodes still ran at the limit.
     OutOfTime(Vec<String>),
     /// A node panicked.
     Panic(String),
@@ -18,10 +18,10 @@ pub enum Verdict {
 /// The end of a node.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NodeEnd {
-    /// Which.
+    /// The name of the node.
     pub node: String,
-    /// When.
+    /// The virtual time of the end.
     pub at: Duration,
-    /// Whether a fault was the reason.
+    /// Whether a fault ended it.
     pub was_killed: bool,
 }

@@ -1,4 +1,4 @@
-//! The simulated network itself: time, order, faults, and that a seed is a run.
+//! The simulated network itself: time, order, faults, and reproducibility from the seed.
 
 use bus::{Bus, Net, Priority, Watched, clock, inbox};
 use messages::topic::GameName;
@@ -37,10 +37,10 @@ fn scenario() -> Scenario {
     scenario::load(&file).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// What a node saw, in order, with the second of virtual time.
+/// Observations of a node, in order, each with its virtual time, s.
 type Log = Arc<Mutex<Vec<(f64, String)>>>;
 
-/// A hub that listens for `time`, and logs numbers and tokens.
+/// A hub that listens for `time` and logs numbers and tokens.
 fn add_hub(network: &SimulatedNetwork, time: Duration, log: &Log) -> usize {
     let log = Arc::clone(log);
     network.node(Duration::ZERO, "hub", move || {
@@ -58,7 +58,7 @@ fn add_hub(network: &SimulatedNetwork, time: Duration, log: &Log) -> usize {
     })
 }
 
-/// A leaf that shows a token, and publishes a number every `every`.
+/// A leaf that shows a token and publishes a number every `every`.
 fn add_leaf(network: &SimulatedNetwork, numbers: u32, every: Duration) -> usize {
     network.node(Duration::from_millis(1), "leaf", move || {
         let bus = Bus::leaf(&net()).expect("the hub is there");

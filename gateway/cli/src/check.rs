@@ -34,7 +34,7 @@ const GAME_WAIT: Duration = Duration::from_secs(5);
 /// Which boat.
 #[derive(clap::Args)]
 pub struct Args {
-    /// Where the boat is: tcp://HOST:PORT, udp://HOST:PORT, serial:///dev/ttyUSB0?baud=38400
+    /// Where the boat is: tcp://HOST:PORT, udp://HOST:PORT, udp-listen://0.0.0.0:14550, serial:///dev/ttyUSB0?baud=38400 (4800 to 921600)
     #[arg(long, value_name = "URL")]
     link: String,
     /// How long to listen, s [default: 10, and 30 with --vehicle]

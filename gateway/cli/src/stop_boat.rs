@@ -28,7 +28,7 @@ const EVENTS_MAX: usize = 4096;
 /// Which boat.
 #[derive(clap::Args)]
 pub struct Args {
-    /// Where the boat is: tcp://HOST:PORT, udp://HOST:PORT, serial:///dev/ttyUSB0?baud=38400
+    /// Where the boat is: tcp://HOST:PORT, udp://HOST:PORT, udp-listen://0.0.0.0:14550, serial:///dev/ttyUSB0?baud=38400 (4800 to 921600)
     link: String,
     /// What the boat speaks
     #[arg(long, value_name = "PROTOCOL", value_enum, default_value_t = ProtocolArg::Surveyor)]

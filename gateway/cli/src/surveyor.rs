@@ -29,7 +29,7 @@ pub struct Args {
     /// The vehicle in the game, by name; there it has source = "external"
     #[arg(long, value_name = "NAME")]
     vehicle: String,
-    /// Where the boat is: tcp://HOST:PORT, udp://HOST:PORT, serial:///dev/ttyUSB0?baud=38400
+    /// Where the boat is: tcp://HOST:PORT, udp://HOST:PORT, udp-listen://0.0.0.0:14550, serial:///dev/ttyUSB0?baud=38400 (4800 to 921600)
     #[arg(long, value_name = "URL")]
     link: String,
     /// A payload that is passed through and recorded, as camera=tcp://192.168.1.23:5001; ,listen=HOST:PORT says where; ,exo2 or ,exo2=http

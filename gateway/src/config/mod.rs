@@ -5,6 +5,7 @@
 
 mod check;
 
+use crate::nmea::FixQuality;
 use scenario::boat::ThrustAndSpeed;
 use scenario::{Diagnostics, Document, ScenarioFile};
 use schemars::JsonSchema;
@@ -194,9 +195,9 @@ pub struct NavWatch {
     /// Oldest fix and heading, s.
     #[schemars(range(min = 0.1, max = 10), extend("default" = 1.5))]
     pub age_max_s: f64,
-    /// Lowest fix quality of GGA (1 GPS, 2 differential, 4 and 5 RTK).
-    #[schemars(range(min = 1, max = 8), extend("default" = 1))]
-    pub quality_min: u8,
+    /// Lowest fix quality of GGA, from worst to best: 1 GPS, 2 differential or 3 PPS, 5 RTK float, 4 RTK fixed.
+    #[schemars(with = "u8", range(min = 1, max = 5), extend("default" = 1))]
+    pub quality_min: FixQuality,
     /// Largest horizontal dilution of precision, where it is told.
     #[schemars(range(min = 0.5, max = 50), extend("default" = 5))]
     pub hdop_max: f64,

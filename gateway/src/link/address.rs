@@ -6,14 +6,14 @@ use thiserror::Error;
 
 /// The speeds a serial line may have, baud.
 // Which speed and format a Surveyor's serial line has is not published: the usual ones of NMEA
-// devices, 8N1.
-pub const BAUDS: [u32; 6] = [4800, 9600, 19_200, 38_400, 57_600, 115_200];
+// devices, 8N1. RTK receivers have the faster ones, and the telemetry ports of autopilots 921600.
+pub const BAUDS: [u32; 9] = [4800, 9600, 19_200, 38_400, 57_600, 115_200, 230_400, 460_800, 921_600];
 
 /// The default speed of a serial line: NMEA 0183-HS.
 const BAUD: u32 = 38_400;
 
-const BAUDS_ALLOWED: &str = "4800, 9600, 19200, 38400, 57600, 115200";
-const TO_CONNECT: &str = "tcp://HOST:PORT, udp://HOST:PORT, serial:///dev/DEVICE?baud=38400";
+const BAUDS_ALLOWED: &str = "4800, 9600, 19200, 38400, 57600, 115200, 230400, 460800, 921600";
+const TO_CONNECT: &str = "tcp://HOST:PORT, udp://HOST:PORT, udp-listen://HOST:PORT, serial:///dev/DEVICE?baud=38400";
 const TO_LISTEN: &str =
     "tcp://HOST:PORT, udp://HOST:PORT, serial:///dev/DEVICE?baud=38400, pty, pty:///path/of/symlink";
 
@@ -24,6 +24,8 @@ pub enum LinkAddress {
     Tcp(Side, HostPort),
     /// A UDP port. One of our own answers whoever sent to it.
     Udp(Side, HostPort),
+    /// A UDP port of our own that is linked to whoever sends to it first: boats send to their ground station's.
+    UdpListen(HostPort),
     /// A serial line, 8N1.
     Serial {
         /// The device.
@@ -72,7 +74,7 @@ pub struct LinkAddressError {
 type Fault = (String, &'static str);
 
 impl LinkAddress {
-    /// For the side that connects: `tcp://HOST:PORT`, `udp://HOST:PORT`, `serial:///dev/ttyUSB0?baud=38400`.
+    /// For the side that connects: `tcp://HOST:PORT`, `udp://HOST:PORT`, `udp-listen://HOST:PORT`, `serial:///dev/ttyUSB0?baud=38400`.
     ///
     /// # Errors
     /// [`LinkAddressError`] tells what was found and what is allowed.
@@ -94,6 +96,7 @@ impl fmt::Display for LinkAddress {
         match self {
             LinkAddress::Tcp(_, at) => write!(f, "tcp://{at}"),
             LinkAddress::Udp(_, at) => write!(f, "udp://{at}"),
+            LinkAddress::UdpListen(at) => write!(f, "udp-listen://{at}"),
             LinkAddress::Serial { path, baud } => write!(f, "serial://{}?baud={baud}", path.display()),
             LinkAddress::Pty { link: None } => write!(f, "pty"),
             LinkAddress::Pty { link: Some(link) } => write!(f, "pty://{}", link.display()),
@@ -124,6 +127,7 @@ fn parse(text: &str, side: Side) -> Result<LinkAddress, Fault> {
     match scheme {
         "tcp" => Ok(LinkAddress::Tcp(side, host_and_port(rest, side)?)),
         "udp" => Ok(LinkAddress::Udp(side, host_and_port(rest, side)?)),
+        "udp-listen" if !listens => Ok(LinkAddress::UdpListen(host_and_port(rest, side)?)),
         "serial" => serial(rest),
         "pty" if listens => Ok(LinkAddress::Pty { link: Some(absolute(rest)?) }),
         // Whoever connects to somebody else's terminal does so by its path, as a serial line.

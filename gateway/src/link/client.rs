@@ -63,6 +63,7 @@ fn connect(threads: &Threads, address: &LinkAddress) -> io::Result<(Port, String
     match address {
         LinkAddress::Tcp(Side::Connects, at) => connect_tcp(threads, at),
         LinkAddress::Udp(Side::Connects, at) => connect_udp(at),
+        LinkAddress::UdpListen(at) => await_udp(threads, at),
         LinkAddress::Serial { path, baud } => open_serial(path, *baud),
         _ => Err(io::Error::new(ErrorKind::Unsupported, "nothing to connect to")),
     }
@@ -141,6 +142,29 @@ fn connect_udp(at: &HostPort) -> io::Result<(Port, String)> {
     socket.set_read_timeout(Some(TICK))?;
     socket.set_write_timeout(Some(TICK))?;
     Ok((Port::Udp(socket), address.to_string()))
+}
+
+/// Waits for the first datagram, and connects to whoever sent it.
+// One peer, in place of a server for all: the boat is one, and the guard needs a socket on which a
+// plain write reaches it. A boat that starts anew sends from another port: after the silence that
+// ends a link, the next one is found.
+fn await_udp(threads: &Threads, at: &HostPort) -> io::Result<(Port, String)> {
+    let socket = UdpSocket::bind((at.host.as_str(), at.port))?;
+    socket.set_read_timeout(Some(TICK))?;
+    socket.set_write_timeout(Some(TICK))?;
+    let start = clock::now();
+    while clock::since(start) < CONNECT && !threads.is_stopped() {
+        // Only looked at: it is the first that the connection reads.
+        match socket.peek_from(&mut [0]) {
+            Ok((_, from)) => {
+                socket.connect(from)?;
+                return Ok((Port::Udp(socket), from.to_string()));
+            }
+            Err(e) if matches!(e.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted) => {}
+            Err(e) => return Err(e),
+        }
+    }
+    Err(io::Error::new(ErrorKind::TimedOut, format!("nobody sent anything for {CONNECT:?}")))
 }
 
 fn open_serial(path: &Path, baud: u32) -> io::Result<(Port, String)> {

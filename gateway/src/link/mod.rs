@@ -280,7 +280,7 @@ fn prepare(threads: Arc<Threads>, address: &LinkAddress) -> Result<(String, Work
         LinkAddress::Serial { path, baud } if !BAUDS.contains(baud) => {
             return Err(LinkError::Baud { path: path.clone(), baud: *baud });
         }
-        LinkAddress::Tcp(..) | LinkAddress::Udp(..) | LinkAddress::Serial { .. } => {
+        LinkAddress::Tcp(..) | LinkAddress::Udp(..) | LinkAddress::UdpListen(_) | LinkAddress::Serial { .. } => {
             let address = address.clone();
             (address.to_string(), Box::new(move || client::run(&threads, &address)))
         }

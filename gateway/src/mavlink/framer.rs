@@ -38,7 +38,7 @@ pub struct Counts {
     pub garbage: u64,
     /// Messages with a value that the dialect does not know.
     pub unreadable: u64,
-    /// Messages that the dialect does not know, by their number; they cannot be checked.
+    /// Messages that the dialect does not know, by their number; they count when the next frame begins behind them.
     pub unknown: BTreeMap<u32, u64>,
 }
 
@@ -83,11 +83,21 @@ impl Layout {
         }
     }
 
+    fn is_known(&self) -> bool {
+        MavMessage::default_message_from_id(self.id).is_some()
+    }
+
     fn has_right_checksum(&self, frame: &[u8]) -> bool {
         let (_, end) = self.payload;
         let stated = u16::from_le_bytes([frame[end], frame[end + 1]]);
         calculate_crc(&frame[1..end], MavMessage::extra_crc(self.id)) == stated
     }
+}
+
+/// Whether bytes begin with the whole frame of a known message, with a right checksum.
+fn begins_with_good_frame(bytes: &[u8]) -> bool {
+    let Ok(Some(layout)) = Layout::of(bytes) else { return false };
+    layout.is_known() && bytes.len() >= layout.len && layout.has_right_checksum(&bytes[..layout.len])
 }
 
 /// These bytes begin no frame.
@@ -117,6 +127,10 @@ impl Framer {
                     self.counts.garbage += 1;
                     at += 1;
                 }
+                Ok(Some(layout)) if !layout.is_known() => match self.pass_unknown(&layout, &buffer[at..]) {
+                    0 => break,
+                    count => at += count,
+                },
                 Ok(Some(layout)) if buffer.len() - at >= layout.len => {
                     at += self.read(&layout, &buffer[at..at + layout.len], take);
                 }
@@ -133,16 +147,31 @@ impl Framer {
         &self.counts
     }
 
+    /// Passes over what begins like a frame of an unknown message; returns how many bytes are done with, 0 while that is open.
+    fn pass_unknown(&mut self, layout: &Layout, bytes: &[u8]) -> usize {
+        // The checksum of a message includes a byte that only its definition tells, so that of
+        // an unknown one cannot be checked. Noise that looks like its beginning shows by a good
+        // frame within its stated length, or by what follows it. More bytes never change what
+        // fewer have decided: the same comes of every split.
+        let inside = &bytes[..layout.len.min(bytes.len())];
+        let is_noise = (1..inside.len()).any(|at| begins_with_good_frame(&inside[at..]));
+        match bytes.get(layout.len) {
+            None if !is_noise => 0,
+            Some(&(MAV_STX | MAV_STX_V2)) if !is_noise => {
+                let key = if self.counts.unknown.len() < UNKNOWN_MAX { layout.id } else { u32::MAX };
+                *self.counts.unknown.entry(key).or_default() += 1;
+                layout.len
+            }
+            _ => {
+                self.counts.garbage += 1;
+                1
+            }
+        }
+    }
+
     /// Reads a whole frame; returns how many bytes of it are done with.
     fn read(&mut self, layout: &Layout, frame: &[u8], take: &mut dyn FnMut(Received)) -> usize {
         let Layout { version, id, system, component, payload: (start, end), len } = *layout;
-        // The checksum of a message includes a byte that only its definition tells, so that of
-        // an unknown one cannot be checked.
-        if MavMessage::default_message_from_id(id).is_none() {
-            let key = if self.counts.unknown.len() < UNKNOWN_MAX { id } else { u32::MAX };
-            *self.counts.unknown.entry(key).or_default() += 1;
-            return len;
-        }
         if !layout.has_right_checksum(frame) {
             self.counts.bad_checksum += 1;
             self.counts.garbage += 1;

@@ -5,10 +5,12 @@
 
 mod framer;
 mod rover_mode;
+mod text;
 
 pub use ::mavlink::dialects::common as dialect;
 pub use framer::{Counts, FRAME_MAX, Framer, Received};
 pub use rover_mode::RoverMode;
+pub use text::message_text;
 
 use ::mavlink::{MAVLinkV2MessageRaw, MavHeader};
 use dialect::MavMessage;

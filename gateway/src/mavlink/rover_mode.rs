@@ -48,6 +48,12 @@ impl RoverMode {
         }
     }
 
+    /// Whether Rover arms in it. Of the modes without a name here it is not known, and not expected.
+    #[must_use]
+    pub fn allows_arming(self) -> bool {
+        !matches!(self, RoverMode::Rtl | RoverMode::SmartRtl | RoverMode::Initialising | RoverMode::Other(_))
+    }
+
     /// Its number.
     #[must_use]
     pub fn number(self) -> u32 {

@@ -51,6 +51,8 @@ pub(super) enum Field<'a> {
     Operator(&'a mut Option<Operator>),
     /// `A` for valid data, `V` for others.
     Valid(&'a mut bool),
+    /// The same of a fix, whose mode is the field that comes this many fields later.
+    ValidFix(&'a mut bool, usize),
     /// A time `hhmmss.ss`, if there is one.
     Time(&'a mut Option<TimeOfDay>),
     /// A date `ddmmyy`, if there is one.

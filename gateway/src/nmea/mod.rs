@@ -8,6 +8,7 @@
 mod date_time;
 #[cfg(test)]
 mod fields;
+mod fix_quality;
 mod framer;
 mod layout;
 mod mode;
@@ -22,10 +23,11 @@ mod wind;
 mod writer;
 
 pub use date_time::{Date, TimeOfDay, date_and_time};
+pub use fix_quality::FixQuality;
 pub use framer::{ACCEPTED_MAX, Counts, Framer};
 pub use mode::Mode;
 pub use operator::Operator;
-pub use standard::{Gga, Gll, Hdg, Hdt, Mwv, Rmc, Vhw, Vtg, Zda, quality_in_words};
+pub use standard::{Gga, Gll, Hdg, Hdt, Mwv, Rmc, Vhw, Vtg, Zda};
 pub use surveyor::{Attitude, Battery, BoatError, Command, ControlState, MissionSettings, Waypoint};
 pub use talker::Talker;
 pub use wind::{M_S_PER_KN, SpeedUnit, WindReference};

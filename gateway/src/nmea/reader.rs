@@ -64,6 +64,10 @@ impl<'a> Reader<'a> {
             Field::Mode(mode) => *mode = self.mode()?,
             Field::Operator(operator) => *operator = self.whole()?.map(Operator::from_number),
             Field::Valid(valid) => *valid = self.valid()?,
+            // Receivers vouch for what they reckon, or are told by hand, just as for a fix.
+            Field::ValidFix(valid, ahead) => {
+                *valid = self.valid()? && !matches!(self.peek(ahead), "E" | "M" | "S" | "N");
+            }
             Field::Time(time) => *time = self.parsed(TimeOfDay::parse, "a time hhmmss.ss or nothing")?,
             Field::Date(date) => *date = self.parsed(Date::parse, "a date ddmmyy or nothing")?,
             Field::DayMonthYear(date) => *date = self.day_month_year()?,

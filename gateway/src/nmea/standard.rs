@@ -15,7 +15,7 @@ pub struct Gga {
     pub time: Option<TimeOfDay>,
     /// Position of the antenna.
     pub at: Option<LatLon>,
-    /// How the fix was made: 0 not at all, 1 GPS, 2 differential, 4 RTK, 5 float. An empty field is 0.
+    /// How the fix was made, as [`super::FixQuality`] explains it. An empty field is 0.
     pub quality: u8,
     /// Satellites used.
     pub satellites: Option<u8>,
@@ -25,23 +25,6 @@ pub struct Gga {
     pub altitude_m: Option<f64>,
     /// Height of the geoid above the ellipsoid, m.
     pub geoid_m: Option<f64>,
-}
-
-/// What the quality of a fix means, as GGA counts it.
-#[must_use]
-pub fn quality_in_words(quality: u8) -> &'static str {
-    match quality {
-        0 => "no fix",
-        1 => "GPS",
-        2 => "DGPS",
-        3 => "PPS",
-        4 => "RTK fixed",
-        5 => "RTK float",
-        6 => "dead reckoning",
-        7 => "manual input",
-        8 => "simulator",
-        _ => "an unknown quality",
-    }
 }
 
 impl Gga {
@@ -92,7 +75,7 @@ impl Rmc {
         let fields = vec![
             Field::Standard(&mut self.talker, "RMC"),
             Field::Time(&mut self.time),
-            Field::Valid(&mut self.valid),
+            Field::ValidFix(&mut self.valid, 10),
             Field::Position(&mut self.at, 5),
             Field::Number(&mut self.speed_kn, HUNDREDTHS),
             Field::Number(&mut self.course_deg, COMPASS),
@@ -233,7 +216,7 @@ impl Gll {
             Field::Standard(&mut self.talker, "GLL"),
             Field::Position(&mut self.at, 5),
             Field::Time(&mut self.time),
-            Field::Valid(&mut self.valid),
+            Field::ValidFix(&mut self.valid, 1),
             Field::Constant(mode),
         ];
         Layout { fields_min: 4, fields }

@@ -64,7 +64,7 @@ impl Writer {
             Field::Mode(mode) => self.fixed(&String::from(mode.letter())),
             Field::Operator(operator) => self.spare(&operator.map_or_else(String::new, |o| o.number().to_string())),
             // Never spare: without it a reader would have to guess whether a fix counts.
-            Field::Valid(valid) => self.fixed(if *valid { "A" } else { "V" }),
+            Field::Valid(valid) | Field::ValidFix(valid, _) => self.fixed(if *valid { "A" } else { "V" }),
             Field::Time(time) => self.fixed(&time.and_then(TimeOfDay::text).unwrap_or_default()),
             Field::Date(date) => self.fixed(&date.and_then(Date::text).unwrap_or_default()),
             Field::DayMonthYear(date) => self.day_month_year(*date),

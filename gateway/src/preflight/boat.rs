@@ -5,7 +5,7 @@ use super::fix_scatter::FixScatter;
 use crate::config::Gateway;
 use crate::geodesy::LocalFrame;
 use crate::geofence::GeofenceArea;
-use crate::nmea::{Mode, Operator, TimeOfDay, quality_in_words};
+use crate::nmea::{Mode, Operator, TimeOfDay};
 use crate::sensor_check::SensorCheck;
 use primitives::SimTime;
 use primitives::frame::LatLon;
@@ -57,15 +57,15 @@ fn fix(seen: &SensorCheck, gateway: &Gateway) -> Check {
     let nav = &gateway.nav;
     let satellites = fix.satellites.map_or("unknown".to_owned(), |count| count.to_string());
     let hdop = fix.hdop.map_or("unknown".to_owned(), |hdop| hdop.to_string());
-    let quality = fix.quality.unwrap_or(0);
+    let quality = fix.quality.unwrap_or_default();
     let found = format!(
         "{}, {satellites} satellites, dilution {hdop}; expected quality {} or better, dilution up to {}",
-        quality_in_words(quality),
+        quality.in_words(),
         nav.quality_min,
         nav.hdop_max
     );
     let is_sharp = fix.hdop.is_none_or(|hdop| hdop <= nav.hdop_max);
-    Check::of("fix", fix.at.is_some() && quality >= nav.quality_min && is_sharp, found)
+    Check::of("fix", fix.at.is_some() && quality.meets(nav.quality_min) && is_sharp, found)
 }
 
 fn scatter(seen: &SensorCheck) -> Check {
@@ -220,6 +220,10 @@ mod tests {
         for (place, fix, more, failed, found) in [
             ([80.0, 40.0], fix, SOUND, "", ""),
             ([80.0, 40.0], "0,11,0.98", SOUND, "fix", "no fix, 11 satellites"),
+            ([80.0, 40.0], "6,11,0.98", SOUND, "fix", "dead reckoning, 11 satellites"),
+            ([80.0, 40.0], "7,11,0.98", SOUND, "fix", "manual input"),
+            ([80.0, 40.0], "8,11,0.98", SOUND, "fix", "simulator"),
+            ([80.0, 40.0], "9,11,0.98", SOUND, "fix", "an unknown quality"),
             ([80.0, 40.0], "5,4,7.50", SOUND, "fix", "RTK float, 4 satellites, dilution 7.5"),
             ([80.0, 400.0], fix, SOUND, "geofence", "off the field, 290.0 m OUTSIDE of"),
             (

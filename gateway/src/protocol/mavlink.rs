@@ -173,6 +173,7 @@ impl Mavlink {
                     target_system: self.target().system,
                     target_component: self.target().component,
                     mavtype: MavMissionResult::MAV_MISSION_OPERATION_CANCELLED,
+                    ..MISSION_ACK_DATA::default()
                 }),
                 out,
             ),
@@ -180,8 +181,13 @@ impl Mavlink {
     }
 
     /// Asks for a mode, armed, until the boat shows it.
-    fn engage(&mut self, now: SimTime, mode: RoverMode, out: &mut Vec<u8>) {
-        let before = self.asked.filter(|asked| asked.mode == mode && asked.is_armed);
+    fn engage(&mut self, now: SimTime, wanted: RoverMode, out: &mut Vec<u8>) {
+        let asked = self.asked.filter(|asked| asked.is_armed);
+        let is_done = asked.is_some_and(|asked| asked.mode == wanted && asked.is_shown);
+        let is_armed = self.boat.mode.is_some_and(|shown| shown.is_armed);
+        // Rover does not arm in RTL ("Mode not armable"): a boat at rest is armed in HOLD first.
+        let mode = if is_done || is_armed || wanted.allows_arming() { wanted } else { RoverMode::Hold };
+        let before = asked.filter(|asked| asked.mode == mode);
         if before.is_some_and(|asked| asked.is_shown || (now - asked.at).as_s() < AGAIN_S) {
             return;
         }

@@ -2,12 +2,13 @@
 
 use super::mavlink::Asked;
 use super::report::{ControlReport, Fix, Heading, North, Power, Report, Shown};
+use super::status_text::StatusTexts;
 use crate::mavlink::dialect::{
     ATTITUDE_DATA, COMMAND_ACK_DATA, GLOBAL_POSITION_INT_DATA, GPS_RAW_INT_DATA, GpsFixType, HEARTBEAT_DATA,
     MavAutopilot, MavCmd, MavMessage, MavModeFlag, MavResult, MavSeverity, MavType, NAV_CONTROLLER_OUTPUT_DATA,
 };
 use crate::mavlink::{AUTOPILOT, Received, RoverMode};
-use crate::nmea::{Mode, Operator, date_and_time};
+use crate::nmea::{FixQuality, Mode, Operator, date_and_time};
 use ::mavlink::Message;
 use primitives::frame::Ned;
 use primitives::{LatLon, SimTime};
@@ -45,6 +46,7 @@ pub(super) struct Boat {
     ordered: Option<(SimTime, f64)>,
     /// When it last showed that it goes to a position in GUIDED.
     position_target_at: SimTime,
+    texts: StatusTexts,
     /// Other ground stations that were heard: system and component.
     stations: Vec<(u8, u8)>,
 }
@@ -62,6 +64,7 @@ impl Boat {
             has_volts: false,
             ordered: None,
             position_target_at: SimTime::LONG_AGO,
+            texts: StatusTexts::default(),
             stations: vec![],
         }
     }
@@ -181,6 +184,7 @@ impl Boat {
 
     /// What a message reports.
     pub(super) fn report(&mut self, now: SimTime, message: &MavMessage, take: &mut dyn FnMut(Report)) {
+        self.texts.take_overdue(now, &mut |text| take(Report::Notice(text)));
         match message {
             MavMessage::NAV_CONTROLLER_OUTPUT(_) | MavMessage::POSITION_TARGET_GLOBAL_INT(_) => {
                 self.take_target(now, message);
@@ -212,10 +216,9 @@ impl Boat {
             }
             // What is less than a warning is said all the time, and would hide what matters.
             MavMessage::STATUSTEXT(status) if status.severity as u8 <= MavSeverity::MAV_SEVERITY_WARNING as u8 => {
-                let text = status.text.to_str().unwrap_or("a text that is not UTF-8").trim().to_owned();
-                take(Report::Notice(text));
+                self.texts.take(now, status, &mut |text| take(Report::Notice(text)));
             }
-            MavMessage::COMMAND_ACK(COMMAND_ACK_DATA { command, result }) => {
+            MavMessage::COMMAND_ACK(COMMAND_ACK_DATA { command, result, .. }) => {
                 // Only of commands that we send ourselves: an answer goes to everybody on the
                 // link.
                 let is_orderly = matches!(
@@ -248,7 +251,7 @@ impl Boat {
         take(Report::Velocity(Ned { north: 0.01 * f64::from(vx), east: 0.01 * f64::from(vy) }));
         // The position is an estimate that goes on without a receiver: its fix says what it is worth.
         let fix = self.fix.filter(|(at, _)| (now - *at).as_s() <= FIX_TYPE_AGE_MAX_S);
-        let fix = fix.map_or(Fix { quality: Some(0), ..Fix::default() }, |(_, fix)| fix);
+        let fix = fix.map_or(Fix { quality: Some(FixQuality::NONE), ..Fix::default() }, |(_, fix)| fix);
         let at = LatLon { lat_deg: 1e-7 * f64::from(lat), lon_deg: 1e-7 * f64::from(lon) };
         let is_on_globe = at.lat_deg.abs() <= 90.0 && at.lon_deg.abs() <= 180.0;
         take(Report::Fix(Fix { at: is_on_globe.then_some(at), ..fix }));
@@ -273,14 +276,16 @@ fn fix(gps: &GPS_RAW_INT_DATA) -> Fix {
 }
 
 /// The quality of a fix as GGA counts it.
-fn quality(gps: &GPS_RAW_INT_DATA) -> u8 {
-    match gps.fix_type {
+fn quality(gps: &GPS_RAW_INT_DATA) -> FixQuality {
+    FixQuality::from_gga(match gps.fix_type {
         GpsFixType::GPS_FIX_TYPE_NO_GPS | GpsFixType::GPS_FIX_TYPE_NO_FIX | GpsFixType::GPS_FIX_TYPE_2D_FIX => 0,
-        GpsFixType::GPS_FIX_TYPE_3D_FIX | GpsFixType::GPS_FIX_TYPE_STATIC => 1,
+        GpsFixType::GPS_FIX_TYPE_3D_FIX => 1,
         GpsFixType::GPS_FIX_TYPE_DGPS | GpsFixType::GPS_FIX_TYPE_PPP => 2,
         GpsFixType::GPS_FIX_TYPE_RTK_FLOAT => 5,
         GpsFixType::GPS_FIX_TYPE_RTK_FIXED => 4,
-    }
+        // A base station knows its place because somebody entered it.
+        GpsFixType::GPS_FIX_TYPE_STATIC => 7,
+    })
 }
 
 /// A voltage, V, if it is measured.

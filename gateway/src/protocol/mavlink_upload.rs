@@ -151,6 +151,7 @@ impl Upload {
             count: self.items.len() as u16,
             target_system: target.system,
             target_component: target.component,
+            ..MISSION_COUNT_DATA::default()
         })
     }
 }

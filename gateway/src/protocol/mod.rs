@@ -7,6 +7,7 @@ mod mavlink_boat;
 mod mavlink_upload;
 mod mission_check;
 mod report;
+mod status_text;
 mod surveyor;
 mod surveyor_upload;
 

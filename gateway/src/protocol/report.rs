@@ -1,6 +1,6 @@
 //! What boats report of themselves, whichever protocol they speak.
 
-use crate::nmea::{Mode, Operator, TimeOfDay};
+use crate::nmea::{FixQuality, Mode, Operator, TimeOfDay};
 use primitives::LatLon;
 use primitives::frame::Ned;
 
@@ -49,8 +49,8 @@ pub struct Fix {
     pub time: Option<TimeOfDay>,
     /// Where; nothing if the receiver does not know.
     pub at: Option<LatLon>,
-    /// Its quality as in GGA (0 none, 1 GPS, 2 differential, 4 and 5 RTK), if it is told.
-    pub quality: Option<u8>,
+    /// Its quality, if it is told.
+    pub quality: Option<FixQuality>,
     /// The horizontal dilution of precision, if it is told.
     pub hdop: Option<f64>,
     /// How many satellites it is made of, if that is told.

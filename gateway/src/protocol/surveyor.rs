@@ -3,7 +3,7 @@
 use super::report::{ControlReport, Fix, Heading, North, Power, Report, Shown};
 use super::surveyor_upload::{Next, Upload};
 use super::{Command, UploadStep, mission_check};
-use crate::nmea::{self, ControlState, Framer, Gga, M_S_PER_KN, Mode, ParseError, Sentence};
+use crate::nmea::{self, ControlState, FixQuality, Framer, Gga, M_S_PER_KN, Mode, ParseError, Sentence};
 use crate::set_point::SetPoint;
 use crate::supervisor::Task;
 use messages::external::{BoatMode, Mission};
@@ -102,13 +102,13 @@ fn report(sentence: &Sentence, take: &mut dyn FnMut(Report)) {
     match sentence {
         Sentence::Gga(gga) => {
             let Gga { time, at, quality, hdop, satellites, .. } = *gga;
-            take(Report::Fix(Fix { time, at, quality: Some(quality), hdop, satellites }));
+            take(Report::Fix(Fix { time, at, quality: Some(FixQuality::from_gga(quality)), hdop, satellites }));
             gga.time.into_iter().for_each(|time| take(Report::Clock(time)));
         }
         Sentence::Rmc(rmc) => {
             velocity(rmc.course_deg, rmc.speed_kn).into_iter().for_each(|velocity| take(Report::Velocity(velocity)));
             // It tells no quality but none at all.
-            let quality = (!rmc.valid).then_some(0);
+            let quality = (!rmc.valid).then_some(FixQuality::NONE);
             take(Report::Fix(Fix { time: rmc.time, at: rmc.at, quality, ..Fix::default() }));
         }
         Sentence::Vtg(vtg) => {

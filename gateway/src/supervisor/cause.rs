@@ -1,6 +1,7 @@
 //! The cause of a failsafe or of a refusal to arm, with its texts for operators.
 
 use super::{State, Task};
+use crate::nmea::FixQuality;
 use crate::thrust_check::ThrustFault;
 use std::fmt;
 use thiserror::Error;
@@ -69,7 +70,7 @@ pub enum NavFault {
     HeadingStale(f64),
     /// The receiver says that its fix is of this quality.
     #[error("the fix is of quality {0}")]
-    Quality(u8),
+    Quality(FixQuality),
     /// The dilution of precision is this large.
     #[error("the horizontal dilution of precision is {0}")]
     Dilution(f64),

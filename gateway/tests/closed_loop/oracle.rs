@@ -1,6 +1,6 @@
 //! The test oracle: checks every sentence that is sent against the safety rules, independent of the implementation.
 
-use gateway::nmea::{Operator, Sentence};
+use gateway::nmea::{FixQuality, Operator, Sentence};
 use primitives::SimTime;
 
 /// The state as seen from outside of the gateway.
@@ -71,7 +71,9 @@ impl Oracle {
 
     fn note_sentence(&mut self, now: SimTime, body: &str) {
         match Sentence::parse(body) {
-            Ok(Sentence::Gga(gga)) if gga.quality > 0 && gga.at.is_some() => self.fixed = now,
+            Ok(Sentence::Gga(gga)) if FixQuality::from_gga(gga.quality).is_fix() && gga.at.is_some() => {
+                self.fixed = now
+            }
             Ok(Sentence::Attitude(attitude)) if attitude.heading_deg.is_some() => self.headed = now,
             Ok(Sentence::ControlState(state)) => {
                 self.other_operator = state.operator != Some(Operator::Secondary);

@@ -1,6 +1,6 @@
 //! Addresses as people type them, listed in `addresses.txt`.
 
-use gateway::link::LinkAddress::{self, Pty, Serial, Tcp, Udp};
+use gateway::link::LinkAddress::{self, Pty, Serial, Tcp, Udp, UdpListen};
 use gateway::link::Side::{self, Connects, Listens};
 
 #[test]
@@ -37,6 +37,7 @@ fn in_words(address: &LinkAddress, side: Side) -> String {
     match address {
         Tcp(of, at) if *of == side => format!("tcp {} {}", at.host, at.port),
         Udp(of, at) if *of == side => format!("udp {} {}", at.host, at.port),
+        UdpListen(at) => format!("udp-listen {} {}", at.host, at.port),
         Serial { path, baud } => format!("serial {} {baud}", path.display()),
         Pty { link: None } => "pty".to_owned(),
         Pty { link: Some(link) } => format!("pty {}", link.display()),

@@ -1,7 +1,7 @@
 //! Links by UDP.
 
 use crate::event_log::{LIMIT, close, connect, listen, open, patient, up};
-use gateway::link::{LinkAddress, LinkSettings};
+use gateway::link::{LinkAddress, LinkEvent, LinkSettings};
 use std::net::UdpSocket;
 use std::time::{Duration, Instant};
 
@@ -83,6 +83,35 @@ fn nobody_there_is_no_error_and_somebody_who_comes_is_found() {
     server_log.up(0);
     server.send(b"aye".to_vec(), 0);
     log.received(b"aye");
+}
+
+#[test]
+fn a_port_that_is_listened_on_is_linked_to_its_first_sender_and_to_the_next_after_silence() {
+    let free = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
+    let address = LinkAddress::to_connect(&format!("udp-listen://{free}")).unwrap();
+    let (link, log) = open(&address, LinkSettings { silence: Some(Duration::from_millis(400)), ..patient() });
+    let mut got = [0; 9];
+    for round in 0..2_u32 {
+        let boat = UdpSocket::bind("127.0.0.1:0").unwrap();
+        boat.set_read_timeout(Some(Duration::from_millis(20))).unwrap();
+        let start = Instant::now();
+        // As a boat that does not know whether anybody listens.
+        let count = loop {
+            assert!(start.elapsed() < LIMIT, "no link: {:?}", log.all());
+            let _ = boat.send_to(&[b'a' + round as u8; 3], free);
+            link.send(b"aye".to_vec(), u64::from(round));
+            if let Ok((count, from)) = boat.recv_from(&mut got) {
+                assert_eq!(from, free, "the answer comes from the port that was sent to");
+                break count;
+            }
+        };
+        assert!(got[..count].starts_with(b"aye"), "{got:?}");
+        assert_eq!(log.up(round as usize).0, round);
+        let is_its = |event: &LinkEvent| matches!(event, LinkEvent::Bytes { peer, bytes, .. } if *peer == round && bytes[0] == b'a' + round as u8);
+        log.until("its bytes", |events| events.iter().any(|(_, event)| is_its(event)).then_some(()));
+        assert!(log.down(round as usize).0.contains("no bytes"), "{:?}", log.all());
+    }
+    drop(link);
 }
 
 #[test]

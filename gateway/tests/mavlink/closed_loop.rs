@@ -296,6 +296,44 @@ fn a_boat_keeps_its_station_and_goes_to_the_recovery_point_that_it_showed() {
 }
 
 #[test]
+fn a_boat_at_rest_is_armed_before_it_is_sent_to_its_recovery_point() {
+    let mut rig = Rig::under_way();
+    let frame = LocalFrame::new(plan().site.expect("the rig has one").field.plan.datum);
+    let place = |x: f64, y: f64| {
+        let at = frame.lat_lon(Ned::from_xy(x, y));
+        [at.lat_deg, at.lon_deg]
+    };
+    let mission = Mission { throttle_pct: 40.0, erp: place(40.0, 30.0), waypoints: vec![place(80.0, 40.0)] };
+    rig.operator(OperatorCommand::Mission(mission));
+    rig.run_until(5.0, |rig| rig.state() == "delegated: mission");
+    rig.operator(OperatorCommand::Disarm);
+    rig.run(2.0);
+    assert_eq!(rig.mode(), HOLD);
+    rig.operator(OperatorCommand::GoToErp);
+    assert_eq!(rig.refused.take(), None);
+    rig.run(2.0);
+    let found = (rig.state(), rig.mode());
+    assert_eq!(found, ("delegated: to the emergency recovery point".to_owned(), (RoverMode::Rtl, true)));
+    // A pilot who disarms it on its way keeps it so.
+    rig.ardupilot.receive(rig.now, &disarm());
+    rig.run(10.0);
+    assert!(!rig.mode().1, "{:?}", rig.events);
+}
+
+/// What a ground station sends to disarm the boat.
+fn disarm() -> Vec<u8> {
+    let command = COMMAND_LONG_DATA {
+        command: MavCmd::MAV_CMD_COMPONENT_ARM_DISARM,
+        target_system: 1,
+        target_component: 1,
+        ..COMMAND_LONG_DATA::default()
+    };
+    let mut bytes = vec![];
+    gateway::mavlink::Writer::new(250, 190).write(&MavMessage::COMMAND_LONG(command), &mut bytes);
+    bytes
+}
+
+#[test]
 fn a_mission_that_the_boat_does_not_take_is_given_up_with_the_reason() {
     let mut rig = Rig::under_way();
     let mission = Mission { throttle_pct: 40.0, erp: [0.0; 2], waypoints: vec![[0.0; 2]] };

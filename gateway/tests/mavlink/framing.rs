@@ -92,6 +92,30 @@ fn unknown_messages_and_values_are_counted_and_left() {
     assert_eq!(framer.counts().bad_checksum, 0);
 }
 
+/// What begins like a frame of an unknown message, and states that it has 267 bytes.
+const FALSE_START: [u8; 10] = [0xFD, 0xFF, 0, 0, 1, 1, 1, 0xAA, 0xAA, 0xAA];
+
+#[test]
+fn noise_like_the_header_of_an_unknown_message_swallows_and_delays_no_frame() {
+    let heartbeat = golden()["heartbeat"].clone();
+    // However long the noise is: the first frame lies within the stated length, across its end,
+    // and behind it.
+    for noise in 0..=FRAME_MAX {
+        let stream = [&FALSE_START[..], &vec![0xAA; noise], &heartbeat, &heartbeat].concat();
+        for piece in [1, stream.len()] {
+            let mut framer = Framer::new();
+            let count: usize = stream.chunks(piece).map(|piece| read(&mut framer, piece).len()).sum();
+            assert_eq!(count, 2, "{noise} bytes of noise in pieces of {piece}: {:?}", framer.counts());
+            // What ends where the next frame begins passes for an unknown message.
+            if FALSE_START.len() + noise != 267 {
+                assert_eq!(framer.counts().garbage, (FALSE_START.len() + noise) as u64);
+            }
+        }
+        let first = [&FALSE_START[..], &vec![0xAA; noise], &heartbeat].concat();
+        assert_eq!(read(&mut Framer::new(), &first).len(), 1, "at once, after {noise} bytes of noise");
+    }
+}
+
 proptest! {
     #[test]
     fn any_split_and_any_noise_between_frames_changes_nothing(

@@ -29,6 +29,20 @@ fn other_sentences_of_boats_and_gpsd_are_unknown() {
 }
 
 #[test]
+fn a_position_that_satellites_did_not_make_is_not_valid() {
+    for (mode, want) in [("A", true), ("D", true), ("F", true), ("R", true), ("", true)]
+        .into_iter()
+        .chain(["E", "M", "S", "N"].map(|mode| (mode, false)))
+    {
+        let rmc = format!("GNRMC,150502.00,A,4221.50616,N,07105.24688,W,2.10,045.0,201126,,,{mode}");
+        let Ok(Sentence::Rmc(rmc)) = Sentence::parse(&rmc) else { panic!("{rmc} is read") };
+        let gll = format!("GNGLL,4221.50616,N,07105.24688,W,150502.00,A,{mode}");
+        let Ok(Sentence::Gll(gll)) = Sentence::parse(&gll) else { panic!("{gll} is read") };
+        assert_eq!((rmc.valid, gll.valid), (want, want), "mode {mode:?}");
+    }
+}
+
+#[test]
 fn a_non_finite_number_leaves_its_field_empty() {
     for number in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let at = LatLon { lat_deg: number, lon_deg: 1.0 };

@@ -1,11 +1,12 @@
-//! What boats ask the referee for, where the rules want them to ask.
+//! Requests of boats to the referee, for rules that require requests.
 
 use messages::Picture;
 use primitives::{Ned, VehicleId};
 use rules::{Asks, Field, Rules};
 
-/// What the boats of a team ask for by its picture, as pRangeEvent of the Aquaticus missions does: whoever believes to be
-/// in reach asks, since a request that is refused costs nothing.
+/// The requests of a team's boats according to its picture, as with pRangeEvent of the Aquaticus
+/// missions. A boat that believes it is in reach makes a request, because a refused request costs
+/// nothing.
 pub(super) fn asks_of<'a>(
     rules: &Rules,
     field: &'a Field,

@@ -1,29 +1,29 @@
-//! The cause for which a boat holds.
+//! The reason why a boat holds.
 
 use super::Contest;
 use messages::Order;
 use primitives::VehicleId;
 use rules::Directive;
 
-/// Why a boat holds. Of several causes the first in this list counts.
+/// The reason why a boat holds. If several apply, the first in this list counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HoldCause {
-    /// People ashore have stopped all boats, until they release them.
+    /// An operator stopped all boats, until release.
     EStopped,
-    /// People ashore have halted all boats for now.
+    /// An operator halted all boats for now.
     Halted,
-    /// It is a real boat, and had no fix for too long.
+    /// A real boat has had no fix for too long.
     NavLost,
-    /// It is a real boat, and its agent is lost.
+    /// The agent of a real boat is lost.
     AgentLost,
-    /// It is a real boat, and the game is over.
+    /// A real boat in a game that is over.
     GameOver,
-    /// It is a real boat, and its newest order answers a picture that is too old.
+    /// The newest order of a real boat answers a picture that is too old.
     OrderExpired,
-    /// The rules want it to: it is out of action, or out of play for good.
+    /// The rules require it: the boat is out of action, or out of play for good.
     Rules,
-    /// Its order in force is to hold: its agent said so, or the order before was refused, has expired, was recalled, or came so long
-    /// ago that the boat's own watchdog has stopped it.
+    /// The order in force is to hold: the agent ordered it, or the last order was refused, has
+    /// expired, was recalled, or is so old that the boat's own watchdog stopped it.
     Ordered,
 }
 
@@ -41,7 +41,7 @@ impl Contest {
         })
     }
 
-    /// Why a vehicle holds whatever the rules and its agent want.
+    /// Why a vehicle holds regardless of rules and agent.
     pub(super) fn stop_cause(&self, i: usize) -> Option<HoldCause> {
         if self.state.e_stopped {
             return Some(HoldCause::EStopped);
@@ -49,7 +49,7 @@ impl Contest {
         if self.state.halted {
             return Some(HoldCause::Halted);
         }
-        // A real boat moves only while somebody looks after it.
+        // A real boat moves only while it is supervised.
         let track = self.state.tracks[i].as_ref()?;
         if track.is_lost(self.now()) {
             return Some(HoldCause::NavLost);

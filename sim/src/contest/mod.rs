@@ -1,8 +1,9 @@
-//! A game being played: the world, the referee, the orders in force, and everything that has happened.
+//! A running game: the world, the referee, the orders in force, and all events.
 //!
-//! One decision goes: [`Contest::pictures`] to the agents, [`Contest::order`] from them, [`Contest::advance`]. The
-//! network node and the in-process arena do just that and nothing else, so a game is the same bytes in both. The world
-//! is physics alone: what a boat does in a tick is worked out in [`Contest::effective_command`].
+//! One decision consists of [`Contest::pictures`] to the agents, [`Contest::order`] from them, and
+//! [`Contest::advance`]. The network node and the in-process arena do only that, so a game has the
+//! same bytes in both. The world is physics alone: [`Contest::effective_command`] decides what a
+//! boat does in a tick.
 
 mod ask;
 mod faults;
@@ -36,27 +37,27 @@ use scenario::{Scenario, Source};
 use state::{ContestState, OrderInForce};
 use std::sync::Arc;
 
-/// A game being played. A copy of it goes on by itself.
+/// A running game. A copy continues independently.
 #[derive(Clone)]
 pub struct Contest {
     scenario: Arc<Scenario>,
     referee: Referee,
-    /// After how long without an order each vehicle's thrusters stop.
+    /// Time without an order after which each vehicle's thrusters stop.
     watchdogs: Vec<Option<SimTime>>,
     world: World,
     radio: Option<Radio>,
-    /// By vehicle: the faults of its agent and of its link.
+    /// Fault spans of agent and link, by vehicle index.
     faults: Vec<Vec<FaultSpan>>,
     sightings: Option<Sightings>,
     state: ContestState,
     work: Work,
-    /// Marks snapshots.
+    /// Identifies the game in snapshots.
     scenario_mark: u64,
-    /// What was given since somebody last asked, where somebody wants to know.
+    /// Inputs since the last request, if they are kept.
     given: Option<Vec<Input>>,
 }
 
-/// Memory that is used again every tick, and holds nothing from one to the next.
+/// Memory reused every tick; carries no state between ticks.
 #[derive(Clone, Default)]
 struct Work {
     commands: Vec<Order>,
@@ -67,10 +68,11 @@ struct Work {
 }
 
 impl Contest {
-    /// The game of `scenario` that `seed` chooses, at its start.
+    /// The game of `scenario` with this seed, at its start.
     ///
     /// # Errors
-    /// [`NoStart`] where the boats do not fit into their spawn area, or randomised numbers do not go together.
+    /// [`NoStart`] if the boats do not fit into their spawn area or the randomised values are
+    /// inconsistent.
     pub fn new(scenario: &Scenario, seed: u64) -> Result<Contest, NoStart> {
         let scenario = scenario.of_seed(seed)?;
         let world = World::of_game(&scenario, seed)?;
@@ -112,7 +114,7 @@ impl Contest {
         })
     }
 
-    /// What is played, with the seed of this game.
+    /// The scenario, with the seed of this game.
     #[must_use]
     pub fn scenario(&self) -> &Scenario {
         &self.scenario
@@ -124,7 +126,7 @@ impl Contest {
         &self.world
     }
 
-    /// The decision tick that is open.
+    /// The open decision.
     #[must_use]
     pub fn decision(&self) -> u64 {
         self.state.decision
@@ -142,25 +144,24 @@ impl Contest {
         self.state.standing.over
     }
 
-    /// Points, by team.
+    /// Points, by team index.
     #[must_use]
     pub fn score(&self) -> &[u32] {
         &self.state.standing.score
     }
 
-    /// Everything that has happened so far.
+    /// All events so far.
     #[must_use]
     pub fn events(&self) -> &[Logged] {
         &self.state.events
     }
 
-    /// What each team knows at the open decision, by team: the same whenever it is asked. Each event is in the pictures of
-    /// one decision.
+    /// Each team's picture for the open decision, by team index. Repeated calls return the same.
+    /// Each event is in the pictures of one decision.
     pub fn pictures(&mut self) -> &[Picture] {
         if self.state.pictured_for != Some(self.state.decision) {
-            // Made once a decision, however often they are asked for: making them draws noise
-            // and reads events, and agents that are sent a picture twice must get the same
-            // bytes.
+            // Built once per decision, however often requested: building draws noise and reads
+            // events, and an agent that receives a picture twice must get the same bytes.
             self.state.pictured_for = Some(self.state.decision);
             self.note(Input::Pictured);
             self.gather();
@@ -175,19 +176,19 @@ impl Contest {
         &self.state.pictures
     }
 
-    /// The pictures as [`Contest::pictures`] last made them.
+    /// The pictures last built by [`Contest::pictures`].
     #[must_use]
     pub fn last_pictures(&self) -> &[Picture] {
         &self.state.pictures
     }
 
-    /// The picture of a vehicle's team, as [`Contest::pictures`] last made it.
+    /// The picture of a vehicle's team, last built by [`Contest::pictures`].
     #[must_use]
     pub fn picture_of(&self, vehicle: VehicleId) -> &Picture {
         &self.state.pictures[self.scenario.team_of(vehicle).index()]
     }
 
-    /// The truth, with the events since `cursor`.
+    /// The true state, with the events since `cursor`.
     pub fn frame(&self, cursor: &mut EventCursor) -> Frame {
         let ContestState { standing, decision, events, .. } = &self.state;
         let scene = Scene { scenario: &self.scenario, world: &self.world, standing, decision: *decision };
@@ -200,12 +201,12 @@ impl Contest {
         frame
     }
 
-    /// From now on, keeps what it is given, for [`Contest::take_inputs`].
+    /// From now on, keeps inputs for [`Contest::take_inputs`].
     pub fn keep_inputs(&mut self) {
         self.given.get_or_insert_default();
     }
 
-    /// Everything that was given since this was asked last, in order.
+    /// All inputs since the last call, in order.
     pub fn take_inputs(&mut self) -> Vec<Input> {
         self.given.as_mut().map(std::mem::take).unwrap_or_default()
     }
@@ -216,7 +217,7 @@ impl Contest {
         }
     }
 
-    /// Gives what was once given, as it is recorded. What was refused then is refused again.
+    /// Applies a recorded input. An input that was refused in the recording is refused again.
     pub fn give(&mut self, input: Input) {
         match input {
             Input::Pictured => drop(self.pictures()),
@@ -227,22 +228,22 @@ impl Contest {
             Input::Reported { vehicle, nav, fix_at, valid } => drop(self.report(vehicle, nav, fix_at, valid)),
             Input::EStopped(stopped) => self.e_stop(stopped),
             Input::Halted(halted) => self.halt(halted),
-            // In the recorded order with everything else: what came before which tick must not
-            // depend on clocks when a game is played again.
+            // In recorded order with all other inputs: on replay, the order of inputs and ticks
+            // must not depend on clocks.
             Input::Played => self.advance(),
         }
     }
 
-    /// Takes in where a real boat was at `fix_at`: at most a decision ahead of the game, since reports come while one is
-    /// open. What its gateway calls not `valid` changes nothing.
+    /// Updates a real boat's navigation at `fix_at`, at most a decision ahead of the game, because
+    /// reports arrive while a decision is open. A report that is not `valid` changes nothing.
     ///
     /// # Errors
-    /// [`BadReport`] for numbers that no boat has, and for a simulated boat; nothing changes then.
+    /// [`BadReport`] for implausible numbers and for a simulated boat; nothing changes then.
     pub fn report(&mut self, vehicle: VehicleId, nav: Nav, fix_at: SimTime, valid: bool) -> Result<(), BadReport> {
         let now = self.now();
         let track = self.state.tracks[vehicle.index()].as_mut().ok_or(BadReport::Simulated)?;
         let nav = external::sound(nav)?;
-        // An invalid report is recorded all the same: it shows that the gateway is there.
+        // An invalid report is recorded too: it shows that the gateway is present.
         if valid {
             track.update(nav, fix_at.min(now + self.scenario.decision()));
             let estimate = track.estimate(now);
@@ -252,13 +253,14 @@ impl Contest {
         Ok(())
     }
 
-    /// Whether it is known where a boat is, or once was: a real one by a report, a simulated one always.
+    /// Whether a boat's position is or was known: for a real boat from a report, for a simulated
+    /// one always.
     #[must_use]
     pub fn has_position(&self, vehicle: VehicleId) -> bool {
         self.state.tracks[vehicle.index()].as_ref().is_none_or(Track::has_fix)
     }
 
-    /// Real boats without a fix for too long lie still, and are lost.
+    /// Marks real boats without a fix for too long as lost; they stay at rest.
     fn watch_real_boats(&mut self) {
         let now = self.now();
         for i in 0..self.state.tracks.len() {
@@ -273,7 +275,7 @@ impl Contest {
         }
     }
 
-    /// Boats look round and report.
+    /// Boats observe and report.
     fn gather(&mut self) {
         let Contest { scenario, world, radio, sightings, state, faults, .. } = self;
         let ContestState { standing, decision, known, tracks, .. } = state;
@@ -284,7 +286,7 @@ impl Contest {
             sightings.record_truth(decision, oldest, (0..tracks.len()).map(|i| scene.contact(i)));
         }
         for (i, (known, track)) in known.iter_mut().zip(tracks).enumerate() {
-            // What a boat does not report, nobody knows.
+            // Without a report from the boat, its data stay unknown.
             if faults::is_silent(&faults[i], now) {
                 continue;
             }
@@ -313,8 +315,8 @@ impl Contest {
         }
     }
 
-    /// A vehicle's agent is lost: it holds as by [`Contest::hold`], and that is an event. Does nothing if it is lost
-    /// already.
+    /// Marks a vehicle's agent as lost, with an event; the vehicle holds as by [`Contest::hold`].
+    /// No effect if it is already lost.
     pub fn lose_agent(&mut self, vehicle: VehicleId) {
         if !std::mem::replace(&mut self.state.agent_lost[vehicle.index()], true) {
             self.note(Input::AgentLost(vehicle));
@@ -323,7 +325,8 @@ impl Contest {
         }
     }
 
-    /// A vehicle's agent is there again: what was sent before does not arrive. Does nothing if it was not lost.
+    /// Marks a vehicle's agent as back; messages sent before do not arrive. No effect if it was not
+    /// lost.
     pub fn regain_agent(&mut self, vehicle: VehicleId) {
         if std::mem::replace(&mut self.state.agent_lost[vehicle.index()], false) {
             self.note(Input::AgentBack(vehicle));
@@ -332,7 +335,7 @@ impl Contest {
         }
     }
 
-    /// Makes all boats hold, or lets them go on: an event, if that is another state than before.
+    /// Sets or releases the E-stop for all boats, with an event if the state changes.
     pub fn e_stop(&mut self, stopped: bool) {
         if std::mem::replace(&mut self.state.e_stopped, stopped) != stopped {
             self.note(Input::EStopped(stopped));
@@ -340,8 +343,8 @@ impl Contest {
         }
     }
 
-    /// Makes all boats hold for now, or lets them go on where nobody has stopped them: an event, if that is another state
-    /// than before.
+    /// Makes all boats hold for now, or ends that hold (not an E-stop), with an event if the state
+    /// changes.
     pub fn halt(&mut self, halted: bool) {
         if std::mem::replace(&mut self.state.halted, halted) != halted {
             self.note(Input::Halted(halted));
@@ -349,18 +352,18 @@ impl Contest {
         }
     }
 
-    /// Plays until the next decision, or the end of the game.
+    /// Advances to the next decision or the end of the game.
     pub fn advance(&mut self) {
-        // Once a decision and before any tick: an order that expires in the middle would make a
-        // game depend on when it was looked at.
+        // Once per decision and before any tick: an order that expired in the middle would make a
+        // game depend on when it was checked.
         self.expire_orders();
         self.hear_requests();
         for _ in 0..self.scenario.ticks_per_decision {
             if self.is_over() {
                 break;
             }
-            // In this order: a fault silences an agent before its orders arrive, and real boats
-            // are where their reports say before anything moves.
+            // In this order: a fault silences an agent before its orders arrive, and real boats are
+            // at their reported positions before anything moves.
             self.begin_and_end_faults();
             self.deliver_orders();
             self.watch_real_boats();
@@ -371,11 +374,12 @@ impl Contest {
         if let Some(radio) = &mut self.radio {
             radio.open_next();
         }
-        // Once a decision: a broken invariant stops the game close to its cause.
+        // Once per decision: a broken invariant stops the game close to its cause.
         self.assert_sound();
     }
 
-    /// What boats ask of the referee until the next decision, by the pictures that their teams were shown last.
+    /// Collects the boats' requests to the referee until the next decision, from the last pictures
+    /// of their teams.
     fn hear_requests(&mut self) {
         let Contest { scenario, state, work: Work { asks, .. }, .. } = self;
         if scenario.rules.tags_and_grabs == Acting::Automatic {
@@ -388,7 +392,8 @@ impl Contest {
         }
     }
 
-    /// One tick: boats move, the referee looks and has boats set back, sensors are read where a decision is next.
+    /// One tick: boats move, the referee looks and boats are set back; sensors are read if a
+    /// decision is next.
     fn step(&mut self) {
         self.update_stations();
         let mut commands = std::mem::take(&mut self.work.commands);
@@ -397,8 +402,8 @@ impl Contest {
         let Contest { scenario, referee, world, state, work: Work { notes, events, legs, asks, .. }, .. } = self;
         let standing = &mut state.standing;
         events.clear();
-        // A boat with bad numbers is taken out of play here, in the tick in which it went
-        // wrong, and all others go on.
+        // A boat with a non-finite state is taken out of play here, in the tick of the failure; all
+        // others continue.
         for vehicle in world.step(&commands) {
             events.push(Event::Quarantined(*vehicle));
             referee.retire(standing, *vehicle, events);
@@ -407,10 +412,10 @@ impl Contest {
         legs.clear();
         legs.extend((0..commands.len()).map(|i| world.leg(VehicleId::at(i))));
         referee.advance(standing, notes, &Look { legs, asks, near: world.pairs(), now }, events);
-        // After the referee has looked: before, a boat would never be seen entering the circle.
+        // After the referee has looked: otherwise it would never see a boat enter the circle.
         world.set_back(|vehicle, at| referee.keepout(standing, vehicle, at));
         let tick = world.state().tick;
-        // Only where minds decide next, since nobody asks between.
+        // Only before decisions, because nothing reads the sensors in between.
         if tick.is_multiple_of(u64::from(scenario.ticks_per_decision)) {
             world.read_sensors();
         }
@@ -418,10 +423,10 @@ impl Contest {
         self.work.commands = commands;
     }
 
-    /// How the game stands or ended.
+    /// The current or final outcome.
     ///
     /// # Panics
-    /// If the score is not what the events add up to.
+    /// If the score differs from the sum over the events.
     #[must_use]
     pub fn outcome(&self) -> Outcome {
         self.assert_score();
@@ -440,10 +445,10 @@ impl Contest {
     }
 }
 
-/// After how long without a new order a vehicle's thrusters stop.
+/// Time without a new order after which a vehicle's thrusters stop.
 fn watchdog(scenario: &Scenario, vehicle: VehicleId) -> Option<SimTime> {
     match &scenario.boat_of(vehicle).drive {
-        // A real boat has one of its own.
+        // A real boat has its own watchdog.
         _ if scenario.vehicles[vehicle.index()].source == Source::External => None,
         Drive::Thrusters { thruster, .. } => thruster.flaws.watchdog_s.map(SimTime::from_s),
         Drive::Kinematic(_) => None,

@@ -1,4 +1,4 @@
-//! Orders: taken, delivered, expired; and what the rules make of the one in force.
+//! Orders: received, delivered, expired, and the effect of the rules on the order in force.
 
 use super::Contest;
 use super::state::OrderInForce;
@@ -9,31 +9,31 @@ use primitives::{Ned, SimTime, VehicleId};
 use rules::Directive;
 use scenario::boat::Hold;
 
-/// A boat that keeps its station lies still as near to it, m ...
-// Within the noise of a satellite receiver: a boat that corrected less would never rest.
+/// Radius within which a station-keeping boat rests, m ...
+// Within the noise of a satellite receiver: with a smaller radius a boat would never rest.
 const STATION_RADIUS_M: f64 = 2.0;
-/// ... and from there comes back the faster the farther off it is, 1/s.
+/// ... and return speed per distance beyond it, 1/s.
 const STATION_RETURN_PER_S: f64 = 0.5;
 
 impl Contest {
-    /// Sends an order to a vehicle: it is in force from when it arrives until the next one does, or until it expires. To a
-    /// real boat it goes over a real link, and none of ours. `given_at` is the time of the picture that it answers; it
-    /// cannot be later than now.
+    /// Sends an order to a vehicle. It is in force from its arrival until the next arrival or its
+    /// expiry. A real boat receives it over a real link instead of the simulated one. `given_at` is
+    /// the time of the answered picture, and is limited to the present.
     ///
     /// # Errors
-    /// [`BadOrder`] for numbers that no boat can follow: the vehicle is ordered to hold.
+    /// [`BadOrder`] for invalid numbers: the vehicle is ordered to hold.
     pub fn order(&mut self, vehicle: VehicleId, order: Order, given_at: SimTime) -> Result<(), BadOrder> {
         let checked = order.check();
         let (order, i, now) = (checked.unwrap_or_default(), vehicle.index(), self.now());
-        // An agent may claim to have answered a picture of the future, and its order would
-        // never expire.
+        // Otherwise an agent could claim to have answered a picture of the future, and its order
+        // would never expire.
         let given_at = given_at.min(now);
         self.note(Input::Ordered { vehicle, order, given_at });
-        // The input is noted before: a replay cuts it off again.
+        // The input is already recorded: a replay applies the fault again.
         if self.is_cut_off(vehicle) {
             return checked.map(drop);
         }
-        // With a radio the age counts from when it was given, not from its arrival.
+        // With a radio, the age counts from the sending, not from the arrival.
         let in_force = &mut self.state.orders[i];
         in_force.given_at = given_at;
         match &mut self.radio {
@@ -45,22 +45,23 @@ impl Contest {
         checked.map(drop)
     }
 
-    /// The order in force for a vehicle: the last one that has arrived and has not expired.
+    /// The order in force for a vehicle: the last one that arrived and has not expired.
     #[must_use]
     pub fn order_in_force(&self, vehicle: VehicleId) -> Order {
         self.state.orders[vehicle.index()].order
     }
 
-    /// The time of the picture that the newest order for a vehicle answers.
+    /// The time of the picture that a vehicle's newest order answers.
     #[must_use]
     pub fn given_at(&self, vehicle: VehicleId) -> SimTime {
         self.state.orders[vehicle.index()].given_at
     }
 
-    /// What a vehicle does: its order in force, after what the rules and people ashore make of it. Driven home it is a
-    /// course at the speed that the rules allow, and a limit of speed also scales thrust. A real boat holds while it is
-    /// lost, while its agent is, once its order has expired, and when the game is over: whatever the rules want of it,
-    /// somebody must be looking.
+    /// The effective command of a vehicle: its order in force, as modified by rules and operators.
+    /// A boat driven home gets a course at the speed that the rules allow; a speed limit also
+    /// scales thrust. A real boat holds while its position or its agent is lost, after its order
+    /// has expired, and after the end of the game: whatever the rules require, it must be
+    /// supervised.
     #[must_use]
     pub fn effective_command(&self, vehicle: VehicleId) -> Order {
         let i = vehicle.index();
@@ -75,7 +76,7 @@ impl Contest {
         }
     }
 
-    /// What the rules make of a vehicle's order in force.
+    /// A vehicle's order in force, as modified by the rules.
     fn wanted_command(&self, vehicle: VehicleId) -> Order {
         let i = vehicle.index();
         let at = self.world.state().boats[i].pose.at;
@@ -100,7 +101,8 @@ impl Contest {
         }
     }
 
-    /// Boats that keep their station when they hold begin to do so where they are; others forget theirs.
+    /// Sets the stations of station-keeping boats that start to hold, and clears those of the
+    /// others.
     pub(super) fn update_stations(&mut self) {
         for i in 0..self.state.stations.len() {
             let vehicle = VehicleId::at(i);
@@ -113,8 +115,8 @@ impl Contest {
         }
     }
 
-    /// Makes a vehicle hold at once, whatever it was ordered: nothing of it goes over the air, and orders under way do not
-    /// arrive any more.
+    /// Makes a vehicle hold at once, whatever its order. Uses no radio, and cancels orders in
+    /// transit.
     pub fn hold(&mut self, vehicle: VehicleId) {
         self.note(Input::Held(vehicle));
         self.hold_now(vehicle.index());
@@ -125,14 +127,15 @@ impl Contest {
         self.recall_orders(i);
     }
 
-    /// Orders under way to a vehicle do not arrive any more.
+    /// Cancels orders in transit to a vehicle.
     pub(super) fn recall_orders(&mut self, i: usize) {
         if let Some(radio) = &mut self.radio {
             radio.recall_orders(i);
         }
     }
 
-    /// Orders expire: a vehicle whose newest one answers a picture that is older than the scenario's time to live holds.
+    /// Expires orders: a vehicle holds if its newest order answers a picture older than the
+    /// scenario's time to live.
     pub(super) fn expire_orders(&mut self) {
         for i in 0..self.state.orders.len() {
             if self.is_expired(i) {
@@ -145,7 +148,7 @@ impl Contest {
         (self.now() - self.state.orders[i].given_at).as_s() > self.scenario.order_ttl_s
     }
 
-    /// Orders arrive; the thrusters of boats that none has reached for too long stop by their own watchdogs.
+    /// Delivers orders, and stops the thrusters of boats whose own watchdogs have expired.
     pub(super) fn deliver_orders(&mut self) {
         let now = self.now();
         for (i, in_force) in self.state.orders.iter_mut().enumerate() {
@@ -154,8 +157,8 @@ impl Contest {
             {
                 *in_force = OrderInForce { order, arrived_at: now, ..*in_force };
             }
-            // The boat's own watchdog counts from the last order that arrived, as firmware
-            // does; the time to live counts from the picture.
+            // Like firmware, the boat's own watchdog counts from the last order that arrived; the
+            // time to live counts from the picture.
             if self.watchdogs[i].is_some_and(|limit| now > in_force.arrived_at + limit) {
                 in_force.order = Order::Hold;
             }
@@ -163,7 +166,7 @@ impl Contest {
     }
 }
 
-/// What keeps a boat at its station: nothing near it, else a course to it.
+/// The order that keeps a boat at its station: hold near it, else a course to it.
 fn keeping_station(at: Ned, station: Ned, speed_max_m_s: f64) -> Order {
     let off_m = at.distance(station);
     if off_m <= STATION_RADIUS_M {

@@ -1,4 +1,4 @@
-//! What changes in a contest beside its boats, and what must always hold of it.
+//! The changing state of a contest apart from its boats, and its invariants.
 
 use super::Contest;
 use crate::external::Track;
@@ -10,55 +10,55 @@ use rules::count::Tally;
 use rules::event::{EventCursor, Logged};
 use serde::{Deserialize, Serialize};
 
-/// How a game stands: the referee's memory, what the boats were ordered, and what their people know.
+/// The state of a game: the referee's standing, orders to the boats, and knowledge ashore.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct ContestState {
-    /// The decision that is open.
+    /// The open decision.
     pub(super) decision: u64,
     pub(super) standing: Standing,
-    /// By vehicle.
+    /// Orders in force, by vehicle index.
     pub(super) orders: Vec<OrderInForce>,
-    /// By vehicle: where it began to hold, if it keeps its station there.
+    /// Stations of station-keeping boats that hold, by vehicle index.
     pub(super) stations: Vec<Option<Ned>>,
     /// Whether each vehicle's agent is lost.
     pub(super) agent_lost: Vec<bool>,
-    /// Whether people ashore have stopped all boats for good, or for now.
+    /// Whether an operator has set the E-stop or a temporary hold.
     pub(super) e_stopped: bool,
     pub(super) halted: bool,
-    /// By vehicle: what is known of the real ones.
+    /// Tracks of the real boats, by vehicle index.
     pub(super) tracks: Vec<Option<Track>>,
-    /// What is known ashore of every boat, as of the last pictures.
+    /// Own boats as known ashore, as of the last pictures.
     pub(super) known: Vec<OwnBoat>,
     pub(super) events: Vec<Logged>,
-    /// How far the last pictures go in the events.
+    /// Event position of the last pictures.
     pub(super) pictured: EventCursor,
-    /// The decision that the pictures are of.
+    /// The decision of the last pictures.
     pub(super) pictured_for: Option<u64>,
-    /// By team.
+    /// Pictures, by team index.
     pub(super) pictures: Vec<Picture>,
 }
 
-/// What a vehicle does by its agent.
+/// The order in force for a vehicle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct OrderInForce {
     pub(super) order: Order,
-    /// When it arrived.
+    /// Time of arrival.
     pub(super) arrived_at: SimTime,
-    /// The time of the picture that the newest order answers, arrived or under way.
+    /// Time of the picture that the newest order answers, arrived or in transit.
     pub(super) given_at: SimTime,
 }
 
 impl Contest {
-    /// Invariants of world and game, looked at once a decision.
+    /// Checks invariants of world and game, once per decision.
     pub(super) fn assert_sound(&self) {
         let (world, standing) = (self.world.state(), &self.state.standing);
         assert_eq!(world.now, self.scenario.tick * world.tick as i64, "time is ticks");
-        // The world sets a boat aside whose numbers went bad; one that gets past that is a
-        // mistake of ours, and the game's result would be worth nothing.
+        // The world quarantines boats with a non-finite state; one that gets past that is our bug,
+        // and the game's result would be worthless.
         assert!(world.boats.iter().all(|boat| boat.pose.at.is_finite()), "boats are somewhere");
         for (i, boat) in standing.vehicles.iter().enumerate() {
             let Some(flag) = boat.carrying else { continue };
-            // Three rules meet here, and each could break it.
+            // Three rules interact here, and each could break it.
             assert!(boat.in_play && !boat.tagged && !boat.outside, "vehicle {i} carries a flag");
             assert_eq!(
                 standing.flags[flag.index()].carrier,
@@ -70,10 +70,9 @@ impl Contest {
         assert_eq!(carried, standing.vehicles.iter().filter(|boat| boat.carrying.is_some()).count(), "flags carried");
     }
 
-    /// That the score is what the events add up to.
+    /// Checks that the score equals the sum over the events.
     pub(super) fn assert_score(&self) {
-        // Counted a second time, from the events: what referee and log say must not drift
-        // apart.
+        // Counted again from the events: referee and log must not diverge.
         let mut tally = Tally::new(self.scenario.vehicles.len());
         self.state.events.iter().for_each(|logged| tally.add(logged.event));
         let mut score = vec![0_u32; self.score().len()];

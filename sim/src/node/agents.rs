@@ -1,29 +1,29 @@
-//! Orders of agents: which are accepted, and from whom. No network and no clock in here.
+//! Accepts or refuses orders of agents. No network and no clock in here.
 
 use super::membership::Membership;
 use messages::refusal::{Refusal, Refusals};
 use messages::{Order, Orders};
 use primitives::VehicleId;
 
-/// Which orders are in time.
+/// Which orders are accepted in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Timing {
-    /// Those for the open tick.
+    /// Those for the open decision.
     Lockstep,
-    /// Those for the open tick or one before, as long as no newer one came.
+    /// Those for the open or an earlier decision, if none newer has arrived.
     Realtime,
 }
 
-/// What an agent's orders come to.
+/// The accepted part of an agent's orders.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Accepted {
     /// The orders to put in force.
     pub orders: Vec<(VehicleId, Order)>,
-    /// Vehicles whose agent was lost and is there again.
+    /// Vehicles whose agent was lost and is back.
     pub back: Vec<VehicleId>,
 }
 
-/// Takes an agent's orders while `tick` is open.
+/// Processes an agent's orders while `tick` is open.
 pub fn accept(
     agents: &mut Membership,
     message: &Orders,
@@ -36,16 +36,16 @@ pub fn accept(
         refusals.count(Refusal::Ticket);
         return accepted;
     }
-    // A message with a good ticket shows that somebody is there, in time or not.
+    // A message with a valid ticket shows that the agent is present, in time or not.
     accepted.back = agents.welcome_back(message.ticket);
     let seq = message.stamp.seq;
-    // An answer that came twice, since the sim repeats pictures and agents their answers: no
-    // acknowledgements are needed.
+    // A duplicate: the sim repeats pictures and agents repeat answers, which makes acknowledgements
+    // unnecessary.
     if own.iter().any(|vehicle| agents.has_taken(*vehicle, seq)) {
         return accepted;
     }
-    // In real time an agent that is a tick late is still useful: its order counts until its
-    // time to live is over.
+    // In real time an agent that is a tick late is still useful: its order counts until its time to
+    // live is over.
     if seq > tick || (seq < tick && timing == Timing::Lockstep) {
         refusals.count(Refusal::WrongTick);
         return accepted;
@@ -55,7 +55,7 @@ pub fn accept(
     accepted
 }
 
-/// One order for each vehicle of the agent; the safe one where there is none that is understood.
+/// One order for each vehicle of the agent; hold if there is no valid one.
 fn orders_for(own: &[VehicleId], message: &Orders, refusals: &mut Refusals) -> Vec<(VehicleId, Order)> {
     let mut orders = Vec::with_capacity(own.len());
     for item in &message.orders {
@@ -69,8 +69,8 @@ fn orders_for(own: &[VehicleId], message: &Orders, refusals: &mut Refusals) -> V
     }
     for vehicle in own {
         if !orders.iter().any(|(given, _)| given == vehicle) {
-            // It holds rather than going on by the order before: a mind that forgets a boat has
-            // a bug, and the result says so.
+            // It holds instead of continuing with the previous order: a mind that forgets a boat
+            // has a bug, and the result reports it.
             refusals.count(Refusal::Missing);
             orders.push((*vehicle, Order::Hold));
         }
@@ -86,7 +86,7 @@ mod tests {
 
     const PUSH: Order = Order::Thrust { port: 1.0, starboard: 1.0 };
 
-    /// Agents of a game, each with its vehicles, and tickets from 1 on.
+    /// Agents of a game with their vehicles, and tickets from 1 on.
     fn agents(all: &[&[&str]]) -> Membership {
         let mut agents = membership(Role::Agent, false);
         for (i, vehicles) in all.iter().enumerate() {
@@ -135,7 +135,7 @@ mod tests {
 
     #[test]
     fn what_an_agent_gets_wrong_is_counted_and_its_boat_holds() {
-        // Numbers that no boat can follow are the contest's to refuse; a kind that nobody knows cannot get that far.
+        // Invalid numbers are refused by the contest; an unknown kind is refused before that.
         let unknown = VehicleOrder { kind: 9, ..VehicleOrder::new(VehicleId(0), PUSH) };
         for (message, refusal, order) in [
             (orders(1, 0, &[0]), None, PUSH),

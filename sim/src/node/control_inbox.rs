@@ -1,26 +1,26 @@
-//! Commands of operators on their way into the game: before everything else that comes in, and no stop is ever lost.
+//! Operator commands to the game: they precede all other messages, and no stop is ever lost.
 
 use bus::Watched;
 use messages::Control;
 use messages::refusal::{Refusal, Refusals};
 use std::collections::VecDeque;
 
-/// Commands that may wait to be read: more than people give between two looks of the sim.
+/// Limit of waiting commands: more than people give between two reads of the sim.
 const WAITING_MAX: usize = 64;
 
-/// A command of an operator; `Q` is a query, to be answered.
+/// An operator command; `Q` is a query that needs a reply.
 #[derive(Debug, PartialEq)]
 pub(super) enum Command<Q> {
-    /// Published by anybody: it stops boats.
+    /// A published stop, which needs no token.
     Stop(Control),
-    /// Asked of the sim.
+    /// A query to the sim.
     Ask(Q),
 }
 
-/// The commands that wait for the game.
+/// The commands that wait for the sim.
 pub(super) struct ControlInbox<Q>(Watched<Waiting<Q>>);
 
-/// What waits, and what was refused.
+/// Waiting commands and counted refusals.
 struct Waiting<Q> {
     commands: VecDeque<Command<Q>>,
     refusals: Refusals,
@@ -33,12 +33,11 @@ impl<Q> Default for ControlInbox<Q> {
 }
 
 impl<Q> ControlInbox<Q> {
-    /// Takes in what was published. Says whether there is something to look for.
+    /// Adds a published command. Returns whether the sim should look.
     pub(super) fn put_stop(&self, bytes: &[u8]) -> bool {
         let control = serde_json::from_slice::<Control>(bytes);
         self.0.visit(|waiting| match control {
-            // Anybody may publish these; whatever else is published here is asked for with the
-            // token instead.
+            // Publishing stops needs no token; all other commands must be queries with the token.
             Ok(control) if control.stops() => {
                 waiting.put_stop(control);
                 true
@@ -54,7 +53,7 @@ impl<Q> ControlInbox<Q> {
         })
     }
 
-    /// Takes in what is asked of the sim, if there is room. Says whether there was.
+    /// Adds a query if there is room. Returns whether there was.
     pub(super) fn put_query(&self, query: Q) -> bool {
         self.0.visit(|waiting| {
             let has_room = waiting.commands.len() < WAITING_MAX;
@@ -67,23 +66,23 @@ impl<Q> ControlInbox<Q> {
         })
     }
 
-    /// The command that came first.
+    /// The oldest command.
     pub(super) fn pop_command(&self) -> Option<Command<Q>> {
         self.0.visit(|waiting| waiting.commands.pop_front())
     }
 
-    /// What was refused so far.
+    /// The refusals so far.
     pub(super) fn refusals(&self) -> Refusals {
         self.0.visit(|waiting| waiting.refusals)
     }
 }
 
 impl<Q> Waiting<Q> {
-    /// The same stop twice in a row is one. Where too much waits, a stop takes the place of all that is none.
+    /// Adds a stop, unless it repeats the last command. If the inbox is full, the stop replaces the
+    /// commands that are not stops.
     fn put_stop(&mut self, stop: Control) {
         let is_stop = |command: &Command<Q>, stop| matches!(command, Command::Stop(waiting) if *waiting == stop);
-        // Stops are repeated until they are answered: the same one twice would only fill the
-        // room.
+        // Stops are repeated until they are answered: duplicates would only fill the inbox.
         if self.commands.back().is_some_and(|last| is_stop(last, stop)) {
             return;
         }
@@ -132,7 +131,8 @@ mod tests {
         assert!(send(&inbox, Control::EStop));
         assert_eq!(all(&inbox), [Command::Stop(Control::Halt), Command::Stop(Control::EStop)]);
         assert_eq!(inbox.refusals(), Refusals::from([(Refusal::Flood, 999)]));
-        // Not even one of stops, whatever is asked between them: what ends a stop is not left behind it.
+        // Nor is it filled by stops with queries between them: no release stays behind the stop
+        // that it ends.
         for i in 0..1000 {
             send(&inbox, if i % 2 == 0 { Control::EStop } else { Control::Halt });
             inbox.put_query(i);

@@ -1,14 +1,14 @@
-//! Reports of gateways: which are accepted, and from whom. No network and no clock in here.
+//! Accepts or refuses reports of gateways. No network and no clock in here.
 
 use super::membership::Membership;
 use messages::external::NavReport;
 use messages::refusal::{Refusal, Refusals};
 use primitives::SimTime;
 
-/// A fix is never taken to be older than this, a day: longer than any game.
+/// Limit of the age of a fix, one day: longer than any game.
 const OLDEST: SimTime = SimTime(86_400_000_000_000);
 
-/// Takes a report that came at `now`, in the time of the game: when its fix was, if it may be taken in.
+/// Checks a report that arrived at game time `now`; returns the time of its fix if accepted.
 pub fn accept(gateways: &mut Membership, report: &NavReport, now: SimTime, refusals: &mut Refusals) -> Option<SimTime> {
     let (vehicle, seq) = (report.vehicle, report.stamp.seq);
     let mut own = gateways.vehicles_of(report.ticket).peekable();
@@ -16,8 +16,8 @@ pub fn accept(gateways: &mut Membership, report: &NavReport, now: SimTime, refus
         Refusal::Ticket
     } else if !own.any(|own| own == vehicle) {
         Refusal::NotYours
-    // Reports may arrive out of order after a cut: an older position must not replace a newer
-    // one.
+    // Reports may arrive out of order after a link failure: an older position must not replace a
+    // newer one.
     } else if gateways.has_taken(vehicle, seq) {
         Refusal::WrongTick
     } else if report.age_ns < 0 {
@@ -26,8 +26,7 @@ pub fn accept(gateways: &mut Membership, report: &NavReport, now: SimTime, refus
         drop(own);
         gateways.note_taken(vehicle, seq);
         gateways.welcome_back(report.ticket);
-        // The age is by the gateway's own clock. A time of the fix would need clocks that
-        // agree.
+        // The age is by the gateway's own clock. A fix time would require synchronised clocks.
         return Some(now - SimTime(report.age_ns).min(OLDEST));
     };
     refusals.count(refusal);

@@ -1,32 +1,32 @@
-//! Lockstep: every tick waits for every agent, but never forever.
+//! Lockstep: every decision waits for every agent, with a time limit.
 
 use super::server::GameServer;
 use super::{NodeError, ProgressMessage};
 use bus::clock;
 use std::time::{Duration, Instant};
 
-/// After this time without an answer the pictures are sent again.
-// A link that is cut and comes back may have lost the picture or its answer, and both sides
-// would wait for ever.
+/// Time without an answer after which the pictures are sent again.
+// A link that was interrupted may have lost the picture or its answer, and both sides would wait
+// forever.
 const SEND_AGAIN: Duration = Duration::from_millis(250);
 
 /// Plays until the game is over or stopped.
 pub(super) fn play(server: &mut GameServer<'_>, tell: &mut dyn FnMut(ProgressMessage)) -> Result<(), NodeError> {
     let mut due = clock::now();
     while !server.contest.is_over() && !server.is_stopped() {
-        // Before the pictures: what is recorded of a decision is complete even if the game is
-        // killed while agents think.
+        // Before sending the pictures: the recording of a decision is then complete even if the
+        // game is killed while agents compute.
         server.record();
         server.send_pictures()?;
         server.send_frame()?;
         gather(server, tell)?;
         if server.pacing.is_held() {
             server.stay_paused(tell)?;
-            // Somebody may have joined meanwhile.
+            // Other nodes may have joined meanwhile.
             gather(server, tell)?;
             due = clock::now();
         }
-        // Not everybody has answered: what comes now is not late.
+        // Some agents have not answered: further answers are not late.
         if server.is_stopped() {
             break;
         }
@@ -39,7 +39,7 @@ pub(super) fn play(server: &mut GameServer<'_>, tell: &mut dyn FnMut(ProgressMes
     Ok(())
 }
 
-/// Waits until a decision's time has passed at the speed that is not to be exceeded; gives the moment.
+/// Waits until a decision's time has passed at the speed limit; returns the due time.
 fn keep_speed(
     server: &mut GameServer<'_>,
     due: Instant,
@@ -48,9 +48,9 @@ fn keep_speed(
     let Some(speed) = server.pacing.speed() else { return Ok(due) };
     let decision_s = server.contest.scenario().decision().as_s();
     let now = clock::now();
-    // What was lost is lost.
+    // Lost time is not made up.
     let due = (due + Duration::from_secs_f64(decision_s / speed)).max(now);
-    // Somebody may ask for another speed, or for a pause, while it waits.
+    // The speed may change, or the game may be paused, during the wait.
     while clock::now() < due && server.pacing.speed() == Some(speed) && !server.pacing.is_held() && !server.is_stopped()
     {
         server.listen(due.saturating_duration_since(clock::now()).min(Duration::from_millis(50)));
@@ -59,17 +59,18 @@ fn keep_speed(
     Ok(due.min(clock::now()))
 }
 
-/// Waits until everybody has answered the open tick; who takes longer than the scenario's patience is lost.
+/// Waits until all agents have answered the open decision; those that exceed the scenario's
+/// patience are lost.
 fn gather(server: &mut GameServer<'_>, tell: &mut dyn FnMut(ProgressMessage)) -> Result<(), NodeError> {
     let tick = server.contest.decision();
     let patience = Duration::from_secs_f64(server.contest.scenario().patience_s);
-    // Patience goes by the time that the sim is at work.
+    // Patience is measured in working time.
     let since = server.time.worked();
     let mut sent = clock::now();
     while !server.agents.all_answered(tick) && !server.is_stopped() {
         server.listen(Duration::from_millis(50));
         if server.time.worked().saturating_sub(since) >= patience {
-            // All that have not answered, at once: the next decision waits for none of them.
+            // Drops all that have not answered at once: the next decision waits for none of them.
             server.give_up(tick);
         } else if clock::since(sent) >= SEND_AGAIN {
             server.send_pictures()?;
@@ -77,7 +78,7 @@ fn gather(server: &mut GameServer<'_>, tell: &mut dyn FnMut(ProgressMessage)) ->
             sent = clock::now();
         }
     }
-    // Whoever joined or left meanwhile, in a game that waits for nobody.
+    // Nodes that joined or left meanwhile, if the game waits for nobody.
     server.listen(Duration::ZERO);
     Ok(())
 }

@@ -1,7 +1,8 @@
-//! Who has joined a game: agents that decide for vehicles, gateways that connect real boats. One list for each role.
+//! Membership of a game: agents that decide for vehicles, and gateways that connect real boats. One
+//! list per role.
 //!
-//! A node that joins gets a ticket, and shows it with every message. No network and no clock in here: the server passes
-//! in what came, and does what follows.
+//! A joining node gets a ticket and sends it with every message. No network and no clock in here:
+//! the server passes in messages and acts on the results.
 
 use messages::{JoinReply, JoinRequest, Role};
 use primitives::{SimTime, VehicleId};
@@ -11,27 +12,27 @@ use scenario::{Scenario, Source};
 #[derive(Clone, Debug)]
 pub struct Membership {
     role: Role,
-    /// By vehicle.
+    /// Places, by vehicle index.
     places: Vec<Place>,
 }
 
-/// A vehicle that nodes can join with.
+/// A vehicle that a node can join for.
 #[derive(Clone, Debug)]
 struct Place {
     name: String,
-    /// Whether nodes of this role may have it: gateways connect real boats only.
+    /// Whether it is available to this role: gateways connect only real boats.
     is_open: bool,
     holder: Option<Holder>,
 }
 
-/// The node that joined with a vehicle last.
+/// The last node that joined for a vehicle.
 #[derive(Clone, Debug)]
 struct Holder {
     node: String,
     ticket: u64,
-    /// Whether we count on it: it has not died or fallen silent.
+    /// Whether it counts as present: it has not died or fallen silent.
     is_present: bool,
-    /// The number of the newest message that was taken from it.
+    /// The sequence number of its newest accepted message.
     newest: Option<u64>,
 }
 
@@ -42,7 +43,7 @@ impl Place {
 }
 
 impl Membership {
-    /// That of a game that nobody has joined yet.
+    /// The membership of a game before any join.
     #[must_use]
     pub fn new(scenario: &Scenario, role: Role) -> Membership {
         let places = scenario.vehicles.iter().map(|vehicle| Place {
@@ -53,20 +54,22 @@ impl Membership {
         Membership { role, places: places.collect() }
     }
 
-    /// Lets a node join at this time of the game, or not. `ticket` is what it will have to show.
+    /// Handles a join request at this time of the game. `ticket` is the ticket for the node if it
+    /// joins.
     ///
-    /// A node that asks again for what it has gets it again, with the new ticket: the answer was lost on the way.
+    /// A node that requests its own vehicles again gets them again, with the new ticket: the reply
+    /// was lost.
     pub fn join(&mut self, request: &JoinRequest, ticket: u64, now: SimTime) -> JoinReply {
         let role = self.role;
         let refused = |reason: String| JoinReply::Refused { reason };
-        // Exactly the same: two versions may agree on messages and differ in a rounding, and
-        // then in the game.
+        // Exactly equal: two versions may agree on messages and differ in a rounding, and then in
+        // the game.
         if request.version != primitives::VERSION {
             let (theirs, ours) = (&request.version, primitives::VERSION);
             return refused(format!("the {role} is Squall {theirs}, the sim is Squall {ours}: use the same version"));
         }
-        // Nobody can have joined with nothing: lockstep would wait for a node that has nothing
-        // to answer.
+        // A node must join for at least one vehicle: lockstep would wait for a node that has
+        // nothing to answer.
         if request.vehicles.is_empty() {
             return refused(format!("the {role} names no vehicle"));
         }
@@ -82,7 +85,7 @@ impl Membership {
             if place.present().is_some_and(|holder| holder.node != request.node) {
                 return JoinReply::Busy { vehicle: name.clone() };
             }
-            // A name given twice is a slip of the command line, and the count of boats would be
+            // A name given twice is a slip on the command line and would make the count of boats
             // wrong.
             if vehicles.contains(&VehicleId::at(i)) {
                 return refused(format!("the {role} names {name:?} twice"));
@@ -90,15 +93,15 @@ impl Membership {
             vehicles.push(VehicleId::at(i));
         }
         for vehicle in &vehicles {
-            // A new ticket voids the old one, so that an agent that was taken for dead cannot
-            // steer beside its successor.
+            // A new ticket voids the old one, so that an agent presumed dead cannot steer alongside
+            // its successor.
             let holder = Holder { node: request.node.clone(), ticket, is_present: true, newest: None };
             self.places[vehicle.index()].holder = Some(holder);
         }
         JoinReply::Granted { ticket, vehicles, now_ns: now }
     }
 
-    /// Which vehicles nodes can join with, in words.
+    /// The vehicles that nodes can join for, in words.
     fn on_offer(&self) -> String {
         let names: Vec<&str> = self.open().map(|(_, place)| place.name.as_str()).collect();
         match (self.role, names.is_empty()) {
@@ -117,18 +120,19 @@ impl Membership {
         places.filter_map(|(i, place)| Some((VehicleId::at(i), place.holder.as_mut()?)))
     }
 
-    /// The vehicles of whoever shows this ticket; none if nobody holds it (any more).
+    /// The vehicles of the node with this ticket; empty if the ticket is unknown or void.
     pub(super) fn vehicles_of(&self, ticket: u64) -> impl Iterator<Item = VehicleId> {
         let holds = move |place: &Place| place.holder.as_ref().is_some_and(|holder| holder.ticket == ticket);
         self.open().filter(move |(_, place)| holds(place)).map(|(vehicle, _)| vehicle)
     }
 
-    /// The tickets of whoever has a vehicle, or may come back to it.
+    /// The tickets of all nodes that hold a vehicle or may come back to it.
     pub(super) fn tickets(&self) -> impl Iterator<Item = u64> {
         self.places.iter().filter_map(|place| Some(place.holder.as_ref()?.ticket))
     }
 
-    /// A message with a ticket shows that somebody is there: the vehicles whose node was lost and is there again.
+    /// Marks the node with this ticket as present; returns its vehicles that were lost and are
+    /// back.
     pub(super) fn welcome_back(&mut self, ticket: u64) -> Vec<VehicleId> {
         let back = self.holders().filter(|(_, holder)| holder.ticket == ticket && !holder.is_present);
         let back = back.map(|(vehicle, holder)| {
@@ -138,32 +142,33 @@ impl Membership {
         back.collect()
     }
 
-    /// Whether a message of this number, or a newer one, was taken for a vehicle.
+    /// Whether a message with this or a later number was accepted for a vehicle.
     pub(super) fn has_taken(&self, vehicle: VehicleId, seq: u64) -> bool {
         let holder = self.places[vehicle.index()].holder.as_ref();
         holder.and_then(|holder| holder.newest).is_some_and(|newest| newest >= seq)
     }
 
-    /// A message of this number was taken for a vehicle.
+    /// Records that a message with this number was accepted for a vehicle.
     pub(super) fn note_taken(&mut self, vehicle: VehicleId, seq: u64) {
         if let Some(holder) = &mut self.places[vehicle.index()].holder {
             holder.newest = Some(seq);
         }
     }
 
-    /// A node is gone: the vehicles it leaves behind. It may come back to those that nobody else takes.
+    /// Removes a node; returns its abandoned vehicles. It may come back to those that no other node
+    /// takes.
     pub fn gone(&mut self, node: &str) -> Vec<VehicleId> {
-        // By the link that zenoh says is gone, not by a liveliness token: anybody could show
-        // one in another's name.
+        // Identified by the link that zenoh reports as gone, not by a liveliness token: anybody
+        // could show one in another's name.
         self.lose(|holder| holder.node == node)
     }
 
-    /// Gives up on everybody who has not answered `tick`: the vehicles they leave behind.
+    /// Drops all nodes that have not answered `tick`; returns their abandoned vehicles.
     pub fn give_up(&mut self, tick: u64) -> Vec<VehicleId> {
         self.lose(|holder| holder.newest.is_none_or(|newest| newest < tick))
     }
 
-    /// Gives up on the node that has this vehicle: all the vehicles it leaves behind.
+    /// Drops the node that has this vehicle; returns all its abandoned vehicles.
     pub fn lose_holder_of(&mut self, vehicle: VehicleId) -> Vec<VehicleId> {
         let ticket = self.places[vehicle.index()].present().map(|holder| holder.ticket);
         self.lose(|holder| Some(holder.ticket) == ticket)
@@ -178,19 +183,19 @@ impl Membership {
         lost.collect()
     }
 
-    /// Whether everybody we count on has answered `tick`.
+    /// Whether all present nodes have answered `tick`.
     #[must_use]
     pub fn all_answered(&self, tick: u64) -> bool {
         let answered = |holder: &Holder| holder.newest.is_some_and(|newest| newest >= tick);
         self.places.iter().filter_map(Place::present).all(answered)
     }
 
-    /// The vehicles that nodes may have, and no present one has.
+    /// The available vehicles without a present node.
     pub fn vacant(&self) -> impl Iterator<Item = VehicleId> {
         self.open().filter(|(_, place)| place.present().is_none()).map(|(vehicle, _)| vehicle)
     }
 
-    /// Whether nobody is there.
+    /// Whether no node is present.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.places.iter().all(|place| place.present().is_none())
@@ -202,10 +207,11 @@ pub(super) mod tests {
     use super::*;
     use std::path::Path;
 
-    /// Time of the game at which everybody joins.
+    /// Time of the game at which all nodes join.
     pub(in super::super) const NOW: SimTime = SimTime(100);
 
-    /// A game of blue one, blue two, red one and red two, of which blue one and red one are real boats; or none is.
+    /// A game of blue one, blue two, red one and red two; with `is_mixed`, blue one and red one are
+    /// real boats.
     pub(in super::super) fn membership(role: Role, is_mixed: bool) -> Membership {
         let name = if is_mixed { "mixed_2v2" } else { "pav01_vs_pav01" };
         let game = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../scenarios/games/{name}.toml"));

@@ -1,4 +1,5 @@
-//! Messages of other nodes on their way into the game. Every sender has a share of the room: none can take that of another.
+//! Messages of other nodes to the game. Every sender has a share of the room, which no other sender
+//! can use up.
 
 use super::subscriptions::Incoming;
 use bus::Watched;
@@ -8,36 +9,36 @@ use serde::de::DeserializeOwned;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::time::Duration;
 
-/// From whom a message is, as far as the room goes that it may take.
+/// The sender of a message, for the purpose of sharing the room.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Sender {
     /// The node with this ticket.
     Member(u64),
-    /// The gateway with this ticket, of what it reports for others.
+    /// The gateway with this ticket, for its reports to other nodes.
     Reporting(u64),
-    /// Nodes that want to join.
+    /// Nodes that request to join.
     Joining,
-    /// Whoever publishes on this topic, which is subscribed to only for the recorder.
+    /// Any publisher on this topic, which is subscribed to only for the recorder.
     Recorded(usize),
-    /// The network, which says who is gone.
+    /// The network, which reports lost nodes.
     Network,
-    /// Other inboxes, which say that there is something in them.
+    /// Other inboxes, which announce that they have content.
     Inboxes,
 }
 
 impl Sender {
-    /// How many messages may wait to be read: more than come between two looks of the sim.
+    /// Limit of waiting messages: more than arrive between two reads of the sim.
     fn share(self) -> usize {
         match self {
-            // Shares by topic or by link would need no tickets, but anybody can publish on as
-            // many topics, over as many links, as they like.
+            // Shares by topic or by link would need no tickets, but anybody can publish on any
+            // number of topics, over any number of links.
             Sender::Member(_) => 128,
-            // Every byte between a gateway and its boat is among it.
+            // This includes every byte between a gateway and its boat.
             Sender::Reporting(_) => 2048,
             Sender::Joining => 64,
             Sender::Recorded(_) => 2048,
             Sender::Network => 1024,
-            // All of them are in one look.
+            // One look reads all of them.
             Sender::Inboxes => 1,
         }
     }
@@ -47,18 +48,18 @@ impl Sender {
 #[derive(Default)]
 pub(super) struct MessageInbox {
     waiting: Watched<Waiting>,
-    // Apart: what is refused must not wake whoever waits for messages.
+    // Separate: refused messages must not wake the reader.
     gate: Watched<Gate>,
 }
 
-/// In the order in which they came.
+/// In order of arrival.
 #[derive(Default)]
 struct Waiting {
     messages: VecDeque<(Sender, Incoming)>,
     counts: BTreeMap<Sender, usize>,
 }
 
-/// Who is let in, and what was not.
+/// The valid tickets and the counted refusals.
 #[derive(Default)]
 struct Gate {
     tickets: BTreeSet<u64>,
@@ -66,17 +67,17 @@ struct Gate {
 }
 
 impl MessageInbox {
-    /// From now on these tickets are good.
+    /// Replaces the set of valid tickets.
     pub(super) fn accept_tickets(&self, tickets: BTreeSet<u64>) {
         self.gate.visit(|gate| gate.tickets = tickets);
     }
 
-    /// The message in `bytes`. What is not understood is counted, and takes no room.
+    /// Decodes a message. Invalid ones are counted and take no room.
     pub(super) fn decode<M: Message + DeserializeOwned>(&self, bytes: &[u8]) -> Option<M> {
         self.gate.visit(|gate| gate.refusals.decode(bytes))
     }
 
-    /// Takes in a message, if its sender has joined where it must, and has room left.
+    /// Adds a message if its sender is entitled to and has room left.
     pub(super) fn push(&self, message: Incoming) {
         let sender = message.sender();
         if let Sender::Member(ticket) | Sender::Reporting(ticket) = sender
@@ -93,24 +94,24 @@ impl MessageInbox {
             }
             has_room
         });
-        // A look that finds no room is no loss: one is waiting.
+        // A look without room is no loss, because another one is already waiting.
         if !has_room && sender != Sender::Inboxes {
             self.refuse(Refusal::Flood);
         }
     }
 
-    /// Counts a message that is not taken in.
+    /// Counts a refused message.
     pub(super) fn refuse(&self, refusal: Refusal) {
         self.gate.visit(|gate| gate.refusals.count(refusal));
     }
 
-    /// The next message, if one comes within `limit`.
+    /// The next message, if one arrives within `limit`.
     pub(super) fn next_within(&self, limit: Duration) -> Option<Incoming> {
         self.waiting.wait(limit, |waiting| !waiting.messages.is_empty());
         self.take_now()
     }
 
-    /// The next message, if one is there.
+    /// The next message, if there is one.
     pub(super) fn take_now(&self) -> Option<Incoming> {
         self.waiting.visit(|waiting| {
             let (sender, message) = waiting.messages.pop_front()?;
@@ -124,7 +125,7 @@ impl MessageInbox {
         })
     }
 
-    /// What was refused so far.
+    /// The refusals so far.
     pub(super) fn refusals(&self) -> Refusals {
         self.gate.visit(|gate| gate.refusals)
     }
@@ -145,7 +146,7 @@ mod tests {
         Incoming::Orders(Orders { ticket, ..Orders::default() })
     }
 
-    /// The senders of what waits, in order.
+    /// The senders of the waiting messages, in order.
     fn senders(inbox: &MessageInbox) -> Vec<Sender> {
         std::iter::from_fn(|| inbox.take_now()).map(|message| message.sender()).collect()
     }
@@ -168,7 +169,7 @@ mod tests {
         assert_eq!(got.iter().filter(|sender| **sender == Sender::Member(7)).count(), share);
         assert_eq!(got.iter().filter(|sender| **sender == Sender::Inboxes).count(), 1);
         assert!(got.ends_with(&[Sender::Member(8), Sender::Recorded(1), Sender::Network]), "{got:?}");
-        // What was read makes room.
+        // Reading makes room.
         inbox.push(orders(7));
         assert_eq!(senders(&inbox), [Sender::Member(7)]);
     }
@@ -180,7 +181,7 @@ mod tests {
         assert!(inbox.decode::<Orders>(b"ahoy").is_none());
         assert_eq!(senders(&inbox), [Sender::Member(7)]);
         assert_eq!(inbox.refusals(), Refusals::from([(Refusal::Ticket, 99_999), (Refusal::Garbage, 1)]));
-        // Whoever joins anew has another ticket, and the old one is good no more.
+        // A node that joins anew has a new ticket, and the old one is void.
         inbox.accept_tickets([9].into());
         [orders(7), orders(9)].into_iter().for_each(|message| inbox.push(message));
         assert_eq!(senders(&inbox), [Sender::Member(9)]);

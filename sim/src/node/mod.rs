@@ -1,7 +1,8 @@
-//! The sim on the network: lets nodes join, paces the game, publishes it.
+//! The sim on the network: it lets nodes join, paces the game and publishes it.
 //!
-//! [`serve`] plays one game from the first join to the last frame. Everything that decides is in
-//! [`Contest`], [`membership`], [`agents`] and [`gateways`]; here are the sockets and the clocks.
+//! [`serve`] plays one game from the first join to the last frame. All decisions are made in
+//! [`Contest`], [`membership`], [`agents`] and [`gateways`]; this module has the sockets and the
+//! clocks.
 
 pub mod agents;
 mod control_inbox;
@@ -31,38 +32,39 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 use thiserror::Error;
 
-/// How a game is paced.
+/// The pace of a game.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pace {
-    /// Every tick waits for every agent: as fast as the slowest, and always the same game.
+    /// Every decision waits for every agent: as fast as the slowest, and reproducible.
     Lockstep,
-    /// By the clock, this many times as fast as it; nobody is waited for.
+    /// Follows the clock times this factor, and waits for nobody.
     Realtime {
-        /// Simulated seconds a second.
+        /// Simulated seconds per second.
         factor: f64,
     },
 }
 
-/// What a sim node needs to know beside the scenario.
+/// Settings of a sim node in addition to the scenario.
 pub struct Settings {
     /// The game's name on the network.
     pub game: GameName,
-    /// Where to listen.
+    /// The network endpoints.
     pub net: Net,
     /// How to pace the game.
     pub pace: Pace,
-    /// How long to wait for agents, and for gateways of real boats, before starting without the missing ones.
+    /// Time to wait for agents, and for gateways of real boats, before starting without the missing
+    /// ones.
     pub join_limit: Duration,
-    /// In lockstep: plays no more simulated seconds a second than this, until somebody asks for another speed.
+    /// In lockstep: limit of simulated seconds per second, until an operator changes it.
     pub speed: Option<f64>,
-    /// Set from outside to end the game early.
+    /// Set externally to end the game early.
     pub stop: Arc<AtomicBool>,
 }
 
 /// Why a game could not be served.
 #[derive(Debug, Error)]
 pub enum NodeError {
-    /// The boats do not fit on the field, or are real ones in lockstep.
+    /// The boats do not fit on the field, or are real in lockstep.
     #[error(transparent)]
     NoStart(#[from] NoStart),
     /// The network failed.
@@ -74,8 +76,7 @@ impl std::fmt::Display for Pace {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Pace::Lockstep => f.write_str("lockstep"),
-            // The words are those that are read back: a recording's pace can be given to
-            // another run.
+            // In the form that is parsed again: a recording's pace can be passed to another run.
             Pace::Realtime { factor } if *factor == 1.0 => f.write_str("realtime"),
             Pace::Realtime { factor } => write!(f, "{factor}x"),
         }
@@ -97,11 +98,11 @@ impl std::str::FromStr for Pace {
     }
 }
 
-/// Serves the game of `scenario` that `seed` chooses, and plays it to its end. `recorder` records it.
+/// Serves the game of `scenario` with this seed and plays it to its end. `recorder` records it.
 ///
 /// # Errors
-/// [`NodeError`] if the boats do not fit on the field or the network fails, or for real boats in lockstep: nothing makes
-/// them wait.
+/// [`NodeError`] if the boats do not fit on the field, the network fails, or there are real boats
+/// in lockstep, because they cannot wait.
 pub fn serve(
     scenario: &Scenario,
     seed: u64,
@@ -110,18 +111,17 @@ pub fn serve(
     tell: &mut dyn FnMut(ProgressMessage),
 ) -> Result<Report, NodeError> {
     if settings.pace == Pace::Lockstep {
-        // A real boat does not wait for agents that think.
+        // A real boat does not wait for agents to compute.
         scenario.has_no_real_boats().map_err(NoStart::from)?;
     }
-    // Before the hub opens: a game whose boats do not fit is refused before anybody can join
-    // it.
+    // Before the hub opens: a game whose boats do not fit is refused before any node can join.
     let contest = Contest::new(scenario, seed)?;
     let mut server = GameServer::open(contest, settings, recorder)?;
     tell(ProgressMessage::Open {
         game: settings.game.as_str().to_owned(),
         endpoint: settings.net.local_endpoint().unwrap_or_default(),
     });
-    // Simulated time begins when all are there: how long programs take to start is no part of a
+    // Simulated time starts when all are present: the start-up time of programs is not part of a
     // game.
     server.wait_for_everybody(settings.join_limit, tell)?;
     tell(ProgressMessage::Started);
@@ -132,7 +132,7 @@ pub fn serve(
     }
     let cut_short = !server.contest.is_over();
     let wall_s = clock::since(started).as_secs_f64();
-    // The result stands before the agents leave: that they do is not part of the game.
+    // The result is final before the agents leave, because their leaving is not part of the game.
     let outcome = server.contest.outcome();
     std::mem::take(&mut server.reporter).rest(&outcome, tell);
     server.shut_down()?;

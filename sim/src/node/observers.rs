@@ -1,4 +1,4 @@
-//! What a sim answers observers, and the topics that it subscribes to only for the recorder.
+//! The sim's answers to observers, and the topics it subscribes to only for the recorder.
 
 use crate::contest::Contest;
 use messages::{Message, PolicyProposal, Say};
@@ -12,10 +12,11 @@ pub(super) fn water_json(contest: &Contest) -> Vec<u8> {
     serde_json::to_vec(&contest.world().sea().water()).expect("waves are JSON")
 }
 
-/// Events in an answer: no link takes more than a megabyte at once, and nobody waits for it.
+/// Limit of events in an answer: no link carries more than a megabyte at once, and nobody waits for
+/// it.
 const EVENTS_MAX: usize = 5000;
 
-/// The event history so far, as JSON; of a long one the end.
+/// The events so far, as JSON; only the last ones if there are many.
 pub(super) fn events_json(contest: &Contest) -> Vec<u8> {
     let (scenario, all) = (contest.scenario(), contest.events());
     let events = all[all.len().saturating_sub(EVENTS_MAX)..].iter().map(|logged| EventOutcome::new(scenario, logged));
@@ -25,21 +26,20 @@ pub(super) fn events_json(contest: &Contest) -> Vec<u8> {
 /// A topic that is subscribed to only for the recorder.
 pub(super) struct RecordedTopic {
     pub(super) topic: String,
-    /// For CDR; none for JSON.
+    /// The schema of CDR messages; none for JSON.
     pub(super) schema: Option<&'static str>,
-    /// Whether these bytes are what they should be: whoever reads the recording must not stumble.
+    /// Validates the bytes, so that every recorded message can be read.
     pub(super) is_sound: fn(&[u8]) -> bool,
 }
 
 impl RecordedTopic {
     fn cdr<M: Message + DeserializeOwned>(topic: String) -> RecordedTopic {
-        // Checked before it is recorded: a reader must not fail on what a stranger has
-        // published.
+        // Checked before recording: a reader must not fail on a message published by a stranger.
         RecordedTopic { topic, schema: Some(M::SCHEMA), is_sound: |bytes| codec::decode::<M>(bytes).is_ok() }
     }
 }
 
-/// Team messages and proposals.
+/// The topics of team messages and proposals.
 pub(super) fn recorded_topics(scenario: &Scenario) -> Vec<RecordedTopic> {
     let boats = scenario.vehicles.iter().map(|vehicle| &vehicle.name);
     let says = scenario.teams.iter().map(|team| RecordedTopic::cdr::<Say>(format!("say/{}", team.name)));

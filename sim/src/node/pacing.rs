@@ -1,54 +1,54 @@
-//! Paused or not, and how fast: what people ask of a running game.
+//! Pause and speed of a running game, as controlled by operators.
 
 use messages::Control;
 
-/// Paused or not, and how fast.
+/// Pause and speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pacing {
     is_paused: bool,
-    /// Decisions that are still to be played although it is paused.
+    /// Decisions still to be played while paused.
     steps: u32,
-    /// Simulated seconds a second: aimed at by the clock, not exceeded in lockstep. None is as fast as can be.
+    /// Simulated seconds per second: a target by the clock, a limit in lockstep. None is unlimited.
     speed: Option<f64>,
     is_lockstep: bool,
-    /// Whether there are real boats, which have a pace of their own.
+    /// Whether there are real boats, which have their own pace.
     is_real: bool,
 }
 
 impl Pacing {
-    /// The pacing of a game as it was started.
+    /// The initial pacing of a game.
     pub(super) fn new(speed: Option<f64>, is_lockstep: bool, is_real: bool) -> Pacing {
         Pacing { is_paused: false, steps: 0, speed, is_lockstep, is_real }
     }
 
-    /// Whether the game stands still now.
+    /// Whether the game is held now.
     pub(super) fn is_held(&self) -> bool {
         self.is_paused && self.steps == 0
     }
 
-    /// Whether somebody paused it.
+    /// Whether an operator has paused it.
     pub(super) fn is_paused(&self) -> bool {
         self.is_paused
     }
 
-    /// Simulated seconds a second; none is as fast as can be.
+    /// Simulated seconds per second; none is unlimited.
     pub(super) fn speed(&self) -> Option<f64> {
         self.speed
     }
 
-    /// A decision was played.
+    /// Counts a played decision.
     pub(super) fn played(&mut self) {
         self.steps = self.steps.saturating_sub(1);
     }
 
-    /// Changes to what is asked for, and returns whether it can.
+    /// Applies a command; returns whether it is possible.
     pub(super) fn change(&mut self, control: Control) -> bool {
         match control {
             Control::Pause => (self.is_paused, self.steps) = (true, 0),
             Control::Resume => (self.is_paused, self.steps) = (false, 0),
-            // Counted, since a person may press the key faster than a decision is played.
+            // Counted, because an operator may press the key faster than decisions are played.
             Control::Step if self.is_paused => self.steps = self.steps.saturating_add(1),
-            // Real boats have one speed.
+            // Real boats have a single speed.
             Control::Speed(Some(speed)) if Control::SPEEDS.contains(&speed) && !self.is_real => {
                 self.speed = Some(speed);
             }

@@ -1,11 +1,11 @@
-//! Real time, or a factor of it: the clock paces, nobody is waited for.
+//! Real time or a multiple of it: the clock sets the pace, and the game waits for nobody.
 
 use super::server::GameServer;
 use super::{NodeError, ProgressMessage};
 use bus::clock;
 use std::time::Duration;
 
-/// Plays until the game is over or stopped, and counts the decision ticks that began late.
+/// Plays until the game is over or stopped, and counts the decisions that began late.
 pub(super) fn play(server: &mut GameServer<'_>, tell: &mut dyn FnMut(ProgressMessage)) -> Result<(), NodeError> {
     let mut due = clock::now() + period(server);
     while !server.contest.is_over() && !server.is_stopped() {
@@ -26,13 +26,12 @@ pub(super) fn play(server: &mut GameServer<'_>, tell: &mut dyn FnMut(ProgressMes
         }
         let late = clock::since(due);
         if late > period {
-            // What is lost is lost: the game runs slower than asked, and says so.
+            // Lost time is not made up: the game runs slower than requested, and reports it.
             server.overruns += 1;
             due = clock::now();
         }
         due += period;
-        // Here nobody is waited for, so silence is measured by the time since an agent was
-        // heard.
+        // This pace waits for nobody, so silence is measured since the last message of an agent.
         server.lose_silent();
         server.contest.advance();
         server.pacing.played();

@@ -1,4 +1,4 @@
-//! The game server: the contest, who has joined it, and what is sent to agents, gateways and observers.
+//! The game server: the contest, its members, and messages to agents, gateways and observers.
 
 mod incoming;
 
@@ -28,16 +28,16 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// Questions that may wait to be answered.
+/// Limit of unanswered questions.
 const QUESTIONS: usize = 64;
-/// How often progress is reported.
+/// Period of progress reports.
 const REPORT_EVERY: Duration = Duration::from_millis(100);
-/// How often the state of the run is recorded, where nothing has changed.
+/// Period of recording the state of the run if nothing has changed.
 const RECORD_EVERY: Duration = Duration::from_secs(1);
-/// How long agents may take to leave when the game is over.
+/// Time that agents have to leave when the game is over.
 const SHUTDOWN: Duration = Duration::from_secs(2);
 
-/// Everything a served game needs.
+/// All state of a served game.
 pub(super) struct GameServer<'w> {
     pub(super) contest: Contest,
     pub(super) pacing: Pacing,
@@ -53,36 +53,36 @@ pub(super) struct GameServer<'w> {
     /// The decision whose pictures were sent last.
     asked: Option<u64>,
     frames: Publisher,
-    /// How far the events are in frames.
+    /// Event position of the frames.
     shown: EventCursor,
-    /// The frame that was built last.
+    /// The last frame built.
     frame: Option<Arc<Frame>>,
     run: Publisher,
-    /// Says that an E-stop is over.
+    /// Publishes the release of an E-stop.
     released: Publisher,
     guard: Guard,
     game: GameName,
-    /// Whether somebody asked for something since the state of the run was sent.
+    /// Whether an operator request arrived since the state of the run was last sent.
     is_news: bool,
-    /// When the state of the run was recorded last.
+    /// When the state of the run was last recorded.
     run_recorded: Instant,
     pub(super) overruns: u64,
-    /// Topics that are subscribed to only for the recorder.
+    /// Topics subscribed to only for the recorder.
     recorded_topics: Vec<RecordedTopic>,
-    /// What the gateways of real boats report for others.
+    /// Publishers of gateway reports for other nodes.
     reports: BTreeMap<(VehicleId, Reported), Publisher>,
-    /// What each real boat is to do.
+    /// Publishers of commands, by real boat.
     external_orders: Vec<(VehicleId, Publisher)>,
-    /// The answer to the query what the game is.
+    /// The answer to the query for the game's description.
     game_info: Vec<u8>,
     stop: Arc<AtomicBool>,
     refusals: Refusals,
-    /// When each vehicle's agent was last heard, by the time at work.
+    /// When each vehicle's agent was last heard, in working time.
     heard: Vec<Duration>,
     pub(super) time: WorkingTime,
     pub(super) reporter: Reporter,
     last_report: (Instant, SimTime),
-    /// When the open decision was opened, once the game runs.
+    /// When the current decision was opened, once the game runs.
     opened: Option<Instant>,
     pace: Pace,
     declarations: Vec<Declaration>,
@@ -90,20 +90,20 @@ pub(super) struct GameServer<'w> {
 }
 
 impl<'w> GameServer<'w> {
-    /// Opens the hub: from here on nodes can join.
+    /// Opens the hub: nodes can join from now on.
     pub(super) fn open(
         mut contest: Contest,
         settings: &Settings,
         recorder: Option<&'w mut GameRecorder>,
     ) -> Result<GameServer<'w>, NodeError> {
-        // The scenario goes to the hub, whose rules spell out every topic by team and boat.
+        // The hub gets the scenario, because its rules list every topic by team and boat.
         let bus = Bus::hub(&settings.net, &settings.game, contest.scenario())?;
         let (questions_sender, questions) = inbox(QUESTIONS);
         let (controls, messages) = (Arc::new(ControlInbox::default()), Arc::new(MessageInbox::default()));
         let (to_controls, others) = (Arc::clone(&controls), Arc::clone(&messages));
         let inboxes = Inboxes { controls: to_controls, questions: questions_sender, others };
         let game = &settings.game;
-        // A game's inputs cost memory, and nobody would take them.
+        // A game's inputs use memory, and only the recorder takes them.
         if recorder.is_some() {
             contest.keep_inputs();
         }
@@ -115,7 +115,7 @@ impl<'w> GameServer<'w> {
         let speed = if let Pace::Realtime { factor } = settings.pace { Some(factor) } else { settings.speed };
         let teams = (0..scenario.teams.len()).map(|team| topic::picture(game, scenario, TeamId(team as u8)));
         let pictures: Result<Vec<Publisher>, _> = teams.map(|key| bus.publisher(key, Priority::Normal)).collect();
-        // Commands to boats are urgent: they pass everything that waits on a link.
+        // Commands to boats are urgent: they overtake everything that waits on a link.
         let to_boat = |v| Ok((v, bus.publisher(topic::external_order(game, scenario, v), Priority::Urgent)?));
         let external_orders: Vec<_> = scenario.externals().map(to_boat).collect::<Result<_, NodeError>>()?;
         let reports = subscriptions::report_publishers(&bus, game, scenario)?;
@@ -167,8 +167,8 @@ impl<'w> GameServer<'w> {
         })
     }
 
-    /// Waits until every vehicle has an agent and every real boat has been heard of, or the limit has passed: those without
-    /// are lost then.
+    /// Waits until every vehicle has an agent and every real boat has reported, or until the time
+    /// limit; missing agents are then lost.
     pub(super) fn wait_for_everybody(
         &mut self,
         limit: Duration,
@@ -196,13 +196,12 @@ impl<'w> GameServer<'w> {
             self.listen(Duration::from_millis(100));
         }
         self.last_report = (clock::now(), SimTime::ZERO);
-        // Agents that came first have waited for the last: their silence until now tells
-        // nothing.
+        // The first agents have waited for the last: their silence so far means nothing.
         self.heard.fill(self.time.worked());
         Ok(())
     }
 
-    /// The real boats that have not been heard of, or whose gateway is gone again.
+    /// The real boats without a report, or whose gateway has left.
     fn silent_boats(&self) -> impl Iterator<Item = VehicleId> {
         let is_vacant = |vehicle: VehicleId| self.gateways.vacant().any(|vacant| vacant == vehicle);
         let externals = self.contest.scenario().externals();
@@ -226,7 +225,7 @@ impl<'w> GameServer<'w> {
         frame
     }
 
-    /// Records the open decision, and the inputs that led to it.
+    /// Records the open decision and its inputs.
     pub(super) fn record(&mut self) {
         if self.recorder.is_some() {
             let frame = self.frame();
@@ -234,9 +233,9 @@ impl<'w> GameServer<'w> {
         }
     }
 
-    /// Sends observers the truth, if there are any.
+    /// Publishes the frame, if there are observers.
     pub(super) fn send_frame(&mut self) -> Result<(), NodeError> {
-        // Lockstep would pay at every decision for encoding what nobody reads.
+        // In lockstep every decision would pay for encoding a frame that nobody reads.
         if !self.frames.is_heard() {
             return Ok(());
         }
@@ -244,9 +243,10 @@ impl<'w> GameServer<'w> {
         Ok(self.frames.send(&*frame)?)
     }
 
-    /// Sends every team the picture of the open decision, and every real boat its order. Sending them twice does no harm.
+    /// Sends every team the picture of the open decision, and every real boat its order. Sending
+    /// twice is harmless.
     pub(super) fn send_pictures(&mut self) -> Result<(), NodeError> {
-        // Reports of real boats come while a decision is open: their age is laid off from this
+        // Reports of real boats arrive while a decision is open: their age counts back from this
         // moment.
         self.opened = Some(clock::now());
         // Pictures are sent again until they are answered, but recorded once.
@@ -262,8 +262,8 @@ impl<'w> GameServer<'w> {
         (0..self.external_orders.len()).try_for_each(|i| self.pass_on(self.external_orders[i].0))
     }
 
-    /// Sends a real boat what it is to do; holding, where the game stands still. For simulated boats there is nothing to
-    /// send.
+    /// Sends a real boat its effective command, or hold while the game is paused. Does nothing for
+    /// simulated boats.
     fn pass_on(&mut self, vehicle: VehicleId) -> Result<(), NodeError> {
         let Some(boat) = self.external_orders.iter().position(|(boat, _)| *boat == vehicle) else { return Ok(()) };
         // A paused game must not leave a real boat under way on its last order.
@@ -279,8 +279,8 @@ impl<'w> GameServer<'w> {
         }
         let (valid_ns, seq) = (self.contest.now(), self.contest.decision());
         let stamp = Stamp { valid_ns, seq, version: ExternalOrder::VERSION };
-        // The time of the picture that it answers: by that a gateway judges how old an order
-        // is, however often it is repeated.
+        // The time of the answered picture: the gateway judges the age of an order by it, however
+        // often the order is repeated.
         let given_ns = self.contest.given_at(vehicle);
         let order = ExternalOrder { stamp, given_ns, order: VehicleOrder::new(vehicle, order) };
         let bytes = codec::encode(&order);
@@ -292,16 +292,16 @@ impl<'w> GameServer<'w> {
         Ok(())
     }
 
-    /// Gives up on agents that have not answered the open tick.
+    /// Drops agents that have not answered the open decision.
     pub(super) fn give_up(&mut self, tick: u64) {
         let vehicles = self.agents.give_up(tick);
         self.lose_agents(vehicles);
     }
 
-    /// Gives up on agents that have not been heard for as long as the scenario's patience.
+    /// Drops agents that have been silent for longer than the scenario's patience.
     pub(super) fn lose_silent(&mut self) {
-        // By the time at work, not by the clock: a sim that was suspended blames nobody for the
-        // silence meanwhile.
+        // In working time, not by the clock: a suspended sim does not blame agents for silence
+        // during that time.
         let patience = Duration::from_secs_f64(self.contest.scenario().patience_s);
         for i in 0..self.heard.len() {
             if self.time.worked().saturating_sub(self.heard[i]) > patience {
@@ -311,7 +311,7 @@ impl<'w> GameServer<'w> {
         }
     }
 
-    /// These vehicles have no agent any more; real boats are told so at once.
+    /// Marks the agents of these vehicles as lost; real boats get their new order at once.
     fn lose_agents(&mut self, vehicles: Vec<VehicleId>) {
         for vehicle in vehicles {
             self.contest.lose_agent(vehicle);
@@ -319,32 +319,32 @@ impl<'w> GameServer<'w> {
         }
     }
 
-    /// Whether the game is to end early.
+    /// Whether the game should end early.
     pub(super) fn is_stopped(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// Everything that was refused so far.
+    /// All refusals so far.
     pub(super) fn refusals(&self) -> Refusals {
         let dropped = Refusals::from([(Refusal::Flood, self.questions.dropped())]);
         self.refusals + self.inbox.refusals() + self.controls.refusals() + dropped
     }
 
-    /// Reports progress, if it is time again.
+    /// Reports progress, if due.
     pub(super) fn report_progress(&mut self, tell: &mut dyn FnMut(ProgressMessage)) -> Result<(), NodeError> {
         let (then, then_sim) = self.last_report;
         let passed = clock::since(then);
         if passed < REPORT_EVERY && !self.is_news {
             return Ok(());
         }
-        // Over no time at all a rate would be infinite, and the page could not draw it.
+        // Over zero time the rate would be infinite, and the page could not draw it.
         let rate = (self.contest.now() - then_sim).as_s() / passed.as_secs_f64().max(1e-3);
         self.last_report = (clock::now(), self.contest.now());
         self.reporter.progress(&self.contest, (rate, self.refusals().total()), tell);
         self.send_run(if self.pacing.is_paused() { Phase::Paused } else { Phase::Playing }, rate)
     }
 
-    /// Sends observers the state of the run, if there are any.
+    /// Publishes the state of the run, if there are observers.
     fn send_run(&mut self, phase: Phase, rate: f64) -> Result<(), NodeError> {
         let is_news = std::mem::take(&mut self.is_news);
         let is_due = self.recorder.is_some() && (is_news || clock::since(self.run_recorded) >= RECORD_EVERY);
@@ -373,27 +373,27 @@ impl<'w> GameServer<'w> {
         Ok(())
     }
 
-    /// Gives the recorder something that goes over the network.
+    /// Passes a network message to the recorder.
     fn record_message(&mut self, topic: impl Into<String>, schema: Option<&'static str>, bytes: Vec<u8>) {
         if let Some(recorder) = &self.recorder {
             recorder.message(Entry::Message { topic: topic.into(), schema, bytes, at: self.contest.now() });
         }
     }
 
-    /// Sends everybody the end of the game, and waits a little for the agents to leave.
+    /// Sends the end of the game to all nodes, and waits briefly for the agents to leave.
     pub(super) fn shut_down(&mut self) -> Result<(), NodeError> {
         for (picture, publisher) in self.contest.pictures().to_vec().into_iter().zip(&self.pictures) {
             publisher.send(&messages::Picture { over: true, ..picture })?;
         }
         let frame = Frame { over: true, ..Frame::clone(&self.frame()) };
         self.frames.send(&frame)?;
-        // Real boats hold from now on, also where the game is cut short.
+        // Real boats hold from now on, even if the game is cut short.
         (0..self.external_orders.len()).try_for_each(|boat| self.send_order(boat, Order::Hold))?;
         self.is_news = true;
         self.send_run(Phase::Over, 0.0)?;
         let start = clock::now();
-        // The end may be lost on the way: agents that leave show that it was not. With a limit,
-        // since one may hang.
+        // The last message may get lost; agents that leave show that they received it. With a time
+        // limit, because one may hang.
         while !self.agents.is_empty() && clock::since(start) < SHUTDOWN {
             self.listen(Duration::from_millis(20));
         }
@@ -402,14 +402,15 @@ impl<'w> GameServer<'w> {
         Ok(())
     }
 
-    /// Sends a real boat its order between two decisions. That the session is closed shows at the next of them.
+    /// Sends a real boat its order between two decisions. A closed session is detected at the next
+    /// decision.
     fn pass_on_now(&mut self, vehicle: VehicleId) {
         self.pass_on(vehicle).unwrap_or_default();
     }
 
-    /// Waits for as long as somebody has paused the game: agents and boats are kept, and messages are read.
+    /// Waits while the game is paused: agents and boats are kept, and messages are read.
     pub(super) fn stay_paused(&mut self, tell: &mut dyn FnMut(ProgressMessage)) -> Result<(), NodeError> {
-        /// Agents that hear nothing for too long leave.
+        /// Agents that receive nothing for too long leave.
         const SEND_AGAIN: Duration = Duration::from_secs(1);
         if !self.pacing.is_held() {
             return Ok(());
@@ -423,7 +424,7 @@ impl<'w> GameServer<'w> {
                 sent = clock::now();
             }
         }
-        // Whoever was silent meanwhile had nothing to answer.
+        // Agents that were silent meanwhile had nothing to answer.
         self.heard.fill(self.time.worked());
         Ok(())
     }

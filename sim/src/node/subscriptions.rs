@@ -1,4 +1,5 @@
-//! What a sim subscribes to and answers: commands, questions and everything else go to an inbox each.
+//! Subscriptions and queries of a sim: commands, questions and all other messages have an inbox
+//! each.
 
 use super::control_inbox::ControlInbox;
 use super::message_inbox::{MessageInbox, Sender};
@@ -14,12 +15,12 @@ use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// What comes in from the network.
+/// An incoming message.
 pub(super) enum Incoming {
     Orders(Orders),
-    /// The report, and its bytes for the recorder.
+    /// A report, with its bytes for the recorder.
     Nav(NavReport, Vec<u8>),
-    /// What a gateway reports for others: its ticket, the boat and the message.
+    /// A gateway report for other nodes: its ticket, the boat and the message.
     Report {
         ticket: u64,
         vehicle: VehicleId,
@@ -27,16 +28,16 @@ pub(super) enum Incoming {
         message: Vec<u8>,
     },
     Join(Query),
-    /// For the recorder only: the topic's place in the list, and the message.
+    /// For the recorder only: the topic's index in the list, and the message.
     RecordedMessage(usize, Vec<u8>),
-    /// The link of this node is gone.
+    /// The link to this node is gone.
     Gone(String),
-    /// A command or a question waits in an inbox of its own; this makes the sim look there.
+    /// Makes the sim look into the inboxes for commands and questions.
     Look,
 }
 
 impl Incoming {
-    /// From whom it is.
+    /// The sender.
     pub(super) fn sender(&self) -> Sender {
         match self {
             Incoming::Orders(orders) => Sender::Member(orders.ticket),
@@ -50,7 +51,7 @@ impl Incoming {
     }
 }
 
-/// What observers want to know.
+/// A question of an observer.
 pub(super) enum Question {
     Scenario,
     Events,
@@ -72,7 +73,7 @@ impl Inboxes {
     ) -> impl Fn(&[u8]) + Send + Sync + use<M> {
         let others = Arc::clone(&self.others);
         move |bytes: &[u8]| {
-            // Decoded in zenoh's thread, so that what is garbage never wakes the loop.
+            // Decoded in zenoh's thread, so that invalid bytes never wake the loop.
             if let Some(message) = others.decode::<M>(bytes) {
                 others.push(incoming(message, bytes));
             }
@@ -88,20 +89,20 @@ impl Inboxes {
         }
     }
 
-    /// A callback for what a gateway reports of its boat.
+    /// A callback for gateway reports about a boat.
     fn report(&self, vehicle: VehicleId, what: Reported) -> impl Fn(&[u8]) + Send + Sync + use<> {
         let others = Arc::clone(&self.others);
         move |bytes: &[u8]| match Reported::split_ticket(bytes) {
             Some((ticket, message)) => {
                 others.push(Incoming::Report { ticket, vehicle, what, message: message.to_vec() });
             }
-            // Counted with everything that is refused, which the result and the page show.
+            // Counted with all other refusals, which the result and the page show.
             None => others.refuse(Refusal::Garbage),
         }
     }
 }
 
-/// Where what gateways report of each real boat is published.
+/// The publishers of gateway reports, for each real boat.
 pub(super) fn report_publishers(
     bus: &Bus,
     game: &GameName,
@@ -117,7 +118,7 @@ pub(super) fn report_publishers(
     Ok(publishers)
 }
 
-/// Opens everything that comes in; `recorded` are the topics that are subscribed to only for the recorder.
+/// Opens all subscriptions; `recorded` are the topics subscribed to only for the recorder.
 pub(super) fn open(
     bus: &Bus,
     game: &GameName,
@@ -127,7 +128,7 @@ pub(super) fn open(
 ) -> Result<Vec<Declaration>, BusError> {
     let others = || Arc::clone(&inboxes.others);
     let (gone, joins) = (others(), others());
-    // Where there is no room for a look, the sim is at work, and looks before each message.
+    // If there is no room for a look, the sim is busy, and looks before each message.
     let (stops, look) = (Arc::clone(&inboxes.controls), others());
     let stop = move |bytes: &[u8]| {
         if stops.put_stop(bytes) {
@@ -141,8 +142,8 @@ pub(super) fn open(
         }
     };
     let mut declarations = vec![
-        // One subscription for all agents: their names are in the key for access control, and
-        // the ticket says who it is.
+        // One subscription for all agents: their names are in the key for access control, and the
+        // ticket identifies the sender.
         bus.subscribe(topic::all_orders(game), inboxes.message_callback(|orders, _| Incoming::Orders(orders)))?,
         bus.subscribe(topic::control(game), stop)?,
         bus.answer(topic::control(game), control)?,

@@ -1,19 +1,19 @@
-//! The time that a sim was at work: its patience with others goes by it. Time that the sim itself lost, because it was
-//! suspended or had no processor, is nobody else's fault.
+//! Working time of a sim, by which it measures its patience with other nodes. Other nodes are not
+//! blamed for time that the sim itself lost because it was suspended or had no processor.
 
 use std::time::{Duration, Instant};
 
-/// A turn of the sim's own that takes longer than this was interrupted.
+/// A turn of the sim's own that takes longer than this counts as interrupted.
 const TURN_MAX: Duration = Duration::from_secs(1);
-/// Links that were given up meanwhile are there again after this time; until then nobody's patience is tried. zenoh waits
-/// between two attempts to connect for four seconds at most.
+/// Time after an interruption for lost links to come back, during which patience does not count.
+/// zenoh waits at most four seconds between two connection attempts.
 const RECOVERY: Duration = Duration::from_secs(10);
 
-/// A clock that stands still while its sim does.
+/// A clock that stops while its sim is interrupted.
 pub(super) struct WorkingTime {
     looked: Instant,
     worked: Duration,
-    /// How long the clock still stands after an interruption.
+    /// Remaining time for which the clock stands still after an interruption.
     recovery: Duration,
 }
 
@@ -22,14 +22,15 @@ impl WorkingTime {
         WorkingTime { looked: now, worked: Duration::ZERO, recovery: Duration::ZERO }
     }
 
-    /// Time has passed since the last call: the sim's own turn, after it had waited up to `waited`.
+    /// Accounts for the time since the last call: the sim's own turn, after a wait of up to
+    /// `waited`.
     pub(super) fn pass(&mut self, now: Instant, waited: Duration) {
         let passed = now.saturating_duration_since(self.looked);
         self.looked = now;
         if passed.saturating_sub(waited) > TURN_MAX {
-            // Patience for ten seconds more: zenoh gives up links after ten seconds of silence,
-            // and they have to be opened anew. A shorter lease would find cut links sooner and
-            // give up suspended ones as well.
+            // Ten seconds more: zenoh drops links after ten seconds of silence, and they have to be
+            // opened again. A shorter lease would detect broken links sooner but drop suspended
+            // ones as well.
             self.recovery = RECOVERY;
             return;
         }
@@ -38,12 +39,12 @@ impl WorkingTime {
         self.worked += passed - recovered;
     }
 
-    /// How long the sim was at work, without interruptions and what it took to recover from them.
+    /// Working time, without interruptions and recovery from them.
     pub(super) fn worked(&self) -> Duration {
         self.worked
     }
 
-    /// Whether the sim was interrupted a moment ago.
+    /// Whether the sim is recovering from an interruption.
     pub(super) fn is_recovering(&self) -> bool {
         !self.recovery.is_zero()
     }

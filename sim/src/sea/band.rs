@@ -1,35 +1,35 @@
-//! The variance of a wave field by frequency band, for comparison with the spectrum that was asked for.
+//! The variance of a wave field by frequency band, for comparison with the requested spectrum.
 
 use super::WaveField;
 use super::spectrum::BAND;
 use std::f64::consts::TAU;
 
-/// A band of frequencies, and what is in it.
+/// A frequency band of a wave field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Band {
-    /// Where it begins and ends, Hz.
+    /// Lower and upper end, Hz.
     pub range_hz: (f64, f64),
-    /// Variance of the elevation that the components in it hold, m².
+    /// Variance of the elevation due to its components, m².
     pub variance_m2: f64,
 }
 
 impl Band {
-    /// The mean spectral density in it, m²/Hz.
+    /// The mean spectral density, m²/Hz.
     #[must_use]
     pub fn density_m2_hz(&self) -> f64 {
         self.variance_m2 / (self.range_hz.1 - self.range_hz.0)
     }
 }
 
-/// The frequencies that the components of a sea with this peak period cover, Hz.
+/// The frequency range of the components of a sea with this peak period, Hz.
 #[must_use]
 pub fn range_hz(tp_s: f64) -> (f64, f64) {
     (BAND.0 / tp_s, BAND.1 / tp_s)
 }
 
 impl WaveField {
-    /// `count` bands of the same width from the lower to the upper end of `range_hz`. A component beyond it counts to the
-    /// band next to it, so that the variances add up to that of the sea.
+    /// Divides `range_hz` into `count` equally wide bands. A component outside the range counts in
+    /// the nearest band, so that the variances add up to that of the sea.
     #[must_use]
     pub fn bands(&self, range_hz: (f64, f64), count: usize) -> Vec<Band> {
         let width_hz = (range_hz.1 - range_hz.0) / count as f64;
@@ -37,9 +37,9 @@ impl WaveField {
         let empty = |i: usize| Band { range_hz: (edge_hz(i), edge_hz(i + 1)), variance_m2: 0.0 };
         let mut bands: Vec<Band> = (0..count).map(empty).collect();
         for component in self.components() {
-            // A number below the range, or none, becomes 0.
+            // A frequency below the range, or NaN, becomes 0.
             let place = ((component.omega_rad_s / TAU - range_hz.0) / width_hz) as usize;
-            // The last band takes what lies above.
+            // The last band includes everything above the range.
             bands[place.min(count - 1)].variance_m2 += 0.5 * component.amplitude_m * component.amplitude_m;
         }
         bands
@@ -71,7 +71,7 @@ mod tests {
 
     #[test]
     fn many_components_hold_in_each_band_what_was_asked_for() {
-        /// What the strata at the edges of a band may be off by, of the highest density.
+        /// Tolerance for strata at the edges of a band, as a share of the highest density.
         const TOLERANCE: f64 = 0.03;
         for gamma in [1.0, 3.3] {
             let waves = waves(gamma, 4000);

@@ -1,28 +1,28 @@
-//! A Gauss-Markov process with a cache: a window of its grid points, read at any place between them.
+//! A Gauss-Markov process with a cached window of grid points, interpolated in between.
 //!
-//! The process itself is a function of the grid point. Where it is read outside of the window its points are worked out
-//! again: slower, the same bits.
+//! The process itself is a function of the grid point. Outside the window its points are
+//! recomputed: slower, but with the same bits.
 
 use super::gauss_markov::{GaussMarkov, Pair, Trail};
 
-/// Most points in the cache.
+/// Limit of cached points.
 const HELD_MAX: i64 = 1 << 16;
 
-/// A process and its cache.
+/// A process with its cache.
 #[derive(Clone, Debug)]
 pub(super) struct CachedProcess {
     process: GaussMarkov,
-    /// The correlation of neighbours.
+    /// The correlation of neighbouring points.
     correlation: f64,
     trail: Trail,
-    /// Point i stands at i modulo the length, which is a power of two.
+    /// Point i is stored at i modulo the length, which is a power of two.
     ring: Vec<Pair>,
-    /// The points in the cache: from the first to before the last.
+    /// The cached points: first (included) to last (excluded).
     held: (i64, i64),
 }
 
 impl CachedProcess {
-    /// A cache of at least `points`, as far as that is sensible.
+    /// A process with a cache of at least `points`, within a limit.
     pub(super) fn new(process: GaussMarkov, points: f64) -> CachedProcess {
         let correlation = GaussMarkov::neighbour_correlation();
         let length = (points.ceil() as i64).saturating_add(3).clamp(1, HELD_MAX) as u64;
@@ -31,7 +31,7 @@ impl CachedProcess {
         CachedProcess { process, correlation, trail: Trail::default(), ring, held: (0, 0) }
     }
 
-    /// Puts the points between two places into the cache.
+    /// Caches the points between two places.
     pub(super) fn hold(&mut self, from: f64, to: f64) {
         let first = from.floor() as i64;
         let end = (to.floor() as i64 + 2).min(first + self.ring.len() as i64);
@@ -43,18 +43,18 @@ impl CachedProcess {
         self.held = (first, end.max(known));
     }
 
-    /// The pair of processes at a place, each with a mean of 0 and a variance of 1.
+    /// The pair of processes at a place, each with mean 0 and variance 1.
     ///
-    /// On the line between two points the variance would be less: (1−w)² + w² + 2 w (1−w) ρ. The root of that makes up
-    /// for it.
+    /// Linear interpolation reduces the variance to (1−w)² + w² + 2 w (1−w) ρ. Dividing by its root
+    /// compensates for that.
     #[inline]
     pub(super) fn at(&self, place: f64) -> Pair {
         let floor = place.floor();
         let (index, weight) = (floor as i64, place - floor);
         let (low, high) = self.neighbours(index);
         let product = 2.0 * weight * (1.0 - weight);
-        // Linear interpolation of two correlated numbers has less variance in the middle;
-        // without this gusts would be weaker between grid points.
+        // Linear interpolation of two correlated numbers has less variance in the middle; without
+        // this correction gusts would be weaker between grid points.
         let deviation = (1.0 - product * (1.0 - self.correlation)).sqrt();
         let between = |low: f64, high: f64| (low + weight * (high - low)) / deviation;
         (between(low.0, high.0), between(low.1, high.1))
@@ -66,7 +66,7 @@ impl CachedProcess {
         if self.held.0 <= index && index + 1 < self.held.1 {
             return (self.ring[self.slot(index)], self.ring[self.slot(index + 1)]);
         }
-        // Most of the way to the second is that to the first.
+        // The path to the second point mostly coincides with that to the first.
         let mut trail = Trail::default();
         (self.process.at(index, &mut trail), self.process.at(index + 1, &mut trail))
     }
@@ -89,7 +89,7 @@ mod tests {
     fn the_cache_changes_no_bit() {
         let bare = CachedProcess::new(process(), 0.0);
         let mut cached = CachedProcess::new(process(), 40.0);
-        // Ahead by little, by much, back, beyond the ring, and below zero.
+        // Ahead by a little, by a lot, back, beyond the ring, and below zero.
         for from in [0.0, 0.4, 1.7, 30.2, 31.0, 200.5, 5.5, 6.5, -70.2, -1030.0, 1e6] {
             cached.hold(from, from + 40.0);
             for place in [from - 90.0, from - 0.1, from, from + 0.3, from + 17.5, from + 40.0, from + 99.9] {

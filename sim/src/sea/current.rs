@@ -1,7 +1,7 @@
 //! The current at a place and a time: mean, wander, tide, shear and eddies, summed.
 //!
-//! What is the same everywhere (mean, wander, tide) is worked out once a tick by [`CurrentField::at_time`]; what is not
-//! (shear, eddies) by boat.
+//! The uniform part (mean, wander, tide) is computed once per tick by [`CurrentField::at_time`],
+//! the local part (shear, eddies) per boat.
 
 use super::cached_process::CachedProcess;
 use super::eddy::{self, Vortex};
@@ -26,7 +26,7 @@ pub struct CurrentField {
 /// The current over a field at one moment.
 #[derive(Clone, Copy, Debug)]
 pub struct CurrentNow<'a> {
-    /// What is the same everywhere, m/s.
+    /// The uniform part, m/s.
     pub uniform_m_s: Ned,
     shear: Option<Shear>,
     eddies: &'a [Vortex],
@@ -50,7 +50,8 @@ impl CurrentField {
         }
     }
 
-    /// Has at hand what [`CurrentField::at_time`] needs at `now`. Only for speed: without it, that gives the same bits.
+    /// Caches what [`CurrentField::at_time`] needs at `now`. Affects only speed: the results are
+    /// bit-identical without it.
     pub fn prepare(&mut self, now: SimTime) {
         if let Some((wander, process)) = &mut self.wander {
             let place = wander_place(wander, now);
@@ -73,8 +74,8 @@ impl CurrentField {
         if let Some((wander, process)) = &self.wander {
             let mean_m_s = self.mean_m_s.dot(wander.toward);
             let wandering_m_s = mean_m_s + wander.sigma_m_s * process.at(wander_place(wander, now)).0;
-            // Clipped and not reflected: the process itself goes on unbounded and stays a
-            // function of the time.
+            // Clipped, not reflected: the process itself continues unbounded and remains a function
+            // of time.
             let speed_m_s = wandering_m_s.max(wander.speed_m_s.0).min(wander.speed_m_s.1);
             uniform_m_s = uniform_m_s + wander.toward.scaled(speed_m_s - mean_m_s);
         }
@@ -88,7 +89,7 @@ impl CurrentField {
     }
 }
 
-/// The place of the wander's process at `now`.
+/// The grid position of the wander's process at `now`.
 fn wander_place(wander: &Wander, now: SimTime) -> f64 {
     now.as_s() / wander.time_s * STEPS_PER_LENGTH
 }
@@ -101,11 +102,12 @@ impl CurrentNow<'_> {
         self.over_hull(place, Rotation::NORTH).0
     }
 
-    /// The water's velocity (m/s) at a hull's middle and its rotation (rad/s clockwise) as a hull feels it that points
-    /// along a heading: the rate at which the flow across the heading grows along it.
+    /// The water's velocity (m/s) at the centre of a hull, and its rotation (rad/s clockwise) as
+    /// felt by a hull on this heading: the rate at which the flow across the heading grows along
+    /// it.
     ///
-    /// A hull is taken as short against what bends the flow: for one of a tenth of an eddy's core radius, the mean over
-    /// its length differs by a thousandth.
+    /// The hull is assumed to be short compared with the curvature of the flow: for one of a tenth
+    /// of an eddy's core radius, the mean over its length differs by a thousandth.
     #[inline]
     #[must_use]
     pub fn over_hull(&self, place: Ned, rotation: Rotation) -> (Ned, f64) {

@@ -1,7 +1,7 @@
-//! An eddy in the water: the vortex of Lamb and Oseen.
+//! An eddy in the water: the Lamb-Oseen vortex.
 //!
-//! v(r) = Γ / (2 π r) (1 − exp(−r² / a²)), clockwise seen from above where Γ > 0. The flow is fastest at r = √α a with
-//! e^α = 1 + 2 α, α = 1.2564, where it is Γ / (2 π a) (1 − e^−α) / √α.
+//! v(r) = Γ / (2 π r) (1 − exp(−r² / a²)), clockwise seen from above for Γ > 0. The flow is fastest
+//! at r = √α a with e^α = 1 + 2 α, α = 1.2564, where it is Γ / (2 π a) (1 − e^−α) / √α.
 
 use primitives::frame::Ned;
 use primitives::stream::Stream;
@@ -10,16 +10,16 @@ use scenario::sea::{Eddy, RandomEddies};
 
 /// The root of e^α = 1 + 2 α other than 0.
 pub const ALPHA: f64 = 1.256_431_208_626_169_7;
-/// From where on e^−s is less than half the last bit of 1.
+/// Beyond this s, e^−s is less than half the last bit of 1.
 const FAR: f64 = 40.0;
 
-/// An eddy, ready for computing.
+/// An eddy with precomputed constants.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Vortex {
     centre: Ned,
     /// 1 / a².
     per_radius_squared: f64,
-    /// Γ / (2 π a²): the rate at which the core turns, rad/s clockwise.
+    /// Γ / (2 π a²): the rotation rate of the core, rad/s clockwise.
     core_rad_s: f64,
 }
 
@@ -33,11 +33,12 @@ impl Vortex {
         }
     }
 
-    /// The water's velocity, m/s, and the rate at which it turns a line that points along the unit vector `ahead`, rad/s
-    /// clockwise.
+    /// The water's velocity, m/s, and the rate at which it turns a line along the unit vector
+    /// `ahead`, rad/s clockwise.
     ///
-    /// With v = g(s) J d, d from the centre, J a quarter turn, s = d² / a²: along a line h the flow across it grows by
-    /// g + 2 s g' (d·h)² / d², and s g' = c e^−s − g for a core that turns with c.
+    /// With v = g(s) J d, d the vector from the centre, J a quarter turn, s = d² / a²: along a line
+    /// h the flow across it grows by g + 2 s g' (d·h)² / d², and s g' = c e^−s − g for a core
+    /// rotating at c.
     #[inline]
     pub(super) fn over(&self, place: Ned, ahead: Ned) -> (Ned, f64) {
         let from_centre = place - self.centre;
@@ -49,20 +50,22 @@ impl Vortex {
         (velocity, rate + fade * along * along)
     }
 
-    /// The rate at which the water goes round at a place, rad/s, and the share of the circulation that is inside of it.
+    /// The water's angular rate about the centre at a place, rad/s, and the share of the
+    /// circulation inside its radius.
     #[inline]
     fn rate_and_share(&self, from_centre: Ned) -> (f64, f64) {
         let s = from_centre.dot(from_centre) * self.per_radius_squared;
         if s == 0.0 {
             return (self.core_rad_s, 0.0);
         }
-        // `expm1` and not `1 - exp`: in the core all digits would cancel.
+        // `expm1` instead of `1 - exp`: in the core all digits would cancel.
         let share = if s > FAR { 1.0 } else { -libm::expm1(-s) };
         (self.core_rad_s * share / s, share)
     }
 }
 
-/// Eddies drawn from the stream `eddies` of this seed: uniformly over the field, turning either way.
+/// Eddies drawn from the stream `eddies` of this seed: uniform over the field, in random directions
+/// of rotation.
 #[must_use]
 pub fn draw(random: &RandomEddies, field: &Field, seed: u64) -> Vec<Eddy> {
     let mut stream = Stream::new(seed, "eddies");
@@ -71,8 +74,8 @@ pub fn draw(random: &RandomEddies, field: &Field, seed: u64) -> Vec<Eddy> {
         let across_m = stream.between(0.0, field.plan.depth_m);
         let radius_m = stream.between(random.radius_m.0, random.radius_m.1);
         let peak_m_s = stream.between(random.peak_m_s.0, random.peak_m_s.1);
-        // All numbers of an eddy are drawn, also where a range has one value: the next eddy
-        // does not move when one is set.
+        // All numbers of an eddy are drawn, even if a range has a single value: fixing a value does
+        // not move the next eddy.
         let sense = if stream.bits() & 1 == 0 { 1.0 } else { -1.0 };
         Eddy { centre: field.at(along_m, across_m), radius_m, peak_m_s: sense * peak_m_s }
     };

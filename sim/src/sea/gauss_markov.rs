@@ -1,61 +1,65 @@
-//! The stationary Gauss-Markov process, looked up anywhere on its grid.
+//! The stationary Gauss-Markov process with random access to its grid.
 //!
-//! Also known as the Ornstein-Uhlenbeck process: mean 0, variance 1, correlation e^(−lag). Its usual recursion needs all
-//! of its past; here a point is found from the noise alone. Every 32 correlation lengths stands an independent point
-//! (the correlation that this leaves out is e^−32 = 1e−14), and what is between is halved again and again: in the middle
-//! between two known points δ away, the process has
+//! Also known as the Ornstein-Uhlenbeck process: mean 0, variance 1, correlation e^(−lag). Its
+//! usual recursion needs the entire past; here a point is computed from the noise alone. Every 32
+//! correlation lengths there is an independent point (the neglected correlation is e^−32 = 1e−14),
+//! and the intervals between are halved repeatedly: in the middle between two known points δ away,
+//! the process has
 //!
 //! ```text
 //! mean (a + b) ρ / (1 + ρ²)        variance (1 − ρ²) / (1 + ρ²)        ρ = e^(−δ)
 //! ```
 //!
-//! which is the Gauss-Markov process conditioned on both (the bridge of Lévy's construction, for this process). So a
-//! world that is put back to any tick finds the same bits, whatever it had looked at before.
+//! This is the Gauss-Markov process conditioned on both (the bridge of Lévy's construction, for
+//! this process). A world reset to any tick therefore finds the same bits, whatever was read
+//! before.
 //!
-//! Where another seed takes over after a point k, the process goes on from there: with x that of the seed before and y that of the new
-//! one, it is y_j + (x_k − y_k) e^(−lag) at the points j after k. That has the law of the process given all up to k: what y has
-//! of its own value at k is taken out of it, and the rest does not depend on that.
+//! Where another seed takes over after a point k, the process continues from there: with x from the
+//! previous seed and y from the new one, it is y_j + (x_k − y_k) e^(−lag) at the points j after k.
+//! This has the law of the process given all values up to k: y's own value at k is subtracted, and
+//! the rest is independent of it.
 
 use primitives::SimTime;
 use primitives::reseed::Seeds;
 use primitives::stream::Noise;
 
-/// Grid points in one correlation length.
+/// Grid points per correlation length.
 pub(super) const STEPS_PER_LENGTH: f64 = 32.0;
-/// How often an interval between independent points is halved.
+/// Number of halvings of an interval between independent points.
 const LEVELS: usize = 10;
 /// Grid points between two independent ones: 32 correlation lengths.
 const BLOCK: i64 = 1 << LEVELS;
-/// Puts the counts of the noise of all grid points that matter above zero.
+/// Offset that makes the noise counts of all relevant grid points positive.
 const COUNT_OF_POINT_ZERO: i64 = 1 << 40;
 
 /// Two independent processes on one grid.
 pub(super) type Pair = (f64, f64);
 
-/// The process.
+/// A process with random access.
 #[derive(Clone, Debug)]
 pub(super) struct GaussMarkov {
     noise: Noise,
-    /// What takes its place, by rising points.
+    /// The noises that replace the first, by ascending point.
     later: Vec<Later>,
-    /// By level: the factor on the sum of the neighbours, and the standard deviation about it.
+    /// By level: the factor on the sum of the neighbours, and the standard deviation about that
+    /// mean.
     halving: [(f64, f64); LEVELS],
 }
 
-/// A noise that takes the place of the one before.
+/// A noise that replaces the previous one.
 #[derive(Clone, Copy, Debug)]
 struct Later {
-    /// The last point of the one before.
+    /// The last point of the previous noise.
     after: i64,
     noise: Noise,
-    /// By how much the one before was above it there.
+    /// The previous process minus this one at that point.
     above: Pair,
 }
 
-/// The points on the way to the one looked up last. Makes the next one cheap, and changes nothing else.
+/// The points on the path to the last look-up. Makes the next one cheap, without changing results.
 #[derive(Clone, Debug)]
 pub(super) struct Trail {
-    /// Which noise they are of: how many came before it.
+    /// The noise that they belong to: how many came before it.
     of: usize,
     points: [(i64, Pair); LEVELS + 2],
 }
@@ -76,19 +80,19 @@ impl Trail {
 }
 
 impl GaussMarkov {
-    /// The process `name` of this game. `place` is how far on the grid it has been looked up at a time, at most: the points there are
-    /// the last that a seed counts for.
+    /// The process `name` of this game. `place` is the farthest grid position read by a time: a
+    /// seed that ends then applies up to there.
     pub(super) fn new(seeds: &Seeds, name: &str, place: impl Fn(SimTime) -> f64) -> GaussMarkov {
         let halving = std::array::from_fn(|level| {
             let apart = (BLOCK >> (level + 1)) as f64 / STEPS_PER_LENGTH;
-            // Once for each level of halving; a look-up then takes no transcendental function
-            // but the logarithm of the noise.
+            // Once per level of halving; a look-up then needs no transcendental function except the
+            // logarithm of the noise.
             let rho = libm::exp(-apart);
             (rho / (1.0 + rho * rho), (-libm::expm1(-2.0 * apart) / (1.0 + rho * rho)).sqrt())
         });
         let mut process = GaussMarkov { noise: Noise::new(seeds.first(), name), later: vec![], halving };
         for (time, seed) in seeds.later() {
-            // A place between two points shows something of both.
+            // A place between two points depends on both.
             let after = place(*time).floor() as i64 + 1;
             let noise = Noise::new(*seed, name);
             let before = process.at(after, &mut Trail::default());
@@ -121,10 +125,10 @@ impl GaussMarkov {
     fn of_noise(&self, noise: Noise, index: i64, trail: &mut Trail) -> Pair {
         let draw = |index: i64| noise.normal_pair((COUNT_OF_POINT_ZERO + index) as u64);
         let block = index.div_euclid(BLOCK);
-        // The ends of a block take turns, so that the end of one stays known as the beginning of the next.
+        // The ends of a block alternate, so that the end of one is still known as the start of the
+        // next.
         let end = |block: i64| LEVELS + (block & 1) as usize;
-        // Neighbours share most of their way down: a sequence of points costs about one draw
-        // each.
+        // Neighbours share most of their path: a sequence of points costs about one draw each.
         let mut low = trail.known(end(block), block * BLOCK, || draw(block * BLOCK));
         if index == block * BLOCK {
             return low;
@@ -152,7 +156,7 @@ mod tests {
     use super::*;
     use primitives::reseed::Reseed;
 
-    /// A seed that another takes the place of at point 500, and one more at 900.
+    /// A seed replaced at point 500, and again at 900.
     fn reseeded(seed: u64) -> Seeds {
         Seeds::new(seed, &[(500.0, seed + 1), (900.0, seed + 2)].map(|(after_s, seed)| Reseed { after_s, seed }))
     }
@@ -163,7 +167,7 @@ mod tests {
         const AFTER: i64 = 700;
         let first = GaussMarkov::new(&9.into(), "test", |now| now.as_s());
         let at = |process: &GaussMarkov, index| process.at(index, &mut Trail::default());
-        // Two points after the change, one block on, and given the point at which it changes.
+        // Two points after the change, one block later, and given the point of the change.
         let lags = [1_i64, 40, 60];
         let known = at(&first, AFTER + 1).0;
         let mut sums = [[0.0; 3]; 3];
@@ -211,7 +215,8 @@ mod tests {
         let process = GaussMarkov::new(&5.into(), "test", |now| now.as_s());
         let mut trail = Trail::default();
         let x: Vec<Pair> = (0..POINTS).map(|index| process.at(index, &mut trail)).collect();
-        // Five standard errors; 125 000 correlation lengths count as so many independent draws over two.
+        // Five standard errors; 125 000 correlation lengths count as half as many independent
+        // draws.
         let within = 5.0 * (2.0 / (POINTS as f64 / STEPS_PER_LENGTH)).sqrt();
         let mean =
             |f: &dyn Fn(usize) -> f64, lag: usize| (0..x.len() - lag).map(f).sum::<f64>() / (x.len() - lag) as f64;
@@ -225,7 +230,7 @@ mod tests {
                 assert!((got - want).abs() < within, "process {which}, lag {lag}: {got}, not {want} within {within}");
             }
         }
-        // The same at the seam between blocks alone: 3900 seams.
+        // The same only at the seams between blocks: 3900 seams.
         let seams = || (1..POINTS as usize / BLOCK as usize).map(|block| block * BLOCK as usize);
         for lag in [1, 8, 32] {
             let got = seams().map(|i| x[i - lag].0 * x[i + lag].0).sum::<f64>() / seams().count() as f64;

@@ -1,11 +1,12 @@
-//! A table over the heading: entries every five degrees, linear in between.
+//! A table over the heading: entries every five degrees, interpolated linearly.
 
 use crate::lanes::{FOLD, Lanes, ROW};
 use std::f64::consts::TAU;
 
-/// Headings at which the numbers stand.
-// Linear between 72 headings is 0.4 % off at most (root mean square) for the shipped boats, and
-// up to 3 % for a hull three waves long, which hardly feels them.
+/// Number of headings in the table.
+// Linear interpolation between 72 headings is off by at most 0.4 % (root mean square) for the
+// shipped boats, and by up to 3 % for a hull three waves long, on which such waves have little
+// effect.
 pub(super) const BINS: usize = 72;
 
 /// The heading of a bin, rad.
@@ -13,38 +14,38 @@ pub(super) fn of_bin(bin: usize) -> f64 {
     bin as f64 * (TAU / BINS as f64)
 }
 
-/// The heading in bins: the bin below, and how far on to the next.
+/// The heading in bins: the bin below, and the fraction to the next.
 #[inline(always)]
 fn place(heading_rad: f64) -> (usize, f64) {
     let bins = heading_rad * (BINS as f64 / TAU);
     let below = bins.floor();
-    // A heading that is no number finds bin 0, and no number comes of it.
+    // A NaN heading finds bin 0, and gives NaN.
     ((below as i64).rem_euclid(BINS as i64) as usize, bins - below)
 }
 
-/// Four numbers for each of four components, from one bin to the next.
+/// Four numbers for each of four components, between one bin and the next.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Segment {
     from: Lanes<f32>,
-    /// What they gain up to the next bin.
+    /// Their increase up to the next bin.
     gain: Lanes<f32>,
 }
 
 impl Segment {
-    /// The numbers at `fraction` (0 to 1) of the way.
+    /// The numbers at `fraction` (0 to 1) of the segment.
     #[inline(always)]
     pub(super) fn at_fraction(&self, fraction: Lanes<f32>) -> Lanes<f32> {
         self.from + self.gain * fraction
     }
 
-    /// Their derivatives by the heading, 1/rad.
+    /// Their derivatives with respect to the heading, 1/rad.
     #[inline(always)]
     pub(super) fn per_rad(&self) -> Lanes<f32> {
         self.gain * Lanes::<f32>::splat((BINS as f64 / TAU) as f32)
     }
 }
 
-/// Rows of numbers that depend on the heading. The rows of one bin lie one after the other.
+/// Rows of numbers that depend on the heading. The rows of one bin are adjacent.
 #[derive(Clone, Debug)]
 pub(super) struct HeadingTable {
     rows: usize,
@@ -52,8 +53,8 @@ pub(super) struct HeadingTable {
 }
 
 impl HeadingTable {
-    /// The table of as many `rows`, whose `numbers` are four for each component, given for a bin and a component; beyond the last
-    /// component they are nothing.
+    /// A table with this many `rows`. `numbers` gives four numbers for a bin and a component;
+    /// beyond the last component they are 0.
     pub(super) fn new(rows: usize, numbers: impl Fn(usize, usize) -> [f64; FOLD]) -> HeadingTable {
         let number = |i: usize| {
             let (bin, row) = (i / rows, i % rows);
@@ -65,7 +66,7 @@ impl HeadingTable {
         HeadingTable { rows, lines: (0..at.len()).map(line).collect() }
     }
 
-    /// The rows for a heading, and how far it lies from their bin to the next.
+    /// The rows for a heading, and its fraction from their bin to the next.
     #[inline(always)]
     pub(super) fn at(&self, heading_rad: f64) -> (&[Segment], Lanes<f32>) {
         let (bin, fraction) = place(heading_rad);

@@ -1,9 +1,10 @@
-//! Wave forces and orbital velocities on one kind of hull in the horizontal plane.
+//! Horizontal wave forces and orbital velocities on one kind of hull.
 //!
-//! First order: the water's orbital motion, averaged over the hull, which filters out the waves that are shorter than it
-//! is. The average velocity is for the drag, and the average acceleration for the force (mass + added mass) · acceleration:
-//! Froude-Krylov and diffraction of waves that are long against the hull (Fossen 2021, ch. 10). The acceleration at the
-//! surface is −g times its gradient, so a force by the slope on top of this would count the waves twice.
+//! First order: the water's orbital motion averaged over the hull, which filters out waves shorter
+//! than the hull. The average velocity determines the drag, the average acceleration the force
+//! (mass + added mass) · acceleration: Froude-Krylov and diffraction of waves long compared with
+//! the hull (Fossen 2021, ch. 10). The acceleration at the surface is −g times its gradient, so an
+//! additional slope force would count the waves twice.
 //!
 //! Second order: the drift force, which varies with the groups of waves (Newman 1974).
 
@@ -17,53 +18,54 @@ use primitives::frame::Pose;
 use primitives::instructions::{Instructions, Kernel};
 use scenario::boat::Boat;
 
-/// The waves at one hull, in its own axes.
+/// The waves at one hull, in body axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WaveSample {
-    /// Velocity of the water, averaged over the hull, and the rate at which it turns (m/s, m/s, rad/s).
+    /// Velocity of the water averaged over the hull, and its rate of rotation (m/s, m/s, rad/s).
     pub velocity: Planar,
     /// Its rate of change at a fixed place (m/s², m/s², rad/s²).
     pub acceleration: Planar,
-    /// Second-order force (N, N, N m). It has no moment.
+    /// Second-order force (N, N, N m), without a moment.
     pub drift_newton: Planar,
 }
 
 /// The waves of a field, averaged over one kind of hull.
 ///
-/// A component's direction from the bow enters through the heading only, so everything that takes more than a product
-/// is looked up by heading. The drift force is that of Newman's approximation,
+/// A component's direction from the bow enters through the heading only, so everything beyond
+/// products is looked up by heading. The drift force is Newman's approximation,
 ///
 /// ```text
 /// F = (mean F) |sum c e^(i theta)|^2 / sum c^2        c = a R
 /// ```
 ///
-/// whose mean over time is the mean drift force exactly. In long-crested waves this is |sum a sqrt(T) e^(i theta)|²;
-/// where they spread, the groups set the size, and the mean over the directions the direction.
+/// whose time average is exactly the mean drift force. In long-crested waves this is |sum a sqrt(T)
+/// e^(i theta)|²; in spread waves, the groups determine the size, and the mean over the directions
+/// determines the direction.
 #[derive(Clone, Debug)]
 pub struct HullWaves {
     instructions: Instructions,
     blocks: Vec<Block>,
-    /// For each component, velocity per cosine of the phase in surge and sway, per sine of it in yaw; and a R, which does not
-    /// depend on the heading.
+    /// For each component: velocity in surge and sway per cosine of the phase, in yaw per sine; and
+    /// a R, which does not depend on the heading.
     lines: HeadingTable,
-    /// The mean drift force over the sum of c²: surge, sway, and nothing twice.
+    /// The mean drift force divided by the sum of c²: surge, sway, and two zeros.
     drift: HeadingTable,
 }
 
-/// Sixteen components side by side: what does not depend on the heading.
+/// Sixteen components side by side: everything independent of the heading.
 #[derive(Clone, Copy, Debug)]
 struct Block {
     phases: Phases,
     rows: [Row; FOLD],
 }
 
-/// The factors on the cosine and on the sine of the phase, of four components, for each of the four numbers of a line. As
-/// time goes on the phase falls by ω: (cos)' = ω sin, (sin)' = −ω cos.
+/// Factors on the cosine and on the sine of the phase, of four components, for each of the four
+/// numbers of a line. Over time the phase decreases by ω: (cos)' = ω sin, (sin)' = −ω cos.
 #[derive(Clone, Copy, Debug)]
 struct Row {
-    /// Surge, sway, fall of yaw's rate, drift in phase.
+    /// Surge, sway, decrease of the yaw rate, drift in phase.
     of_cos: Lanes<f32>,
-    /// Rates of surge and sway, yaw, drift a quarter turn off.
+    /// Rates of surge and sway, yaw, drift in quadrature.
     of_sin: Lanes<f32>,
 }
 
@@ -78,13 +80,13 @@ impl Row {
 }
 
 impl HullWaves {
-    /// The waves of `field` on a boat like this in water of this density.
+    /// The waves of `field` on this boat in water of this density.
     #[must_use]
     pub fn new(field: &WaveField, boat: &Boat, water_density_kg_m3: f64) -> HullWaves {
         HullWaves::of(field, boat, water_density_kg_m3, &Patches::new(field, boat))
     }
 
-    /// The same, with the waves under its hull at hand.
+    /// The same, reusing the averaged waves under its hull.
     pub(super) fn of(field: &WaveField, boat: &Boat, water_density_kg_m3: f64, patches: &Patches) -> HullWaves {
         let block = |waves: &[PlaneWave]| Block {
             phases: Phases::new(waves),
@@ -98,7 +100,7 @@ impl HullWaves {
             [surge, sway, yaw, reflected_m[wave]]
         });
         let reflected_m2: f64 = reflected_m.iter().map(|c| c * c).sum();
-        // In the mean over time the squares add up to the closed-form mean drift.
+        // Over time the squares average to the closed-form mean drift.
         let per_m2 = if reflected_m2 > 0.0 { 1.0 / reflected_m2 } else { 0.0 };
         let drift = HeadingTable::new(1, |bin, number| {
             if number > 0 {
@@ -122,22 +124,22 @@ impl HullWaves {
         self.sample(&self.instructions.run(At { waves: self, pose, time_s }), pose.psi_rad)
     }
 
-    /// The waves at a boat, and how much deeper than in calm water its propellers are, m.
+    /// The waves at a boat, and the depth of its propellers minus that in calm water, m.
     #[must_use]
     pub fn at_with(&self, submergence: &Submergence, pose: Pose, time_s: f64) -> (WaveSample, [f64; 2]) {
         let (sums, change_m) = self.instructions.run(AtWith { waves: self, submergence, pose, time_s });
         (self.sample(&sums, pose.psi_rad), [change_m.sum(0), change_m.sum(1)])
     }
 
-    /// The sums over the components, and those of the submergence whose lines are given.
+    /// The sums over the components, and those of the submergence if its lines are given.
     #[inline(always)]
     fn sums(&self, submergence: Option<&[Segment]>, pose: Pose, time_s: f64) -> (Sums, Lanes<f32>) {
         let mut sums = Sums { of_cos: Lanes::splat(0.0), of_sin: Lanes::splat(0.0) };
         let mut change_m = Lanes::splat(0.0);
         let (lines, fraction) = self.lines.at(pose.psi_rad);
         for (n, (block, lines)) in self.blocks.iter().zip(lines.as_chunks::<FOLD>().0).enumerate() {
-            // At the boat's position: the frequency of encounter results from that. Put in by
-            // hand instead, it would go with a wrong wave number.
+            // At the boat's position, which produces the frequency of encounter. Adding it
+            // explicitly would combine it with a wrong wave number.
             let (sin, cos) = block.phases.sin_cos(pose.at, time_s);
             for (i, (row, line)) in block.rows.iter().zip(lines).enumerate() {
                 let (line, sin, cos) = (line.at_fraction(fraction), sin.row(i), cos.row(i));
@@ -153,8 +155,7 @@ impl HullWaves {
 
     fn sample(&self, Sums { of_cos, of_sin }: &Sums, heading_rad: f64) -> WaveSample {
         let (in_phase, off_phase) = (of_cos.sum(3), of_sin.sum(3));
-        // The square of the envelope: Newman's approximation, in which drift follows the groups
-        // of waves.
+        // The squared envelope: Newman's approximation, in which drift follows the wave groups.
         let groups_m2 = in_phase * in_phase + off_phase * off_phase;
         let (drift, fraction) = self.drift.at(heading_rad);
         let mean = drift[0].at_fraction(fraction);
@@ -167,13 +168,13 @@ impl HullWaves {
     }
 }
 
-/// Sums over the rows: the numbers of [`Row`].
+/// Sums over the rows, named as in [`Row`].
 struct Sums {
     of_cos: Lanes<f32>,
     of_sin: Lanes<f32>,
 }
 
-/// [`HullWaves::at`], but for what is done with the sums: done here, it would decide how these lie in the registers.
+/// [`HullWaves::at`] without the use of the sums: here, it would affect their register allocation.
 struct At<'a> {
     waves: &'a HullWaves,
     pose: Pose,
@@ -189,7 +190,7 @@ impl Kernel for At<'_> {
     }
 }
 
-/// The same of [`HullWaves::at_with`].
+/// The same for [`HullWaves::at_with`].
 struct AtWith<'a> {
     waves: &'a HullWaves,
     submergence: &'a Submergence,
@@ -211,11 +212,11 @@ pub(super) fn orbital_speed_m_s(wave: &PlaneWave, boat: &Boat) -> f64 {
     wave.component.amplitude_m * wave.component.omega_rad_s * wave.orbital_at(0.5 * boat.draught_m)
 }
 
-/// Orbital velocity of a wave of this amplitude of it, averaged over the hull as a rectangle of its length and beam: per
-/// cosine of the phase amidships in surge and sway, and per sine of it in yaw.
+/// Orbital velocity with this amplitude, averaged over a rectangle of the hull's length and beam:
+/// per cosine of the phase amidships in surge and sway, and per sine in yaw.
 ///
-/// Yaw is the rate at which a rigid line along the hull turns that has the same first moment of the transverse
-/// velocity, the mean of x v over the mean of x².
+/// Yaw is the rotation rate of a rigid line along the hull with the same first moment of the
+/// transverse velocity: the mean of x v over the mean of x².
 pub(super) fn orbital_velocity(speed_m_s: f64, patch: &Patch) -> Planar {
     Planar {
         surge: speed_m_s * patch.ahead * patch.mean_x * patch.mean_y,

@@ -1,7 +1,8 @@
-//! The sea: the forces and water velocities that waves, wind and current exert on a boat at its place and time.
+//! The sea: forces and water velocities from waves, wind and current at a boat's position and time.
 //!
-//! Open [`SeaNow::forcing`] first: the only place where the sea acts on boats. Everything here is a function of the
-//! scenario, the seed and the time; the sea remembers nothing, so a world that goes back in time finds the same sea.
+//! Start with [`SeaNow::forcing`], the only place where the sea acts on boats. Everything here is a
+//! function of the scenario, the seed and the time. The sea has no memory, so a world reset to an
+//! earlier time finds the same sea.
 
 pub mod band;
 mod cached_process;
@@ -43,46 +44,46 @@ use scenario::boat::{Drive, Windage};
 use scenario::sea::Sea;
 use std::sync::Arc;
 
-/// Propellers are this share of the length astern of midships.
+/// Distance of the propellers astern of midships, as a share of the length.
 const PROPELLER_ASTERN: f64 = 0.4;
 
-/// What was made for hulls of different size, which is large and shared.
+/// Large shared tables, by size of hull.
 type Made<const N: usize, T> = Vec<([f64; N], Arc<T>)>;
 
-/// The sea of a game, and how each kind of boat lies in it. Copies share the tables, which are large.
+/// The sea of a game with tables for each kind of boat. Copies share the tables, which are large.
 #[derive(Clone, Debug)]
 pub struct SeaModel {
     waves: Option<WaveField>,
     wind: Option<WindField>,
     current: CurrentField,
-    /// Hulls of different size; kinds of boat that differ in other things share one.
+    /// Shapes by size of hull, shared by kinds of boat that differ only in other respects.
     shapes: Made<3, Shape>,
-    /// Propeller submergence, by size of hull and place of the propellers.
+    /// Propeller submergence, by size of hull and position of the propellers.
     submergences: Made<4, Submergence>,
     kinds: Vec<Kind>,
-    /// Half a tick, and as seconds.
+    /// Half a tick.
     half_tick: SimTime,
     half_s: f64,
 }
 
-/// A size of hull in the waves.
+/// A hull size in the waves.
 #[derive(Clone, Debug)]
 struct Shape {
     waves: HullWaves,
     response: WaveResponse,
-    /// The part of Stokes drift that a drifting hull does not already get from the orbital motion.
+    /// The part of Stokes drift that a drifting hull does not get from the orbital motion.
     rise_drift_m_s: Ned,
 }
 
 #[derive(Clone, Debug)]
 struct Kind {
     length_m: f64,
-    /// Index into the shapes, where there are waves.
+    /// Index into the shapes, if there are waves.
     shape: usize,
     windage: Windage,
     /// The mean wind at the height of its windage, m/s.
     wind_mean_m_s: f64,
-    /// Index into the submergences, where propellers ventilate.
+    /// Index into the submergences, if its propellers ventilate.
     submergence: Option<usize>,
 }
 
@@ -92,34 +93,36 @@ pub struct SeaNow<'a> {
     model: &'a SeaModel,
     current: CurrentNow<'a>,
     now: SimTime,
-    /// The same half a tick later, in s: when waves are taken.
+    /// The time half a tick later, s, at which waves are evaluated.
     middle_s: f64,
 }
 
-/// How the sea acts on a boat over a tick.
+/// The effect of the sea on a boat over a tick.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SeaForcing {
-    /// The velocity of the water over the ground without the orbital motion of waves, m/s.
+    /// The water's velocity over the ground, without the orbital motion of waves, m/s.
     pub current_m_s: Ned,
-    /// The orbital velocity of the waves and the water's rotation, half-way through the tick, in the boat's axes.
+    /// The waves' orbital velocity and the water's rotation, half-way through the tick, in body
+    /// axes.
     pub water: Planar,
-    /// The rate at which that changes.
+    /// Rate of change of `water`.
     pub water_rate: Planar,
-    /// Wind, wave and drift forces in the boat's axes.
+    /// Wind, wave and drift forces in body axes.
     pub force: Planar,
-    /// By how much its propellers are deeper than in calm water, where they ventilate, m.
+    /// Depth of its propellers minus that in calm water, if they ventilate, m.
     pub submergence_change_m: [f64; 2],
 }
 
 impl SeaModel {
-    /// This sea over this field, for these kinds of boat and ticks of this length, with the randomness that `seeds` choose.
+    /// This sea over this field, for these kinds of boat and ticks of this length, with the
+    /// randomness of `seeds`.
     #[must_use]
     pub fn new(sea: &Sea, boats: &[Boat], field: &Field, tick: SimTime, seeds: &Seeds) -> SeaModel {
         let waves = sea.waves.as_ref().map(|waves| WaveField::new(waves, sea.depth_m, seeds.first()));
-        // No lower than half a metre: the profile of the wind is a power of the height, and has
-        // no sense at the water itself.
+        // At least half a metre: the wind profile is a power of the height and meaningless at the
+        // water itself.
         let highest = boats.iter().map(|boat| boat.windage.height_m).fold(0.5, f64::max);
-        // Wind of no speed is no wind, whatever the boat makes by its own way.
+        // Zero wind means no wind force, even on a boat under way.
         let wind = sea.wind.as_ref().filter(|wind| wind.speed_10m_m_s > 0.0);
         let wind = wind.map(|wind| WindField::new(wind, highest, field, seeds));
         let mut model = SeaModel {
@@ -146,13 +149,14 @@ impl SeaModel {
         model
     }
 
-    /// The index of the boat's propeller submergence, made if it is the first of it, if the propellers can ventilate.
+    /// The index of the boat's propeller submergence, if the propellers can ventilate; created on
+    /// first use.
     fn submergence_of(&mut self, boat: &Boat, patches: &mut Made<2, Patches>) -> Option<usize> {
         let (Drive::Thrusters { thruster, .. }, Some(field)) = (&boat.drive, &self.waves) else { return None };
-        // For boats whose propellers never draw air this costs nothing.
+        // Boats whose propellers never draw air pay nothing for this.
         thruster.flaws.ventilation?;
-        // By size and not by name: tables take most of the time in which a game is made, and
-        // strategies often differ where hulls do not.
+        // By size, not by name: tables take most of the time to create a game, and strategies often
+        // differ where hulls do not.
         let size = [boat.length_m, boat.beam_m, boat.draught_m, thruster.arm_m];
         Some(index_of(&mut self.submergences, size, || {
             let ahead = -PROPELLER_ASTERN * boat.length_m;
@@ -161,7 +165,7 @@ impl SeaModel {
         }))
     }
 
-    /// The index of the boat's shape, made if it is the first of it.
+    /// The index of the boat's shape; created on first use.
     fn shape_of(&mut self, boat: &Boat, water_density_kg_m3: f64, patches: &mut Made<2, Patches>) -> usize {
         let Some(field) = &self.waves else { return 0 };
         index_of(&mut self.shapes, [boat.length_m, boat.beam_m, boat.draught_m], || {
@@ -174,7 +178,7 @@ impl SeaModel {
         })
     }
 
-    /// Works its waves out with these instructions. Which ones changes nothing but how long it takes.
+    /// Computes waves with these instructions. The choice affects only the speed.
     pub(crate) fn set_instructions(&mut self, instructions: Instructions) {
         self.waves = self.waves.take().map(|waves| waves.with_instructions(instructions));
         for (_, shape) in &mut self.shapes {
@@ -184,7 +188,8 @@ impl SeaModel {
         }
     }
 
-    /// Has at hand what is asked for at `now`. Only for speed: without it everything is the same to the last bit.
+    /// Caches what is needed at `now`. Affects only speed: the results are bit-identical without
+    /// it.
     pub fn prepare(&mut self, now: SimTime) {
         self.current.prepare(now);
         if let Some(wind) = &mut self.wind {
@@ -192,7 +197,7 @@ impl SeaModel {
         }
     }
 
-    /// Whether the water moves everywhere alike.
+    /// Whether the water moves alike everywhere.
     #[inline]
     #[must_use]
     pub fn is_uniform(&self) -> bool {
@@ -203,16 +208,16 @@ impl SeaModel {
     #[inline]
     #[must_use]
     pub fn at_time(&self, now: SimTime) -> SeaNow<'_> {
-        // In whole nanoseconds: the time of a wave has the same bits whether the game has come
-        // here or was set here.
+        // In whole nanoseconds: the time of a wave has the same bits whether the game was played or
+        // restored to this point.
         let middle_s = (now + self.half_tick).as_s();
         SeaNow { model: self, current: self.current.at_time(now), now, middle_s }
     }
 }
 
 impl SeaNow<'_> {
-    /// How the sea acts on a boat of this kind, with this hull, in the tick that begins now. `nu` is its velocity over the ground
-    /// along its axes.
+    /// The effect of the sea on a boat of this kind, with this hull, in the tick that starts now.
+    /// `nu` is its velocity over the ground in body axes.
     #[inline]
     #[must_use]
     pub fn forcing(&self, kind: usize, hull: &HullModel, pose: Pose, rotation: Rotation, nu: Planar) -> SeaForcing {
@@ -224,7 +229,7 @@ impl SeaNow<'_> {
             ..SeaForcing::default()
         };
         if let Some(wind) = &self.model.wind {
-            // At the beginning of the tick: gusts last for seconds, a tick for hundredths.
+            // At the start of the tick: gusts last for seconds, a tick for hundredths.
             let air_m_s = wind.at(pose.at, boat.wind_mean_m_s, self.now);
             let past = windage::wind_past_boat(rotation, air_m_s, nu);
             forcing.force = windage::wind_force(&boat.windage, boat.length_m, windage::AIR_DENSITY_KG_M3, past);
@@ -235,7 +240,7 @@ impl SeaNow<'_> {
         forcing
     }
 
-    /// Waves are taken half-way through the tick, where the boat will be by then.
+    /// Adds the waves half-way through the tick, at the boat's predicted position.
     #[inline]
     fn add_waves(
         &self,
@@ -248,7 +253,7 @@ impl SeaNow<'_> {
     ) {
         let (half_s, shape) = (self.model.half_s, &self.model.shapes[boat.shape].1);
         let velocity_m_s = nu.in_ned(rotation);
-        // In the middle of the tick, once: its rate of change is known there as well, and three
+        // Once, in the middle of the tick: the rate of change is known there as well, and three
         // evaluations would triple the largest part of a tick.
         let middle = Pose { at: pose.at + velocity_m_s.scaled(half_s), psi_rad: pose.psi_rad + half_s * nu.yaw };
         let (waves, submergence_change_m) = match boat.submergence.map(|index| &self.model.submergences[index].1) {
@@ -256,12 +261,12 @@ impl SeaNow<'_> {
             Some(submergence) => shape.waves.at_with(submergence, middle, self.middle_s),
         };
         forcing.submergence_change_m = submergence_change_m;
-        // Linear waves carry nothing in the mean. What floats in real ones drifts (Stokes), and
-        // this part of it does not come out of the forces.
+        // Linear waves have no mean transport. In real ones floating bodies drift (Stokes), and
+        // this part of the drift does not follow from the forces.
         forcing.current_m_s = forcing.current_m_s + shape.rise_drift_m_s;
         forcing.water = forcing.water.plus(1.0, waves.velocity);
         forcing.water_rate = waves.acceleration;
-        // Long waves push the water that the hull displaces, and that it would carry along, as they push water
+        // Long waves accelerate the displaced water and the added mass as they accelerate water
         // (Froude-Krylov and diffraction; Newman 1977, ch. 6).
         forcing.force = forcing.force.plus(1.0, hull.force_of(waves.acceleration)).plus(1.0, waves.drift_newton);
     }
@@ -272,19 +277,19 @@ impl SeaNow<'_> {
         self.model.waves.as_ref()
     }
 
-    /// The waves as observers draw them; none on calm water.
+    /// The waves for observers; none on calm water.
     #[must_use]
     pub fn water(&self) -> Water {
         Water { waves: self.waves().map(WaveField::plane_waves).unwrap_or_default() }
     }
 
-    /// The current at a place, m/s: what carries a point boat along.
+    /// The current at a place, m/s, which carries a point boat along.
     #[must_use]
     pub fn current_at(&self, at: Ned) -> Ned {
         self.current.at(at)
     }
 
-    /// How much higher the water stands at a place than in calm, m.
+    /// Height of the water at a place above calm level, m.
     #[must_use]
     pub fn elevation_m(&self, at: Ned) -> f64 {
         self.model.waves.as_ref().map_or(0.0, |waves| waves.surface(at, self.now.as_s()).elevation_m)
@@ -293,12 +298,12 @@ impl SeaNow<'_> {
     /// The velocity of the air 10 m above the water, m/s.
     #[must_use]
     pub fn wind_at(&self, at: Ned) -> Ned {
-        // At ten metres, the height for which winds are told and Beaufort numbers are defined,
-        // not at a boat's.
+        // At ten metres, the reference height of wind reports and Beaufort numbers, not at a boat's
+        // height.
         self.model.wind.as_ref().map_or_else(Ned::default, |wind| wind.at(at, wind.mean_m_s(10.0), self.now))
     }
 
-    /// The attitude of a boat of this kind in the waves now.
+    /// The present attitude of a boat of this kind in the waves.
     #[must_use]
     pub fn attitude(&self, kind: usize, pose: Pose, rotation: Rotation, nu: Planar) -> Attitude {
         if self.model.waves.is_none() {
@@ -309,13 +314,13 @@ impl SeaNow<'_> {
     }
 }
 
-/// The waves under a hull of this length and beam.
+/// The averaged waves under a hull of this length and beam.
 fn patches_of<'a>(made: &'a mut Made<2, Patches>, field: &WaveField, boat: &Boat) -> &'a Patches {
     let index = index_of(made, [boat.length_m, boat.beam_m], || Patches::new(field, boat));
     &made[index].1
 }
 
-/// The place of what was made for this size, made now if it is the first of it.
+/// The index of the entry for this size; created on first use.
 fn index_of<const N: usize, T>(made: &mut Made<N, T>, size: [f64; N], make: impl FnOnce() -> T) -> usize {
     made.iter().position(|(other, _)| *other == size).unwrap_or_else(|| {
         made.push((size, Arc::new(make())));

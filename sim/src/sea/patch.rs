@@ -1,6 +1,7 @@
-//! Plane waves under a rectangle, length by beam: what averaging over a hull leaves of them.
+//! Plane waves averaged over a rectangle, length by beam.
 //!
-//! All that a hull does in waves is made of this, for each wave and each heading of a table: it is worked out once.
+//! All effects of waves on a hull derive from this, for each wave and each heading of a table. It
+//! is computed once.
 
 use super::heading::{self, BINS};
 use super::wave::{PlaneWave, WaveField};
@@ -9,13 +10,14 @@ use scenario::boat::Boat;
 /// A plane wave under a rectangle, length by beam.
 #[derive(Clone, Copy)]
 pub(super) struct Patch {
-    /// The wave's travel in the boat's axes: a unit vector.
+    /// The wave's direction of travel in body axes: a unit vector.
     pub(super) ahead: f64,
     pub(super) starboard: f64,
-    /// What is left of it in the mean over the length, and over the beam.
+    /// Factors of averaging over the length and over the beam.
     pub(super) mean_x: f64,
     pub(super) mean_y: f64,
-    /// The slope of the straight line that fits it best over the length and over the beam, per −sine of the phase, 1/m.
+    /// The slope of the best-fitting straight line over the length and over the beam, per −sine of
+    /// the phase, 1/m.
     pub(super) tilt_x: f64,
     pub(super) tilt_y: f64,
 }
@@ -34,8 +36,8 @@ impl Patch {
     }
 }
 
-/// What of a wave fits a stretch from −`half_rad` to `half_rad` of its phase: the mean of cos, sin u / u, and the slope of the line
-/// that fits sin best, 3 (sin u − u cos u) / u³.
+/// Fits to a wave over phases from −`half_rad` to `half_rad`: the mean of cos, sin u / u, and the
+/// slope of the line that best fits sin, 3 (sin u − u cos u) / u³.
 fn fit(half_rad: f64) -> (f64, f64) {
     let u = half_rad;
     // Series near zero, where the quotient loses its digits.
@@ -47,10 +49,10 @@ fn fit(half_rad: f64) -> (f64, f64) {
     (sin / u, tilt)
 }
 
-/// The waves of a field under hulls of one length and beam, for every heading of a table.
+/// The averaged waves of a field under hulls of one length and beam, for every heading of a table.
 pub(super) struct Patches {
     waves: usize,
-    /// Those of the first heading first.
+    /// Grouped by heading, in table order.
     patches: Vec<Patch>,
 }
 
@@ -58,15 +60,15 @@ impl Patches {
     pub(super) fn new(field: &WaveField, boat: &Boat) -> Patches {
         let of_bin = |bin| field.waves.iter().map(move |wave| Patch::new(wave, boat, heading::of_bin(bin)));
         let mut patches: Vec<Patch> = (0..BINS / 2).flat_map(of_bin).collect();
-        // Half a turn on, the same wave comes from the other end: half of the sines are saved
-        // when a game begins.
+        // After half a turn, the same wave comes from the other end: this saves half of the sines
+        // at the start of a game.
         patches.extend_from_within(..);
         let half = patches.len() / 2;
         patches[half..].iter_mut().for_each(|patch| *patch = patch.turned());
         Patches { waves: field.waves.len(), patches }
     }
 
-    /// Wave by wave for a heading of the table.
+    /// The waves, one by one, for a heading of the table.
     pub(super) fn of_bin(&self, bin: usize) -> &[Patch] {
         &self.patches[bin * self.waves..(bin + 1) * self.waves]
     }

@@ -1,37 +1,40 @@
-//! Sine and cosine of sixteen angles at once, the same bits on every machine.
+//! Sine and cosine of sixteen angles at once, bit-identical on every machine.
 //!
-//! The sea asks for thousands of them a tick. Only sums, products and differences are taken, each rounded by IEEE 754
-//! and none fused, so neither the processor nor the platform's C library has a say in the result.
+//! The sea needs thousands of them per tick. Only sums, products and differences are used, each
+//! rounded by IEEE 754 and none fused, so neither the processor nor the platform's C library
+//! affects the result.
 //!
-//! The angle is brought within half a turn in double precision; what follows, sine, cosine and the sums over the waves,
-//! is in single, twice as many numbers in the same instruction. A wave is then right to a millionth of its height.
+//! The angle is reduced to half a turn in double precision. Sine, cosine and the sums over the
+//! waves are in single precision, with twice as many numbers per instruction. A wave is then
+//! accurate to a millionth of its height.
 
 use crate::lanes::Lanes;
 
-/// 1.5 · 2^52: what is added to it is rounded to a whole number, half to even, for the mantissa has no bit left behind
-/// the point. Good for magnitudes below 2^51.
+/// 1.5 · 2^52: adding it rounds a number to an integer, half to even, because the mantissa has no
+/// bits left after the point. Valid for magnitudes below 2^51.
 const ROUNDER: f64 = 6_755_399_441_055_744.0;
 
-/// sin π r = r (S0 + S1 r² + ...), minimax for |r| ≤ 1/2 by Remez' exchange: off by 3.4e-9 at most, before rounding.
+/// sin π r = r (S0 + S1 r² + ...), minimax for |r| ≤ 1/2 by the Remez exchange: error at most
+/// 3.4e-9, before rounding.
 #[expect(clippy::approx_constant, reason = "near π, and not π")]
 const SIN: [f32; 5] = [3.141_592_6, -5.167_707, 2.550_031_4, -0.598_045_2, 0.077_220_13];
 
-/// cos π r = C0 + C1 r² + ..., likewise: off by 4.7e-8 at most.
+/// cos π r = C0 + C1 r² + ..., likewise: error at most 4.7e-8.
 const COS: [f32; 5] = [0.999_999_95, -4.934_793, 4.058_412, -1.331_880_2, 0.219_696_8];
 
-/// The largest error of [`sin_cos_turns`], apart from what the angle itself was rounded by.
+/// The largest error of [`sin_cos_turns`], apart from rounding of the angle itself.
 #[cfg(test)]
 pub(super) const ERROR: f64 = 1.2e-6;
 
-/// Sine and cosine of angles in turns: 1 is all the way round. Within 1.2e-6 up to 2^51 turns either way.
+/// Sine and cosine of angles in turns (1 is a full turn). Accurate to 1.2e-6 up to ±2^51 turns.
 ///
-/// In turns the reduction is a subtraction without error, however far round the angle is.
-/// The polynomials are of half the angle, between a quarter turn either way, and no quadrant has to be told apart.
+/// In turns the reduction is an exact subtraction, however large the angle. The polynomials take
+/// half the angle, within ±a quarter turn, so quadrants need no distinction.
 #[inline(always)]
 pub(super) fn sin_cos_turns(turns: Lanes<f64>) -> (Lanes<f32>, Lanes<f32>) {
     let rounder = Lanes::<f64>::splat(ROUNDER);
-    // In double precision, so that a phase is as good after a day as at the start; the rest is
-    // in single, which takes half the time.
+    // In double precision, so that a phase is as accurate after a day as at the start; the rest is
+    // in single precision, which takes half the time.
     let r = (turns - ((turns + rounder) - rounder)).single();
     let x = r * r;
     let sin_half = quartic(SIN, x) * r;
@@ -40,7 +43,7 @@ pub(super) fn sin_cos_turns(turns: Lanes<f64>) -> (Lanes<f32>, Lanes<f32>) {
     (sin_twice * cos_half, Lanes::<f32>::splat(1.0) - sin_twice * sin_half)
 }
 
-/// c0 + c1 x + ... + c4 x⁴ (Estrin): a chain shorter than Horner's, so less waiting.
+/// c0 + c1 x + ... + c4 x⁴ (Estrin): a shorter dependency chain than Horner's.
 #[inline(always)]
 fn quartic(c: [f32; 5], x: Lanes<f32>) -> Lanes<f32> {
     let c = c.map(Lanes::<f32>::splat);
@@ -58,7 +61,7 @@ mod tests {
         (f64::from(sin.0[0]), f64::from(cos.0[0]))
     }
 
-    /// libm's of the same angle, brought within half a turn without error.
+    /// libm's values for the same angle, reduced to half a turn without error.
     fn truth(turns: f64) -> (f64, f64) {
         let rest = turns - libm::rint(turns);
         libm::sincos(std::f64::consts::TAU * rest)
@@ -100,7 +103,7 @@ mod tests {
         assert_eq!(got, PINNED, "{got:#018x?}");
     }
 
-    /// Read off once; another value on any machine is a fault.
+    /// Recorded once; a different value on any machine is a bug.
     const PINNED: [[u64; 2]; 4] = [
         [0x3fe2_cf23_2000_0000, 0x3fe9_e377_a000_0000],
         [0x3fee_6f0d_e000_0000, 0xbfd3_c6ef_8000_0000],

@@ -1,6 +1,8 @@
-//! The wave spectrum (JONSWAP) and the directional spreading, and the components that stand for them.
+//! The wave spectrum (JONSWAP) and the directional spreading, and the components that represent
+//! them.
 //!
-//! JONSWAP (Hasselmann et al. 1973) in terms of Hs and Tp, with the normalisation of Goda and DNV-RP-C205:
+//! JONSWAP (Hasselmann et al. 1973) in terms of Hs and Tp, with the normalisation of Goda and
+//! DNV-RP-C205:
 //!
 //! ```text
 //! S(w) = (1 - 0.287 ln g) 5/16 Hs^2 wp^4 w^-5 exp(-5/4 (wp/w)^4) g^exp(-(w - wp)^2 / (2 s^2 wp^2))
@@ -12,10 +14,11 @@ use primitives::stream::Stream;
 use scenario::sea::{Spreading, Waves};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// The band that is kept, in peak frequencies: 99.8 % of the variance and 96 % of its second moment at γ = 3.3.
+/// The frequency band used, in peak frequencies: 99.8 % of the variance and 96 % of its second
+/// moment at γ = 3.3.
 pub const BAND: (f64, f64) = (0.5, 5.0);
 
-/// Pieces of the curves below.
+/// Number of pieces of the curves below.
 const PIECES: usize = 2048;
 
 /// The golden ratio's fractional part.
@@ -27,7 +30,7 @@ pub fn jonswap_m2_s(waves: &Waves, omega_rad_s: f64) -> f64 {
     Jonswap::new(waves).density_m2_s(omega_rad_s)
 }
 
-/// The spectrum of a sea, without what depends on the frequency.
+/// The spectrum of a sea, with precomputed factors.
 struct Jonswap {
     peak_rad_s: f64,
     log_gamma: f64,
@@ -51,39 +54,39 @@ impl Jonswap {
     }
 }
 
-/// The same over frequency: m²/Hz at `frequency_hz` > 0.
+/// The same as a density over frequency: m²/Hz at `frequency_hz` > 0.
 #[must_use]
 pub fn density_m2_hz(waves: &Waves, frequency_hz: f64) -> f64 {
     TAU * jonswap_m2_s(waves, TAU * frequency_hz)
 }
 
-/// The components that stand for this sea, by rising frequency.
+/// The components that represent this sea, by ascending frequency.
 ///
-/// The band is cut into as many strata as there are components, each with the same share of the variance and
-/// of its second moment (that of the velocities) together, and a component carries the variance of its stratum. Its
-/// frequency is drawn from the spectrum within the stratum: every moment is right on average, and the frequencies have
-/// no common multiple after which the sea would repeat itself. Each has one direction, so that the sea is the same
-/// process everywhere (Jefferys 1987). Directions are quantiles of the spreading at multiples of the golden
-/// ratio: few neighbouring frequencies are enough to cover all directions, and none favours one side.
+/// The band is divided into one stratum per component, each with the same share of the variance and
+/// its second moment (that of the velocities) combined; a component carries the variance of its
+/// stratum. Its frequency is drawn from the spectrum within the stratum: every moment is right on
+/// average, and the frequencies have no common multiple after which the sea would repeat itself.
+/// Each has one direction, so that the sea is the same process everywhere (Jefferys 1987).
+/// Directions are quantiles of the spreading at multiples of the golden ratio: few neighbouring
+/// frequencies suffice to cover all directions, and neither side is favoured.
 pub(super) fn components(waves: &Waves, seed: u64) -> Vec<Component> {
     let mut stream = Stream::new(seed, "waves");
     let count = waves.components as usize;
     let peak_rad_s = TAU / waves.tp_s;
-    // The shape does not depend on the height, and a sea of no height has one too.
+    // The shape does not depend on the height, and exists even for zero height.
     let shape = Waves { hs_m: 1.0, ..waves.clone() };
     let jonswap = Jonswap::new(&shape);
     let densities: Vec<f64> = points(BAND).map(|x| jonswap.density_m2_s(x * peak_rad_s)).collect();
     let energy = Curve::new(BAND, densities.iter().copied());
     let second = Curve::new(BAND, points(BAND).zip(&densities).map(|(x, density)| x * x * density));
-    // Strata of equal share in energy and in its second moment: by energy alone the short
-    // waves, which make the slopes, would be a handful.
+    // Strata of equal share in energy and its second moment: by energy alone only a handful would
+    // represent the short waves, which make the slopes.
     let both = Curve { x: energy.x, up_to: (0..=PIECES).map(|i| 0.5 * (energy.up_to[i] + second.up_to[i])).collect() };
     let spread = spread(waves.spreading);
     let first_quantile = stream.unit();
 
-    // The renormalisation takes the place of the variance that the band leaves out.
-    // With amplitudes straight from the density, Hs comes out up to 6 % off for 16 to 64
-    // components.
+    // The renormalisation replaces the variance outside the band. With amplitudes straight from the
+    // density, Hs is off by up to 6 % for 16 to 64 components.
     let variance_m2 = waves.hs_m * waves.hs_m / 16.0;
     let mut below = 0.0;
     (0..count)
@@ -92,8 +95,8 @@ pub(super) fn components(waves: &Waves, seed: u64) -> Vec<Component> {
             let share = above - below;
             let x = energy.at(below + stream.unit() * share);
             below = above;
-            // One direction for each frequency. Many directions at one frequency lock into a
-            // standing pattern.
+            // One direction per frequency. Many directions at one frequency lock into a standing
+            // pattern.
             let quantile = first_quantile + i as f64 * GOLDEN;
             Component {
                 amplitude_m: (2.0 * variance_m2 * share).sqrt(),
@@ -105,7 +108,7 @@ pub(super) fn components(waves: &Waves, seed: u64) -> Vec<Component> {
         .collect()
 }
 
-/// The spreading, as a curve over the angle off the mean direction.
+/// The spreading as a curve over the angle from the mean direction.
 fn spread(spreading: Spreading) -> Option<Curve> {
     let (half_rad, density): (f64, &dyn Fn(f64) -> f64) = match spreading {
         Spreading::None => return None,
@@ -125,15 +128,16 @@ fn points(x: (f64, f64)) -> impl Iterator<Item = f64> {
     (0..=PIECES).map(move |i| x.0 + step * i as f64)
 }
 
-/// A density over an interval, summed up: straight between [`PIECES`] + 1 points.
+/// A cumulative density over an interval: linear between [`PIECES`] + 1 points.
 struct Curve {
     x: (f64, f64),
-    /// The share of the whole that lies below each point.
+    /// The cumulative share at each point.
     up_to: Vec<f64>,
 }
 
 impl Curve {
-    /// Sums densities at the [`points`] of the interval, which are positive somewhere, by the trapezoidal rule.
+    /// Integrates densities at the [`points`] of the interval by the trapezoidal rule. They must be
+    /// positive somewhere.
     fn new(x: (f64, f64), mut densities: impl Iterator<Item = f64>) -> Curve {
         let mut up_to = Vec::with_capacity(PIECES + 1);
         up_to.push(0.0);
@@ -149,7 +153,7 @@ impl Curve {
         Curve { x, up_to }
     }
 
-    /// Where `share` of the whole lies below.
+    /// The quantile of `share`.
     fn at(&self, share: f64) -> f64 {
         let i = self.up_to.partition_point(|up_to| *up_to <= share).clamp(1, PIECES);
         let (low, high) = (self.up_to[i - 1], self.up_to[i]);
@@ -157,7 +161,7 @@ impl Curve {
         self.x.0 + (self.x.1 - self.x.0) * (((i - 1) as f64 + part) / PIECES as f64)
     }
 
-    /// The share of the whole that lies below `x`.
+    /// The cumulative share at `x`.
     fn share_at(&self, x: f64) -> f64 {
         let place = (x - self.x.0) / (self.x.1 - self.x.0) * PIECES as f64;
         let i = (place as usize).min(PIECES - 1);

@@ -1,4 +1,4 @@
-//! Propeller submergence in waves: the elevation of the surface there, less the rise of the hull.
+//! Propeller submergence in waves: the surface elevation minus the rise of the hull.
 
 use super::heading::{BINS, HeadingTable, Segment};
 use super::patch::{Patch, Patches};
@@ -8,7 +8,7 @@ use crate::lanes::{FOLD, LANES, Lanes};
 use primitives::frame::Body;
 use scenario::boat::Boat;
 
-/// How the submergence of the two propellers of a kind of boat changes in a field of waves.
+/// Change of submergence of the two propellers of a kind of boat in a wave field.
 #[derive(Clone, Debug)]
 pub struct Submergence {
     /// Port and starboard per cosine of the phase amidships, then both per sine, m.
@@ -16,20 +16,20 @@ pub struct Submergence {
 }
 
 impl Submergence {
-    /// That of propellers at `places` of a boat like this.
+    /// The submergence of propellers at `places` of this boat.
     #[must_use]
     pub fn new(field: &WaveField, boat: &Boat, places: [Body; 2]) -> Submergence {
         Submergence::of(field, boat, places, &Patches::new(field, boat))
     }
 
-    /// The same, with the waves under its hull at hand.
+    /// The same, reusing the averaged waves under its hull.
     pub(super) fn of(field: &WaveField, boat: &Boat, places: [Body; 2], patches: &Patches) -> Submergence {
         let waves: Vec<Wave> = field.waves.iter().map(|wave| Wave::new(wave, boat)).collect();
         let further = |bin| {
             let each = patches.of_bin(bin).iter().zip(&waves);
             each.map(|(patch, wave)| places.map(|place| libm::sincos(wave.further_rad(place, patch))))
         };
-        // On the opposite heading a wave comes to a place as much later as it came earlier.
+        // On the opposite heading a wave's delay at a place becomes an equal lead.
         let phases: Vec<[(f64, f64); 2]> = (0..BINS / 2).flat_map(further).collect();
         let change = HeadingTable::new(row_count(&field.waves), |bin, wave| {
             let Some(patch) = patches.of_bin(bin).get(wave) else { return [0.0; FOLD] };
@@ -43,14 +43,16 @@ impl Submergence {
         Submergence { change }
     }
 
-    /// The numbers for a heading, for [`HullWaves::at_with`](super::HullWaves::at_with), which has the phases at hand.
+    /// The numbers for a heading, for [`HullWaves::at_with`](super::HullWaves::at_with), which
+    /// already has the phases.
     #[inline(always)]
     pub(super) fn lines(&self, heading_rad: f64) -> &[Segment] {
         self.change.at(heading_rad).0
     }
 }
 
-/// Adds what the waves of a row change, by these numbers of it, sines and cosines: the first for port, the second for starboard.
+/// Adds the changes by the waves of a row, from its numbers, sines and cosines: first port, then
+/// starboard.
 #[inline(always)]
 pub(super) fn add(change_m: &mut Lanes<f32>, line: Lanes<f32>, sin: Lanes<f32>, cos: Lanes<f32>) {
     const HALF: usize = LANES / 2;
@@ -59,12 +61,12 @@ pub(super) fn add(change_m: &mut Lanes<f32>, line: Lanes<f32>, sin: Lanes<f32>, 
     }
 }
 
-/// What of a wave does not depend on the heading.
+/// The part of a wave's effect that does not depend on the heading.
 struct Wave {
     amplitude_m: f64,
     pressed_m: f64,
     wavenumber_rad_m: f64,
-    /// What the springs pass on, in phase and behind.
+    /// The heave transfer function, in phase and lagging.
     heave: (f64, f64),
     roll: (f64, f64),
     pitch: (f64, f64),
@@ -84,13 +86,13 @@ impl Wave {
         }
     }
 
-    /// By how much its phase at a place is further than amidships.
+    /// The wave's phase at a place relative to amidships, rad.
     fn further_rad(&self, place: Body, patch: &Patch) -> f64 {
         self.wavenumber_rad_m * (patch.ahead * place.ahead + patch.starboard * place.starboard)
     }
 
-    /// What it adds to the submergence of a place, per cosine and per sine of its phase amidships; given are sine and cosine of
-    /// [`Wave::further_rad`].
+    /// The wave's contribution to the submergence of a place, per cosine and per sine of its phase
+    /// amidships, given sine and cosine of [`Wave::further_rad`].
     fn change_at(&self, place: Body, patch: &Patch, (sin, cos): (f64, f64)) -> (f64, f64) {
         let [heave, roll, pitch] = quasi_static(self.pressed_m, patch);
         let (bow_up, starboard_down) = (pitch * place.ahead, roll * place.starboard);

@@ -11,18 +11,18 @@ use rules::Field;
 use scenario::Boat;
 use scenario::sea::{Gusts, Sea, Wind};
 
-/// What a sea means for a kind of boat.
+/// The effects of a sea on a kind of boat.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
-    /// Of the waves, if there are any.
+    /// Effects of the waves, if any.
     pub waves: Option<WaveSummary>,
-    /// Of the wind, if there is any.
+    /// Effects of the wind, if any.
     pub wind: Option<WindSummary>,
-    /// The current in the middle of the field at the start, m/s.
+    /// The initial current in the middle of the field, m/s.
     pub current_m_s: Ned,
 }
 
-/// What the waves mean.
+/// The effects of the waves.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WaveSummary {
     /// Significant wave height, m.
@@ -35,7 +35,7 @@ pub struct WaveSummary {
     pub slope_rms_rad: f64,
     /// Standard deviation of the orbital velocity at the surface, m/s.
     pub orbital_rms_m_s: f64,
-    /// The same averaged over the hull, with the waves from ahead and from abeam, m/s.
+    /// Standard deviation averaged over the hull, with the waves from ahead and from abeam, m/s.
     pub orbital_on_hull_m_s: [f64; 2],
     /// Stokes drift over the hull's draught, m/s.
     pub stokes_m_s: f64,
@@ -43,7 +43,7 @@ pub struct WaveSummary {
     pub drift_newton: [f64; 2],
 }
 
-/// What the wind means.
+/// The effects of the wind.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WindSummary {
     /// Mean speed 10 m above the water, and at the height of the boat's windage, m/s.
@@ -52,12 +52,12 @@ pub struct WindSummary {
     pub gust_m_s: f64,
     /// Force on the boat at rest, with the wind from ahead and from abeam, N.
     pub force_newton: [f64; 2],
-    /// The speed at which it drifts without thrust, beam to the wind, m/s.
+    /// Drift speed without thrust, beam to the wind, m/s.
     pub drift_m_s: f64,
 }
 
 impl Summary {
-    /// What this sea on this field means for this boat.
+    /// The effects of this sea on this boat on this field.
     #[must_use]
     pub fn new(sea: &Sea, boat: &Boat, field: &Field, seed: u64) -> Summary {
         let hull = HullModel::new(&boat.hull, sea.water_density_kg_m3);
@@ -75,7 +75,7 @@ impl Summary {
 }
 
 fn wave_summary(field: &WaveField, (tp_s, from_rad): (f64, f64), boat: &Boat, density_kg_m3: f64) -> WaveSummary {
-    // From ahead and from abeam, the two extremes of a hull that is longer than wide.
+    // From ahead and from abeam, the two extremes for a hull longer than wide.
     let headings_rad = [from_rad, from_rad + std::f64::consts::FRAC_PI_2];
     let on_hull = |heading_rad: f64| {
         let velocities = field
@@ -117,10 +117,10 @@ fn wind_summary(wind: &Wind, boat: &Boat, hull: &HullModel) -> WindSummary {
     }
 }
 
-/// Where `excess`, which falls, is nothing between 0 and `most`: by bisection.
+/// The root of `excess`, a decreasing function, between 0 and `most`, by bisection.
 fn equilibrium(most: f64, excess: impl Fn(f64) -> f64) -> f64 {
     let (mut low, mut high) = (0.0, most);
-    // Halved sixty times, beyond the last bit: drag is not smooth enough for Newton's method.
+    // Sixty halvings go beyond the last bit: drag is not smooth enough for Newton's method.
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
         if excess(middle) > 0.0 {
@@ -143,15 +143,16 @@ mod tests {
         let boat = scenario::load_boat(&root.join("boats/surveyor_m1_8.toml")).unwrap_or_else(|e| panic!("{e}"));
         let game = scenario::load(&root.join("games/attack_1v1.toml")).unwrap_or_else(|e| panic!("{e}"));
         let mut sea = Sea::at_rest();
-        // 0.128 m/s at 5 and 0.340 m/s at 10 m/s of wind at the boat; the estimate had a little more windage.
+        // 0.128 m/s at 5 and 0.340 m/s at 10 m/s of wind at the boat; the estimate had a little
+        // more windage.
         for (wind_m_s, want_m_s) in [(5.0, 0.128), (10.0, 0.340)] {
             sea.wind = Some(Wind { speed_10m_m_s: wind_m_s, from_rad: 0.3, profile_exponent: 0.0, gusts: Gusts::None });
             let summary = Summary::new(&sea, &boat, &game.field, 1);
             let got_m_s = summary.wind.map_or(0.0, |wind| wind.drift_m_s);
             assert!((got_m_s / want_m_s - 1.0).abs() < 0.08, "{wind_m_s}: {got_m_s}");
         }
-        // Facts of a sea of 0.5 m and 3 s: 14 m long, 0.32 m/s and 0.27 m/s on the hull, 0.066 m/s at the surface,
-        // 10.7 and 5.3 N, over a slightly narrower band of frequencies.
+        // Known values for a sea of 0.5 m and 3 s: 14 m long, 0.32 m/s and 0.27 m/s on the hull,
+        // 0.066 m/s at the surface, 10.7 and 5.3 N, over a slightly narrower frequency band.
         sea.waves = Some(waves_from(1.0, 0.5, 3.0, 512));
         let waves = Summary::new(&sea, &boat, &game.field, 1).waves.unwrap_or_else(|| panic!("there are waves"));
         assert!((waves.hs_m - 0.5).abs() < 1e-9 && (waves.wavelength_m - 14.05).abs() < 0.1, "{waves:?}");

@@ -1,8 +1,8 @@
-//! A wave field: a sum of plane waves, each with a height, a frequency and a direction of its own.
+//! A wave field: a sum of plane waves, each with its own height, frequency and direction.
 //!
-//! Linear (Airy) theory: elevation a cos θ with θ = k·x − ω t + φ and ω² = g k tanh k h. Whoever moves
-//! through it meets it at the frequency of encounter, ω − k·V, simply because it is asked for where they are.
-//! What it does to a hull stands in [`HullWaves`](super::HullWaves).
+//! Linear (Airy) theory: elevation a cos θ with θ = k·x − ω t + φ and ω² = g k tanh k h. A moving
+//! boat encounters it at the frequency ω − k·V, simply because the field is evaluated at its
+//! position. Its effects on a hull are in [`HullWaves`](super::HullWaves).
 
 use super::sine::sin_cos_turns;
 use super::spectrum;
@@ -19,15 +19,15 @@ use std::f64::consts::TAU;
 pub struct Component {
     /// Half its height, m.
     pub amplitude_m: f64,
-    /// Its angular frequency at a fixed place.
+    /// Angular frequency at a fixed place, rad/s.
     pub omega_rad_s: f64,
-    /// The compass bearing it travels to.
+    /// Compass bearing of its travel.
     pub toward_rad: f64,
-    /// Its phase at the datum when the game begins; at 0 its crest is there.
+    /// Phase at the datum at the start of the game; at 0 the crest is there.
     pub phase_rad: f64,
 }
 
-/// A component with its place in the dispersion relation.
+/// A component with its wavenumber from the dispersion relation.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PlaneWave {
     pub(super) component: Component,
@@ -49,13 +49,13 @@ impl PlaneWave {
         self.wavenumber_rad_m * self.depth_m
     }
 
-    /// How much of the orbital velocity's horizontal part is left at a depth, over a ω: cosh k(z + h) / sinh k h.
+    /// Horizontal orbital velocity at a depth, over a ω: cosh k(z + h) / sinh k h.
     pub(super) fn orbital_at(&self, below_m: f64) -> f64 {
         // As decaying exponentials: sinh and cosh of deep water overflow.
         self.decay_at(below_m) / (1.0 - libm::exp(-2.0 * self.depth_rad()))
     }
 
-    /// How much of the wave's pressure is left at a depth, over ρ g a: cosh k(z + h) / cosh k h.
+    /// Wave pressure at a depth, over ρ g a: cosh k(z + h) / cosh k h.
     pub(super) fn pressure_at(&self, below_m: f64) -> f64 {
         self.decay_at(below_m) / (1.0 + libm::exp(-2.0 * self.depth_rad()))
     }
@@ -63,16 +63,17 @@ impl PlaneWave {
     /// 2 e^(−k h) cosh k(z + h).
     fn decay_at(&self, below_m: f64) -> f64 {
         let k = self.wavenumber_rad_m;
-        // A boat may be laid over water that is shallower than its draught.
+        // A boat may be placed in water shallower than its draught.
         let below_m = below_m.min(self.depth_m);
         libm::exp(-k * below_m) * (1.0 + libm::exp(-2.0 * k * (self.depth_m - below_m)))
     }
 
-    /// The group's speed over half the phase's: 1 in deep water, 2 in shallow. 1 + 2kh / sinh 2kh.
+    /// Twice the ratio of group speed to phase speed, 1 + 2kh / sinh 2kh: 1 in deep water, 2 in
+    /// shallow.
     fn group_factor(&self) -> f64 {
         let twice = 2.0 * self.depth_rad();
-        // From there on the quotient is nothing to the last bit, and somewhat later the
-        // hyperbolic sine overflows.
+        // Beyond this the quotient is 0 to the last bit, and soon after the hyperbolic sine
+        // overflows.
         if twice > 40.0 { 1.0 } else { 1.0 + twice / libm::sinh(twice) }
     }
 
@@ -87,16 +88,16 @@ impl PlaneWave {
         0.5 * a * a * self.component.omega_rad_s * layer / (draught_m * (1.0 - bottom) * (1.0 - bottom))
     }
 
-    /// The part of a hull's drift force that neither its size nor the wave's direction enters, as its square root: of
-    /// 1/2 ρ g a² R², with the share R = 1 − e^(−2kT) of the wave that a hull of draught T throws back,
-    /// the root a R. Finite depth as Longuet-Higgins (1977).
+    /// The part of a hull's drift force that depends on neither its size nor the wave's direction,
+    /// as its square root: a R, from 1/2 ρ g a² R², with the share R = 1 − e^(−2kT) of the wave
+    /// that a hull of draught T reflects. Finite depth as in Longuet-Higgins (1977).
     pub(super) fn reflected_m(&self, draught_m: f64) -> f64 {
         let reflected = 1.0 - libm::exp(-2.0 * self.wavenumber_rad_m * draught_m);
         self.component.amplitude_m * reflected * self.group_factor().sqrt()
     }
 }
 
-/// The wavenumber at which ω² = g k tanh k h; in deep water ω² = g k. `depth_m` may be infinite.
+/// The wavenumber with ω² = g k tanh k h; in deep water ω² = g k. `depth_m` may be infinite.
 #[must_use]
 pub fn wavenumber_rad_m(omega_rad_s: f64, depth_m: f64) -> f64 {
     let deep = omega_rad_s * omega_rad_s / GRAVITY_M_S2;
@@ -104,7 +105,7 @@ pub fn wavenumber_rad_m(omega_rad_s: f64, depth_m: f64) -> f64 {
         // tanh is 1 to the last bit.
         return deep;
     }
-    // Eckart (1952), within 5 %, then Newton's method; its steps become nothing after four or five.
+    // Eckart (1952), within 5 %, then Newton's method, which converges after four or five steps.
     // The dispersion relation has no closed solution in finite depth.
     let mut k = deep / libm::tanh(deep * depth_m).sqrt();
     for _ in 0..20 {
@@ -118,9 +119,11 @@ pub fn wavenumber_rad_m(omega_rad_s: f64, depth_m: f64) -> f64 {
     k
 }
 
-/// Phases of sixteen components, in turns: they fall by `per_s` and rise by `per_north_m` and `per_east_m`.
+/// Phases of sixteen components, in turns: they decrease by `per_s` and increase by `per_north_m`
+/// and `per_east_m`.
 ///
-/// After a day the phase of the fastest wave is some 10^5 turns, which an f64 holds to 10^-11 turns.
+/// After a day the phase of the fastest wave is about 10^5 turns, which an f64 stores with a
+/// precision of 10^-11 turns.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Phases {
     start: Lanes<f64>,
@@ -145,35 +148,35 @@ impl Phases {
         sin_cos_turns(self.along(at) + (self.start - self.per_s * Lanes::<f64>::splat(time_s)))
     }
 
-    /// By how much the phases rise per second for someone who moves, rad/s: minus the frequency of encounter.
+    /// The rate of the phases for a moving observer, rad/s: minus the frequency of encounter.
     #[inline(always)]
     pub(super) fn rate_rad_s(&self, velocity_m_s: Ned) -> Lanes<f32> {
         ((self.along(velocity_m_s) - self.per_s) * Lanes::<f64>::splat(TAU)).single()
     }
 
-    /// By how much they rise along a way.
+    /// The increase of the phases along a displacement.
     #[inline(always)]
     fn along(&self, way: Ned) -> Lanes<f64> {
         self.per_north_m * Lanes::<f64>::splat(way.north) + self.per_east_m * Lanes::<f64>::splat(way.east)
     }
 }
 
-/// `part` of up to as many waves as there are lanes; lanes without a wave are 0.
+/// `part` of each wave, up to the number of lanes; lanes without a wave are 0.
 pub(super) fn side_by_side<T: Default, const N: usize>(waves: &[PlaneWave], part: impl Fn(&PlaneWave) -> T) -> [T; N] {
     std::array::from_fn(|lane| waves.get(lane).map_or_else(T::default, &part))
 }
 
-/// [`side_by_side`] of a number of each of a row's waves, in single precision.
+/// [`side_by_side`] for a number of each of a row's waves, in single precision.
 pub(super) fn row_of(waves: &[PlaneWave], part: impl Fn(&PlaneWave) -> f64) -> [f32; ROW] {
     side_by_side(waves, |w| part(w) as f32)
 }
 
-/// How many rows stand for so many waves: as many as fill all lanes.
+/// The number of rows for these waves, rounded up to fill all lanes.
 pub(super) fn row_count(waves: &[PlaneWave]) -> usize {
     FOLD * waves.len().div_ceil(LANES)
 }
 
-/// The waves of a row; beyond the last wave there are none.
+/// The waves of a row; fewer or none beyond the last wave.
 pub(super) fn waves_of_row(waves: &[PlaneWave], row: usize) -> &[PlaneWave] {
     waves.chunks(ROW).nth(row).unwrap_or_default()
 }
@@ -185,7 +188,7 @@ struct SurfaceBlock {
     rows: [SurfaceRow; FOLD],
 }
 
-/// Four components of the surface: elevation, slope to the north, slope to the east, and nothing.
+/// Four components of the surface: elevation, slope to the north, slope to the east, and zero.
 #[derive(Clone, Copy, Debug)]
 struct SurfaceRow {
     per_cos: Lanes<f32>,
@@ -223,7 +226,8 @@ pub struct WaveField {
 }
 
 impl WaveField {
-    /// The field that the seed's stream `waves` draws from this spectrum, in water of this depth (`None` is deep).
+    /// The field drawn from this spectrum by the seed's stream `waves`, in water of this depth
+    /// (`None` is deep).
     #[must_use]
     pub fn new(waves: &Waves, depth_m: Option<f64>, seed: u64) -> WaveField {
         WaveField::of(&spectrum::components(waves, seed), depth_m, waves.drift_factor)
@@ -232,8 +236,8 @@ impl WaveField {
     /// The field of these components: a regular wave, or a sea measured elsewhere.
     #[must_use]
     pub fn of(components: &[Component], depth_m: Option<f64>, drift_factor: f64) -> WaveField {
-        // Infinite and not merely deep: every formula above has its limit there, and no case is
-        // needed.
+        // Infinite instead of merely large: every formula above has its limit there and needs no
+        // special case.
         let depth_m = depth_m.unwrap_or(f64::INFINITY);
         let waves: Vec<PlaneWave> = components.iter().map(|c| PlaneWave::new(*c, depth_m)).collect();
         let block = |waves: &[PlaneWave]| SurfaceBlock {
@@ -244,7 +248,8 @@ impl WaveField {
         WaveField { waves, drift_factor, instructions: Instructions::best(), blocks }
     }
 
-    /// The same field, worked out with these instructions, and what is made of it: which ones changes nothing but how long it takes.
+    /// The same field, computed with these instructions, as is everything built from it. The choice
+    /// affects only the speed.
     #[must_use]
     pub fn with_instructions(self, instructions: Instructions) -> WaveField {
         WaveField { instructions, ..self }
@@ -255,7 +260,7 @@ impl WaveField {
         self.waves.iter().map(|w| &w.component)
     }
 
-    /// The components as observers draw them.
+    /// The components for observers.
     #[must_use]
     pub fn plane_waves(&self) -> Vec<messages::water::PlaneWave> {
         let plane = |wave: &PlaneWave| messages::water::PlaneWave {
@@ -288,7 +293,8 @@ impl WaveField {
         TAU / wavenumber_rad_m(TAU / period_s, depth_m)
     }
 
-    /// Standard deviation of the horizontal orbital velocity at the surface, over both directions together, m/s.
+    /// Standard deviation of the horizontal orbital velocity at the surface, both directions
+    /// combined, m/s.
     #[must_use]
     pub fn orbital_rms_m_s(&self) -> f64 {
         self.mean(|w| {
@@ -304,15 +310,16 @@ impl WaveField {
         libm::atan(self.mean(|w| w.wavenumber_rad_m * w.wavenumber_rad_m).sqrt())
     }
 
-    /// Stokes drift, averaged over a hull's draught, m/s: that of a wave at the depth z is
-    /// a² ω k cosh 2k(z + h) / (2 sinh² k h).
+    /// Stokes drift averaged over a hull's draught, m/s: for a wave at the depth z it is a² ω k
+    /// cosh 2k(z + h) / (2 sinh² k h).
     #[must_use]
     pub fn stokes_drift_m_s(&self, draught_m: f64) -> Ned {
         self.drift_m_s(|w| w.stokes_m_s(draught_m))
     }
 
-    /// The part of it that comes of water moving faster where it has risen: a² ω k sinh² k(z + h) / (2 sinh² k h), the
-    /// half in deep water. The other part is found by whoever goes to and fro with the water and meets it where it is.
+    /// The part due to faster water where it has risen: a² ω k sinh² k(z + h) / (2 sinh² k h), half
+    /// of it in deep water. A body that moves to and fro with the water experiences the other part
+    /// by itself.
     #[must_use]
     pub fn rise_drift_m_s(&self, draught_m: f64) -> Ned {
         // cosh 2x = 2 sinh² x + 1.
@@ -329,15 +336,15 @@ impl WaveField {
         self.waves.iter().fold(Ned::default(), |drift, w| drift + w.toward.scaled(speed_m_s(w)))
     }
 
-    /// Mean second-order force on a hull on this heading, in its own axes: the momentum that the waves lose
-    /// to it where it throws them back (Maruo 1960), side and end taken as walls:
+    /// Mean second-order force on a hull on this heading, in body axes: the momentum that the waves
+    /// lose by reflection (Maruo 1960), with side and end taken as walls:
     ///
     /// ```text
     /// X = sum 1/2 rho g a^2 R^2 B cos b |cos b|     Y = sum 1/2 rho g a^2 R^2 L sin b |sin b|     R = 1 - e^(-2kT)
     /// ```
     ///
-    /// with b between the heading and the wave's travel. That R is a rough stand-in for the hull's reflection is why
-    /// `drift_factor` is there.
+    /// with b between the heading and the wave's travel. R is only a rough estimate of the hull's
+    /// reflection, hence `drift_factor`.
     #[must_use]
     pub fn mean_drift_newton(&self, boat: &Boat, water_density_kg_m3: f64, heading_rad: f64) -> Planar {
         let travel = |wave: &PlaneWave| {
@@ -353,7 +360,7 @@ impl WaveField {
         self.waves.iter().map(|wave| wave.reflected_m(boat.draught_m)).collect()
     }
 
-    /// The same force, of what a boat throws back of each wave and the wave's travel ahead and to starboard.
+    /// The same force, from each wave's reflected part and its travel ahead and to starboard.
     pub(super) fn drift_of(
         &self,
         boat: &Boat,
@@ -369,13 +376,13 @@ impl WaveField {
         Planar { surge: scale * boat.beam_m * surge, sway: scale * boat.length_m * sway, yaw: 0.0 }
     }
 
-    /// The mean of the square of what is `per_m` of amplitude, its own square given.
+    /// The variance of a quantity that is `per_m` of amplitude, given the square of `per_m`.
     fn mean(&self, per_m_squared: impl Fn(&PlaneWave) -> f64) -> f64 {
         self.waves.iter().map(|w| 0.5 * w.component.amplitude_m * w.component.amplitude_m * per_m_squared(w)).sum()
     }
 }
 
-/// The sums over the rows of elevation and slopes at a place and time.
+/// Sums over the rows: elevation and slopes at a place and time.
 struct SurfaceAt<'a> {
     blocks: &'a [SurfaceBlock],
     at: Ned,

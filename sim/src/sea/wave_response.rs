@@ -1,7 +1,7 @@
-//! Heave, roll and pitch of a hull in waves, as sensors measure them and observers see them.
+//! Heave, roll and pitch of a hull in waves, for sensors and observers.
 //!
-//! It follows the surface, averaged over the hull, as three damped springs would. Nothing of it acts back on the
-//! horizontal motion.
+//! The hull follows the surface, averaged over its area, like three damped springs. There is no
+//! feedback on the horizontal motion.
 
 use super::heading::HeadingTable;
 use super::patch::{Patch, Patches};
@@ -11,14 +11,15 @@ use primitives::frame::{Ned, Pose};
 use primitives::instructions::{Instructions, Kernel};
 use scenario::boat::Boat;
 
-/// Natural frequency, rad/s, and damping ratio: those of the Otter in Fossen's Marine Systems Simulator. A hull as long as
-/// the Otter has much the same.
+/// Natural frequency, rad/s, and damping ratio: those of the Otter in Fossen's Marine Systems
+/// Simulator, and similar for any hull of that length.
 pub(super) const HEAVE: (f64, f64) = (7.5, 0.3);
 pub(super) const ROLL: (f64, f64) = (7.4, 0.2);
 pub(super) const PITCH: (f64, f64) = (8.6, 0.4);
 
-/// Heave, roll and pitch of a hull, and their rates. Angles are as in NED: roll is positive with the
-/// starboard side down, pitch with the bow up. Heave is the height above where it floats at rest, up.
+/// Heave, roll and pitch of a hull, and their rates. Angles are as in NED: roll is positive with
+/// the starboard side down, pitch with the bow up. Heave is the height above the position at rest,
+/// up.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Attitude {
     /// Height, m.
@@ -39,31 +40,32 @@ pub struct Attitude {
 
 /// The response of one kind of boat to the waves of a field.
 ///
-/// Heave, roll and pitch respond to a wave of the frequency ω with wn² / (wn² − ω² + 2 i ζ wn ω) times the surface
-/// at the draught, its best-fitting plane. The frequency is that at a fixed place: the change of the response with a boat's
-/// own speed is left out, the frequency of encounter is not.
+/// Heave, roll and pitch respond to a wave of frequency ω with wn² / (wn² − ω² + 2 i ζ wn ω) times
+/// the plane that best fits the surface at the draught. The frequency is that at a fixed place: the
+/// effect of the boat's own speed on the response is neglected, but not the frequency of encounter.
 #[derive(Clone, Debug)]
 pub struct WaveResponse {
     instructions: Instructions,
     blocks: Vec<Block>,
-    /// Heave per cosine, roll and pitch per sine of the phase, before the springs respond; and nothing.
+    /// Heave per cosine, roll and pitch per sine of the phase, before the springs respond; and
+    /// zero.
     quasi_static: HeadingTable,
 }
 
-/// Sixteen components side by side: what does not depend on the heading.
+/// Sixteen components side by side: everything independent of the heading.
 #[derive(Clone, Copy, Debug)]
 struct Block {
     phases: Phases,
     rows: [Row; FOLD],
 }
 
-/// How the springs of heave, roll and pitch pass four components on, and nothing: the factors on the sine and the cosine of the
-/// phase. The phase falls with time, so what lags has a phase that is ahead.
+/// The responses in heave, roll and pitch to four components, and zero: factors on the sine and the
+/// cosine of the phase. The phase decreases with time, so a lagging response has a leading phase.
 #[derive(Clone, Copy, Debug)]
 struct Row {
-    /// What becomes of the cosine of the phase in heave, and of the sine of it in roll and pitch.
+    /// The response to the cosine of the phase in heave, and to its sine in roll and pitch.
     value: Passed,
-    /// The derivatives of these by the phase.
+    /// Their derivatives with respect to the phase.
     slope: Passed,
 }
 
@@ -102,34 +104,34 @@ impl Row {
     }
 }
 
-/// The real fraction, and minus the imaginary fraction, of wn² / (wn² − ω² + 2 i ζ wn ω).
+/// Real part, and minus the imaginary part, of wn² / (wn² − ω² + 2 i ζ wn ω).
 pub(super) fn transfer(natural_rad_s: f64, damping: f64, omega_rad_s: f64) -> (f64, f64) {
     let ratio = omega_rad_s / natural_rad_s;
     let (real, imaginary) = (1.0 - ratio * ratio, 2.0 * damping * ratio);
     let size = real * real + imaginary * imaginary;
-    // A damped spring that is driven by the surface. Peaks of these seas are at half of its
-    // natural frequency or below, so a hull mostly follows the surface.
+    // A damped spring driven by the surface. These seas peak at half of its natural frequency or
+    // below, so a hull mostly follows the surface.
     (real / size, imaginary / size)
 }
 
 impl WaveResponse {
-    /// The response of a boat like this to the waves of `field`.
+    /// The response of this boat to the waves of `field`.
     #[must_use]
     pub fn new(field: &WaveField, boat: &Boat) -> WaveResponse {
         WaveResponse::of(field, boat, &Patches::new(field, boat))
     }
 
-    /// The same, with the waves under its hull at hand.
+    /// The same, reusing the averaged waves under its hull.
     pub(super) fn of(field: &WaveField, boat: &Boat, patches: &Patches) -> WaveResponse {
         let block = |waves: &[PlaneWave]| Block {
             phases: Phases::new(waves),
             rows: std::array::from_fn(|row| Row::new(waves_of_row(waves, row))),
         };
-        // Waves that are short for the draught hardly press on the hull: it follows the
+        // Waves that are short compared with the draught have little effect: the hull follows the
         // pressure at its keel, not the surface.
         let pressed_m: Vec<f64> = field.waves.iter().map(|wave| pressed_m(wave, boat)).collect();
-        // By heading, in a table: the form of the hull against each wave's direction is most of
-        // the work, and changes little from one tick to the next.
+        // Tabulated by heading: averaging each wave over the hull is most of the work, and changes
+        // little between ticks.
         let quasi_static = HeadingTable::new(row_count(&field.waves), |bin, wave| {
             let Some(patch) = patches.of_bin(bin).get(wave) else { return [0.0; FOLD] };
             let [heave, roll, pitch] = quasi_static(pressed_m[wave], patch);
@@ -143,7 +145,7 @@ impl WaveResponse {
         self.instructions = instructions;
     }
 
-    /// The attitude of a boat that moves over the ground at this velocity and turns at this rate.
+    /// The attitude of a boat with this velocity over the ground and yaw rate.
     #[must_use]
     pub fn at(&self, pose: Pose, velocity_m_s: Ned, turn_rad_s: f64, time_s: f64) -> Attitude {
         let Sums { values, rates, heave_acceleration } =
@@ -160,14 +162,15 @@ impl WaveResponse {
     }
 }
 
-/// Sums over the rows: of heave, roll and pitch.
+/// Sums over the rows, for heave, roll and pitch.
 struct Sums {
     values: Lanes<f32>,
     rates: Lanes<f32>,
     heave_acceleration: Lanes<f32>,
 }
 
-/// [`WaveResponse::at`], but for what is done with the sums: done here, it would decide how these lie in the registers.
+/// [`WaveResponse::at`] without the use of the sums: here, it would affect their register
+/// allocation.
 struct At<'a> {
     response: &'a WaveResponse,
     pose: Pose,
@@ -207,8 +210,9 @@ pub(super) fn pressed_m(wave: &PlaneWave, boat: &Boat) -> f64 {
     wave.component.amplitude_m * wave.pressure_at(boat.draught_m)
 }
 
-/// Heave, roll and pitch of the plane that fits a pressure of this amplitude best: heave per cosine, roll and pitch
-/// per sine of the phase amidships. Where the surface rises ahead the bow goes up; where it rises to starboard, that side.
+/// Heave, roll and pitch of the plane that best fits a pressure of this amplitude: heave per
+/// cosine, roll and pitch per sine of the phase amidships. A surface rising ahead lifts the bow;
+/// one rising to starboard lifts that side.
 pub(super) fn quasi_static(pressed_m: f64, patch: &Patch) -> [f64; 3] {
     let a = pressed_m;
     [a * patch.mean_x * patch.mean_y, a * patch.tilt_y * patch.mean_x, -a * patch.tilt_x * patch.mean_y]

@@ -1,11 +1,13 @@
-//! The wind at a place and a time: a mean that falls towards the water, and gusts that travel with it.
+//! The wind at a place and a time: a mean that decreases towards the water, and gusts that travel
+//! with it.
 //!
-//! Gusts are one pattern, frozen, that the mean wind carries over the field (Taylor 1938): what passes a boat passes
-//! one d metres downwind of it d / U later. So the pattern is a function of U t − d alone, with d counted downwind
-//! from the datum and U the mean wind at the reference height. Boats at other heights meet the same pattern, in
-//! proportion to the mean wind at theirs. It does not vary along crests: boats abreast meet the same.
+//! Gusts are a frozen pattern that the mean wind carries over the field (Taylor 1938): a gust at
+//! one boat reaches another d metres downwind after d / U. So the pattern is a function of U t − d
+//! alone, with d measured downwind from the datum and U the mean wind at the reference height.
+//! Boats at other heights meet the same pattern, in proportion to the mean wind at their height. It
+//! does not vary across the wind: boats abreast meet the same gusts.
 //!
-//! U is taken as 1 m/s where it is less: a pattern that stands still would be no gust.
+//! U is at least 1 m/s: a stationary pattern would not gust.
 
 use super::cached_process::CachedProcess;
 use super::gauss_markov::{GaussMarkov, STEPS_PER_LENGTH};
@@ -15,15 +17,16 @@ use primitives::reseed::Seeds;
 use rules::field::Field;
 use scenario::sea::{Gusts, Wind};
 
-/// Slowest speed at which gusts travel, m/s.
+/// Lowest speed at which gusts travel, m/s.
 pub const CARRY_MIN_M_S: f64 = 1.0;
-/// How far around the field gusts are cached, m. Boats further away are served too, more slowly.
+/// Margin around the field within which gusts are cached, m. For boats beyond it they are computed
+/// more slowly.
 const MARGIN_M: f64 = 50.0;
 
 /// The wind over a field.
 #[derive(Clone, Debug)]
 pub struct WindField {
-    /// Unit vector that the mean wind blows along.
+    /// Unit vector of the mean wind's direction of travel.
     downwind: Ned,
     /// A quarter turn to starboard of it.
     across: Ned,
@@ -36,19 +39,19 @@ pub struct WindField {
 #[derive(Clone, Debug)]
 struct Frozen {
     process: CachedProcess,
-    /// Standard deviation along the wind and across it, over the mean speed.
+    /// Standard deviations along and across the wind, relative to the mean speed.
     intensity: (f64, f64),
-    /// Grid points by metre downwind.
+    /// Grid points per metre downwind.
     steps_per_m: f64,
-    /// Grid points by second.
+    /// Grid points per second.
     steps_per_s: f64,
-    /// How far downwind of the datum the field reaches, with its margin, m.
+    /// Extent of the field downwind of the datum, with margin, m.
     reach_m: (f64, f64),
 }
 
 impl WindField {
-    /// The wind over `field`, with gusts that travel as fast as the mean wind `reference_height_m` above the water: that
-    /// of the boats' own windage, as a rule.
+    /// The wind over `field`. Gusts travel with the mean wind at `reference_height_m` above the
+    /// water, usually the height of the boats' windage.
     #[must_use]
     pub fn new(wind: &Wind, reference_height_m: f64, field: &Field, seeds: &Seeds) -> WindField {
         let upwind = Rotation::from_heading(wind.from_rad);
@@ -60,8 +63,8 @@ impl WindField {
             profile_exponent: wind.profile_exponent,
             gusts: None,
         };
-        // By the highest boat: the pattern has one speed, or boats would disagree on when a
-        // gust comes.
+        // By the highest boat: the pattern has a single speed, or boats would disagree about the
+        // time of a gust.
         let carry_m_s = made.mean_m_s(reference_height_m).max(CARRY_MIN_M_S);
         let along_m = field.corners.map(|corner| corner.dot(downwind));
         let reach_m = (
@@ -73,7 +76,7 @@ impl WindField {
             Gusts::OrnsteinUhlenbeck { intensity, across_ratio, length_m } => {
                 let steps_per_m = STEPS_PER_LENGTH / length_m;
                 let steps_per_s = steps_per_m * carry_m_s;
-                // Of what is drawn anew the field has seen nothing: it is upwind of it.
+                // The field has seen none of the redrawn gusts: they are upwind of it.
                 let process = GaussMarkov::new(seeds, "gust", |now| place((steps_per_s, steps_per_m), reach_m.0, now));
                 Some(Frozen {
                     process: CachedProcess::new(process, (reach_m.1 - reach_m.0) * steps_per_m),
@@ -87,13 +90,15 @@ impl WindField {
         made
     }
 
-    /// The mean speed at a height above the water, m/s: U10 (z / 10 m)^α. Boats ask once, when the world is made.
+    /// The mean speed at a height above the water, m/s: U10 (z / 10 m)^α. Called once per boat,
+    /// when the world is created.
     #[must_use]
     pub fn mean_m_s(&self, height_m: f64) -> f64 {
         self.speed_10m_m_s * libm::pow(height_m / 10.0, self.profile_exponent)
     }
 
-    /// Has the gusts over the field at `now` at hand. Only for speed: without it, [`WindField::at`] gives the same bits.
+    /// Caches the gusts over the field at `now`. Affects only speed: [`WindField::at`] gives the
+    /// same bits without it.
     pub fn prepare(&mut self, now: SimTime) {
         if let Some(gusts) = &mut self.gusts {
             let (near_m, far_m) = gusts.reach_m;
@@ -101,13 +106,13 @@ impl WindField {
         }
     }
 
-    /// The velocity of the air over the ground, m/s, at a place where its mean speed is `mean_m_s`
-    /// (of [`WindField::mean_m_s`]).
+    /// The air's velocity over the ground, m/s, at a place with the mean speed `mean_m_s` (from
+    /// [`WindField::mean_m_s`]).
     #[inline]
     #[must_use]
     pub fn at(&self, place: Ned, mean_m_s: f64, now: SimTime) -> Ned {
         let Some(gusts) = &self.gusts else { return self.downwind.scaled(mean_m_s) };
-        // Two processes at once, along and across: gusts shift the direction as well.
+        // Two processes, along and across: gusts change the direction as well.
         let (along, across) = gusts.process.at(gusts.place(place.dot(self.downwind), now));
         self.downwind.scaled(mean_m_s * (1.0 + gusts.intensity.0 * along))
             + self.across.scaled(mean_m_s * (gusts.intensity.1 * across))
@@ -115,7 +120,7 @@ impl WindField {
 }
 
 impl Frozen {
-    /// The place of the process that blows `downwind_m` from the datum.
+    /// The grid position of the process `downwind_m` from the datum.
     #[inline]
     fn place(&self, downwind_m: f64, now: SimTime) -> f64 {
         place((self.steps_per_s, self.steps_per_m), downwind_m, now)

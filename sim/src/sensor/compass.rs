@@ -1,12 +1,13 @@
-//! A magnetic compass: the heading, off by what the earth and the boat do to it.
+//! A magnetic compass: the heading with declination, deviation and other errors.
 //!
 //! ```text
 //! reading = ψ − declination − (A + B sin ψ + C cos ψ + D sin 2ψ + E cos 2ψ) + thrust error + noise
 //! ```
 //!
-//! Declination and deviation have the navigator's sign: east is positive, and then the needle stands east of where it
-//! should and the compass reads less than the truth (Bowditch, The American Practical Navigator, ch. on compasses). The
-//! thrust error is that of the reading, at full thrust of both thrusters.
+//! Declination and deviation have the navigator's sign: east is positive, which means that the
+//! needle points east of its true direction and the compass reads too low (Bowditch, The American
+//! Practical Navigator, ch. on compasses). The thrust error is that of the reading at full thrust
+//! of both thrusters.
 
 use super::{Truth, whole_ticks};
 use primitives::angle::wrap_pi;
@@ -16,22 +17,22 @@ use scenario::fault::{FaultKind, FaultSpan};
 use scenario::sensor::Compass;
 use serde::{Deserialize, Serialize};
 
-/// A compass: constant.
+/// The constants of a compass.
 #[derive(Clone, Debug)]
 pub struct CompassModel {
     compass: Compass,
     noise: TimedNoise,
     period: SimTime,
-    /// Faults of the game.
+    /// Its fault spans in this game.
     faults: Vec<FaultSpan>,
 }
 
-/// Everything that changes about a compass.
+/// The changing state of a compass.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CompassState {
     /// The last reading.
     psi_rad: f64,
-    /// How far that was off.
+    /// The error of that reading, rad.
     pub(super) error_rad: f64,
 }
 
@@ -56,17 +57,17 @@ impl CompassModel {
         a + b * sin + c * cos + d * (2.0 * sin * cos) + e * (cos * cos - sin * sin)
     }
 
-    /// Faults that befall it in the midst of the game.
+    /// Sets its faults during the game.
     pub fn set_faults(&mut self, faults: &[FaultSpan]) {
         self.faults = faults.iter().filter(|span| span.kind == FaultKind::CompassOffset).copied().collect();
     }
 
-    /// How far those put it off, rad.
+    /// The present error due to faults, rad.
     fn fault_rad(&self, now: SimTime) -> Option<f64> {
         self.faults.iter().filter(|span| span.is_on(now)).map(|span| span.offset_rad).reduce(|sum, one| sum + one)
     }
 
-    /// The heading that the boat reads at `now`, rad, -pi to pi: that of the last period.
+    /// The heading reading at `now`, rad, -pi to pi: that of the last period.
     pub fn read(&self, state: &mut CompassState, truth: &Truth, now: SimTime) -> f64 {
         if now.0 % self.period.0 == 0 {
             let number = (now.0 / self.period.0) as u64;
@@ -78,8 +79,8 @@ impl CompassModel {
             if let Some(off_rad) = self.fault_rad(now) {
                 state.psi_rad = wrap_pi(state.psi_rad + off_rad);
             }
-            // The front seat steers by its compass, as the real one does: a deviation leads the
-            // boat astray instead of only being reported.
+            // The front seat steers by its compass, like a real one: a deviation leads the boat
+            // astray instead of only being reported.
             state.error_rad = wrap_pi(state.psi_rad - psi_rad);
         }
         state.psi_rad

@@ -1,8 +1,8 @@
-//! A satellite receiver: where a boat was a moment ago and how it moved over the ground, nearly.
+//! A satellite receiver: delayed and noisy position and velocity over the ground.
 //!
-//! A fix is taken every period and comes out after the latency. Its position errs by a wandering bias (Gauss-Markov), by
-//! white noise and by the last jump; its velocity, which a receiver has from the Doppler shift, by white noise alone.
-//! Drop-outs and freezes come and go as a two-state Markov chain, sampled at the fixes.
+//! A fix is taken every period and delivered after the latency. Its position has a wandering bias
+//! (Gauss-Markov), white noise and the last jump; its velocity, measured by Doppler shift, has
+//! white noise alone. Drop-outs and freezes follow two-state Markov chains, sampled at the fixes.
 
 use super::{GaussMarkovStep, Truth, whole_ticks};
 use crate::two_state::TwoStateChain;
@@ -14,18 +14,18 @@ use scenario::sensor::{Gps, Outage};
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
-/// Most fixes that can be under way at once: the latency is at most this many periods. A file may state 12 periods; of
-/// them, rounded to whole decisions, as many as 18 may be left of the same time.
+/// Limit of fixes in transit: the latency is at most this many periods. A file may specify 12
+/// periods; rounded to whole decisions, this can become 18 for the same time.
 pub const UNDER_WAY_MAX: usize = 18;
-/// Pairs of normal numbers that a fix takes: bias, position, velocity, jump.
+/// Pairs of normal numbers per fix: bias, position, velocity, jump.
 const PAIRS: u64 = 4;
-/// Uniform numbers that a fix takes: drop-out, freeze, jump.
+/// Uniform numbers per fix: drop-out, freeze, jump.
 const UNIFORMS: u64 = 3;
 
 /// One fix.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Fix {
-    /// When it was taken: where the boat was then, it says.
+    /// Time of measurement, to which the position refers.
     pub at: SimTime,
     /// Position, m from the datum.
     pub position: Ned,
@@ -33,7 +33,7 @@ pub struct Fix {
     pub velocity_m_s: Ned,
 }
 
-/// A receiver: constant.
+/// The constants of a receiver.
 #[derive(Clone, Debug)]
 pub struct GpsModel {
     normals: TimedNoise,
@@ -46,26 +46,26 @@ pub struct GpsModel {
     velocity_noise_m_s: f64,
     dropout: TwoStateChain,
     freeze: TwoStateChain,
-    /// Probability of a jump at a fix.
+    /// Probability of a jump per fix.
     jump_chance: f64,
     jump_m: f64,
-    /// Faults of the game, beside those of its own.
+    /// Its fault spans in this game, in addition to its own drop-outs and freezes.
     faults: Vec<FaultSpan>,
 }
 
-/// Everything that changes about a receiver. The default is the state before the game.
+/// The changing state of a receiver. The default is the state before the game.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GpsState {
-    /// The fix that came out last.
+    /// The fix delivered last.
     latest: Fix,
-    /// Fixes that have been taken and have not come out, the oldest first.
+    /// Fixes taken but not yet delivered, oldest first.
     under_way: VecDeque<Fix>,
-    /// m, by axis.
+    /// Position bias, m, by axis.
     bias: Ned,
-    /// m, by axis.
+    /// Position jump, m, by axis.
     jump: Ned,
     dropped: bool,
-    /// What comes out meanwhile, if the receiver is frozen.
+    /// The fix delivered while the receiver is frozen.
     frozen: Option<Fix>,
 }
 
@@ -77,10 +77,11 @@ fn chain(outage: Outage, period: SimTime) -> TwoStateChain {
 }
 
 impl GpsModel {
-    /// The receiver of the boat named `vehicle`, read once a `tick`: its period is a whole number of these.
+    /// The receiver of the boat named `vehicle`, read once per `tick`; its period is a whole number
+    /// of ticks.
     ///
     /// # Panics
-    /// If its latency is more than [`UNDER_WAY_MAX`] periods.
+    /// If its latency exceeds [`UNDER_WAY_MAX`] periods.
     #[must_use]
     pub fn new(gps: &Gps, tick: SimTime, seeds: &Seeds, vehicle: &str) -> GpsModel {
         let period = whole_ticks(gps.period_s, tick);
@@ -103,21 +104,21 @@ impl GpsModel {
         }
     }
 
-    /// Faults that befall it in the midst of the game.
+    /// Sets its faults during the game.
     pub fn set_faults(&mut self, faults: &[FaultSpan]) {
         let is_of_gps = |kind| matches!(kind, FaultKind::GpsFrozen | FaultKind::GpsLost | FaultKind::GpsOffset);
         self.faults = faults.iter().filter(|span| is_of_gps(span.kind)).copied().collect();
     }
 
-    /// The fault of a kind that is going on, if one is.
+    /// The present fault of this kind, if any.
     fn fault(&self, kind: FaultKind, now: SimTime) -> Option<&FaultSpan> {
         self.faults.iter().find(|span| span.kind == kind && span.is_on(now))
     }
 
-    /// The last fix that has come out by `now`. The receiver has been on since before the game: the fix of time 0 is
-    /// there at once, and nothing is amiss at first.
+    /// The last fix delivered by `now`. The receiver has been on since before the game: the fix of
+    /// time 0 is available at once, and initially there are no faults.
     pub fn read(&self, state: &mut GpsState, truth: &Truth, now: SimTime) -> Fix {
-        // What is out makes room for the new fix.
+        // Delivery makes room for the new fix.
         while let Some(fix) = state.under_way.pop_front_if(|fix| fix.at + self.latency <= now) {
             state.latest = fix;
         }
@@ -125,7 +126,7 @@ impl GpsModel {
             let number = (now.0 / self.period.0) as u64;
             let fix = self.measure_fix(state, truth, now, number);
             let dropped = state.dropped || self.fault(FaultKind::GpsLost, now).is_some();
-            // Every boat begins with a fix: nobody launches without one.
+            // Every boat starts with a fix: nobody launches without one.
             if number == 0 || (self.latency == SimTime::ZERO && !dropped) {
                 state.latest = fix;
             } else if !dropped {
@@ -148,15 +149,14 @@ impl GpsModel {
         if number > 0 {
             state.dropped = self.dropout.next(state.dropped, uniform(0));
             if uniform(2) < self.jump_chance {
-                // It stays until the next one, as after a change of satellites.
+                // It persists until the next one, as after a change of satellites.
                 state.jump = normal(3, self.jump_m);
             }
         }
         let mut measured = Fix {
             at: now,
             position: truth.pose.at + state.bias + state.jump + normal(1, self.noise_m),
-            // By Doppler shift: it is not the change of the noisy position, and much better
-            // than that.
+            // By Doppler shift: much better than differences of the noisy position.
             velocity_m_s: truth.velocity_m_s() + normal(2, self.velocity_noise_m_s),
         };
         if let Some(span) = self.fault(FaultKind::GpsOffset, now) {
@@ -167,7 +167,8 @@ impl GpsModel {
             && (self.freeze.next(state.frozen.is_some(), uniform(1))
                 || self.fault(FaultKind::GpsFrozen, now).is_some());
         state.frozen = freezes.then(|| state.frozen.unwrap_or(measured));
-        // A frozen receiver still stamps its fixes anew: who reads them cannot tell by their age.
+        // A frozen receiver still gives its fixes new time stamps: their age does not reveal the
+        // freeze.
         state.frozen.map_or(measured, |frozen| Fix { at: now, ..frozen })
     }
 }

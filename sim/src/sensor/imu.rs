@@ -1,4 +1,5 @@
-//! Gyro and accelerometers: how a boat turns and what pushes it, in its own axes, ahead, to starboard and down.
+//! Gyro and accelerometers: rotation rates and specific force in body axes, ahead, to starboard and
+//! down.
 //!
 //! With roll φ, pitch θ and heading ψ (Fossen 2021, ch. 2 and 14):
 //!
@@ -7,7 +8,7 @@
 //! accelerometers:  f = R(φ, θ, ψ)ᵀ (a − g),  g downwards: a boat at rest reads −g down, the water's push
 //! ```
 //!
-//! and to each a white noise and a wandering bias (Gauss-Markov). The accelerometers sit midships.
+//! plus white noise and a wandering bias (Gauss-Markov) for each. The accelerometers are midships.
 
 use super::{GaussMarkovStep, Truth};
 use primitives::reseed::{Seeds, TimedNoise};
@@ -16,10 +17,10 @@ use scenario::sea::GRAVITY_M_S2;
 use scenario::sensor::Imu;
 use serde::{Deserialize, Serialize};
 
-/// Pairs of normal numbers that a reading takes: noise and bias for each of six axes.
+/// Pairs of normal numbers per reading: noise and bias for each of six axes.
 const PAIRS: u64 = 6;
 
-/// What gyro and accelerometers say.
+/// A reading of gyro and accelerometers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ImuReading {
     /// Rates about the axes ahead, to starboard and down, rad/s.
@@ -28,7 +29,7 @@ pub struct ImuReading {
     pub accelerometer_m_s2: [f64; 3],
 }
 
-/// Gyro and accelerometers: constant.
+/// The constants of gyro and accelerometers.
 #[derive(Clone, Debug)]
 pub struct ImuModel {
     imu: Imu,
@@ -37,21 +38,21 @@ pub struct ImuModel {
     bias_step: GaussMarkovStep,
 }
 
-/// Everything that changes about them.
+/// Their changing state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ImuState {
     bias: ImuReading,
 }
 
 impl ImuReading {
-    /// What is true.
+    /// The true values.
     #[must_use]
     pub fn of(truth: &Truth) -> ImuReading {
         let Truth { nu, nu_dot, attitude, .. } = *truth;
         let (sin_roll, cos_roll) = math::sin_cos(attitude.roll_rad);
         let (sin_pitch, cos_pitch) = math::sin_cos(attitude.pitch_rad);
         let (roll_rate, pitch_rate, yaw_rate) = (attitude.roll_rad_s, attitude.pitch_rad_s, nu.yaw);
-        // a − g along the heading, across it and down, as the boat turns.
+        // a − g along the heading, across it and down, in the rotating axes.
         let ahead = nu_dot.surge - nu.sway * yaw_rate;
         let starboard = nu_dot.sway + nu.surge * yaw_rate;
         let down = -attitude.heave_up_m_s2 - GRAVITY_M_S2;
@@ -72,14 +73,14 @@ impl ImuReading {
 }
 
 impl ImuModel {
-    /// Gyro and accelerometers of the boat named `vehicle`, which are read every tick.
+    /// Gyro and accelerometers of the boat named `vehicle`, read every tick.
     #[must_use]
     pub fn new(imu: &Imu, tick: SimTime, seeds: &Seeds, vehicle: &str) -> ImuModel {
         let noise = seeds.noise(&format!("imu/{vehicle}"));
         ImuModel { imu: imu.clone(), noise, tick, bias_step: GaussMarkovStep::new(tick, imu.bias_time_s) }
     }
 
-    /// What they say at `now`.
+    /// The reading at `now`.
     pub fn read(&self, state: &mut ImuState, truth: &Truth, now: SimTime) -> ImuReading {
         let number = (now.0 / self.tick.0) as u64;
         let GaussMarkovStep { kept, fresh } = if number == 0 { GaussMarkovStep::FIRST } else { self.bias_step };
@@ -87,8 +88,8 @@ impl ImuModel {
         let mut reading = ImuReading::of(truth);
         for axis in 0..3 {
             let (noise, step) = drawn.normal_pair(PAIRS * number + axis as u64);
-            // A random constant that wanders slowly: integrated rates run away by it, which
-            // white noise alone hides.
+            // A random bias that wanders slowly: integrated rates diverge by it, which white noise
+            // alone would hide.
             let bias = &mut state.bias.gyro_rad_s[axis];
             *bias = kept * *bias + fresh * imu.gyro_bias_rad_s * step;
             reading.gyro_rad_s[axis] += *bias + imu.gyro_noise_rad_s * noise;

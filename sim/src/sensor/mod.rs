@@ -1,9 +1,9 @@
 //! A boat's sensors: satellite navigation, compass, gyro and accelerometers.
 //!
-//! Open [`SensorModel::read`] first. A sensor that a boat's file leaves out is perfect: its part of the truth comes out
-//! bit for bit. What a sensor remembers is in its state, which is plain numbers and goes into the world's snapshot; what
-//! is random is looked up by the number of the fix or reading, under `gps/<vehicle>`, `compass/<vehicle>` and
-//! `imu/<vehicle>`.
+//! Start with [`SensorModel::read`]. A sensor omitted from a boat's file is perfect: it reports the
+//! true values bit for bit. The memory of sensors is in their state, which is plain numbers and
+//! part of the world's snapshot. Random values are looked up by the number of the fix or reading,
+//! under `gps/<vehicle>`, `compass/<vehicle>` and `imu/<vehicle>`.
 
 pub mod compass;
 pub mod gps;
@@ -27,11 +27,12 @@ use serde::{Deserialize, Serialize};
 pub struct Truth {
     /// Position and heading.
     pub pose: Pose,
-    /// Velocity over the ground along the boat's heading and across it.
+    /// Velocity over the ground in body axes.
     pub nu: Planar,
-    /// The rate at which `nu` changes, as numbers: the boat's turning is added by the accelerometers.
+    /// The rate of change of the components of `nu`. The accelerometers add the rotation of the
+    /// axes.
     pub nu_dot: Planar,
-    /// How it lies in the waves.
+    /// Attitude in the waves.
     pub attitude: Attitude,
     /// The thrusters' current as a share of that at full thrust of both.
     pub thrust_share: f64,
@@ -45,19 +46,19 @@ impl Truth {
     }
 }
 
-/// What a boat knows.
+/// The measurements of a boat.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Reading {
-    /// Navigation. Position and velocity are those of the last fix, as they came; the velocity is turned into the boat's
-    /// axes with the heading that the boat reads now.
+    /// Navigation. Position and velocity are those of the last fix, unchanged; the velocity is
+    /// converted to body axes with the present compass heading.
     pub nav: Nav,
-    /// When the last fix was taken.
+    /// Time of the last fix.
     pub fix_at: SimTime,
     /// Gyro and accelerometers.
     pub imu: ImuReading,
 }
 
-/// The sensors of one boat: constant.
+/// The constants of one boat's sensors.
 #[derive(Clone, Debug)]
 pub struct SensorModel {
     gps: Option<GpsModel>,
@@ -65,7 +66,7 @@ pub struct SensorModel {
     imu: Option<ImuModel>,
 }
 
-/// Everything that changes about a boat's sensors. The default is the state before the game.
+/// The changing state of a boat's sensors. The default is the state before the game.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SensorState {
     gps: GpsState,
@@ -74,7 +75,7 @@ pub struct SensorState {
 }
 
 impl SensorState {
-    /// How far the compass was off when it last was read, rad: by so much the front seat steers wrong.
+    /// The compass error at its last reading, rad: the front seat steers wrong by this angle.
     #[must_use]
     pub fn heading_error_rad(&self) -> f64 {
         self.compass.error_rad
@@ -82,7 +83,7 @@ impl SensorState {
 }
 
 impl SensorModel {
-    /// The sensors of the boat named `vehicle`, read once a tick.
+    /// The sensors of the boat named `vehicle`, read once per tick.
     #[must_use]
     pub fn new(sensors: &Sensors, tick: SimTime, seeds: &Seeds, vehicle: &str) -> SensorModel {
         SensorModel {
@@ -104,7 +105,7 @@ impl SensorModel {
         self
     }
 
-    /// What the boat knows at `now`: a whole number of ticks, every one of them from 0 on in turn.
+    /// The measurements at `now`. Must be called for every tick from 0 on, in order.
     #[must_use]
     pub fn read(&self, state: &mut SensorState, truth: &Truth, now: SimTime) -> Reading {
         let psi_rad = match &self.compass {
@@ -117,15 +118,14 @@ impl SensorModel {
         };
         let (at, velocity, fix_at) = match &self.gps {
             None => (truth.pose.at, Body { ahead: truth.nu.surge, starboard: truth.nu.sway }, now),
-            // A receiver measures over the ground, north and east. What it is along the boat's
-            // axes depends on the compass, so a compass error shows up as leeway.
+            // A receiver measures over the ground, north and east. The components in body axes
+            // depend on the compass, so a compass error shows up as leeway.
             Some(gps) => {
                 let fix = gps.read(&mut state.gps, truth, now);
                 (fix.position, body_from_ned(Rotation::from_heading(psi_rad), fix.velocity_m_s), fix.at)
             }
         };
-        // Without an inertial unit the rate is the true one: a boat whose file leaves a sensor
-        // out is meant to have a perfect one.
+        // Without an inertial unit the rate is the true one: an omitted sensor is a perfect one.
         let yaw_rate_rad_s = if self.imu.is_some() { imu.gyro_rad_s[2] } else { truth.nu.yaw };
         let nav = Nav {
             north_m: at.north,
@@ -139,7 +139,7 @@ impl SensorModel {
     }
 }
 
-/// `period_s` as a whole number of ticks, one at least: sensors measure when the world stands still.
+/// `period_s` as a whole number of ticks, at least one: sensors measure between steps of the world.
 fn whole_ticks(period_s: f64, tick: SimTime) -> SimTime {
     let ticks = (period_s / tick.as_s()).round() as i64;
     tick * ticks.max(1)
@@ -150,12 +150,12 @@ fn whole_ticks(period_s: f64, tick: SimTime) -> SimTime {
 struct GaussMarkovStep {
     /// The correlation over the step.
     kept: f64,
-    /// The standard deviation of what is new.
+    /// The standard deviation of the innovation.
     fresh: f64,
 }
 
 impl GaussMarkovStep {
-    /// The first step of all, which remembers nothing.
+    /// The very first step, without memory.
     const FIRST: GaussMarkovStep = GaussMarkovStep { kept: 0.0, fresh: 1.0 };
 
     /// A step of `span` for a process with this correlation time.

@@ -1,4 +1,4 @@
-//! Scenarios for tests, written as a user would write them.
+//! Scenarios for tests, written as users would write them.
 #![allow(dead_code, reason = "each test file uses its part")]
 
 use messages::Order;
@@ -31,7 +31,7 @@ pub(crate) fn written(toml: &str) -> Scenario {
     scenario::load(&path).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// One boat of this kind a side, idle, on open salt water, blue at its half point.
+/// One idle boat of this kind per side on open salt water, blue at its half point.
 pub(crate) fn alone(boat: &str, sea: &str) -> Scenario {
     written(
         &include_str!("alone.toml")
@@ -40,14 +40,14 @@ pub(crate) fn alone(boat: &str, sea: &str) -> Scenario {
     )
 }
 
-/// As [`alone`], in still fresh water with these obstacles in it.
+/// As [`alone`], but in still fresh water with these obstacles.
 pub(crate) fn among(boat: &str, obstacles: Vec<Obstacle>) -> Scenario {
     let mut scenario = alone(boat, "calm");
     scenario.field.plan.obstacles = obstacles;
     scenario
 }
 
-/// The world of a game, with its first boat put somewhere as [`place_boat`] does.
+/// The world of a game, with its first boat placed as by [`place_boat`].
 pub(crate) fn afloat(scenario: &Scenario, seed: u64, start: (f64, f64, f64), nu: (f64, f64, f64)) -> World {
     let mut world = World::of_game(scenario, seed).expect("an empty sea has room");
     place_boat(&mut world, 0, start, nu);
@@ -61,7 +61,7 @@ pub(crate) fn on_sea(game: &str, sea: &Path) -> Scenario {
     scenario::load_with(&path, &overrides).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Radio links with losses, and limits of what boats see of each other.
+/// Adds radio links with losses, and limits of sharing.
 pub(crate) fn hamper(scenario: &mut Scenario) {
     let loss = Loss { good: 0.1, bad: 0.8, good_time_s: 5.0, bad_time_s: 2.0 };
     let station = scenario.field.corners[0];
@@ -77,16 +77,16 @@ pub(crate) fn hamper(scenario: &mut Scenario) {
     };
 }
 
-/// Changes the state of a world from outside.
+/// Changes the state of a world directly.
 pub(crate) fn set(world: &mut World, change: impl FnOnce(&mut State)) {
     let mut state = world.state().clone();
     change(&mut state);
     world.set_state(state);
 }
 
-/// Changes the state of a contest's world from outside.
+/// Changes the state of a contest's world directly.
 pub(crate) fn set_in(contest: &mut Contest, change: impl FnOnce(&mut State)) {
-    // Name and version, mark of the scenario, checksum; then the world comes first.
+    // Name and version, mark of the scenario, checksum; the world follows first.
     let snapshot = contest.snapshot();
     let (head, body) = (&snapshot[..13], &snapshot[21..]);
     let (mut state, rest) = postcard::take_from_bytes::<State>(body).expect("a snapshot begins with the world");
@@ -96,12 +96,12 @@ pub(crate) fn set_in(contest: &mut Contest, change: impl FnOnce(&mut State)) {
     contest.restore(&[head, &checksum, &body].concat()).expect("it has its own mark");
 }
 
-/// 128 bits over a world's state.
+/// A 128-bit hash of a world's state.
 pub(crate) fn digest(world: &World) -> u128 {
     xxhash_rust::xxh3::xxh3_128(&postcard::to_stdvec(world.state()).expect("plain numbers"))
 }
 
-/// How many pairs of boats have come within the rules' collision distance since `touching` was noted.
+/// Number of boat pairs newly within the rules' collision distance, compared with `touching`.
 pub(crate) fn came_together(world: &World, scenario: &Scenario, touching: &mut Vec<(u16, u16)>) -> usize {
     let distance_m = scenario.rules.collision_distance_m;
     let near = world.pairs().iter().filter(|pair| pair.distance_squared < distance_m * distance_m);
@@ -116,7 +116,7 @@ pub(crate) fn order(contest: &mut Contest, vehicle: VehicleId, order: Order) {
     contest.order(vehicle, order, contest.now()).expect("sound numbers");
 }
 
-/// Puts a boat somewhere (x east, y north), pointing somewhere, with a velocity.
+/// Places a boat (x east, y north) with a heading and a velocity.
 pub(crate) fn place_boat(world: &mut World, boat: usize, (x, y, heading_deg): (f64, f64, f64), nu: (f64, f64, f64)) {
     set(world, |state| {
         let boat = &mut state.boats[boat];
@@ -125,7 +125,7 @@ pub(crate) fn place_boat(world: &mut World, boat: usize, (x, y, heading_deg): (f
     });
 }
 
-/// The hulls of a scenario, by vehicle.
+/// The hulls of a scenario, by vehicle index.
 pub(crate) fn hulls(scenario: &Scenario) -> Vec<HullModel> {
     let density = scenario.sea.water_density_kg_m3;
     scenario.vehicles.iter().map(|v| HullModel::new(&scenario.boats[v.boat].hull, density)).collect()
@@ -136,7 +136,7 @@ pub(crate) fn energy_joule(world: &World, hulls: &[HullModel]) -> f64 {
     world.state().boats.iter().zip(hulls).map(|(boat, hull)| hull.energy_joule(boat.nu)).sum()
 }
 
-/// A boat's hull: the ends of its keel, and how far (m) the hull reaches round it.
+/// A boat's hull: the ends of its keel, and its radius (m) around it.
 pub(crate) fn capsule(world: &World, scenario: &Scenario, vehicle: usize) -> ((Ned, Ned), f64) {
     let kind = &scenario.boats[scenario.vehicles[vehicle].boat];
     let pose = world.state().boats[vehicle].pose;
@@ -144,13 +144,13 @@ pub(crate) fn capsule(world: &World, scenario: &Scenario, vehicle: usize) -> ((N
     ((pose.at - half, pose.at + half), 0.5 * kind.beam_m)
 }
 
-/// How far the hulls of two boats are apart, m.
+/// The distance between the hulls of two boats, m.
 pub(crate) fn gap_m(world: &World, scenario: &Scenario, a: usize, b: usize) -> f64 {
     let ((keel_a, radius_a), (keel_b, radius_b)) = (capsule(world, scenario, a), capsule(world, scenario, b));
     keels_m(keel_a, keel_b) - radius_a - radius_b
 }
 
-/// The distance of two stretches, m; zero where they cross.
+/// The distance between two line segments, m; zero if they cross.
 pub(crate) fn keels_m((a, b): (Ned, Ned), (c, d): (Ned, Ned)) -> f64 {
     let cross = |o: Ned, p: Ned, q: Ned| (p - o).north * (q - o).east - (p - o).east * (q - o).north;
     if cross(a, b, c) * cross(a, b, d) < 0.0 && cross(c, d, a) * cross(c, d, b) < 0.0 {
@@ -160,14 +160,14 @@ pub(crate) fn keels_m((a, b): (Ned, Ned), (c, d): (Ned, Ned)) -> f64 {
     ends.into_iter().fold(f64::INFINITY, f64::min)
 }
 
-/// The distance of a point from a stretch, m.
+/// The distance of a point from a line segment, m.
 pub(crate) fn point_m(at: Ned, (a, b): (Ned, Ned)) -> f64 {
     let (side, from_a) = (b - a, at - a);
     let share = (from_a.dot(side) / side.dot(side)).clamp(0.0, 1.0);
     from_a.distance(side.scaled(share))
 }
 
-/// Where `f`, which rises, is nothing between `low` and `high`: by bisection.
+/// The root of an increasing `f` between `low` and `high`, by bisection.
 pub(crate) fn root((mut low, mut high): (f64, f64), f: impl Fn(f64) -> f64) -> f64 {
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
@@ -176,7 +176,7 @@ pub(crate) fn root((mut low, mut high): (f64, f64), f: impl Fn(f64) -> f64) -> f
     0.5 * (low + high)
 }
 
-/// The Surveyor on this water, two of them far apart.
+/// Two Surveyors far apart on this water.
 pub(crate) fn surveyor_on(change: impl FnOnce(&mut Sea)) -> Scenario {
     let mut scenario = alone("surveyor_m1_8", "calm");
     change(&mut scenario.sea);
@@ -214,13 +214,14 @@ pub(crate) fn square(x: f64) -> f64 {
     x * x
 }
 
-/// Within how much the mean square of so many samples of a process, `step` correlation times apart, must be 1: five
-/// standard errors.
+/// Tolerance of the mean square of `count` samples of a process, `step` correlation times apart,
+/// about 1: five standard errors.
 pub(crate) fn five_errors(count: usize, step: f64) -> f64 {
     5.0 * (2.0 / (count as f64 * step)).sqrt()
 }
 
-/// A series of mean 0 and variance 1, `step` correlation times apart, has the correlation e^(−lag) to within this.
+/// Asserts that a series of mean 0 and variance 1, `step` correlation times apart, has the
+/// correlation e^(−lag) to within this tolerance.
 pub(crate) fn assert_memory(what: &str, x: &[f64], lags: &[usize], step: f64, within: f64) {
     assert!(mean_of(x.len(), |i| x[i]).abs() < within, "{what}: mean");
     for lag in lags {
@@ -235,8 +236,9 @@ pub(crate) fn mean_of(count: usize, f: impl Fn(usize) -> f64) -> f64 {
     (0..count).map(f).sum::<f64>() / count as f64
 }
 
-/// The amplitudes of the harmonics of a series, by the discrete Fourier transform with Hann's window: that of harmonic
-/// `n`, which has `n` periods in the series. A sine between two harmonics loses up to a sixth of its size.
+/// The amplitudes of the harmonics of a series, by the discrete Fourier transform with a Hann
+/// window: harmonic `n` has `n` periods in the series. A sine between two harmonics loses up to a
+/// sixth of its amplitude.
 pub(crate) fn amplitudes(series: &[f64]) -> Vec<f64> {
     let count = series.len();
     let turns: Vec<(f64, f64)> =
@@ -254,8 +256,8 @@ pub(crate) fn amplitudes(series: &[f64]) -> Vec<f64> {
     (0..count / 2).map(amplitude).collect()
 }
 
-/// The derivatives at 0 of some parts of `f`, by differences of fourth order. The step suits numbers in single precision
-/// that change within a tenth of a unit.
+/// The derivatives at 0 of some parts of `f`, by fourth-order differences. The step suits
+/// single-precision numbers that vary over a tenth of a unit.
 pub(crate) fn derivative<T, const N: usize>(f: impl Fn(f64) -> T, parts: impl Fn(&T) -> [f64; N]) -> [f64; N] {
     let step = 0.01;
     let [far_before, before, after, far_after] = [-2.0, -1.0, 1.0, 2.0].map(|n| parts(&f(n * step)));

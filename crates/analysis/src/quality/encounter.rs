@@ -1,4 +1,4 @@
-//! Encounters: boats that come too near to each other, and what they were to each other then.
+//! Encounters: boats that come too close, and their relation at that time.
 
 use super::{Quality, strategy_name};
 use crate::hull_overlap::HullRectangle;
@@ -8,44 +8,45 @@ use rules::event::{Event, TagCause};
 use scenario::Scenario;
 use serde::Serialize;
 
-/// A tagger and the boat that it tagged are that to each other for this long, s.
+/// Time for which a tagger and the boat it tagged keep that relation, s.
 const TAG_REMEMBERED_S: f64 = 10.0;
-/// An encounter is over when boats are this much farther apart than what began it, m: one that bounces is one.
+/// An encounter ends when the boats are this much farther apart than its threshold, m: a bounce
+/// stays one encounter.
 const APART_M: f64 = 1.0;
 
-/// What two boats are to each other.
+/// The relation between two boats.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Relation {
-    /// Of one team.
+    /// Boats of one team.
     Mate,
-    /// Of different teams.
+    /// Boats of different teams.
     Enemy,
     /// One tagged the other, no longer than 10 s ago.
     TaggerAndTagged,
 }
 
-/// How often boats came too near to each other, by what they were to each other.
+/// Number of encounters, by relation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Encounters {
     /// Boats of one team.
     pub mate: Nearness,
-    /// Boats of different teams, but for those below.
+    /// Boats of different teams, except those below.
     pub enemy: Nearness,
     /// One tagged the other, no longer than 10 s before.
     pub tagger_and_tagged: Nearness,
 }
 
-/// How near they came.
+/// Encounters by severity.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Nearness {
     /// Hulls touched.
     pub contacts: u64,
-    /// They did not, but boats were nearer than the collision distance of the rules.
+    /// Hulls did not touch, but boats were closer than the collision distance of the rules.
     pub near_misses: u64,
 }
 
 impl Encounters {
-    /// Of boats that are this to each other.
+    /// The count for this relation.
     #[must_use]
     pub fn of(&self, relation: Relation) -> Nearness {
         match relation {
@@ -55,7 +56,7 @@ impl Encounters {
         }
     }
 
-    /// All together.
+    /// The sum over all relations.
     #[must_use]
     pub fn all(&self) -> Nearness {
         let parts = [self.mate, self.enemy, self.tagger_and_tagged];
@@ -86,10 +87,10 @@ impl Encounters {
     }
 }
 
-/// An encounter that is going on.
+/// An ongoing encounter.
 #[derive(Clone, Copy, Debug)]
 struct Encounter {
-    /// When it began.
+    /// The relation at its start.
     relation: Relation,
     touched: bool,
 }
@@ -97,9 +98,10 @@ struct Encounter {
 /// Counts the encounters of a game.
 pub(super) struct EncounterCounter {
     scenario: Scenario,
-    /// By pair: the lower vehicle times their number, plus the higher.
+    /// Ongoing encounters, indexed by pair: the lower vehicle times the number of vehicles, plus
+    /// the higher.
     open: Vec<Option<Encounter>>,
-    /// By vehicle: who tagged it last, and when, s.
+    /// The last tagger and the time of the tag, s, by vehicle index.
     tagged_by: Vec<Option<(usize, f64)>>,
 }
 
@@ -109,7 +111,7 @@ impl EncounterCounter {
         EncounterCounter { scenario: scenario.clone(), open: vec![None; count * count], tagged_by: vec![None; count] }
     }
 
-    /// Takes the next step; encounters that are over then are counted.
+    /// Adds the next step; counts the encounters that end.
     pub(super) fn add(&mut self, step: &Step, quality: &mut Quality) {
         for logged in &step.events {
             if let Event::Tagged { vehicle, cause: TagCause::Opponent(by) } = logged.event {
@@ -124,7 +126,7 @@ impl EncounterCounter {
         }
     }
 
-    /// Takes what two boats, the lower vehicle first, are at in a step.
+    /// Updates the encounter of two boats, the lower vehicle first.
     fn look_at(&mut self, step: &Step, a: usize, b: usize, quality: &mut Quality) {
         let near_m = self.scenario.rules.collision_distance_m;
         let (Some(one), Some(other)) = (step.samples.get(a), step.samples.get(b)) else { return };
@@ -142,7 +144,7 @@ impl EncounterCounter {
         }
     }
 
-    /// The game is over, and so is every encounter.
+    /// Ends every encounter at the end of the game.
     pub(super) fn end(&mut self, quality: &mut Quality) {
         (0..self.open.len()).for_each(|place| self.close(place, quality));
     }

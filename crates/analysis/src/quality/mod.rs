@@ -1,7 +1,9 @@
-//! How sensibly boats play: chatter of their orders, standing still, edges, contacts, orbits, and whether anybody attacks.
+//! How sensibly boats play: chattering orders, standing still, edges, contacts, orbits, and whether
+//! anybody attacks.
 //!
-//! [`GameQuality`] takes a game step by step, recorded or while it is played, and makes a [`Quality`] of it; those of
-//! several games add up. Everything is by strategy, role and mode, since these are what can be mended.
+//! [`GameQuality`] processes a game step by step, recorded or running, and produces a [`Quality`];
+//! several games add up. Results are split by strategy, role and mode, because these can be
+//! improved.
 
 mod encounter;
 mod orbit;
@@ -21,85 +23,87 @@ use scenario::Scenario;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// A course that changes by more than this from one order to the next jumps, rad.
+/// Threshold of a course jump between consecutive orders, rad.
 const COURSE_JUMP_RAD: f64 = std::f64::consts::FRAC_PI_4;
-/// A speed that changes by more than this from one order to the next jumps, m/s.
+/// Threshold of a speed jump between consecutive orders, m/s.
 const SPEED_JUMP_M_S: f64 = 1.0;
-/// A boat that is slower than this over the ground stands still, m/s.
+/// A boat slower than this over the ground stands still, m/s.
 const STANDING_M_S: f64 = 0.2;
-/// A boat that is nearer to an edge than this, or beyond it, is at the edge, m.
+/// A boat closer to an edge than this, or beyond it, is at the edge, m.
 const EDGE_M: f64 = 3.0;
 
 /// How sensibly boats played, in one game or in many.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Quality {
-    /// How many games.
+    /// Number of games.
     pub games: u64,
-    /// How long they were together, s.
+    /// Their total duration, s.
     pub time_s: f64,
-    /// How often boats came too near to each other; each time counts once.
+    /// Number of encounters, each counted once.
     pub encounters: Encounters,
-    /// By strategy.
+    /// Results by strategy.
     pub strategies: BTreeMap<String, StrategyQuality>,
 }
 
 /// How sensibly the boats of a strategy played.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct StrategyQuality {
-    /// For how many teams these numbers stand: a game of a strategy against itself has two.
+    /// Number of teams in the sums: a game of a strategy against itself has two.
     pub teams: u64,
-    /// How long their games were together, s.
+    /// Total duration of their games, s.
     pub time_s: f64,
-    /// For how long of that no boat of the team attacked: none carried a flag, and none was free beyond its own side, s.
+    /// Time in which no boat of the team attacked, s: none carried a flag, and none was free beyond
+    /// its own side.
     pub nobody_attacks_s: f64,
-    /// How often its boats came too near to others; two mates count once.
+    /// Number of encounters of its boats; one between two mates counts once.
     pub encounters: Encounters,
-    /// By role.
+    /// Results by role.
     pub roles: BTreeMap<String, RoleQuality>,
 }
 
 /// How sensibly the boats of a role played.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct RoleQuality {
-    /// Times that a boat went round the same point at the same radius for longer than [`ORBIT_MIN_S`].
+    /// Number of orbits: the boat circled the same point at the same radius for longer than
+    /// [`ORBIT_MIN_S`].
     pub orbits: u64,
-    /// How long those were together, s.
+    /// Their total duration, s.
     pub orbit_s: f64,
-    /// By mode.
+    /// Results by mode.
     pub modes: BTreeMap<String, ModeQuality>,
 }
 
 /// How sensibly boats played in a mode.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct ModeQuality {
-    /// For how long boats were in it, s.
+    /// Time in the mode, s.
     pub time_s: f64,
-    /// How often one began it.
+    /// Number of times a boat entered it.
     pub begun: u64,
-    /// Courses ordered that were more than 45 degrees from the one before, in the same mode.
+    /// Ordered courses more than 45 degrees from the previous one, within the mode.
     pub course_jumps: u64,
-    /// Speeds ordered that were more than 1 m/s from the one before, in the same mode.
+    /// Ordered speeds more than 1 m/s from the previous one, within the mode.
     pub speed_jumps: u64,
-    /// For how long boats stood still: below 0.2 m/s over the ground, s.
+    /// Time standing still, below 0.2 m/s over the ground, s.
     pub standing_s: f64,
-    /// For how long they were within 3 m of an edge or beyond it, s.
+    /// Time within 3 m of an edge or beyond it, s.
     pub edge_s: f64,
 }
 
-/// Takes a game step by step, and makes its [`Quality`].
+/// Processes a game step by step into its [`Quality`].
 pub struct GameQuality {
     scenario: Scenario,
-    /// The time of the step before, s.
+    /// Time of the previous step, s.
     before_s: Option<f64>,
     boats: Vec<BoatTrack>,
     encounters: EncounterCounter,
     quality: Quality,
 }
 
-/// What a boat's mind was at.
+/// The role and mode of a boat's mind.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MindState {
-    /// The role that it plays: the name of its program.
+    /// Its role: the name of its strategy program.
     pub role: String,
     /// Its mode.
     pub mode: String,
@@ -112,22 +116,22 @@ impl From<HelmReport> for MindState {
 }
 
 impl MindState {
-    /// Of a mind that does not tell it.
+    /// The state of a mind that does not report it.
     fn unknown() -> MindState {
         MindState { role: "unknown".to_owned(), mode: "unknown".to_owned() }
     }
 }
 
-/// What is remembered of a boat.
+/// The history of a boat.
 #[derive(Default)]
 struct BoatTrack {
-    /// What its mind was at in the step before, and its order then.
+    /// State and order of its mind in the previous step.
     before: Option<(MindState, Order)>,
     orbit: OrbitDetector,
 }
 
 impl GameQuality {
-    /// Of a game of which no step was taken yet.
+    /// Starts before the first step of a game.
     #[must_use]
     pub fn new(scenario: &Scenario) -> GameQuality {
         let mut quality = Quality { games: 1, ..Quality::default() };
@@ -145,10 +149,12 @@ impl GameQuality {
         }
     }
 
-    /// Takes the next step, with what each vehicle's mind was at when it gave the order that led there, where that is known.
+    /// Adds the next step, with the state in which each vehicle's mind gave the order that led
+    /// there, if known.
     pub fn add(&mut self, step: &Step, minds: &[Option<MindState>]) {
         self.encounters.add(step, &mut self.quality);
-        // A step stands for the time since the one before, and the first for nothing: no order has led there.
+        // A step covers the time since the previous one. The first covers none, because no order
+        // led there.
         let Some(before_s) = self.before_s.replace(step.time_s) else { return };
         let step_s = step.time_s - before_s;
         self.quality.time_s += step_s;
@@ -168,7 +174,7 @@ impl GameQuality {
         }
     }
 
-    /// For how long nobody of a team attacks.
+    /// Adds the time in which no boat of a team attacks.
     fn add_attacks(&mut self, step: &Step, step_s: f64) {
         let GameQuality { scenario, quality, .. } = self;
         for team in (0..scenario.teams.len()).map(|team| TeamId(team as u8)) {
@@ -183,7 +189,7 @@ impl GameQuality {
         }
     }
 
-    /// What came of the game.
+    /// The quality of the whole game.
     #[must_use]
     pub fn end(mut self) -> Quality {
         self.encounters.end(&mut self.quality);
@@ -192,7 +198,7 @@ impl GameQuality {
 }
 
 impl ModeQuality {
-    /// Adds what a boat did for a step.
+    /// Adds one step of a boat.
     fn add(&mut self, scenario: &Scenario, sample: &Sample, step_s: f64) {
         let is_at_edge = inside_m(scenario, sample.truth.at()) < EDGE_M;
         self.time_s += step_s;
@@ -200,8 +206,8 @@ impl ModeQuality {
         self.edge_s += if is_at_edge { step_s } else { 0.0 };
     }
 
-    /// Compares a mind's mode and order with those before: another mode has other aims, so that only in the same one a jump
-    /// is one.
+    /// Compares a mind's order with the previous one. A jump counts only within a mode, because
+    /// another mode has other aims.
     fn compare(&mut self, before: Option<&(MindState, Order)>, mind: &MindState, order: Order) {
         let same_mode = before.filter(|(before, _)| before == mind);
         let Some((_, before)) = same_mode else {
@@ -226,7 +232,7 @@ impl ModeQuality {
 }
 
 impl Quality {
-    /// Adds other games to these. Sums of the same games in the same order are the same to the last bit.
+    /// Adds other games. Sums of the same games in the same order are equal to the last bit.
     pub fn merge(&mut self, other: &Quality) {
         self.games += other.games;
         self.time_s += other.time_s;
@@ -254,7 +260,7 @@ impl StrategyQuality {
     }
 }
 
-/// The speed of an order, m/s; of thrusts it is not known.
+/// The speed of an order, m/s; unknown for thrusts.
 fn speed_m_s(order: Order) -> Option<f64> {
     match order {
         Order::Hold => Some(0.0),
@@ -263,12 +269,12 @@ fn speed_m_s(order: Order) -> Option<f64> {
     }
 }
 
-/// The name of the strategy that a vehicle plays.
+/// The name of a vehicle's strategy.
 fn strategy_name(scenario: &Scenario, vehicle: usize) -> &str {
     &scenario.strategy_of(VehicleId::at(vehicle)).name
 }
 
-/// The names of the strategies that boats of a team play, each once.
+/// The distinct names of a team's strategies.
 fn strategies_of(scenario: &Scenario, team: TeamId) -> Vec<&str> {
     let vehicles = (0..scenario.vehicles.len()).filter(|i| scenario.team_of(VehicleId::at(*i)) == team);
     let mut names: Vec<&str> = vehicles.map(|i| strategy_name(scenario, i)).collect();
@@ -277,12 +283,12 @@ fn strategies_of(scenario: &Scenario, team: TeamId) -> Vec<&str> {
     names
 }
 
-/// Whether a boat attacks: it brings a flag home, or it is beyond its own side and free to act.
+/// Whether a boat attacks: it brings a flag home, or is beyond its own side and free to act.
 fn attacks(scenario: &Scenario, team: TeamId, sample: &Sample) -> bool {
     sample.carrying || (sample.is_free && !scenario.field.is_own_side(team, sample.truth.at()))
 }
 
-/// How far inside of the field a place is, m; negative outside.
+/// Distance inside the field, m; negative outside.
 fn inside_m(scenario: &Scenario, at: Ned) -> f64 {
     let plan = &scenario.field.plan;
     let (x, y) = scenario.field.along_across(at);

@@ -1,8 +1,8 @@
-//! Orbits: a boat that goes round the same point at the same radius, again and again.
+//! Orbits: a boat circles the same point at the same radius, again and again.
 //!
-//! The last minute of a track is fitted by a circle (Kåsa's linear least squares: Kåsa, IEEE Transactions on
-//! Instrumentation and Measurement 25, 1976). It is an orbit where every place is near the circle, and the boat went
-//! round at least once in that minute.
+//! A circle is fitted to the last minute of a track (Kåsa's linear least squares: Kåsa, IEEE
+//! Transactions on Instrumentation and Measurement 25, 1976). It is an orbit if every position is
+//! near the circle and the boat completed at least one turn in that minute.
 
 use primitives::Ned;
 use primitives::angle::wrap_pi;
@@ -11,36 +11,36 @@ use std::f64::consts::TAU;
 
 /// An orbit lasts longer than this, s.
 pub const ORBIT_MIN_S: f64 = 60.0;
-/// From one place that is looked at to the next, s.
+/// Time between examined positions, s.
 const SPACING_S: f64 = 1.0;
-/// How far a place may be off the circle, m, or as a share of its radius: the larger counts. Waves and gusts move a boat
-/// by as much.
+/// Tolerance of positions from the circle, m, or as a share of its radius, whichever is larger.
+/// Waves and gusts move a boat by as much.
 const OFF_M: f64 = 1.0;
 const OFF_SHARE: f64 = 0.15;
-/// A boat that stays within this of a place lies there, m.
+/// A boat that stays within this radius is at rest, m.
 const RADIUS_MIN_M: f64 = 1.0;
 
 /// Finds the orbits of one boat.
 #[derive(Clone, Debug, Default)]
 pub(super) struct OrbitDetector {
-    /// When, s, and where: those of the last minute.
+    /// Times, s, and positions of the last minute.
     places: VecDeque<(f64, Ned)>,
     is_orbit: bool,
 }
 
-/// What a place adds to the orbits of a boat.
+/// The contribution of one position to the orbits of a boat.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct OrbitPart {
-    /// Whether it is the one by which a track becomes an orbit.
+    /// Whether this position starts an orbit.
     pub(super) begun: bool,
-    /// How long an orbit has lasted that was not counted yet, s.
+    /// Orbit time not counted yet, s.
     pub(super) lasted_s: f64,
 }
 
 impl OrbitDetector {
-    /// Takes the next place of the track.
+    /// Adds the next position of the track.
     pub(super) fn add(&mut self, time_s: f64, at: Ned) -> OrbitPart {
-        /// What times in seconds may be off by, s.
+        /// Rounding error of times, s.
         const ROUNDING_S: f64 = 1e-6;
         let last_s = self.places.back().map_or(f64::NEG_INFINITY, |(last_s, _)| *last_s);
         if time_s - last_s < SPACING_S - ROUNDING_S {
@@ -61,7 +61,7 @@ impl OrbitDetector {
     }
 }
 
-/// Whether a track is on a circle, and goes round it at least once.
+/// Whether a track is on a circle and completes at least one turn.
 fn goes_round(places: &VecDeque<(f64, Ned)>) -> bool {
     let Some((centre, radius_m)) = circle(places) else { return false };
     let off_m = OFF_M.max(OFF_SHARE * radius_m);
@@ -73,9 +73,10 @@ fn goes_round(places: &VecDeque<(f64, Ned)>) -> bool {
     swept_rad.abs() >= TAU
 }
 
-/// The circle that fits best, as centre and radius, m; none of a straight line.
+/// The best-fitting circle, as centre and radius, m; none for a straight line.
 ///
-/// About the mean of all places the centre solves two linear equations in the second and third moments.
+/// Relative to the mean position, the centre solves two linear equations in the second and third
+/// moments.
 fn circle(places: &VecDeque<(f64, Ned)>) -> Option<(Ned, f64)> {
     let share = 1.0 / places.len() as f64;
     let mean = places.iter().fold(Ned::default(), |sum, (_, at)| sum + *at).scaled(share);
@@ -102,7 +103,8 @@ mod tests {
     use super::*;
     use primitives::math;
 
-    /// Orbits and their length, s, of a boat that is there at each time, ten times a second.
+    /// Number and duration, s, of the orbits of a boat with these positions, sampled ten times a
+    /// second.
     fn orbits(span_s: f64, at: impl Fn(f64) -> Ned) -> (u64, f64) {
         let mut detector = OrbitDetector::default();
         let steps = (span_s * 10.0).round() as usize;
@@ -124,7 +126,7 @@ mod tests {
         }
         let short = orbits(59.0, |time_s| round(4.0, TAU * time_s / 20.0));
         assert!(is(short, 0, 0.0), "less than a minute: {short:?}");
-        // Two rounds of a minute and a half each, with a straight run of 100 s between.
+        // Two orbits of a minute and a half each, with a straight run of 100 s between.
         let twice = orbits(280.0, |time_s| match time_s {
             before if before < 90.0 => round(4.0, TAU * before / 20.0),
             between if between < 190.0 => round(4.0, TAU * 4.5) + Ned { north: -(between - 90.0), east: 0.0 },

@@ -1,4 +1,4 @@
-//! The quality of made-up tracks whose numbers are known.
+//! The quality of synthetic tracks with known results.
 
 use super::encounter::Nearness;
 use super::*;
@@ -7,13 +7,14 @@ use primitives::SimTime;
 use rules::event::{Event, Logged, TagCause};
 use std::path::Path;
 
-/// Two blue boats with Pav01's two roles, then two red ones, on the field of 160 m east by 80 m north of the datum.
+/// Two blue boats with Pav01's two roles, then two red ones, on the field of 160 m east by 80 m
+/// north of the datum.
 fn scenario() -> Scenario {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
     scenario::load(&file).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// At rest, in the middle of the own half, blue 30 m apart and red likewise.
+/// At rest in the middle of the own half, mates 30 m apart.
 fn at_rest(i: usize) -> Sample {
     let nav = Nav { north_m: [25.0, 55.0][i % 2], east_m: [40.0, 120.0][i / 2], ..Nav::default() };
     Sample { truth: nav, is_free: true, ..Sample::default() }
@@ -23,7 +24,8 @@ fn in_mode(role: &str, mode: &str) -> MindState {
     MindState { role: role.to_owned(), mode: mode.to_owned() }
 }
 
-/// What comes of a game of so many steps of 0.1 s, in which all lie at rest in mode `m` but for what `change` makes of it.
+/// The quality of a game of `steps` steps of 0.1 s, in which all boats rest in mode `m` unless
+/// `change` alters that.
 fn quality(steps: usize, change: impl Fn(usize, &mut [Sample], &mut [Option<MindState>], &mut Vec<Logged>)) -> Quality {
     let scenario = scenario();
     let mut game = GameQuality::new(&scenario);
@@ -47,7 +49,7 @@ fn steer(heading_deg: f64, speed_m_s: f64) -> Order {
 
 #[test]
 fn a_square_is_four_jumps_a_round_and_a_circle_is_none() {
-    // Two minutes; a side takes 10 s, a round of either 40 s.
+    // Two minutes; a side takes 10 s, one lap 40 s.
     let square = quality(1200, |step, samples, _, _| {
         samples[0].order = steer(90.0 * (step / 100) as f64, 2.0);
         samples[1].order = steer(360.0 * step as f64 / 400.0, 2.0);
@@ -87,7 +89,7 @@ fn standing_still_and_the_edge_are_told_by_speed_and_place() {
     let got = quality(100, |step, samples, minds, _| {
         samples[0].truth.surge_m_s = if step <= 50 { 0.3 } else { 0.1 };
         samples[2].truth.surge_m_s = 1.0;
-        // 2.9 m from the edge, then 3.1 m; the other boat is beyond it all the time.
+        // 2.9 m from the edge, then 3.1 m; the other boat is always beyond it.
         samples[0].truth.north_m = if step <= 30 { 2.9 } else { 3.1 };
         samples[2].truth.north_m = 85.0;
         minds[2] = None;
@@ -97,7 +99,7 @@ fn standing_still_and_the_edge_are_told_by_speed_and_place() {
     assert!(other.standing_s == 0.0 && (other.edge_s - 10.0).abs() < 1e-9, "{other:?}");
 }
 
-/// One boat comes to another's side at a step, stays there for a second, and goes again.
+/// One boat comes alongside another at a step, stays for a second, and leaves.
 fn visit(samples: &mut [Sample], step: usize, (begin, boat, other, gap_m): (usize, usize, usize, f64)) {
     if (begin..begin + 10).contains(&step) {
         let Nav { north_m, east_m, .. } = samples[other].truth;
@@ -107,7 +109,7 @@ fn visit(samples: &mut [Sample], step: usize, (begin, boat, other, gap_m): (usiz
 
 #[test]
 fn encounters_are_told_by_nearness_and_relation() {
-    // Surveyors are 0.91 m wide, and nearer than 3 m is a near miss. The tag is at 8 s.
+    // Surveyors are 0.91 m wide, and less than 3 m is a near miss. The tag is at 8 s.
     let visits = [
         (10, 0, 1, 0.9),  // mates, touching
         (30, 0, 1, 1.5),  // mates, near

@@ -59,7 +59,7 @@ impl Quality {
     }
 }
 
-/// A name in its column; one that is too long moves the others.
+/// A name padded to its column; a longer one shifts the others.
 fn name(name: &str) -> String {
     format!("{name:<width$} ", width = NAME - 1)
 }
@@ -101,7 +101,7 @@ fn team_row(quality: &StrategyQuality) -> String {
     )
 }
 
-/// A number for each of so many; nothing of none.
+/// `number` per unit of `of`; 0 if `of` is 0.
 fn rate(number: f64, of: f64) -> f64 {
     if of > 0.0 { number / of } else { 0.0 }
 }

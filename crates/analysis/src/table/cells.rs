@@ -1,29 +1,29 @@
-//! The cells of a row: values laid flat, each under the path that leads to it.
+//! The cells of a row: nested values flattened, each under its path.
 
 use primitives::SimTime;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// Cells by column.
+/// Cell texts, by column name.
 pub(super) type Cells = BTreeMap<String, String>;
 
-/// The cells in the order of the columns, the time first.
+/// The cells in column order, time first.
 pub(super) fn in_order(mut cells: Cells, at: SimTime, columns: &[String]) -> Vec<String> {
     let rest = columns.iter().skip(1).map(|column| cells.remove(column).unwrap_or_default());
     std::iter::once(time(at)).chain(rest).collect()
 }
 
-/// A time in s, with no more digits than it has; nothing for one before anything can happen.
+/// A time in s, with no more digits than needed; empty for times before the game.
 pub(super) fn time(at: SimTime) -> String {
     if at <= SimTime::LONG_AGO { String::new() } else { (at.0 as f64 / 1e9).to_string() }
 }
 
-/// A text without quotes, everything else as JSON has it.
+/// A text without quotes; any other value as JSON.
 pub(super) fn text(leaf: &Value) -> String {
     leaf.as_str().map_or_else(|| leaf.to_string(), str::to_owned)
 }
 
-/// The values in a value, by path. What is not there is left out.
+/// The values inside a value, by path. Nulls are left out.
 pub(super) fn flat(value: &Value) -> BTreeMap<String, Value> {
     let mut leaves = BTreeMap::new();
     lay("", value, &mut leaves);
@@ -43,12 +43,12 @@ fn lay(path: &str, value: &Value, leaves: &mut BTreeMap<String, Value>) {
             }
         }
         Value::Null => {}
-        // What is not within anything is called what it is.
+        // A value at the top level has no path.
         leaf => drop(leaves.insert(if path.is_empty() { "value" } else { path }.to_owned(), leaf.clone())),
     }
 }
 
-/// A list of a name and a number is a number with a name: counts are written so.
+/// A list of a name and a number is a named number: counts have this form.
 fn named(item: &Value) -> Option<(&str, &Value)> {
     match item.as_array()?.as_slice() {
         [Value::String(name), value @ Value::Number(_)] => Some((name, value)),

@@ -1,5 +1,6 @@
-//! The columns and rows of each kind of message. Columns are the fields of its ROS 2 definition; what is done here
-//! is what a table wants otherwise: names for numbers, seconds for nanoseconds, a row for each item of a list.
+//! The columns and rows of each kind of message. Columns are the fields of its ROS 2 definition,
+//! with a few changes for tables: names for numbers, seconds for nanoseconds, a row for each list
+//! item.
 
 use super::cells::{Cells, flat, text, time};
 use messages::external::{ExternalOrder, NavReport};
@@ -13,7 +14,8 @@ use scenario::outcome::EventOutcome;
 use serde::Serialize;
 use serde_json::Value;
 
-/// Own boats and contacts share their columns; what is known only of one kind is empty for the other.
+/// Columns shared by own boats and contacts; values known for only one of them are empty for the
+/// other.
 const SEEN: [&str; 23] = [
     "seq",
     "seen",
@@ -39,10 +41,10 @@ const SEEN: [&str; 23] = [
     "imu.starboard_m_s2",
     "imu.down_m_s2",
 ];
-/// What an order says.
+/// The columns of an order.
 const ORDER: [&str; 5] = ["heading_rad", "speed_m_s", "port", "starboard", "by_rad"];
 
-/// The columns of the table of such messages, but for the time; none for a schema that there is no table of.
+/// The columns for messages of a schema, without the time; none for an unsupported schema.
 pub(super) fn columns(schema: &str, scenario: &Scenario) -> Option<Vec<String>> {
     let named = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<String>>();
     let mut columns = named(&["seq"]);
@@ -75,7 +77,7 @@ pub(super) fn columns(schema: &str, scenario: &Scenario) -> Option<Vec<String>> 
     Some(columns)
 }
 
-/// The columns of the fields of a definition, those of its parts included.
+/// The columns for the fields of a definition, including nested ones.
 fn fields(definition: &str) -> Vec<String> {
     let text = ros::DEFINITIONS.iter().find(|(name, _)| *name == definition).map_or("", |(_, text)| text);
     let field = |line: &str| {
@@ -91,7 +93,7 @@ fn fields(definition: &str) -> Vec<String> {
     text.lines().filter_map(field).flat_map(columns_of).collect()
 }
 
-/// The column of a field: times are in s, and what is between a gateway and the sim is nobody else's.
+/// The column of a field: times are in s; fields internal to gateway and sim are left out.
 fn column(path: &str) -> Option<String> {
     let path = path.strip_prefix("nav.").unwrap_or(path);
     match path.strip_suffix("_ns") {
@@ -103,7 +105,7 @@ fn column(path: &str) -> Option<String> {
     }
 }
 
-/// The rows that a message makes, but for their time.
+/// The rows of a message, without their time.
 pub(super) fn rows(message: &RecordedMessage<'_>, scenario: &Scenario) -> Result<Vec<Cells>, RecordingError> {
     Ok(match message.schema.unwrap_or_default() {
         Frame::SCHEMA => vec![frame(&message.read()?, scenario)],
@@ -138,7 +140,7 @@ fn with_seq(seq: u64, mut cells: Cells) -> Cells {
     cells
 }
 
-/// The fields of a message or of a part of one.
+/// The fields of a message or of a nested part.
 fn cells_of(part: &impl Serialize, scenario: &Scenario) -> Cells {
     let fields = flat(&serde_json::to_value(part).expect("a message is JSON"));
     fields.iter().filter_map(|(path, value)| Some((column(path)?, cell(path, value, scenario)))).collect()
@@ -184,7 +186,7 @@ fn seen(picture: &Picture, scenario: &Scenario) -> Vec<Cells> {
     own.chain(contacts).map(row).collect()
 }
 
-/// Who carries each flag (at its home, nobody), the score, and whether the game is over.
+/// The carrier of each flag (empty at home), the score, and whether the game is over.
 fn ends(flags: &[FlagView], score: &[u32], over: bool, scenario: &Scenario) -> Cells {
     let mut cells = Cells::new();
     for (i, flag) in flags.iter().enumerate() {
@@ -205,7 +207,7 @@ fn input(record: &InputRecord, scenario: &Scenario) -> Cells {
         _ => Cells::new(),
     };
     let word = match input {
-        // It is the word of the order.
+        // The order's own word names the kind.
         Some(Input::Ordered { .. }) => cells.remove("order").unwrap_or_default(),
         Some(Input::Pictured) => "pictured".to_owned(),
         Some(Input::Held(_)) => "held".to_owned(),
@@ -240,13 +242,13 @@ fn order(order: Order) -> Cells {
     cells
 }
 
-/// The boat with this number, or nothing for none.
+/// The name of the boat with this number; empty for none.
 fn name(scenario: &Scenario, vehicle: impl TryInto<usize>) -> &str {
     let vehicle = vehicle.try_into().ok().and_then(|vehicle| scenario.vehicles.get(vehicle));
     vehicle.map_or("", |vehicle| &vehicle.name)
 }
 
-/// A flag by its team, and with its number where it is not the team's first.
+/// A flag as its team's name, with its number if it is not the team's first.
 fn flag_word(scenario: &Scenario, flag: usize) -> String {
     let flags = &scenario.field.flags;
     let Some(team) = flags.get(flag).map(|flag| flag.team) else { return flag.to_string() };

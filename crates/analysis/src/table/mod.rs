@@ -1,18 +1,18 @@
-//! Tables of single topics, for programs that read CSV.
+//! Tables of single topics as CSV.
 //!
-//! The first column is `t_s`, the time of the game (or of the gateway's clock). Names are those of the messages, with the
-//! names of boats and teams in place of numbers; units are those of the messages, except that times are in s. What is not
-//! there is an empty cell.
+//! The first column is `t_s`, the time of the game (or of the gateway's clock). Columns have the
+//! names of message fields, with boat and team names in place of numbers. Units are those of the
+//! messages, except that times are in s. Missing values are empty cells.
 //!
 //! | topic | a row |
 //! |---|---|
 //! | `frame` | a decision: all boats, flags, the score, and the events since the last as sentences |
 //! | `picture/<team>` | an own boat or a contact in a picture (`seen` says which) |
-//! | `inputs` | one thing that the game was given |
+//! | `inputs` | one input of the game |
 //! | `say/<team>` | a shared variable of a boat |
-//! | `link/<boat>`, `payload/<name>` | a line on the link or of a payload's connection, by the time of the piece that ended it |
-//! | `events` | an event of the game (no topic of the file, but told in its frames) |
-//! | any other | a message; JSON is laid flat, with numbered lists |
+//! | `link/<boat>`, `payload/<name>` | a line on the link or on a payload's connection, at the time of the piece that ended it |
+//! | `events` | an event of the game (extracted from its frames, not a topic of the file) |
+//! | any other | a message; JSON is flattened, with numbered lists |
 
 mod cells;
 mod message;
@@ -31,37 +31,37 @@ use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use thiserror::Error;
 
-/// What happened, as if it were a topic.
+/// Pseudo-topic of the events.
 pub const EVENTS: &str = "events";
 
-/// Takes rows: the names of the columns first.
+/// Receives rows, starting with the column names.
 pub type Sink<'a> = dyn FnMut(&[String]) -> std::io::Result<()> + 'a;
 
-/// Why there is no table.
+/// Why a table cannot be made.
 #[derive(Debug, Error)]
 pub enum TableError {
-    /// There is nothing on that topic.
+    /// The recording has no such topic.
     #[error("there is no topic {topic:?} in this recording; there are {}", .known.join(", "))]
     Unknown {
         /// The topic.
         topic: String,
-        /// Those there are.
+        /// The available topics.
         known: Vec<String>,
     },
-    /// What is on it is of a kind that no table is known for.
+    /// Messages of this kind have no table.
     #[error("messages of {topic} are {schema}, which no table is known for")]
     Strange {
         /// The topic.
         topic: String,
-        /// What they are.
+        /// Their schema.
         schema: String,
     },
-    /// The rows are not taken.
+    /// A row could not be written.
     #[error(transparent)]
     Sink(#[from] std::io::Error),
 }
 
-/// The topics of a recording that there are tables of, by name.
+/// The topics of a recording that have tables, by name.
 #[must_use]
 pub fn topics(bag: &Bag) -> Vec<String> {
     let mut known: Vec<String> = bag.topics().into_keys().map(str::to_owned).collect();
@@ -72,10 +72,10 @@ pub fn topics(bag: &Bag) -> Vec<String> {
     known
 }
 
-/// Whether there is such a topic.
+/// Checks that the topic exists.
 ///
 /// # Errors
-/// [`TableError::Unknown`] names those there are.
+/// [`TableError::Unknown`] lists the available topics.
 pub fn check(bag: &Bag, topic: &str) -> Result<(), TableError> {
     let known = topics(bag);
     if known.iter().any(|known| known == topic) {
@@ -85,11 +85,11 @@ pub fn check(bag: &Bag, topic: &str) -> Result<(), TableError> {
     }
 }
 
-/// Gives the table of a topic, row by row, and says what was left out. `scenario` is that of the game, where it is a game's
-/// recording.
+/// Writes the table of a topic row by row and returns the damaged messages. `scenario` is that of
+/// the game, for the recording of a game.
 ///
 /// # Errors
-/// [`TableError`] if there is no such topic, it is damaged, or the rows are not taken.
+/// [`TableError`] if the topic does not exist or is damaged, or a row cannot be written.
 pub fn write(bag: &Bag, scenario: Option<&Scenario>, topic: &str, sink: &mut Sink<'_>) -> Result<Damaged, TableError> {
     check(bag, topic)?;
     let schema = bag.on(topic).next().and_then(|message| message.schema);
@@ -113,13 +113,13 @@ pub fn write(bag: &Bag, scenario: Option<&Scenario>, topic: &str, sink: &mut Sin
     }
 }
 
-/// JSON laid flat: a column for every path that occurs in any message of the topic.
+/// Flattened JSON: one column for every path in any message of the topic.
 fn json(bag: &Bag, topic: &str, sink: &mut Sink<'_>) -> Result<Damaged, TableError> {
     let cells_of = |message: &RecordedMessage<'_>| -> Result<Cells, RecordingError> {
         let leaves = cells::flat(&message.read_json::<Value>()?);
         Ok(leaves.into_iter().map(|(path, leaf)| (path, cells::text(&leaf))).collect())
     };
-    // Which columns there are is known only when all is read; the messages are few.
+    // The columns are known only after reading everything; the messages are few.
     let mut paths = BTreeSet::new();
     let mut damaged = Damaged::default();
     for message in bag.on(topic) {
@@ -135,26 +135,26 @@ fn json(bag: &Bag, topic: &str, sink: &mut Sink<'_>) -> Result<Damaged, TableErr
     Ok(damaged)
 }
 
-/// Bytes that went one way, and over which connection, where there are several.
+/// Bytes in one direction, with their connection if there are several.
 struct Piece {
     connection: Option<u32>,
     outward: bool,
     data: Vec<u8>,
 }
 
-/// A row for each line on a link.
+/// Writes a row for each line on a link.
 fn link(bag: &Bag, topic: &str, sink: &mut Sink<'_>) -> Result<Damaged, TableError> {
     let piece = |LinkBytes { outward, data, .. }| Piece { connection: None, outward, data };
     lines(bag, topic, ("boat", &["t_s", "direction", "text"]), piece, sink)
 }
 
-/// A row for each line between a payload and a client.
+/// Writes a row for each line between a payload and a client.
 fn payload(bag: &Bag, topic: &str, sink: &mut Sink<'_>) -> Result<Damaged, TableError> {
     let piece = |PayloadBytes { connection, outward, data, .. }| Piece { connection: Some(connection), outward, data };
     lines(bag, topic, ("payload", &["t_s", "connection", "direction", "text"]), piece, sink)
 }
 
-/// A row for each line in the bytes to and from `whom`.
+/// Writes a row for each line in the bytes to and from `whom`.
 fn lines<M: Message + DeserializeOwned>(
     bag: &Bag,
     topic: &str,
@@ -176,7 +176,7 @@ fn lines<M: Message + DeserializeOwned>(
         last = message.at;
         let Some(Piece { connection, outward, data }) = damaged.sound(message.read()).map(&piece_of) else { continue };
         let lines = open.entry(connection).or_default();
-        // No bytes of a connection say that this side has closed it.
+        // An empty piece means that this side has closed the connection.
         let ended = if connection.is_some() && data.is_empty() { lines.end(outward) } else { None };
         lines.take(outward, &data).into_iter().chain(ended).try_for_each(|line| put(last, connection, line))?;
         if lines.is_empty() {

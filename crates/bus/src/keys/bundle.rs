@@ -1,4 +1,4 @@
-//! The keys of one node, read and checked.
+//! The keys of one node, loaded and validated.
 
 use super::{AUTHORITY_FILE, CERTIFICATE_FILE, Identity, KEY_FILE};
 use primitives::input_file;
@@ -11,10 +11,10 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 use x509_parser::prelude::{ASN1Time, FromDer, GeneralName, X509Certificate};
 
-/// The longest of the files, bytes.
+/// Size limit of each file, bytes.
 const FILE_MAX: u64 = 1 << 16;
 
-/// The keys of one node: a folder that [`make`](super::make()) has made.
+/// The keys of one node: a folder made by [`make`](super::make()).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bundle {
     folder: PathBuf,
@@ -23,7 +23,7 @@ pub struct Bundle {
     valid: [String; 2],
 }
 
-/// What is wrong with a bundle.
+/// A file of a bundle, and what is wrong with it.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{}: {problem}", file.display())]
 pub struct BundleError {
@@ -32,10 +32,11 @@ pub struct BundleError {
 }
 
 impl Bundle {
-    /// Reads the bundle in a folder.
+    /// Loads the bundle in a folder.
     ///
     /// # Errors
-    /// [`BundleError`] if a file is missing or damaged, if the certificate is not valid now, or if the key is another one's.
+    /// [`BundleError`] if a file is missing or damaged, if the certificate is not valid now, or if
+    /// the key does not match the certificate.
     pub fn load(folder: &Path) -> Result<Bundle, BundleError> {
         let path = |name: &str| folder.join(name);
         if !path(CERTIFICATE_FILE).exists() {
@@ -46,8 +47,8 @@ impl Bundle {
         let (chain, key) = (certificates(&path(CERTIFICATE_FILE))?, private_key(&path(KEY_FILE))?);
         certificates(&path(AUTHORITY_FILE))?;
         let refused = |name, problem: String| BundleError { file: path(name), problem };
-        // zenoh would only say that it cannot open a session. Here each file is named with what
-        // is wrong with it, before anything is opened.
+        // zenoh would only report that it cannot open a session. This names the faulty file and its
+        // fault before anything is opened.
         CertifiedKey::from_der(chain.clone(), key, &ring::default_provider())
             .map_err(|e| refused(KEY_FILE, format!("is not the key of {CERTIFICATE_FILE}: {e}")))?;
         let not_understood = |problem: String| refused(CERTIFICATE_FILE, problem);
@@ -55,44 +56,44 @@ impl Bundle {
             X509Certificate::from_der(&chain[0]).map_err(|e| not_understood(format!("is no certificate: {e}")))?;
         let name = certificate.subject().iter_common_name().find_map(|name| name.as_str().ok()).unwrap_or_default();
         let identity = name.parse().map_err(|e| not_understood(format!("was not made by `squall keys new`: {e}")))?;
-        // An expired certificate looks to its owner like a network that is down, since the
-        // other side closes the link without a word.
+        // To its owner an expired certificate looks like a network that is down, since the other
+        // side closes the link silently.
         check_period(&certificate, ASN1Time::now()).map_err(not_understood)?;
         let (validity, hosts) = (certificate.validity(), hosts(&certificate));
         let valid = [validity.not_before, validity.not_after].map(|at| at.to_string());
         Ok(Bundle { folder: folder.to_owned(), identity, hosts, valid })
     }
 
-    /// Whose they are.
+    /// The identity in the certificate.
     #[must_use]
     pub fn identity(&self) -> &Identity {
         &self.identity
     }
 
-    /// The folder.
+    /// The folder of the bundle.
     #[must_use]
     pub fn folder(&self) -> &Path {
         &self.folder
     }
 
-    /// The names and addresses that its certificate is for: those of a sim.
+    /// The names and addresses that its certificate covers: those of a sim.
     #[must_use]
     pub fn hosts(&self) -> &[String] {
         &self.hosts
     }
 
-    /// From when until when its certificate is valid, in words.
+    /// The period for which its certificate is valid, from and until, as text.
     #[must_use]
     pub fn valid(&self) -> &[String; 2] {
         &self.valid
     }
 
-    /// The files of the authority, the certificate and the key.
+    /// The paths of the authority, the certificate and the key.
     pub(crate) fn files(&self) -> [PathBuf; 3] {
         [AUTHORITY_FILE, CERTIFICATE_FILE, KEY_FILE].map(|name| self.folder.join(name))
     }
 
-    /// The same, read.
+    /// The contents of those files.
     pub(super) fn contents(
         &self,
     ) -> Result<(Vec<CertificateDer<'static>>, Vec<CertificateDer<'static>>, PrivateKeyDer<'static>), BundleError> {
@@ -101,7 +102,7 @@ impl Bundle {
     }
 }
 
-/// The certificates in a file, one at least.
+/// The certificates in a file, at least one.
 fn certificates(file: &Path) -> Result<Vec<CertificateDer<'static>>, BundleError> {
     let text = read(file)?;
     let found: Result<Vec<_>, _> = CertificateDer::pem_slice_iter(&text).collect();
@@ -124,7 +125,7 @@ fn refused(file: &Path, problem: impl Display) -> BundleError {
     BundleError { file: file.to_owned(), problem: problem.to_string() }
 }
 
-/// Checks that a certificate is valid now.
+/// Checks the validity period of a certificate against `now`.
 fn check_period(certificate: &X509Certificate<'_>, now: ASN1Time) -> Result<(), String> {
     let validity = certificate.validity();
     if now > validity.not_after {
@@ -152,7 +153,7 @@ fn hosts(certificate: &X509Certificate<'_>) -> Vec<String> {
     names.filter_map(host).collect()
 }
 
-/// Which bundles a folder has, in words, for somebody who has named that.
+/// The bundles in a folder, as text, for a user who gave the parent folder.
 fn bundles_in(folder: &Path) -> String {
     let is_bundle = |name: &String| name.parse::<Identity>().is_ok();
     let names = std::fs::read_dir(folder).into_iter().flatten().flatten();

@@ -1,4 +1,4 @@
-//! Why a TLS connection does not come about: zenoh only says that it does not.
+//! Explains why a TLS connection fails: zenoh only reports that it does.
 
 use super::{Bundle, Identity};
 use crate::BusError;
@@ -12,42 +12,43 @@ use std::net::{TcpStream, ToSocketAddrs};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// How long each step may take: this only explains what has failed before.
+/// Timeout of each step: this only explains a failure after the fact.
 const STEP: Duration = Duration::from_millis(500);
-/// What a TLS server answers to something else: an alert.
+/// The record type of a TLS alert, with which a TLS server answers other protocols.
 const ALERT: u8 = 0x15;
 
-/// Why the sim at `endpoint` (for example `tls/127.0.0.1:7447`) and these keys do not agree; nothing if nobody is there, or
-/// nothing is wrong.
+/// Why the sim at `endpoint` (for example `tls/127.0.0.1:7447`) and these keys do not match; `None`
+/// if nothing listens there or nothing is wrong.
 pub(crate) fn refusal(endpoint: &str, keys: &Bundle) -> Option<BusError> {
     let refused = |why: String| BusError::Keys(format!("{endpoint}: {why}"));
     let address = address(endpoint);
     let host = address.rsplit_once(':')?.0.trim_start_matches('[').trim_end_matches(']');
-    // zenoh (1.10) only says that it could not connect; so the handshake is done once more, by
-    // rustls directly, to learn why.
+    // zenoh (1.10) only reports that it could not connect. rustls repeats the handshake directly to
+    // learn why.
     let mut stream = connect(address)?;
     let mut tls = match client(host, keys) {
         Ok(tls) => tls,
         Err(problem) => return Some(refused(problem)),
     };
-    // The sim looks at our certificate when the handshake is over for us: its objection comes when we read.
+    // The sim checks our certificate after the handshake has ended on our side, so its alert
+    // arrives when we read.
     let outcome =
         tls.complete_io(&mut stream).and_then(|_| rustls::Stream::new(&mut tls, &mut stream).read(&mut [0; 1]));
     let error = outcome.err()?;
     if let Some(error) = error.get_ref().and_then(|inner| inner.downcast_ref::<Error>()) {
         return Some(refused(explained(error, host, keys.identity())));
     }
-    // A sim that is suspended does not answer either: that may pass.
+    // A suspended sim does not answer either, and may resume.
     let reason = "who listens there does not speak TLS: the game may be served without keys".to_owned();
     tls.is_handshaking().then(|| BusError::Open { what: format!("to connect to {endpoint}"), reason })
 }
 
-/// Whether a hub that speaks TLS listens at `endpoint`.
+/// Whether a TLS hub listens at `endpoint`.
 pub(crate) fn is_tls(endpoint: &str) -> bool {
     let asked = || {
         let mut stream = connect(address(endpoint))?;
         let mut answer = [0; 1];
-        // Eight zeros are no TLS record: whoever speaks TLS answers with an alert.
+        // Eight zeros are not a TLS record: a TLS server answers with an alert.
         stream.write_all(&[0; 8]).ok()?;
         stream.read_exact(&mut answer).ok()?;
         Some(answer[0] == ALERT)
@@ -62,15 +63,15 @@ fn connect(address: &str) -> Option<TcpStream> {
     Some(found)
 }
 
-/// Our end of a connection as zenoh makes it.
+/// The client side of a connection, as zenoh sets it up.
 fn client(host: &str, keys: &Bundle) -> Result<ClientConnection, String> {
     let (authority, chain, key) = keys.contents().map_err(|e| e.to_string())?;
     let mut roots = RootCertStore::empty();
     roots.add_parsable_certificates(authority);
     let name = ServerName::try_from(host.to_owned()).map_err(|e| format!("{host:?}: {e}"))?;
     let config = ClientConfig::builder_with_provider(Arc::new(ring::default_provider()))
-        // As zenoh's own links, which speak nothing older (`zenoh-link-tls` 1.10.2): another
-        // handshake could fail, or succeed, for other reasons.
+        // Like zenoh's own links, which accept nothing older (`zenoh-link-tls` 1.10.2): with other
+        // versions the handshake could fail or succeed for other reasons.
         .with_protocol_versions(&[&TLS13])
         .and_then(|builder| builder.with_root_certificates(roots).with_client_auth_cert(chain, key));
     config.and_then(|config| ClientConnection::new(Arc::new(config), name)).map_err(|e| e.to_string())

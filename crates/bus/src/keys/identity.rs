@@ -1,25 +1,25 @@
-//! Who a node is.
+//! Identities of nodes.
 
 use std::fmt;
 use std::str::FromStr;
 use thiserror::Error;
 
-/// Who a node is: the common name of its certificate, and the name of the folder of its keys.
+/// The identity of a node: the common name of its certificate, and the name of its key folder.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Identity {
-    /// Serves the game.
+    /// The node that serves the game.
     Sim,
-    /// Agents of this team.
+    /// The agents of this team.
     Team(String),
-    /// The gateway of this boat, or of any.
+    /// The gateway of this boat, or of any boat.
     Gateway(Option<String>),
-    /// Looks, and stops boats.
+    /// A node that watches, and may stop boats.
     Observer,
-    /// Controls the game and operates boats.
+    /// A node that controls the game and operates boats.
     Operator,
 }
 
-/// A text that names nobody.
+/// A text that is not an identity.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{0:?} is none of sim, team-NAME, gateway, gateway-NAME, observer, operator")]
 pub struct UnknownIdentity(String);
@@ -54,11 +54,11 @@ impl FromStr for Identity {
     }
 }
 
-/// Whether this can be the name of a team or a boat: it becomes part of file names and topics.
+/// Whether a text is valid as a team or boat name: it becomes part of file names and topics.
 fn is_name(name: &str) -> bool {
     let allowed = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
-    // A common name has room for 64 characters (RFC 5280, upper bound `ub-common-name`), and
-    // the longest prefix needs eight.
+    // A common name holds up to 64 characters (RFC 5280, upper bound `ub-common-name`), and the
+    // longest prefix takes eight.
     (1..=48).contains(&name.len()) && name.chars().all(allowed)
 }
 

@@ -1,4 +1,4 @@
-//! Makes keys: an authority, and a bundle for each part of a game.
+//! Makes keys: an authority, and a bundle for each identity of a game.
 
 use super::{AUTHORITY_FILE, CERTIFICATE_FILE, Identity, KEY_FILE};
 use rcgen::{
@@ -12,10 +12,10 @@ use std::time::Duration;
 use thiserror::Error;
 use time::OffsetDateTime;
 
-/// Clocks of boats and laptops may be behind that of the machine that makes the keys.
+/// Clocks of boats and laptops may lag behind that of the machine that makes the keys.
 const CLOCKS_DIFFER: Duration = Duration::from_secs(24 * 3600);
 
-/// Why keys could not be made.
+/// An error while making keys.
 #[derive(Debug, Error)]
 pub enum MakeError {
     /// A file or folder could not be written.
@@ -23,22 +23,22 @@ pub enum MakeError {
     Write {
         /// The file or folder.
         path: PathBuf,
-        /// What the system says.
+        /// The system's error.
         source: std::io::Error,
     },
-    /// A host cannot be in a certificate, or the time is out of range.
+    /// A host name is not valid in a certificate, or the time is out of range.
     #[error("cannot make a certificate: {0}")]
     Certificate(#[from] rcgen::Error),
-    /// The certificates would be valid until a time that has no date.
+    /// The end of the validity period is beyond the last representable date.
     #[error("certificates cannot be valid for that long")]
     TooLong,
 }
 
-/// Makes an authority and a bundle for each identity, in a folder of its name under `folder`; gives the bundles' folders.
-/// `hosts` are the names and addresses at which the sim will be reached.
+/// Makes an authority and a bundle for each identity, each in a folder of that name under `folder`;
+/// returns the bundles' folders. `hosts` are the names and addresses at which nodes reach the sim.
 ///
 /// # Errors
-/// [`MakeError`]; also if a bundle of one of these names is there already.
+/// [`MakeError`]; also if a bundle of one of these names already exists.
 pub fn make(
     folder: &Path,
     identities: &[Identity],
@@ -50,17 +50,16 @@ pub fn make(
     let (from, Some(until)) = period else { return Err(MakeError::TooLong) };
     let params = |name: String, hosts: &[String]| -> Result<CertificateParams, rcgen::Error> {
         let mut params = CertificateParams::new(hosts)?;
-        // zenoh's access control tells nodes apart by the common name, and by nothing else in a
-        // certificate.
+        // zenoh's access control distinguishes nodes by the common name alone.
         params.distinguished_name.push(DnType::CommonName, name);
         (params.not_before, params.not_after) = (from, until);
         Ok(params)
     };
-    // Each set has an authority of another name, so that keys of two sets are told apart.
+    // Each set has an authority with its own name, so that keys of two sets can be told apart.
     let mut authority = params(format!("Squall {:016x}", crate::random_number()), &[])?;
-    // No authorities below this one: its key is thrown away when this function returns, and
-    // nothing else may sign in its name. Revoking a single certificate would need a list that
-    // every boat has to hear of, so a set is replaced as a whole.
+    // No authorities below this one: its key is discarded when this function returns, and nothing
+    // else may sign in its name. Revoking a single certificate would need a list that reaches every
+    // boat, so a set is replaced as a whole.
     authority.is_ca = IsCa::Ca(BasicConstraints::Constrained(0));
     authority.key_usages = vec![KeyUsagePurpose::KeyCertSign];
     let authority_key = KeyPair::generate()?;
@@ -68,7 +67,7 @@ pub fn make(
     let issuer = Issuer::new(authority, authority_key);
     let mut folders = Vec::new();
     for identity in identities {
-        // The sim only listens, everybody else only connects: nobody else's certificate is good for serving a game.
+        // The sim only listens and all others only connect: no other certificate can serve a game.
         let (usage, hosts) = match identity {
             Identity::Sim => (ExtendedKeyUsagePurpose::ServerAuth, hosts),
             _ => (ExtendedKeyUsagePurpose::ClientAuth, &[][..]),
@@ -76,8 +75,7 @@ pub fn make(
         let mut certificate = params(identity.to_string(), hosts)?;
         certificate.key_usages = vec![KeyUsagePurpose::DigitalSignature];
         certificate.extended_key_usages = vec![usage];
-        // Strict verifiers, `openssl verify -x509_strict` among them, refuse a certificate
-        // without it.
+        // Strict verifiers, such as `openssl verify -x509_strict`, refuse a certificate without it.
         certificate.use_authority_key_identifier_extension = true;
         let key = KeyPair::generate()?;
         let certificate = certificate.signed_by(&key, &issuer)?.pem();
@@ -91,7 +89,7 @@ pub fn make(
     Ok(folders)
 }
 
-/// Makes a folder that is not there yet, for its owner only, and those above it.
+/// Creates a folder, readable by its owner only, with its parents; fails if it exists.
 fn make_folder(path: &Path) -> Result<(), MakeError> {
     let failed = |source| MakeError::Write { path: path.to_owned(), source };
     let mut builder = DirBuilder::new();
@@ -99,8 +97,8 @@ fn make_folder(path: &Path) -> Result<(), MakeError> {
     if let Some(above) = path.parent() {
         builder.recursive(true).create(above).map_err(failed)?;
     }
-    // A bundle that is there already is left alone: writing over one half of a set would leave
-    // two sets that do not know each other.
+    // An existing bundle is not overwritten: replacing half a set would leave two sets that do not
+    // trust each other.
     builder.recursive(false).create(path).map_err(failed)
 }
 

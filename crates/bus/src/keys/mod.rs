@@ -1,7 +1,8 @@
-//! Keys of a game: certificates that say who a node is, for TLS on both sides of every link.
+//! Keys of a game: certificates that identify nodes, for TLS on both sides of every link.
 //!
-//! `make` makes an authority of its own for each set of keys, and forgets the authority's key: nobody can add to a set, and
-//! a set is revoked by making another one. A node has a [`Bundle`]: its certificate, its key, and the authority's certificate.
+//! `make` creates a separate authority for each set of keys and discards the authority's key.
+//! Nobody can extend a set; to revoke one, make another. A node has a [`Bundle`]: its certificate,
+//! its key, and the authority's certificate.
 
 mod bundle;
 mod handshake;
@@ -19,5 +20,5 @@ pub use make::{MakeError, make};
 const AUTHORITY_FILE: &str = "authority.pem";
 /// The node's certificate, in a bundle's folder.
 const CERTIFICATE_FILE: &str = "certificate.pem";
-/// The key that goes with it, in a bundle's folder.
+/// The key of the certificate, in a bundle's folder.
 const KEY_FILE: &str = "key.pem";

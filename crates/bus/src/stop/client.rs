@@ -1,4 +1,5 @@
-//! The client of operators: sends stops on every path that there is, and hears how boats are.
+//! The operator's stop client: sends stops on every available path, and receives the states of
+//! boats.
 
 use super::datagram::States;
 use super::gateway_link::{Asked, DatagramPath, GatewayPath, OnNews, PathNews};
@@ -19,22 +20,22 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Weak};
 use std::time::{Duration, Instant};
 
-/// How often the status is asked for on every path.
+/// How often the status is requested on every path.
 const STATUS_AGAIN: Duration = Duration::from_secs(1);
-/// A game that is slow to answer is waited for so long, when all boats that are known have stopped.
+/// How long to wait for a game that is slow to answer, once all known boats have stopped.
 const GAME_MAX: Duration = Duration::from_secs(3);
-/// The most control ports.
+/// Upper bound of control ports.
 const GATEWAYS_MAX: usize = 256;
 
-/// Stops boats. Dropped, it closes all paths of its own.
+/// Stops boats. On drop, it closes its own paths.
 pub struct StopClient(Arc<Shared>);
 
-/// What its threads share.
+/// The state that its threads share.
 struct Shared {
     orders: Watched<StopOrders>,
     game: Mutex<Option<Arc<GamePath>>>,
     gateways: Mutex<BTreeMap<SocketAddr, GatewayPath>>,
-    /// Control ports that statuses have named, to be opened.
+    /// Control ports named in statuses, not opened yet.
     named: Mutex<BTreeMap<SocketAddr, String>>,
     hubs: Mutex<Vec<DatagramPath>>,
     is_closing: AtomicBool,
@@ -50,10 +51,10 @@ struct GamePath {
 }
 
 impl StopClient {
-    /// A client that has no paths yet. A stop that no boat shows is said again for so long.
+    /// A client without paths. It repeats a stop for up to `limit` until boats show it.
     ///
     /// # Errors
-    /// If the system has no thread to give.
+    /// If the system cannot start a thread.
     pub fn open(limit: Duration) -> io::Result<StopClient> {
         let shared = Arc::new(Shared {
             orders: Watched::new(StopOrders::new(limit)),
@@ -64,27 +65,29 @@ impl StopClient {
             is_closing: AtomicBool::new(false),
         });
         let at_work = Arc::clone(&shared);
-        // A lost TCP packet costs at least 200 ms, and opening a zenoh session five round
-        // trips; datagrams and connections that are open already cost the way there. So all
-        // paths are opened before anybody presses the button.
+        // A lost TCP packet costs at least 200 ms, and opening a zenoh session five round trips;
+        // datagrams and open connections cost only the trip there. So all paths are opened before
+        // the button is pressed.
         start_thread("stop-client", move || at_work.run())?;
         Ok(StopClient(shared))
     }
 
-    /// Another path: a gateway's control port, with the token that it asks for. A port that is known already gets the token.
+    /// Adds a path: a gateway's control port, with its token. A port known already gets the new
+    /// token.
     ///
     /// # Errors
-    /// If the system has no socket or thread to give, or if there are too many.
+    /// If the system cannot provide a socket or thread, or if there are too many ports.
     pub fn add_gateway(&self, at: SocketAddr, vehicle: Option<&str>, token: Option<Token>) -> io::Result<()> {
         self.0.add_gateway(at, vehicle, token)
     }
 
-    /// Another path: datagrams to a sim, where it listens at these endpoints.
+    /// Adds a path: datagrams to a sim that listens at these endpoints.
     ///
     /// # Errors
-    /// If the system has no socket or thread to give. An endpoint of another kind, or of an unknown host, is no path.
+    /// If the system cannot provide a socket or thread. Endpoints of other kinds or of unknown
+    /// hosts are skipped.
     pub fn add_hub(&self, endpoints: &[String], game: Option<&GameName>, token: Option<&Token>) -> io::Result<()> {
-        // With keys there are no datagrams: nothing would tell their sender, and everybody in
+        // With keys there are no datagrams: they do not identify their sender, and every node in
         // such a game has a link anyway.
         for endpoint in endpoints.iter().filter(|endpoint| endpoint.starts_with("tcp/")) {
             let found = address(endpoint).to_socket_addrs().ok().and_then(|mut found| found.next());
@@ -99,12 +102,13 @@ impl StopClient {
             let path = DatagramPath::open(at, game, token.cloned().into(), on_news)?;
             self.0.hubs.lock().push(path);
         }
-        // A path that opens while a stop is under way says it at once, not at the next repeat.
+        // A path that opens during a stop carries it at once, not at the next repeat.
         self.0.orders.visit(StopOrders::hurry);
         Ok(())
     }
 
-    /// Another path: the topics of a game with these real boats, in place of those of the game before.
+    /// Adds a path: the topics of a game with these real boats, in place of those of the previous
+    /// game.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
@@ -120,7 +124,7 @@ impl StopClient {
         let control = bus.publisher(topic::control(game), Priority::Urgent)?;
         let path = GamePath { bus: bus.clone(), name: game.clone(), control, stops, _statuses: statuses };
         let before = self.0.game.lock().replace(Arc::new(path));
-        // A callback of a subscription that is dropped may be under way: nothing is locked meanwhile.
+        // A callback of a dropped subscription may still be running, so no lock is held here.
         drop(before);
         let unanswered = self.0.orders.visit(|orders| {
             boats.iter().for_each(|boat| orders.expect(boat));
@@ -132,13 +136,13 @@ impl StopClient {
         Ok(())
     }
 
-    /// The game is gone, or its session.
+    /// Removes the path of the game, after the game or its session has ended.
     pub fn leave(&self) {
         let path = self.0.game.lock().take();
         drop(path);
     }
 
-    /// Stops a boat, or all of them; an earlier stop like it is forgotten.
+    /// Stops a boat, or all of them; replaces an earlier stop of the same kind and target.
     pub fn stop(&self, target: Option<&str>, command: StopCommand) {
         let now = clock::now();
         let number = self.0.orders.visit(|orders| orders.ask(now, target.map(str::to_owned), command));
@@ -148,7 +152,7 @@ impl StopClient {
         }
     }
 
-    /// Reads or changes what is known of boats and stops.
+    /// Reads or changes the known boats and stops.
     pub fn visit<R>(&self, visit: impl FnOnce(&mut StopOrders) -> R) -> R {
         self.0.orders.visit(visit)
     }
@@ -158,24 +162,24 @@ impl StopClient {
         self.0.orders.wait(limit, holds)
     }
 
-    /// Nothing more is asked for: waits up to `limit` until everything is done, and gives what is not. Where no game is there to
-    /// name its boats, those that are known count.
+    /// Waits up to `limit` until every stop is done, and returns the unfinished ones. Call it after
+    /// the last request. Without a game to name its boats, the known ones count.
     #[must_use]
     pub fn finish(&self, limit: Duration) -> Vec<String> {
         let start = clock::now();
-        // The answer of a sim is no proof: it may be suspended while all boats have stopped, or
-        // answer while one has not. What counts is what boats show.
+        // The sim's answer proves nothing: the sim may be suspended while all boats have stopped,
+        // or answer while one has not. Only the boats' own states count.
         self.wait(limit.min(GAME_MAX), |orders| orders.is_done(clock::now()));
         self.wait(limit.saturating_sub(clock::since(start)), |orders| orders.unfinished().is_empty());
         self.visit(|orders| orders.unfinished())
     }
 
-    /// Something else is asked of a boat, or of all: earlier stops are not said any more.
+    /// Ends the repeats of earlier stops of a boat, or of all, because of a newer command.
     pub fn cancel(&self, target: Option<&str>) {
         self.visit(|orders| orders.cancel(target));
     }
 
-    /// The control ports that are known, with their boats and tokens.
+    /// The known control ports, with their boats and tokens.
     #[must_use]
     pub fn gateways(&self) -> Vec<(SocketAddr, Option<String>, Option<Token>)> {
         let gateways = self.0.gateways.lock();
@@ -183,7 +187,7 @@ impl StopClient {
         known.collect()
     }
 
-    /// The news, as soon as there are any, within `limit`.
+    /// Waits up to `limit` for news and returns it.
     pub fn news(&self, limit: Duration) -> Vec<StopNews> {
         self.0.orders.wait(limit, StopOrders::has_news);
         self.0.orders.visit(StopOrders::take_news)
@@ -196,14 +200,14 @@ impl Drop for StopClient {
         self.0.orders.visit(StopOrders::hurry);
         self.leave();
         let (gateways, hubs) = (std::mem::take(&mut *self.0.gateways.lock()), std::mem::take(&mut *self.0.hubs.lock()));
-        // All of them end at the same time.
+        // All of them end concurrently.
         gateways.values().for_each(GatewayPath::close);
         hubs.iter().for_each(DatagramPath::close);
     }
 }
 
 impl Shared {
-    /// Says again what is due, until this is closed.
+    /// Repeats stops when due, until closed.
     fn run(self: &Arc<Self>) {
         let mut status_at = clock::now();
         while !self.is_closing.load(Ordering::SeqCst) {
@@ -212,10 +216,10 @@ impl Shared {
             let named = std::mem::take(&mut *self.named.lock());
             for (at, vehicle) in named {
                 let token = self.game.lock().as_ref().and_then(|game| game.bus.token().cloned());
-                // A status names it again.
+                // The next status names it again.
                 drop(self.add_gateway(at, Some(&vehicle), token));
             }
-            // The answer to a stop says how the boat is.
+            // The answer to a stop includes the boat's state.
             if now >= status_at && !self.orders.visit(|orders| orders.is_asked_within(now, STATUS_AGAIN)) {
                 status_at = now + STATUS_AGAIN;
                 self.ask_status();
@@ -237,7 +241,7 @@ impl Shared {
         if gateways.len() >= GATEWAYS_MAX {
             return Err(io::Error::other(format!("more than {GATEWAYS_MAX} gateways")));
         }
-        // Until its boat is known it stands for that.
+        // Until its boat is known, the address is used as its name.
         let expected = vehicle.map_or_else(|| at.to_string(), str::to_owned);
         self.orders.visit(|orders| orders.expect(&expected));
         let (shared, unnamed) = (Arc::downgrade(self), vehicle.is_none().then_some(expected));
@@ -249,7 +253,7 @@ impl Shared {
         Ok(())
     }
 
-    /// Asks everybody how boats are.
+    /// Requests the states of boats on every path.
     fn ask_status(&self) {
         let ask = |name: String| GatewayCommand::Boat { name, command: OperatorCommand::Status };
         for gateway in self.gateways.lock().values() {
@@ -259,7 +263,7 @@ impl Shared {
         self.hubs.lock().iter().for_each(|hub| hub.send(&ask(String::new()), 0));
     }
 
-    /// Says what is due, the quickest paths first.
+    /// Sends stops that are due, on the quickest paths first.
     fn say(&self, now: Instant) {
         for saying in self.orders.visit(|orders| orders.due(now)) {
             self.say_to_hubs(&saying);
@@ -280,7 +284,7 @@ impl Shared {
             hubs.iter().for_each(|hub| hub.send(&GatewayCommand::Fleet(FleetCommand::EStop), saying.number));
             return;
         }
-        // A stop of all cannot be said to some of them by this path.
+        // This path cannot send a stop of the fleet to single boats.
         let boats = saying.boats.iter().filter(|_| saying.command == StopCommand::Disarm || !saying.is_of_fleet);
         for command in boats.filter_map(|boat| saying.command_to(Some(boat))) {
             hubs.iter().for_each(|hub| hub.send(&command, saying.number));
@@ -288,7 +292,7 @@ impl Shared {
     }
 
     fn say_to_game(&self, saying: &Saying) {
-        // Nothing is locked while messages go out.
+        // No lock is held while messages go out.
         let Some(game) = self.game.lock().clone() else { return };
         let send = |publisher: &Publisher, json: Vec<u8>| drop(publisher.send_json(json));
         if saying.to_everybody && saying.command == StopCommand::EStop {
@@ -304,7 +308,8 @@ impl Shared {
         }
     }
 
-    /// Asks the sim to stop all boats, and waits for its answer: it stops those that it simulates.
+    /// Asks the sim to stop all boats and waits for its answer: it stops the boats that it
+    /// simulates.
     fn ask_sim(self: &Arc<Self>, stop: u64) {
         let game = self.game.lock().as_ref().map(|game| (game.bus.clone(), game.name.clone()));
         let Some((bus, name)) = game else { return };
@@ -320,7 +325,7 @@ impl Shared {
         }
     }
 
-    /// A status that was published; `is_here` if the game is on this machine.
+    /// Handles a published status; `is_here` if the game is on this machine.
     fn hear(&self, status: &GatewayStatus, is_here: bool) {
         self.orders.visit(|orders| {
             let now = clock::now();
@@ -328,7 +333,7 @@ impl Shared {
             orders.report(now, &status.vehicle, &status.state, Source::Published(as_of));
         });
         let control = status.control.as_ref().and_then(|control| control.parse::<SocketAddr>().ok());
-        // One of loopback may be of another machine.
+        // A loopback address may belong to another machine.
         let control = control.filter(|at| !at.ip().is_unspecified() && (is_here || !at.ip().is_loopback()));
         let mut named = self.named.lock();
         if let Some(at) = control.filter(|_| named.len() < GATEWAYS_MAX) {
@@ -341,7 +346,7 @@ impl Shared {
             for (vehicle, (state, age_ms)) in states {
                 orders.expect(vehicle);
                 if !state.is_empty() {
-                    // Had the request come at once, the sim would have heard it then.
+                    // If the request arrived instantly, the sim heard the state this long before.
                     let as_of = asked.checked_sub(Duration::from_millis(*age_ms)).unwrap_or(asked);
                     orders.report(clock::now(), vehicle, state, Source::Relayed(as_of));
                 }
@@ -351,7 +356,7 @@ impl Shared {
     }
 }
 
-/// A gateway has something to say; it was expected by this name as long as its boat was not known.
+/// Handles news from a gateway, expected by the name `unnamed` until its boat is known.
 fn gateway_said(shared: &Weak<Shared>, unnamed: Option<&str>, news: PathNews) {
     let Some(shared) = shared.upgrade() else { return };
     shared.orders.visit(|orders| match news {
@@ -367,7 +372,8 @@ fn gateway_said(shared: &Weak<Shared>, unnamed: Option<&str>, news: PathNews) {
 }
 
 impl Saying {
-    /// The command to a boat's gateway; to one whose boat is not known, if it is for all.
+    /// The command for a boat's gateway; also for a gateway with unknown boat, if it is for the
+    /// fleet.
     fn command_to(&self, vehicle: Option<&str>) -> Option<GatewayCommand> {
         if self.is_of_fleet && self.command == StopCommand::EStop {
             return Some(GatewayCommand::Fleet(FleetCommand::EStop));

@@ -1,7 +1,7 @@
-//! The datagrams of stops: a request as at a control port, and its answer.
+//! Stop datagrams: a request as at a control port, and its answer.
 //!
-//! A request is JSON, filled up with spaces. Its answer repeats session and number, which a stranger elsewhere cannot guess, and
-//! is never longer than the request: the port is of no use for flooding others.
+//! A request is JSON, padded with spaces. Its answer repeats session and number, which a stranger
+//! elsewhere cannot guess. It is never longer than the request, so the port cannot amplify a flood.
 
 use crate::token::{Proof, Token};
 use messages::external::GatewayCommand;
@@ -9,27 +9,27 @@ use serde::{Deserialize, Serialize};
 use serde_json::value::{RawValue, to_raw_value};
 use std::collections::BTreeMap;
 
-/// The longest datagram, bytes: it fits into one packet wherever there is a usual network.
+/// The longest datagram, bytes: it fits into one packet on usual networks.
 pub const DATAGRAM_MAX: usize = 1400;
-/// Requests are filled up to so many bytes.
+/// Requests are padded to this length, bytes.
 const FILLED: usize = 1200;
 /// The key of answers, in proofs.
 const ANSWER_KEY: &str = "stop datagram";
 
-/// A request in a datagram: a stop, or for the status.
+/// A request in a datagram: a stop, or a request for the status.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StopRequest {
     /// A random number that identifies the sender.
     pub session: u64,
-    /// Counts its requests.
+    /// Sequence number of the request.
     pub number: u64,
-    /// The game; without a name, whichever it is.
+    /// The game; if unset, any.
     pub game: Option<String>,
-    /// What is asked; nothing that needs a token.
+    /// The command; never one that needs a token.
     pub command: GatewayCommand,
 }
 
-/// As it travels. A line of a control port is one, too.
+/// The wire format. A line of a control port has it too.
 #[derive(Serialize, Deserialize)]
 struct RequestDatagram {
     body: Box<RawValue>,
@@ -41,22 +41,23 @@ struct RequestDatagram {
     game: Option<String>,
 }
 
-/// How boats are, by name: their state in words, and its age where the answer was made, ms. The state of a silent boat is empty.
+/// The states of boats, by name: the state as text, and its age when the answer was made, ms. The
+/// text is empty for a silent boat.
 pub type States = BTreeMap<String, (String, u64)>;
 
-/// As it travels.
+/// The wire format.
 #[derive(Serialize, Deserialize)]
 struct AnswerDatagram {
     session: u64,
     number: u64,
     boats: Box<RawValue>,
-    /// Proof that the answer's sender knows the token, if it has one.
+    /// Proof that the sender of the answer knows the token, if it has one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     mac: Option<String>,
 }
 
 impl StopRequest {
-    /// As it is sent.
+    /// Encodes the request as a padded datagram.
     ///
     /// # Panics
     /// Never: a request is JSON.
@@ -65,14 +66,14 @@ impl StopRequest {
         let body = to_raw_value(&self.command).expect("a command is JSON");
         let datagram = RequestDatagram { body, session: self.session, number: self.number, game: self.game.clone() };
         let mut bytes = serde_json::to_vec(&datagram).expect("a request is JSON");
-        // The answer may be no longer than the request, and has to name all boats. With its
-        // headers it stays below the 1280 bytes that every IPv6 link carries (RFC 8200): a
-        // datagram in fragments is lost if one of them is.
+        // The answer may be no longer than the request, and has to name all boats. With its headers
+        // it stays below the 1280 bytes that every IPv6 link carries (RFC 8200); a fragmented
+        // datagram is lost with any one fragment.
         bytes.resize(bytes.len().max(FILLED), b' ');
         bytes
     }
 
-    /// Reads a datagram; none if it is too long, garbage, or asks for what needs a token.
+    /// Decodes a datagram; `None` if it is too long, garbage, or a command that needs a token.
     #[must_use]
     pub fn decode(bytes: &[u8]) -> Option<StopRequest> {
         if bytes.len() > DATAGRAM_MAX {
@@ -80,12 +81,13 @@ impl StopRequest {
         }
         let RequestDatagram { body, session, number, game } = serde_json::from_slice(bytes).ok()?;
         let command: GatewayCommand = serde_json::from_str(body.get()).ok()?;
-        // A datagram has no challenge, so one that was recorded could be sent again: only what
-        // may be done by anybody, and twice, comes by it.
+        // A datagram has no challenge, so a recorded one could be replayed. It is accepted only for
+        // commands that any node may repeat.
         (!command.needs_token()).then_some(StopRequest { session, number, game, command })
     }
 
-    /// The answer: how boats are. None if there is no room for it in `room` bytes, the length of the request.
+    /// The answer with the states of boats; `None` if it does not fit into `room` bytes, the length
+    /// of the request.
     ///
     /// # Panics
     /// Never: an answer is JSON.
@@ -98,7 +100,8 @@ impl StopRequest {
         (bytes.len() <= room).then_some(bytes)
     }
 
-    /// Reads the answer to this; none if it is garbage, of another request, or does not prove the token that is known.
+    /// Decodes the answer to this request; `None` if it is garbage, for another request, or does
+    /// not prove the known token.
     pub(super) fn read_answer(&self, bytes: &[u8], token: Option<&Token>) -> Option<States> {
         let AnswerDatagram { session, number, boats, mac } = serde_json::from_slice(bytes).ok()?;
         let proof = |mac| Proof { challenge: self.challenge(), mac };
@@ -116,7 +119,7 @@ impl StopRequest {
     }
 }
 
-/// The number of the request that this claims to answer.
+/// The number of the request that these bytes claim to answer.
 pub(super) fn answered_number(bytes: &[u8]) -> Option<u64> {
     serde_json::from_slice::<AnswerDatagram>(bytes).ok().map(|answer| answer.number)
 }
@@ -150,7 +153,7 @@ mod tests {
         for command in [boat(OperatorCommand::Arm), GatewayCommand::Fleet(FleetCommand::Release)] {
             assert_eq!(StopRequest::decode(&request(command).encode()), None);
         }
-        // As a line at a control port.
+        // In the format of a line at a control port.
         let line = StopRequest::decode(br#"{"body":{"fleet":"e_stop"}}"#).expect("a request");
         assert_eq!((line.game, line.command), (None, GatewayCommand::Fleet(FleetCommand::EStop)));
     }

@@ -1,4 +1,4 @@
-//! A UDP socket that is read as long as it is kept.
+//! A UDP socket with a thread that reads it until it is dropped.
 
 use super::DATAGRAM_MAX;
 use crate::clock;
@@ -9,20 +9,21 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// How often the thread that reads looks whether it is to end.
+/// How often the reading thread checks whether to end.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// A UDP socket and the thread that reads it. Dropped, it is closed.
+/// A UDP socket and the thread that reads it. Closed on drop.
 pub struct DatagramPort {
     is_closing: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl DatagramPort {
-    /// Calls `serve` with every datagram that is not too long, and sends back what it gives.
+    /// Calls `serve` with every datagram that is not too long, and returns its result to the
+    /// sender.
     ///
     /// # Errors
-    /// If the system has no thread to give.
+    /// If the system cannot start a thread.
     pub fn open(
         socket: UdpSocket,
         name: &str,
@@ -36,11 +37,11 @@ impl DatagramPort {
             while !closing.load(Ordering::SeqCst) {
                 match socket.recv_from(&mut buffer) {
                     Ok((count, from)) if count <= DATAGRAM_MAX => {
-                        // An answer that is lost is asked for again.
+                        // A lost answer is requested again.
                         serve(&buffer[..count]).into_iter().for_each(|answer| drop(socket.send_to(&answer, from)));
                     }
                     Ok(_) => {}
-                    // Nobody listens where a request was sent: somebody may later.
+                    // No process listens at the target of a request yet.
                     Err(e) if e.kind() == io::ErrorKind::ConnectionRefused => {}
                     Err(e) if matches!(e.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut) => {}
                     Err(_) => clock::rest(LOOK),
@@ -51,7 +52,7 @@ impl DatagramPort {
         Ok(DatagramPort { is_closing, thread: Some(thread) })
     }
 
-    /// Ends the thread soon; dropping this waits for it.
+    /// Tells the thread to end; drop waits for it.
     pub(super) fn close(&self) {
         self.is_closing.store(true, Ordering::SeqCst);
     }
@@ -60,7 +61,7 @@ impl DatagramPort {
 impl Drop for DatagramPort {
     fn drop(&mut self) {
         self.close();
-        // A thread that panicked has nothing to give back.
+        // A panicked thread has no result.
         self.thread.take().map(JoinHandle::join).into_iter().for_each(drop);
     }
 }

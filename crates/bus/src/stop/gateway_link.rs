@@ -1,4 +1,5 @@
-//! The operator's end of a path: datagrams to a control port or a sim, and a connection to a control port that is kept open.
+//! The operator's end of a path: datagrams to a control port or a sim, and a connection to a
+//! control port that stays open.
 
 use super::datagram::{States, StopRequest, answered_number};
 use super::datagram_port::DatagramPort;
@@ -14,34 +15,34 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// The requests whose answers are awaited; the oldest go first.
+/// Upper bound of requests awaiting an answer; the oldest are discarded first.
 const AWAITED_MAX: usize = 128;
-/// How long connecting may take, and how soon it is tried again.
+/// Timeout of connecting, and the time until the next attempt.
 const CONNECT_MAX: Duration = Duration::from_secs(3);
 const CONNECT_AGAIN: Duration = Duration::from_millis(300);
-/// A connection on which nothing comes for so long is opened anew: the status is asked for every second.
+/// A connection silent for this long is reopened: the status is requested every second.
 const SILENT_MAX: Duration = Duration::from_secs(4);
-/// A peer that takes nothing keeps no stop waiting for the other paths.
+/// Write timeout, so that a blocked peer does not delay a stop on the other paths.
 const WRITE_MAX: Duration = Duration::from_millis(20);
 
-/// What comes of a path.
+/// News from a path.
 pub(super) enum PathNews {
-    /// It is open.
+    /// The path is open.
     Connected,
-    /// How boats are, in answer to a request.
+    /// The states of boats, in answer to a request.
     States(States, Asked),
 }
 
-/// A request that is answered.
+/// An answered request.
 #[derive(Clone, Copy)]
 pub(super) struct Asked {
-    /// The stop that it is; 0 is none.
+    /// The number of its stop; 0 for none.
     pub(super) stop: u64,
     /// When it was sent.
     pub(super) at: Instant,
 }
 
-/// Where it goes.
+/// Receives news from a path.
 pub(super) type OnNews = Arc<dyn Fn(PathNews) + Send + Sync>;
 
 /// Datagrams to one address.
@@ -53,7 +54,7 @@ pub(super) struct DatagramPath {
     port: DatagramPort,
 }
 
-/// Requests whose answers are awaited.
+/// Requests awaiting an answer.
 #[derive(Default)]
 struct Sent {
     number: u64,
@@ -69,7 +70,7 @@ impl DatagramPath {
     ) -> io::Result<DatagramPath> {
         let any: IpAddr = if at.is_ipv4() { Ipv4Addr::UNSPECIFIED.into() } else { Ipv6Addr::UNSPECIFIED.into() };
         let socket = UdpSocket::bind((any, 0))?;
-        // Nothing from elsewhere is read.
+        // Accepts datagrams from this address only.
         socket.connect(at)?;
         let sent = Arc::new(Mutex::new(Sent::default()));
         let answered = Arc::clone(&sent);
@@ -84,12 +85,12 @@ impl DatagramPath {
         Ok(DatagramPath { socket, session: random_number(), game, sent, port })
     }
 
-    /// Ends soon; dropping this waits for it.
+    /// Tells the thread to end; drop waits for it.
     pub(super) fn close(&self) {
         self.port.close();
     }
 
-    /// Sends a request, for this stop.
+    /// Sends a request that belongs to this stop.
     pub(super) fn send(&self, command: &GatewayCommand, stop: u64) {
         let mut sent = self.sent.lock();
         sent.number += 1;
@@ -100,21 +101,21 @@ impl DatagramPath {
         let surplus = sent.awaited.len().saturating_sub(AWAITED_MAX);
         sent.awaited.drain(..surplus);
         drop(sent);
-        // It is sent again, and by other paths.
+        // It is repeated, and sent by other paths.
         drop(self.socket.send(&bytes));
     }
 }
 
 /// A gateway's control port, over TCP and UDP at once.
 pub(super) struct GatewayPath {
-    /// Its boat, once that is known.
+    /// Its boat, once known.
     pub(super) vehicle: Arc<Mutex<Option<String>>>,
     pub(super) token: CurrentToken,
     datagrams: DatagramPath,
     connection: Arc<Connection>,
 }
 
-/// The connection that is kept open.
+/// The open connection.
 struct Connection {
     at: SocketAddr,
     open: Mutex<Option<Open>>,
@@ -124,12 +125,12 @@ struct Connection {
 
 struct Open {
     stream: TcpStream,
-    /// The requests whose answers are awaited, in their order.
+    /// The requests awaiting an answer, in order.
     awaited: VecDeque<Asked>,
 }
 
 impl GatewayPath {
-    /// Begins to connect to a port; `vehicle` is its boat, where that is known.
+    /// Starts connecting to a port; `vehicle` is its boat, if known.
     pub(super) fn open(
         at: SocketAddr,
         vehicle: Option<String>,
@@ -142,7 +143,7 @@ impl GatewayPath {
             if let PathNews::States(states, _) = &mut news {
                 let mut vehicle = learnt.lock();
                 let own = vehicle.get_or_insert_with(|| states.keys().next().cloned().unwrap_or_default());
-                // It speaks for no other boat.
+                // A gateway reports only its own boat.
                 states.retain(|name, _| name == own);
             }
             on_news(news);
@@ -155,12 +156,12 @@ impl GatewayPath {
         Ok(GatewayPath { vehicle, token, datagrams, connection })
     }
 
-    /// Ends soon; dropping this waits for it.
+    /// Tells the threads to end; drop waits for them.
     pub(super) fn close(&self) {
         self.datagrams.close();
     }
 
-    /// Sends a command by both ways, for this stop.
+    /// Sends a command over both TCP and UDP, for this stop.
     pub(super) fn send(&self, command: &GatewayCommand, stop: u64) {
         self.datagrams.send(command, stop);
         self.connection.send(command, stop);
@@ -178,7 +179,7 @@ impl Connection {
     fn run(&self) {
         while !self.is_closing.load(Ordering::SeqCst) {
             if let Ok(stream) = TcpStream::connect_timeout(&self.at, CONNECT_MAX) {
-                // However it ends, it is opened anew.
+                // However it ends, it is reopened.
                 drop(self.read(stream));
                 self.close();
             }
@@ -198,12 +199,12 @@ impl Connection {
             reader.by_ref().take(ANSWER_BYTES_MAX).read_until(b'\n', &mut line)?;
             let awaited = self.open.lock().as_mut().and_then(|open| open.awaited.pop_front());
             let Some(asked) = awaited.filter(|_| line.ends_with(b"\n")) else { return Ok(()) };
-            // Nothing is proven here: what needs the token is asked over a connection of its own.
+            // This connection proves nothing: requests that need the token use a separate one.
             match read(None, GATEWAY_PORT_KEY, &(), &line) {
                 Ok(Answered::Answer(OperatorReply { refused: None, status })) => {
                     (self.on_news)(PathNews::States(States::from([(status.vehicle, (status.state, 0))]), asked));
                 }
-                // It is another boat's, or its gateway does not run yet.
+                // Another boat's gateway, or one that does not run yet.
                 Ok(_) => {}
                 Err(_) => return Ok(()),
             }
@@ -217,7 +218,7 @@ impl Connection {
         let Some(Open { stream, awaited }) = &mut *open else { return };
         awaited.push_back(Asked { stop, at: clock::now() });
         if awaited.len() > AWAITED_MAX || (&*stream).write_all(&line).is_err() {
-            // It takes nothing any more, and part of a line is none.
+            // The peer takes no more data, and a partial line is invalid.
             drop(stream.shutdown(Shutdown::Both));
             *open = None;
         }

@@ -1,4 +1,4 @@
-//! Where the sim takes stops as datagrams, beside the links of its session.
+//! The sim's ports for stop datagrams, besides the links of its session.
 
 use super::datagram::{States, StopRequest};
 use super::datagram_port::DatagramPort;
@@ -13,19 +13,19 @@ use std::net::{ToSocketAddrs, UdpSocket};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// A state that is older is not told.
+/// Older states are left out of answers.
 const FRESH: Duration = Duration::from_secs(3);
 
-/// The ports of a sim. Dropped, they are closed.
+/// The ports of a sim, closed on drop.
 pub struct HubStopPort {
     _ports: Vec<DatagramPort>,
     _statuses: Vec<Declaration>,
 }
 
-/// The states of the real boats, and when each was heard.
+/// The states of the real boats by name, and when each was heard.
 type Heard = BTreeMap<String, Option<(String, Instant)>>;
 
-/// What the threads share.
+/// The state that the threads share.
 struct Server {
     game: GameName,
     bus: Bus,
@@ -35,16 +35,15 @@ struct Server {
 }
 
 impl HubStopPort {
-    /// Takes stops at the hosts and ports on which the hub of a game with these real boats listens. In a game with keys there is
-    /// none: a datagram does not say who sends it.
+    /// Accepts stops at the hosts and ports where the hub of a game with these real boats listens.
+    /// In a game with keys it opens no port: a datagram does not identify its sender.
     ///
     /// # Errors
     /// [`BusError`] if a port is taken, or the session is closed.
     pub fn open(bus: &Bus, net: &Net, game: &GameName, boats: &[String]) -> Result<HubStopPort, BusError> {
         let heard = Arc::new(Watched::new(boats.iter().map(|boat| (boat.clone(), None)).collect::<Heard>()));
         let (mut stops, mut statuses) = (BTreeMap::new(), Vec::new());
-        // A datagram shows no certificate, and in a game with keys nobody without one is to be
-        // heard.
+        // A datagram carries no certificate, and a game with keys accepts nothing without one.
         if !runtime().has_sockets() || net.keys.is_some() {
             return Ok(HubStopPort { _ports: vec![], _statuses: vec![] });
         }
@@ -64,7 +63,7 @@ impl HubStopPort {
                 reason: e.to_string(),
             };
             let found = address(endpoint).to_socket_addrs().map_err(failed)?;
-            // A name may have addresses of a kind that this machine does not use.
+            // A name may have addresses of a family that this machine does not use.
             let (bound, missed): (Vec<_>, Vec<_>) = found.map(UdpSocket::bind).partition(Result::is_ok);
             if bound.is_empty() {
                 let missed = missed.into_iter().find_map(Result::err);
@@ -86,15 +85,15 @@ impl Server {
             return None;
         }
         let publish = |publisher: &Publisher, json: serde_json::Result<Vec<u8>>| {
-            // A session that is closed has nobody to stop.
+            // A closed session has nothing to stop.
             json.into_iter().for_each(|json| drop(publisher.send_json(json)));
         };
         match &request.command {
-            // This session hears it, too.
+            // This session receives it too.
             GatewayCommand::Fleet(FleetCommand::EStop) => publish(&self.control, serde_json::to_vec(&Control::EStop)),
             GatewayCommand::Boat { name, command } if *command != OperatorCommand::Status => {
-                // Published by the sim's session, which needs no rule at the hub; an unknown
-                // boat gets no answer, and so nothing to be learnt.
+                // Published by the sim's session, which needs no rule at the hub. An unknown boat
+                // gets no answer, so nothing can be learnt.
                 publish(self.stops.get(name)?, serde_json::to_vec(command));
             }
             _ => {}
@@ -105,7 +104,7 @@ impl Server {
             let fresh = fresh.filter(|(_, age)| *age < FRESH);
             fresh.map(|(state, age)| (state.clone(), age.as_millis() as u64)).unwrap_or_default()
         };
-        // Of all boats, which tells the operator that there are no others.
+        // Names all boats, so that the operator knows that there are no others.
         let states: States =
             self.heard.visit(|heard| heard.iter().map(|(boat, heard)| (boat.clone(), state(heard))).collect());
         request.answer(bytes.len(), self.bus.token(), &states)

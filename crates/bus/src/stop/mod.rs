@@ -1,8 +1,9 @@
-//! Stops of boats, E-stop and disarm, by every path at once.
+//! Stops of boats (E-stop and disarm) over every path at once.
 //!
-//! [`StopClient`] is for operators: it sends a stop on all paths that it knows, repeats it, and says when the boat's own status
-//! shows it. The paths are the topics of the game, the control ports of gateways over TCP, and datagrams ([`StopRequest`]) to
-//! control ports and to the sim ([`HubStopPort`]).
+//! [`StopClient`] is for operators: it sends a stop on all known paths, repeats it, and reports
+//! when the boat's own status shows it. The paths are the topics of the game, the control ports of
+//! gateways over TCP, and datagrams ([`StopRequest`]) to control ports and to the sim
+//! ([`HubStopPort`]).
 
 mod client;
 mod datagram;
@@ -19,17 +20,17 @@ pub use orders::{KnownBoat, StopNews, StopOrders};
 
 use messages::external::OperatorCommand;
 
-/// What stops boats.
+/// A command that stops boats.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StopCommand {
-    /// Standby, and nothing else until it is released.
+    /// Standby, locked until released.
     EStop,
     /// Standby.
     Disarm,
 }
 
 impl StopCommand {
-    /// The command to a gateway.
+    /// The operator command for a gateway.
     #[must_use]
     pub fn operator_command(self) -> OperatorCommand {
         match self {
@@ -38,7 +39,7 @@ impl StopCommand {
         }
     }
 
-    /// The command that is this stop, if it is one.
+    /// The stop in this command, if it is one.
     #[must_use]
     pub fn of(command: &OperatorCommand) -> Option<StopCommand> {
         match command {
@@ -48,7 +49,7 @@ impl StopCommand {
         }
     }
 
-    /// Whether a boat in this state has obeyed, as gateways spell it.
+    /// Whether this state of a boat, as gateways spell it, shows the stop.
     #[must_use]
     pub fn is_shown_by(self, state: &str) -> bool {
         state.starts_with("e-stopped") || (self == StopCommand::Disarm && state.starts_with("safed"))

@@ -1,5 +1,5 @@
-//! The stops that were asked for, and what boats have reported since: which are to be said again, and which are done.
-//! No socket and no clock in here.
+//! Requested stops and the reports of boats since: which stops to repeat, and which are done. Uses
+//! no sockets and no clock.
 
 #[cfg(test)]
 mod tests;
@@ -8,83 +8,84 @@ use super::StopCommand;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::time::{Duration, Instant};
 
-/// When a stop is said again, ms after it was asked for: one that is lost costs little, and repeats let TCP find out at once.
+/// When a stop is repeated, ms after the request: a lost one then costs little, and repeats let TCP
+/// detect the loss at once.
 const SOON_MS: [u64; 6] = [0, 10, 20, 40, 80, 160];
-/// From then on it is said this often.
+/// The interval of later repeats.
 const AGAIN: Duration = Duration::from_millis(200);
-/// A status that was published may be older than the stop. For so long the stop is said although one shows it, and one of a boat that
-/// is not known to have been in another state does not count.
+/// A published status may be older than the stop. For this long the stop is repeated although a
+/// status shows it, and a status of a boat without a known different state before does not count.
 const DOUBTED: Duration = Duration::from_secs(1);
-/// How far the clock of a gateway may fall behind from one status to the next.
+/// How far a gateway's clock may fall behind from one status to the next.
 const DRIFT: Duration = Duration::from_micros(100);
-/// A gateway that seems to have begun so much later was started again.
+/// A gateway whose start time seems to have moved by this much was restarted.
 const RESTARTED: Duration = Duration::from_secs(10);
-/// A stop of all boats is said to everybody for so long; after that only to those that do not show it.
+/// A stop of all boats goes to all for this long, then only to those that do not show it.
 const TO_EVERYBODY: Duration = Duration::from_secs(2);
-/// A boat that does not show a stop is reported as late after this long.
+/// A boat that does not show a stop after this long is reported as late.
 const LATE: Duration = Duration::from_secs(2);
-/// A boat of which nothing was heard for so long is silent.
+/// A boat not heard for this long is silent.
 const SILENCE: Duration = Duration::from_secs(3);
 /// The sim's copies count for a boat that has not been heard directly for this long.
 const RELAYED_AFTER: Duration = Duration::from_secs(1);
-/// News that nobody has read; the oldest go first.
+/// Upper bound of unread news; the oldest are discarded first.
 const NEWS_MAX: usize = 1024;
 
-/// What is known of a boat.
+/// The known facts about a boat.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KnownBoat {
-    /// Its state in words, if it was heard.
+    /// Its state as text, if it was heard.
     pub state: Option<String>,
     /// When it was heard last.
     pub heard: Option<Instant>,
-    /// When it was last heard directly, not by a copy from the sim.
+    /// When it was last heard directly, not through a copy from the sim.
     heard_itself: Option<Instant>,
-    /// When its gateway began, by the status that took the least time to come.
+    /// When its gateway started, by the status with the shortest delay.
     began: Option<Instant>,
     is_silent: bool,
 }
 
 impl KnownBoat {
-    /// Whether nothing was heard of it for some time.
+    /// Whether the boat has been silent for some time.
     #[must_use]
     pub fn is_silent(&self) -> bool {
         self.is_silent
     }
 }
 
-/// What an operator wants to know.
+/// News for an operator.
 #[derive(Clone, Debug, PartialEq)]
 pub enum StopNews {
     /// A boat's own status shows a stop for the first time.
     Done {
-        /// The boat.
+        /// The name of the boat.
         vehicle: String,
-        /// The stop.
+        /// The kind of stop.
         command: StopCommand,
-        /// The state in words.
+        /// The state as text.
         state: String,
-        /// Since it was asked for.
+        /// Time since the request.
         after: Duration,
     },
-    /// A boat does not show a stop yet, and it has been some time.
+    /// A boat still does not show a stop after some time.
     Late {
-        /// The boat.
+        /// The name of the boat.
         vehicle: String,
-        /// The stop.
+        /// The kind of stop.
         command: StopCommand,
     },
-    /// The sim has answered to a stop of all boats, or has not, for this reason.
+    /// The sim has answered a stop of all boats after this time, or failed to, for this reason.
     Sim(Result<Duration, String>),
-    /// A boat is in another state than before.
+    /// The state of a boat has changed.
     State {
-        /// The boat.
+        /// The name of the boat.
         vehicle: String,
-        /// The state in words.
+        /// The state as text.
         state: String,
     },
-    /// Nothing was heard of a boat for some time.
+    /// A boat has been silent for some time.
     Silent {
-        /// The boat.
+        /// The name of the boat.
         vehicle: String,
     },
 }
@@ -92,55 +93,56 @@ pub enum StopNews {
 /// How a report of a boat relates to a stop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Source {
-    /// It is the answer to this stop.
+    /// The answer to this stop.
     Answer(u64),
-    /// It says how the boat was, not before this moment: it may be older than a stop that was asked for meanwhile.
+    /// A published state, no older than this moment: it may be older than a stop requested
+    /// meanwhile.
     Published(Instant),
     /// A copy from the sim, which received the original no earlier than this.
     Relayed(Instant),
 }
 
-/// A stop that was asked for.
+/// A requested stop.
 #[derive(Clone, Debug)]
 struct Stop {
     number: u64,
-    /// The boat; none is all of them.
+    /// The boat; `None` for all of them.
     target: Option<String>,
     command: StopCommand,
     asked: Instant,
-    /// How often it was said.
+    /// How often it was sent.
     said: usize,
-    /// Boats that show it: whether that was an answer to it.
+    /// Boats that show it, and whether by an answer to it.
     shown: BTreeMap<String, bool>,
     /// Boats that were in another state then, or since.
     others: BTreeSet<String>,
-    /// What the sim says to a stop of all.
+    /// The sim's answer to a stop of all boats.
     sim: Option<Result<(), String>>,
     is_late: bool,
-    /// Whether it is to be said at once, since there is another path.
+    /// Whether to send it at once because a path was added.
     is_hurried: bool,
-    /// Something was asked for since that makes an end of it.
+    /// Whether a later command supersedes it.
     is_cancelled: bool,
 }
 
-/// A stop to be said now.
+/// A stop to be sent now.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Saying {
     pub(super) number: u64,
     pub(super) command: StopCommand,
-    /// Whether it is for all boats, and is still said to everybody.
+    /// Whether it is for all boats and still sent to all.
     pub(super) is_of_fleet: bool,
     pub(super) to_everybody: bool,
     /// The boats that do not show it for certain.
     pub(super) boats: Vec<String>,
 }
 
-/// All of them.
+/// All requested stops, and the known boats.
 pub struct StopOrders {
-    /// For how long a stop is said that no boat shows.
+    /// How long an unshown stop is repeated.
     limit: Duration,
     boats: BTreeMap<String, KnownBoat>,
-    /// Whether all boats are known: a game has named them.
+    /// Whether all boats are known because a game has named them.
     is_complete: bool,
     stops: Vec<Stop>,
     count: u64,
@@ -149,25 +151,26 @@ pub struct StopOrders {
 }
 
 impl StopOrders {
-    /// None yet. One that is not shown is said again for so long.
+    /// No stops yet. An unshown stop is repeated for up to `limit`.
     pub(super) fn new(limit: Duration) -> StopOrders {
         let (boats, stops, news) = (BTreeMap::new(), Vec::new(), VecDeque::new());
         StopOrders { limit, boats, is_complete: false, stops, count: 0, changes: 0, news }
     }
 
-    /// Whether a boat has shown the last stop of this kind that was asked of it alone.
+    /// Whether a boat has shown the last stop of this kind that was requested for it alone.
     #[must_use]
     pub fn is_shown(&self, vehicle: &str, command: StopCommand) -> bool {
         let is_it = |stop: &&Stop| stop.command == command && stop.target.as_deref() == Some(vehicle);
         self.stops.iter().find(is_it).is_some_and(|stop| stop.shown.contains_key(vehicle))
     }
 
-    /// The boats that are known.
+    /// The known boats.
     pub fn boats(&self) -> impl Iterator<Item = (&String, &KnownBoat)> {
         self.boats.iter()
     }
 
-    /// Whether every stop is done, without doubt; a stop of all cannot be before a game has named its boats.
+    /// Whether every stop is done for certain; a stop of all cannot be before a game has named its
+    /// boats.
     #[must_use]
     pub fn is_done(&self, now: Instant) -> bool {
         let is_for_all = self.stops.iter().any(|stop| stop.target.is_none());
@@ -175,37 +178,37 @@ impl StopOrders {
         (self.is_complete || !is_for_all) && self.unfinished().is_empty() && self.stops.iter().all(is_sure)
     }
 
-    /// Whether there are news.
+    /// Whether there is unread news.
     #[must_use]
     pub fn has_news(&self) -> bool {
         !self.news.is_empty()
     }
 
-    /// The news since this was called last.
+    /// Returns and clears the unread news.
     pub fn take_news(&mut self) -> Vec<StopNews> {
         self.news.drain(..).collect()
     }
 
-    /// A boat has to be stopped with all the others, whether it is heard or not.
+    /// Expects a boat to show stops of all boats, whether it is heard or not.
     pub(super) fn expect(&mut self, vehicle: &str) {
         let unheard = KnownBoat { state: None, heard: None, heard_itself: None, began: None, is_silent: false };
         self.boats.entry(vehicle.to_owned()).or_insert(unheard);
     }
 
-    /// It turns out to be another one, or none.
+    /// Forgets a boat that turns out to have another name, or not to exist.
     pub(super) fn forget(&mut self, vehicle: &str) {
         self.boats.remove(vehicle);
     }
 
-    /// All boats of the game are expected now, or there is none: nobody will name others.
+    /// Records that no further boats will be named: all boats of the game are expected now, or no
+    /// game exists.
     pub fn complete(&mut self) {
         self.is_complete = true;
     }
 
-    /// A stop is asked for; it takes the place of an earlier one like it.
+    /// Requests a stop; it replaces an earlier one of the same kind and target.
     pub(super) fn ask(&mut self, now: Instant, target: Option<String>, command: StopCommand) -> u64 {
-        // Somebody who presses the button again wants to see it done again, not that it was
-        // done before.
+        // Pressing the button again asks for a new confirmation, not for the earlier one.
         self.stops.retain(|stop| (&stop.target, stop.command) != (&target, command));
         self.count += 1;
         let is_other = |boat: &KnownBoat| boat.state.as_ref().is_some_and(|state| !command.is_shown_by(state));
@@ -227,18 +230,18 @@ impl StopOrders {
         self.count
     }
 
-    /// Whether a stop was asked for not longer ago than this.
+    /// Whether a stop was requested within the last `time`.
     pub(super) fn is_asked_within(&self, now: Instant, time: Duration) -> bool {
         self.stops.iter().any(|stop| now < stop.asked + time)
     }
 
-    /// There is another path: what is not done is said at once.
+    /// Sends unfinished stops at once, because a path was added.
     pub(super) fn hurry(&mut self) {
         self.stops.iter_mut().for_each(|stop| stop.is_hurried = true);
         self.changes += 1;
     }
 
-    /// How often somebody has asked for something, or there was another path.
+    /// The number of requests and added paths so far.
     pub(super) fn changes(&self) -> u64 {
         self.changes
     }
@@ -249,27 +252,28 @@ impl StopOrders {
         stops.filter(|stop| !stop.is_cancelled && stop.sim.is_none()).map(|stop| stop.number).collect()
     }
 
-    /// Something else is asked of a boat, or of all: earlier stops are not said any more.
+    /// Ends the repeats of earlier stops of a boat, or of all, because of a newer command.
     pub fn cancel(&mut self, target: Option<&str>) {
         let is_meant = |stop: &Stop| target.is_none() || stop.target.is_none() || stop.target.as_deref() == target;
         self.stops.iter_mut().filter(|stop| is_meant(stop)).for_each(|stop| stop.is_cancelled = true);
     }
 
-    /// Not before when a status was true that comes now; `at_s` is its time since the gateway began, s.
+    /// A lower bound of the time at which a status arriving now was true; `at_s` is its time since
+    /// the gateway started, s.
     pub(super) fn as_of(&mut self, now: Instant, vehicle: &str, at_s: f64) -> Instant {
         let at = Duration::try_from_secs_f64(at_s).ok();
         let (Some(boat), Some(at)) = (self.boats.get_mut(vehicle), at) else { return now };
         let Some(began) = now.checked_sub(at) else { return now };
-        // The clocks may drift apart; a gateway that was started again began later.
-        // The earliest beginning that any status implies is that of the one which took the
-        // least time to come; all later ones are judged by it.
+        // The clocks may drift apart, and a restarted gateway started later. The earliest start
+        // time that any status implies comes from the status with the shortest delay; all later
+        // ones are judged by it.
         let known = boat.began.map(|known| known + DRIFT).filter(|known| began < *known + RESTARTED);
         let began = known.map_or(began, |known| known.min(began));
         boat.began = Some(began);
         began + at
     }
 
-    /// A boat reports its state.
+    /// Records a boat's reported state.
     pub(super) fn report(&mut self, now: Instant, vehicle: &str, state: &str, source: Source) {
         self.expect(vehicle);
         let Some(boat) = self.boats.get_mut(vehicle) else { return };
@@ -285,10 +289,10 @@ impl StopOrders {
         }
         let mut news = Vec::new();
         for stop in self.stops.iter_mut().filter(|stop| stop.target.as_deref().is_none_or(|target| target == vehicle)) {
-            // A status on its way may be older than the stop: only what is an answer to it, or
-            // was certainly received after it, proves something.
+            // A status in transit may be older than the stop: only an answer to the stop, or a
+            // status certainly received after it, is proof.
             let is_sure = source == Source::Answer(stop.number) || relayed.is_some_and(|as_of| as_of > stop.asked);
-            // A packet that was lost holds up statuses for longer than a stop takes.
+            // A lost packet delays statuses for longer than a stop takes.
             if matches!(source, Source::Published(as_of) if as_of < stop.asked) && now < stop.asked + DOUBTED {
                 continue;
             }
@@ -309,7 +313,7 @@ impl StopOrders {
                 Some(was_sure) if stop.command.is_shown_by(state) => {
                     stop.shown.insert(vehicle.to_owned(), was_sure || is_sure);
                 }
-                // What showed it was older than the stop.
+                // The report that showed it was older than the stop.
                 Some(false) if !stop.is_cancelled && now < stop.asked + DOUBTED => drop(stop.shown.remove(vehicle)),
                 _ => {}
             }
@@ -320,7 +324,7 @@ impl StopOrders {
         self.tell(news);
     }
 
-    /// What the sim says to a stop of all boats.
+    /// Records the sim's answer to a stop of all boats.
     pub(super) fn sim_answered(&mut self, now: Instant, number: u64, answer: Result<(), String>) {
         let Some(stop) = self.stops.iter_mut().find(|stop| stop.number == number) else { return };
         let news = StopNews::Sim(answer.clone().map(|()| now - stop.asked));
@@ -328,7 +332,7 @@ impl StopOrders {
         self.tell(vec![news]);
     }
 
-    /// What is to be said now.
+    /// The stops to be sent now.
     pub(super) fn due(&mut self, now: Instant) -> Vec<Saying> {
         let mut sayings = Vec::new();
         let (boats, is_complete, limit) = (&self.boats, self.is_complete, self.limit);
@@ -337,7 +341,7 @@ impl StopOrders {
                 continue;
             }
             stop.is_hurried = false;
-            // What was slept through is not made up for.
+            // Repeats missed during sleep are skipped.
             while stop.at(stop.said) <= now {
                 stop.said += 1;
             }
@@ -354,7 +358,7 @@ impl StopOrders {
         sayings
     }
 
-    /// When there is something to be said again, or to be told.
+    /// When the next repeat or report is due.
     pub(super) fn next(&self, now: Instant) -> Instant {
         let next = self.stops.iter().filter_map(|stop| stop.next(&self.boats, self.is_complete, self.limit)).min();
         next.map_or(now + AGAIN, |at| at.min(now + AGAIN))
@@ -385,7 +389,8 @@ impl StopOrders {
         self.news.drain(..surplus);
     }
 
-    /// What no boat has shown yet of what was asked of it last: in words, one each. Nothing is left where all stops are done.
+    /// The latest stops that boats have not shown yet, as text, one each. Empty if all stops are
+    /// done.
     #[must_use]
     pub fn unfinished(&self) -> Vec<String> {
         let mut left = Vec::new();
@@ -395,7 +400,7 @@ impl StopOrders {
                 Some(state) => format!("{name} does not report that it has stopped: {state}"),
                 None => format!("nothing is heard of {name}"),
             }));
-            // Where there is no real boat, the sim answers for those that it simulates.
+            // Without real boats, the sim answers for those that it simulates.
             if stop.target.is_none() && self.boats.is_empty() {
                 left.extend(match &stop.sim {
                     Some(Ok(())) => None,
@@ -409,7 +414,7 @@ impl StopOrders {
 }
 
 impl Stop {
-    /// The boats that it is for.
+    /// The target boats.
     fn targets<'a>(&'a self, boats: &'a BTreeMap<String, KnownBoat>) -> Box<dyn Iterator<Item = &'a String> + 'a> {
         match &self.target {
             Some(target) => Box::new(std::iter::once(target)),
@@ -421,7 +426,7 @@ impl Stop {
         self.shown.get(name) != Some(&true)
     }
 
-    /// When it is said for the nth time.
+    /// When it is sent for the nth time.
     fn at(&self, n: usize) -> Instant {
         match SOON_MS.get(n) {
             Some(ms) => self.asked + Duration::from_millis(*ms),
@@ -431,7 +436,7 @@ impl Stop {
         }
     }
 
-    /// When it is said next, if it is.
+    /// When it is sent next, if at all.
     fn next(&self, boats: &BTreeMap<String, KnownBoat>, is_complete: bool, limit: Duration) -> Option<Instant> {
         let at = if self.is_hurried { self.asked } else { self.at(self.said) };
         let is_sure = self.targets(boats).all(|name| !self.is_open(name));
@@ -439,7 +444,7 @@ impl Stop {
         let is_doubted = !is_sure && at < self.asked + DOUBTED;
         let is_done = match self.target {
             Some(_) => is_shown && !is_doubted,
-            // Until a game says which boats there are, others may come to be known.
+            // Until a game names its boats, more may become known.
             None => is_shown && !is_doubted && (is_complete || at >= self.asked + TO_EVERYBODY),
         };
         let is_too_late = at.saturating_duration_since(self.asked) > limit;

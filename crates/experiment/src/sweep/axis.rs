@@ -54,7 +54,7 @@ pub enum AxisValue {
 }
 
 impl fmt::Display for AxisValue {
-    /// As people read it: a file by its stem.
+    /// As shown to people: a file by its stem.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             AxisValue::Number(number) => write!(f, "{number}"),
@@ -68,7 +68,7 @@ impl fmt::Display for AxisValue {
 }
 
 impl AxisValue {
-    /// As TOML. Whole numbers have no point: some keys take no others.
+    /// The value as TOML. Whole numbers have no decimal point, since some keys require integers.
     #[must_use]
     pub fn toml(&self) -> String {
         match self {
@@ -77,26 +77,26 @@ impl AxisValue {
         }
     }
 
-    /// The number that it is.
+    /// The value as a number, if it is one.
     #[must_use]
     pub fn number(&self) -> Option<f64> {
         if let AxisValue::Number(number) = self { Some(*number) } else { None }
     }
 }
 
-/// What an axis changes.
+/// The target of an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Target {
     /// A key of the files of a kind.
     Key,
-    /// A file that the game names under the axis' own key.
+    /// A file that the game names under the axis's own key.
     File,
     /// The strategy of the opponents.
     Opponent,
 }
 
 impl Axis {
-    /// What it changes.
+    /// The target of this axis.
     pub(super) fn target(&self) -> Target {
         match self.key.as_str() {
             "opponent" => Target::Opponent,
@@ -105,7 +105,7 @@ impl Axis {
         }
     }
 
-    /// It in a setting of a game in which the entry plays as this team.
+    /// The key of its setting in a game in which the entry plays as this team.
     fn setting_key(&self, team: &str) -> String {
         match (self.target(), self.key.strip_prefix("strategy.")) {
             (Target::File, _) => format!("game.{}", self.key),
@@ -114,10 +114,10 @@ impl Axis {
         }
     }
 
-    /// The value in a game in which the entry plays as this team.
+    /// The setting of a value in a game in which the entry plays as this team.
     ///
     /// # Errors
-    /// The key of the axis does not begin with a kind of file.
+    /// If the key of the axis does not begin with a kind of file.
     pub(super) fn setting(&self, team: &str, value: &AxisValue, path: &Path) -> Result<Setting, SettingError> {
         Setting::new(&self.setting_key(team), value.toml(), path.to_owned(), self.place)
     }
@@ -128,7 +128,7 @@ impl Axis {
         self.target() != Target::Key
     }
 
-    /// The levels that it has in a grid, in order.
+    /// The levels of the axis in a grid, in order.
     #[must_use]
     pub fn levels(&self) -> Vec<AxisValue> {
         if !self.values.is_empty() {
@@ -142,18 +142,19 @@ impl Axis {
         (0..count).map(|i| self.at(share(i))).collect()
     }
 
-    /// Those of its values that tell whether all of them are allowed: every one that is listed; of a range or a distribution both ends and
-    /// the second level.
+    /// The values that suffice to check whether all are allowed: every listed value; of a range or
+    /// a distribution, both ends and the second level.
     pub(super) fn telling_values(&self) -> Vec<AxisValue> {
         let mut values = self.levels();
         if self.values.is_empty() {
-            // What a key allows is an interval, of whole numbers for some keys: the second level shows whether the steps are whole.
+            // A key allows an interval, in some cases of integers: the second level shows whether
+            // the steps are integers.
             values = vec![self.at(0.0), values.swap_remove(1), self.at(1.0)];
         }
         values
     }
 
-    /// The value below which this share of its distribution lies, 0 to 1.
+    /// The quantile of its distribution at `share`, 0 to 1.
     ///
     /// # Panics
     /// If it has neither values, a range nor a distribution.
@@ -173,7 +174,7 @@ impl Axis {
         })
     }
 
-    /// The value where another axis changes alone.
+    /// The value while another axis changes alone.
     #[must_use]
     pub fn nominal(&self) -> AxisValue {
         self.nominal.clone().unwrap_or_else(|| match self.values.len() {
@@ -183,13 +184,14 @@ impl Axis {
     }
 }
 
-/// The quantile of the standard normal distribution that is cut off at 3 deviations.
+/// The quantile of the standard normal distribution truncated at 3 standard deviations.
 fn truncated_normal(share: f64) -> f64 {
     const CUT: f64 = 3.0;
     let below = |x: f64| 0.5 * libm::erfc(-x / std::f64::consts::SQRT_2);
     let (least, whole) = (below(-CUT), below(CUT) - below(-CUT));
     let wanted = least + share * whole;
-    // The distribution is monotonic, and 60 halvings of 6 deviations are as fine as a double.
+    // The distribution is monotonic, and 60 bisections of 6 deviations reach the precision of a
+    // double.
     let (mut low, mut high) = (-CUT, CUT);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
@@ -227,7 +229,8 @@ mod tests {
         for (got, want) in log.iter().zip([0.01, 0.1, 1.0, 10.0, 100.0]) {
             assert!((got / want - 1.0).abs() < 1e-12, "{log:?}");
         }
-        // Tables: the normal distribution has 10, 30, 50 ... per cent below these. Cutting it off moves them by less than 0.01.
+        // From tables: 10, 30, 50 ... per cent of the normal distribution lie below these.
+        // Truncation moves them by less than 0.01.
         let normal = numbers(&Axis { normal: Some([10.0, 2.0]), ..axis() });
         for (got, want) in normal.iter().zip([-1.2816, -0.5244, 0.0, 0.5244, 1.2816]) {
             assert!(((got - 10.0) / 2.0 - want).abs() < 0.01, "{normal:?}");

@@ -1,4 +1,4 @@
-//! A condition on a metric of an entry, as people type it: `strategy_5.win_share < 0.5`.
+//! A condition on a metric of an entry, in the form that users type: `strategy_5.win_share < 0.5`.
 
 use super::Sweep;
 use super::metric::{METRICS, Metric};
@@ -8,35 +8,35 @@ use thiserror::Error;
 /// A metric of an entry below or above a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Condition {
-    /// The entry.
+    /// The index of the entry.
     pub entry: usize,
     /// The metric.
     pub metric: &'static Metric,
-    /// Whether it holds below the threshold, or above.
+    /// Whether it holds below the threshold (`true`) or above.
     pub is_below: bool,
-    /// The number.
+    /// The threshold, in the unit of the metric.
     pub threshold: f64,
 }
 
-/// Why a text is no condition.
+/// Why a text is not a valid condition.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum ConditionError {
-    /// It has another form.
+    /// Its form is wrong.
     #[error("{0:?} is no condition, expected ENTRY.METRIC < NUMBER or > NUMBER, as in {1}.win_share < 0.5")]
     Form(String, String),
-    /// There is no such entry.
+    /// The entry is unknown.
     #[error("there is no entry {0:?}, expected one of {1}")]
     Entry(String, String),
-    /// There is no such metric.
+    /// The metric is unknown.
     #[error("there is no metric {0:?}, expected one of {list}", list = METRICS.each_ref().map(|metric| metric.name).join(", "))]
     Metric(String),
 }
 
 impl Condition {
-    /// Reads a condition on a sweep. The entry may be left out where there is one alone.
+    /// Parses a condition on a sweep. The entry may be omitted if the sweep has only one.
     ///
     /// # Errors
-    /// [`ConditionError`]: it is none, or names what the sweep does not have.
+    /// [`ConditionError`] if the text is not a condition, or names an unknown entry or metric.
     pub fn parse(text: &str, sweep: &Sweep) -> Result<Condition, ConditionError> {
         let names: Vec<&str> = sweep.entries.iter().map(|entry| entry.name.as_str()).collect();
         let wrong = || ConditionError::Form(text.to_owned(), names[0].to_owned());
@@ -55,7 +55,7 @@ impl Condition {
         Ok(Condition { entry, metric, is_below: text[at..].starts_with('<'), threshold })
     }
 
-    /// By how much a number is on the side where it does not hold: below 0 where it does.
+    /// The distance of a number from the threshold; negative where the condition holds.
     pub(crate) fn margin(&self, number: f64) -> f64 {
         if self.is_below { number - self.threshold } else { self.threshold - number }
     }

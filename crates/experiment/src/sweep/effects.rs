@@ -1,7 +1,7 @@
-//! What each axis does, and which two of them do together: contrasts of means, seed by seed.
+//! The effects of axes and their pairwise interactions: contrasts of means within seeds.
 //!
-//! All points play the same seeds, so that a difference is taken within each seed and its interval is over seeds alone: it says how
-//! surely the difference is there at these points, and not how other points of a sampled design would come out.
+//! All points play the same seeds, so a difference is taken within each seed, and its interval is
+//! over seeds alone. The interval describes these points, not other points of a sampled design.
 
 use super::metric::{HEADLINES, METRICS, Metric, Metrics};
 use super::plan::{Plan, Point};
@@ -10,75 +10,79 @@ use crate::estimate::Estimate;
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// The observation of a seed: the mean of both sides; none unless all its games were played.
+/// The observation of a seed: the mean of both sides; `None` unless all its games were played.
 pub(crate) type Observation = Option<Metrics>;
 
-/// What was observed, by point, entry and seed.
+/// The observations by point, entry and seed.
 pub(crate) struct Observations {
     pub(crate) by_point: Vec<Vec<Vec<Observation>>>,
 }
 
-/// What an axis does to an entry.
+/// The effect of an axis on an entry.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Effect {
-    /// The axis' key.
+    /// The key of the axis.
     pub axis: String,
-    /// The entry.
+    /// The name of the entry.
     pub entry: String,
-    /// From the first level to the last; of a sampled design as many groups of points, by rising values.
+    /// From the first level to the last; of a sampled design, groups of equally many points, by
+    /// ascending values.
     pub levels: Vec<Level>,
-    /// By metric: the last level less the first.
+    /// By metric: the last level minus the first.
     pub contrasts: Vec<Option<Estimate>>,
 }
 
-/// The points at which an axis has one value, or values near to each other.
+/// The points at which an axis has one value, or neighbouring values.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Level {
-    /// As people read it.
+    /// The label shown to people.
     pub label: String,
-    /// The number, where values are numbers: the mean of the points'.
+    /// For numbers, the mean value of the points.
     pub value: Option<f64>,
-    /// How many points.
+    /// The number of points.
     pub points: usize,
-    /// By metric.
+    /// The means over these points, by metric.
     pub metrics: Vec<Option<Estimate>>,
 }
 
-/// What two axes do together beyond what each does alone.
+/// The interaction of two axes: their joint effect beyond the single ones.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Interaction {
     /// The keys of the axes.
     pub axes: [String; 2],
-    /// The entry.
+    /// The name of the entry.
     pub entry: String,
-    /// The metric.
+    /// The name of the metric.
     pub metric: &'static str,
-    /// The means where both are low, the second alone is high, the first alone is high, and both are high.
+    /// The means where both are low, the second alone is high, the first alone is high, and both
+    /// are high.
     pub cells: [f64; 4],
-    /// What the second axis does where the first is high, less what it does where the first is low.
+    /// The effect of the second axis where the first is high, minus its effect where the first is
+    /// low.
     pub contrast: Estimate,
-    /// How probable so large a contrast would be without interaction, as if this were the only one looked at.
+    /// The p-value of the contrast under no interaction, uncorrected for multiple tests.
     pub p: f64,
-    /// Whether it stands among all that were looked at (Holm 1979, 5 %).
+    /// Whether it remains significant among all tests (Holm 1979, 5 %).
     pub matters: bool,
 }
 
-/// Points of one level, and what stands for them.
+/// The points of one level, with its label and value.
 struct Group {
     label: String,
     value: Option<f64>,
     points: Vec<usize>,
 }
 
-/// The groups of pieces that a sampled axis is cut into have at least so many points.
+/// The minimum number of points in a group of a sampled axis.
 const GROUP_POINTS_MIN: usize = 4;
-/// And there are at most so many.
+/// The maximum number of such groups.
 const GROUPS_MAX: usize = 8;
-/// From so many seeds on there are intervals: fewer are often all the same, and would seem to be sure.
+/// The minimum number of seeds for an interval: fewer are often all equal, and would seem certain.
 const SEEDS_MIN: usize = 5;
 
 impl Observations {
-    /// By seed, what is observed of an entry in the mean over points: none for seeds that are not whole at all of them.
+    /// By seed, the mean of an entry's metric over points; `None` for seeds that are incomplete at
+    /// any of them.
     fn mean(&self, points: &[usize], entry: usize, metric: &Metric) -> Vec<Option<f64>> {
         let seeds = self.by_point.first().and_then(|entries| entries.first()).map_or(0, Vec::len);
         let of_seed = |seed: usize| {
@@ -95,7 +99,7 @@ impl Observations {
         estimate(self.mean(points, entry, metric).into_iter().flatten().collect())
     }
 
-    /// The estimate of how much more of a metric one entry has than another at a point.
+    /// The estimate of the difference of a metric between two entries at a point.
     pub(crate) fn difference(&self, point: usize, [one, other]: [usize; 2], metric: &Metric) -> Option<Estimate> {
         difference(&self.mean(&[point], one, metric), &self.mean(&[point], other, metric))
     }
@@ -112,7 +116,7 @@ fn difference(one: &[Option<f64>], other: &[Option<f64>]) -> Option<Estimate> {
     estimate(one.iter().zip(other).filter_map(|(one, other)| Some((*one)? - (*other)?)).collect())
 }
 
-/// What every axis does to every entry.
+/// The effect of every axis on every entry.
 pub(crate) fn effects(plan: &Plan, observed: &Observations) -> Vec<Effect> {
     let sweep = plan.sweep();
     let mut effects = vec![];
@@ -141,7 +145,8 @@ pub(crate) fn effects(plan: &Plan, observed: &Observations) -> Vec<Effect> {
     effects
 }
 
-/// The points by the value that an axis has at them, the others as they are; one at a time, those where all others are nominal.
+/// The points grouped by the value of an axis, whatever the others; in a one-at-a-time design, only
+/// those where all others are nominal.
 fn groups(plan: &Plan, axis: usize) -> Vec<Group> {
     let (sweep, points) = (plan.sweep(), plan.points());
     let about = &sweep.axes[axis];
@@ -160,7 +165,7 @@ fn groups(plan: &Plan, axis: usize) -> Vec<Group> {
         points: (0..points.len()).filter(|i| is_looked_at(&points[*i]) && points[*i].values[axis] == level).collect(),
     };
     let mut levels = about.levels();
-    // One at a time the nominal value may be none of the levels.
+    // In a one-at-a-time design the nominal value may not be one of the levels.
     let nominal = about.nominal();
     if sweep.design == Design::OneAtATime && !levels.contains(&nominal) {
         levels.push(nominal);
@@ -169,7 +174,7 @@ fn groups(plan: &Plan, axis: usize) -> Vec<Group> {
     levels.into_iter().map(group).filter(|group| !group.points.is_empty()).collect()
 }
 
-/// Pieces of an axis with as many points each.
+/// Groups of an axis with equally many points.
 fn pieces(about: &Axis, axis: usize, points: &[Point]) -> Vec<Group> {
     let number = |i: &usize| points[*i].values[axis].number().unwrap_or(f64::NAN);
     let mut order: Vec<usize> = (0..points.len()).collect();
@@ -185,7 +190,7 @@ fn pieces(about: &Axis, axis: usize, points: &[Point]) -> Vec<Group> {
     (0..count).map(piece).collect()
 }
 
-/// Whatever two axes do together, for the metrics of the summary: those that matter first.
+/// All pairwise interactions for the headline metrics, the significant ones first.
 pub(crate) fn interactions(plan: &Plan, observed: &Observations) -> Vec<Interaction> {
     let sweep = plan.sweep();
     if sweep.design == Design::OneAtATime {
@@ -223,7 +228,8 @@ pub(crate) fn interactions(plan: &Plan, observed: &Observations) -> Vec<Interact
     found
 }
 
-/// The points at the low end of an axis and at the high end: the first level and the last, or the halves of many.
+/// The points at the low and the high end of an axis: the first and the last level, or the halves
+/// if there are many.
 fn halves(groups: &[Group]) -> [Vec<usize>; 2] {
     let middle = groups.len() / 2;
     let of = |groups: &[Group]| groups.iter().flat_map(|group| group.points.clone()).collect::<Vec<usize>>();
@@ -251,7 +257,8 @@ fn interaction(
     Some((metric, [0, 1, 2, 3].map(mean), Estimate::of(&contrasts), p))
 }
 
-/// How probable a mean so far from 0 is if the true one is 0, by Student's t; none of fewer than [`SEEDS_MIN`] numbers.
+/// The p-value of the mean of these numbers against 0, by Student's t; `None` for fewer than
+/// [`SEEDS_MIN`] numbers.
 fn probability(numbers: &[f64]) -> Option<f64> {
     let count = numbers.len() as f64;
     if numbers.len() < SEEDS_MIN {
@@ -267,7 +274,8 @@ fn probability(numbers: &[f64]) -> Option<f64> {
     Some(2.0 * (1.0 - student.cdf((mean / error).abs())))
 }
 
-/// Holm's procedure at 5 %, for each metric over all pairs and entries; then those that matter come first, by rising probability.
+/// Applies Holm's procedure at 5 %, for each metric over all pairs and entries; then sorts the
+/// significant ones first, by ascending p-value.
 fn mark_those_that_matter(found: &mut [Interaction]) {
     found.sort_by(|a, b| a.p.total_cmp(&b.p));
     for metric in HEADLINES {
@@ -289,7 +297,8 @@ mod tests {
 
     #[test]
     fn the_probability_is_that_of_the_tables_of_student() {
-        // A mean of 1 with a standard error of 1 / 2.2622 over 10 numbers: the quantile of 97.5 % with 9 degrees of freedom.
+        // A mean of 1 with a standard error of 1 / 2.2622 over 10 numbers: the 97.5 % quantile with
+        // 9 degrees of freedom.
         let spread = 1.0 / 2.2622 * 3.0;
         let numbers: Vec<f64> = (0..10).map(|i| 1.0 + if i % 2 == 0 { spread } else { -spread }).collect();
         let p = probability(&numbers).expect("ten numbers");
@@ -298,7 +307,7 @@ mod tests {
             (probability(&[2.0; 4]), probability(&[2.0; 5]), probability(&[0.0; 5])),
             (None, Some(0.0), Some(1.0))
         );
-        // Four seeds that are all the same are not sure.
+        // Four equal seeds give no certainty.
         assert_eq!(estimate(vec![2.0; 4]), Some(Estimate { mean: 2.0, low: None, high: None }));
         assert!(estimate(vec![2.0; 5]).is_some_and(|five| five.low == Some(2.0)));
     }
@@ -314,7 +323,8 @@ mod tests {
             p,
             matters: false,
         };
-        // 0.01 < 0.05 / 4, 0.02 > 0.05 / 3, and 0.024, though below 0.05 / 2, comes after that.
+        // 0.01 < 0.05 / 4 and 0.02 > 0.05 / 3; 0.024 is below 0.05 / 2, but comes after a failed
+        // test.
         let mut found = [0.024, 0.9, 0.01, 0.02].map(of);
         mark_those_that_matter(&mut found);
         assert_eq!(found.map(|one| (one.p, one.matters)), [(0.01, true), (0.02, false), (0.024, false), (0.9, false)]);

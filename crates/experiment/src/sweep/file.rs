@@ -1,4 +1,4 @@
-//! Sweep files: strategies that play the same games again and again while numbers of the scenario change.
+//! Sweep files: strategies play the same games repeatedly while scenario values change.
 
 use super::axis::{Axis, AxisValue, Target};
 use crate::tournament::Entrant;
@@ -76,11 +76,12 @@ impl ScenarioFile for Sweep {
         checked(diagnostics, document)
     }
 
-    /// The game with the values of every axis that tell whether all are allowed, one axis at a time.
+    /// Checks the game with the values of every axis that suffice to check all, one axis at a time.
     fn check_games(&self) -> Result<(), Problems> {
         let teams: Vec<String> = scenario::load(&self.game)?.teams.into_iter().map(|team| team.name).collect();
         let nominal: Vec<AxisValue> = self.axes.iter().map(Axis::nominal).collect();
-        // Fifty axes of a thousand values are many games: what no axis changes is read once.
+        // Fifty axes of a thousand values are many games, so the parts that no axis changes are
+        // read once.
         let game = GameVariants::new(&self.game, &self.overrides(&teams, 0, 0, &nominal));
         let mut problems = vec![];
         let mut read = |values: &[AxisValue]| {
@@ -103,11 +104,12 @@ impl ScenarioFile for Sweep {
 }
 
 impl Sweep {
-    /// What takes the place of the game's own files and numbers at a point, where an entry plays on a side (0: the first team,
-    /// 1: the second). `values` are those of the axes.
+    /// The overrides of the game's files and numbers at a point, where an entry plays on a side (0:
+    /// the first team, 1: the second). `values` are those of the axes.
     ///
     /// # Panics
-    /// If there is no such entry or side, or a key is none: a checked sweep has none such.
+    /// If the entry or side does not exist, or a key is invalid; a checked sweep has only valid
+    /// keys.
     #[must_use]
     pub fn overrides(&self, teams: &[String], entry: usize, side: usize, values: &[AxisValue]) -> Overrides {
         let mut opponent = self.opponent.clone();
@@ -129,7 +131,7 @@ impl Sweep {
     }
 }
 
-/// A file that is named in another one.
+/// Resolves a file named in another file.
 fn beside(file: &Path, named: &str) -> PathBuf {
     tidied_path(&file.parent().unwrap_or(Path::new("")).join(named))
 }

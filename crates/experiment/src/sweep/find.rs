@@ -1,8 +1,9 @@
-//! Rare failures: how often they happen in the space of the axes, and the games in which they do.
+//! Rare failures: how often they occur in the space of the axes, and in which games.
 //!
-//! Games are drawn evenly: over the range of an axis, over the quantiles of its distribution, or over its values, each with a seed of
-//! its own. Sampling that learns where failures are (cross-entropy) and populations that split at near failures were tried: with the same
-//! number of games their intervals were no narrower.
+//! Games are drawn evenly: over the range of an axis, the quantiles of its distribution, or its
+//! values, each with its own seed. Cross-entropy sampling, which learns where failures are, and
+//! populations that split at near failures were tried: with the same number of games their
+//! intervals were no narrower.
 
 use super::condition::Condition;
 use super::journal::Journal;
@@ -16,49 +17,49 @@ use statrs::distribution::{Beta, ContinuousCDF};
 use std::num::NonZeroUsize;
 use std::sync::atomic::AtomicBool;
 
-/// After so many games it is told how many failed.
+/// The number of games between two progress reports.
 const ROUND: usize = 100;
-/// Failures that are named.
+/// The maximum number of failures listed.
 const NAMED: usize = 10;
 
-/// What was found.
+/// The result of the search.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Found {
-    /// The entry.
+    /// The name of the entry.
     pub entry: String,
-    /// What is a failure.
+    /// The condition that defines a failure.
     pub condition: String,
-    /// Games that were played.
+    /// The number of games played.
     pub games: usize,
-    /// Failures among them.
+    /// The number of failures among them.
     pub failures: usize,
-    /// The share of failures among all games, with its exact interval.
+    /// The share of failures, with its exact interval.
     pub rate: Estimate,
-    /// Failures, the worst ones first.
+    /// The worst failures, worst first.
     pub named: Vec<Named>,
 }
 
-/// A game with a failure.
+/// A game with a failure, as listed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Named {
-    /// The metric.
+    /// The value of the metric.
     pub value: f64,
-    /// By axis, as people read it.
+    /// The values of the axes as text.
     pub values: Vec<String>,
-    /// The command that plays it again.
+    /// The command that replays it.
     pub command: String,
 }
 
-/// Why nothing was found.
+/// Why a search failed.
 #[derive(Debug, thiserror::Error)]
 pub enum FindError {
     /// A game cannot start.
     #[error("{0}")]
     Game(String),
-    /// What was played cannot be written down.
+    /// The journal cannot be written.
     #[error(transparent)]
     Journal(#[from] StudyError),
-    /// It was stopped.
+    /// The search was stopped.
     #[error("stopped before enough games were played")]
     Stopped,
 }
@@ -71,11 +72,11 @@ struct Failed {
     job: Job,
 }
 
-/// Plays so many games, at least one, and finds those in which a condition holds; games that the journal has are not played again.
-/// `tell` is told of each round: its games, its failures.
+/// Plays `games` games, at least one, and finds those in which a condition holds; games in the
+/// journal are not played again. `tell` receives the games and failures after each round.
 ///
 /// # Errors
-/// [`FindError`]: a game cannot start, or `stop` was set.
+/// [`FindError`] if a game cannot start or `stop` was set.
 pub fn find(
     plan: &Plan,
     condition: &Condition,
@@ -92,7 +93,7 @@ pub fn find(
         let mut value = |axis: &Axis| axis.at(stream.unit());
         let mut point = |_| Point::from(plan.sweep().axes.iter().map(&mut value).collect::<Vec<AxisValue>>());
         let points: Vec<Point> = (0..count).map(&mut point).collect();
-        // Two games a point: one from each side, with the seed of the point's place.
+        // A point has two games, one from each side. One of them is played, with its own seed.
         let round = plan.at(points, (plan.sweep().seed, 1));
         let job = |i: usize| Job {
             index: 2 * i + i % 2,
@@ -133,7 +134,8 @@ pub fn find(
     })
 }
 
-/// A share with its exact 95 % interval (Clopper and Pearson, Biometrika 1934), which says something without a failure, too.
+/// A share with its exact 95 % interval (Clopper and Pearson, Biometrika 1934), which is
+/// informative even without a failure.
 fn rate_of(failures: usize, games: usize) -> Estimate {
     let (k, n) = (failures as f64, games as f64);
     let quantile = |a: f64, b: f64, p: f64| Beta::new(a, b).ok().map(|beta| beta.inverse_cdf(p));

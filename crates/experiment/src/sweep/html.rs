@@ -1,18 +1,19 @@
-//! The report as one page that needs no network, and as the files of a server.
+//! The report as a self-contained page, and as the files of a web server.
 
-/// Where the report stands in the page.
+/// The placeholder of the report in the page.
 const PLACE: &str = "/*REPORT*/null";
 const PAGE: &str = include_str!("report.html");
 
-/// The page with a report in it.
+/// The page with the report inserted.
 pub(crate) fn page(title: &str, json: &str) -> String {
-    // Nothing in a text of the report ends the script.
+    // No text in the report can end the script.
     let json = json.replace("</", "<\\/").replace("<!--", "<\\!--");
     PAGE.replace("<title></title>", &format!("<title>{title}</title>")).replace(PLACE, json.trim_end())
 }
 
-/// The page as files of a server that allows no style or script within a page, each under its path: `json` is a report. Whether games can
-/// be watched there, at `/?game=` and their place, is `has_games`.
+/// The page as files of a server that forbids inline styles and scripts, each under its path.
+/// `json` is a report. `has_games` says whether games can be watched there, at `/?game=` and their
+/// index.
 #[must_use]
 pub fn served(json: &serde_json::Value, has_games: bool) -> [(&'static str, String); 4] {
     let ((before, _), (style, after)) = (halves(PAGE, "<meta http-equiv"), between(PAGE, "style"));
@@ -28,18 +29,18 @@ pub fn served(json: &serde_json::Value, has_games: bool) -> [(&'static str, Stri
     [
         ("/sweep.html", format!("{head}</head>{body}{scripts}{end}")),
         ("/sweep.css", style.to_owned()),
-        // JSON is JavaScript.
+        // JSON is valid JavaScript.
         ("/sweep_report.js", data.replace(PLACE, &json.to_string())),
         ("/sweep.js", script.to_owned()),
     ]
 }
 
-/// What is before a mark, and what is after it.
+/// The text before a mark, and the text after it.
 fn halves<'a>(text: &'a str, mark: &str) -> (&'a str, &'a str) {
     text.split_once(mark).expect("the page has it")
 }
 
-/// What is in the first element of a kind, and what is after it.
+/// The content of the first element with a tag, and the text after it.
 fn between<'a>(text: &'a str, tag: &str) -> (&'a str, &'a str) {
     halves(halves(text, &format!("<{tag}>")).1, &format!("</{tag}>"))
 }

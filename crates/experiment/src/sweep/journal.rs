@@ -1,5 +1,5 @@
-//! The games of a search, written down as they are played: a search that was stopped, or another one over the same sweep, does not play them
-//! again.
+//! A journal of the games of a search, written as they are played. A resumed search, or another one
+//! over the same sweep, does not repeat them.
 
 use super::metric::{METRICS, Metric, Metrics};
 use super::plan::{Job, Plan};
@@ -14,25 +14,25 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use xxhash_rust::xxh3::xxh3_64;
 
-/// The file.
+/// The file name.
 const NAME: &str = "search.csv";
 
-/// What was measured of a game, or why it could not start.
+/// The measurements of a game, or why it could not start.
 pub(crate) type Outcome = Result<Metrics, String>;
 
-/// The games of searches over one sweep, in a folder.
+/// The games of searches over one sweep, stored in a folder.
 pub struct Journal {
     path: PathBuf,
     file: File,
-    /// By what they are: see [`key`].
+    /// Outcomes by identity of the game: see [`key`].
     known: BTreeMap<Vec<String>, Outcome>,
 }
 
 impl Journal {
-    /// A new journal in a folder, which is made.
+    /// A new journal in a folder, which is created.
     ///
     /// # Errors
-    /// [`StudyError`]: the file cannot be written, or there are games in it already.
+    /// [`StudyError`] if the file cannot be written or already contains games.
     pub fn begin(folder: &Path, plan: &Plan) -> Result<Journal, StudyError> {
         let path = folder.join(NAME);
         std::fs::create_dir_all(folder).map_err(io("make the folder", folder))?;
@@ -44,10 +44,12 @@ impl Journal {
         Journal::open(path, BTreeMap::new())
     }
 
-    /// The journal of a folder with all its whole lines: games whose lines were torn off or have changed are played again.
+    /// The journal of a folder with all its intact lines; games with torn or changed lines are
+    /// played again.
     ///
     /// # Errors
-    /// [`StudyError`]: the file cannot be read or written, there is none, or it is of another sweep.
+    /// [`StudyError`] if the file is missing, cannot be read or written, or belongs to another
+    /// sweep.
     pub fn resume(folder: &Path, plan: &Plan) -> Result<Journal, StudyError> {
         let path = folder.join(NAME);
         let Ok(text) = text(&path) else {
@@ -70,16 +72,16 @@ impl Journal {
         Ok(Journal { path, file, known })
     }
 
-    /// How many games it has.
+    /// The number of games in the journal.
     #[must_use]
     pub fn games(&self) -> usize {
         self.known.len()
     }
 
-    /// What came of these games of a plan, in their order, as far as `stop` lets them be played.
+    /// The outcomes of these games of a plan, in order; plays the missing ones until `stop` is set.
     ///
     /// # Errors
-    /// [`StudyError`]: the file cannot be written.
+    /// [`StudyError`] if the file cannot be written.
     pub(crate) fn play(
         &mut self,
         plan: &Plan,
@@ -100,7 +102,7 @@ impl Journal {
     }
 }
 
-/// What a game is: its entry, its seed, the entry's side and the values of the axes.
+/// The identity of a game: its entry, its seed, the entry's side and the values of the axes.
 fn key(plan: &Plan, job: &Job) -> Vec<String> {
     let point = &plan.points()[job.point];
     let values = point.values.iter().map(super::AxisValue::toml);
@@ -108,7 +110,8 @@ fn key(plan: &Plan, job: &Job) -> Vec<String> {
     first.into_iter().chain(values).collect()
 }
 
-/// A line: its checksum, the numbers, why there are none, and what the game is.
+/// A line: its checksum, the measurements, the error if it could not start, and the game's
+/// identity.
 fn line_of(key: &[String], result: &Outcome) -> String {
     let number = |metric: &Metric| cell_of(result.as_ref().map_or(f64::NAN, |all| metric.of(all)));
     let why = result.as_ref().err().cloned().unwrap_or_default();
@@ -120,11 +123,11 @@ fn line_of(key: &[String], result: &Outcome) -> String {
 /// The checksum of the other cells of a line.
 fn sum_of<'a>(cells: impl Iterator<Item = &'a str>) -> String {
     let cells: Vec<&str> = cells.collect();
-    // By a character that stands in no cell.
+    // The separator occurs in no cell.
     format!("{:016x}", xxh3_64(cells.join("\u{1f}").as_bytes()))
 }
 
-/// What a line says, if it has not changed.
+/// The content of a line, if its checksum matches.
 fn game_of(line: &csv::StringRecord) -> Option<(Vec<String>, Outcome)> {
     let mut cells = line.iter();
     let sum = cells.next()?;

@@ -1,8 +1,8 @@
-//! What is measured of a game, from the side of the entry that is looked at.
+//! The measurements of a game, from the side of one entry.
 
 use serde::Serialize;
 
-/// What a team did in a game; NaN where there is no number.
+/// The measurements of a team in a game; NaN where undefined.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[expect(missing_docs, reason = "METRICS says what they are")]
 pub struct TeamMetrics {
@@ -20,7 +20,7 @@ pub struct TeamMetrics {
     pub edge_m: f64,
 }
 
-/// What is measured of a game; NaN where there is no number.
+/// The measurements of a game; NaN where undefined.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[expect(missing_docs, reason = "METRICS says what they are")]
 pub struct Metrics {
@@ -34,14 +34,14 @@ pub struct Metrics {
     pub duration_s: f64,
 }
 
-/// A number that every game gives: a column of the tables.
+/// A measurement of a game: a column of the tables.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Metric {
     /// Its name.
     pub name: &'static str,
     /// Its unit; empty for counts and shares.
     pub unit: &'static str,
-    /// What it is.
+    /// Its description.
     pub about: &'static str,
     #[serde(skip)]
     field: fn(&mut Metrics) -> &mut f64,
@@ -54,18 +54,18 @@ impl PartialEq for Metric {
 }
 
 impl Metric {
-    /// The metric of this name.
+    /// The metric with this name.
     #[must_use]
     pub fn named(name: &str) -> Option<&'static Metric> {
         METRICS.iter().find(|metric| metric.name == name)
     }
 
-    /// The place of the metric of this name in lists by metric.
+    /// The index of the metric with this name in lists by metric.
     pub(crate) fn place(name: &str) -> Option<usize> {
         METRICS.iter().position(|metric| metric.name == name)
     }
 
-    /// Its number in a game.
+    /// Its value in a game.
     #[must_use]
     pub fn of(&self, metrics: &Metrics) -> f64 {
         let mut metrics = *metrics;
@@ -74,7 +74,7 @@ impl Metric {
 }
 
 impl Metrics {
-    /// The numbers by metric, each of which `number` says.
+    /// Builds the measurements from the value of `number` for each metric.
     pub(crate) fn from_each<E>(mut number: impl FnMut(&Metric) -> Result<f64, E>) -> Result<Metrics, E> {
         let mut metrics = Metrics::default();
         for metric in &METRICS {
@@ -83,13 +83,13 @@ impl Metrics {
         Ok(metrics)
     }
 
-    /// The points of the entry, and of its opponent.
+    /// The points of the entry and of its opponent.
     #[must_use]
     pub fn score(&self) -> [f64; 2] {
         [self.own.score, self.opponent.score]
     }
 
-    /// The mean of games.
+    /// The mean over games.
     pub(crate) fn mean(games: &[Metrics]) -> Metrics {
         let mut mean = Metrics::default();
         for metric in &METRICS {
@@ -108,7 +108,8 @@ const fn metric(
     Metric { name, unit, about, field }
 }
 
-/// All of them, in the order of the columns: of the entry's team, of its opponent's, and of the game.
+/// All metrics in the order of the columns: of the entry's team, of its opponent's, and of the
+/// game.
 pub static METRICS: [Metric; 30] = [
     metric("win_share", "", "1 for a game won, half of that for a draw", |all| &mut all.win_share),
     metric("score", "", "points", |all| &mut all.own.score),
@@ -171,5 +172,5 @@ pub static METRICS: [Metric; 30] = [
     metric("duration_s", "s", "how long the game lasted", |all| &mut all.duration_s),
 ];
 
-/// The metrics that a summary shows, and of which interactions are looked for.
+/// The metrics shown in a summary and tested for interactions.
 pub(crate) const HEADLINES: [&str; 5] = ["win_share", "score", "opponent_score", "out_of_bounds", "contacts"];

@@ -1,9 +1,10 @@
-//! How much sea, noise and failure a team stands: the same games at many points of a space of scenarios.
+//! How much sea, noise and failure a team tolerates: the same games at many points of a space of
+//! scenarios.
 //!
-//! A [`Plan`] says which games a sweep file means. [`play()`] plays any stretch of them, in this process, on several threads, in order, and gives a
-//! [`Row`] of each.
-//! A [`Study`] keeps what came of them in a folder and is taken up again from it; [`Report`] is what all of it says. Everything
-//! depends on the plan alone: not on the number of threads, not on who played which games, not on when it was stopped.
+//! A [`Plan`] lists the games of a sweep file. [`play()`] plays any range of them in this process,
+//! on several threads, and returns a [`Row`] for each, in order. A [`Study`] stores the results in
+//! a folder and can be resumed; a [`Report`] summarises them. Results depend on the plan alone: not
+//! on the number of threads, on which machine played which games, or on interruptions.
 
 mod axis;
 mod condition;

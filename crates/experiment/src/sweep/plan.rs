@@ -1,4 +1,4 @@
-//! Which games a sweep consists of.
+//! The games of a sweep.
 
 use super::{Axis, AxisValue, Design, Sweep};
 use crate::tournament::Entrant;
@@ -9,12 +9,12 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// The most points of a grid.
+/// The maximum number of points of a grid.
 const POINTS_MAX: usize = 100_000;
-/// Dimensions of a Sobol sequence that are used: more than a file may have axes.
+/// The number of Sobol dimensions in use, which is the maximum number of axes.
 const SOBOL_DIMENSIONS: u32 = 50;
 
-/// A sweep with everything that its games need.
+/// A sweep with all required files.
 #[derive(Clone, Debug)]
 pub struct Plan {
     sweep: Sweep,
@@ -22,14 +22,14 @@ pub struct Plan {
     seeds: u64,
     points: Vec<Point>,
     files: Arc<Files>,
-    /// How many of these files its own points need.
+    /// The number of these files required for its own points.
     files_needed: usize,
 }
 
 /// A point of the space: a value for each axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Point {
-    /// By axis.
+    /// The values by axis.
     pub values: Vec<AxisValue>,
 }
 
@@ -42,27 +42,27 @@ impl From<Vec<AxisValue>> for Point {
 /// One game of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Job {
-    /// Its place in the order of the sweep.
+    /// Its index in the order of the sweep.
     pub index: usize,
-    /// At which point.
+    /// The index of the point.
     pub point: usize,
-    /// Which entry plays.
+    /// The index of the entry.
     pub entry: usize,
-    /// The seed.
+    /// The seed of the game.
     pub seed: u64,
     /// Whether the entry is the first team (0) or the second (1).
     pub side: usize,
 }
 
 impl Plan {
-    /// The games of a sweep, after the game was read at every point.
+    /// The games of a sweep, after checking the game at every point.
     ///
     /// # Errors
-    /// Everything that is wrong at any point, and a grid of more than 100,000 points.
+    /// All problems at any point, and a grid of more than 100,000 points.
     pub fn new(sweep: &Sweep) -> Result<Plan, Problems> {
         let mut plan = Plan::unchecked(sweep, Arc::default())?;
         let mut problems = vec![];
-        // Other entries and sides have the same scenario at other points but for strategies.
+        // At other points, entries and sides differ only in strategies.
         let of_points = (0..plan.points.len()).map(|point| (point, 0));
         for (point, entry) in of_points.chain((1..sweep.entries.len()).map(|entry| (0, entry))) {
             if let Err(Problems(found)) = plan.scenario(point, entry, 0) {
@@ -75,7 +75,7 @@ impl Plan {
         if problems.is_empty() { Ok(plan) } else { Err(Problems(problems)) }
     }
 
-    /// A plan whose points nobody has looked at, which is read from these files.
+    /// A plan with unchecked points, read from these files.
     fn unchecked(sweep: &Sweep, files: Arc<Files>) -> Result<Plan, Problems> {
         let game = load_with_files(&sweep.game, &Overrides::default(), &files)?;
         let teams = game.teams.into_iter().map(|team| team.name).collect();
@@ -83,12 +83,12 @@ impl Plan {
         Ok(Plan { sweep: sweep.clone(), teams, seeds: u64::from(sweep.games).div_ceil(2), points, files, files_needed })
     }
 
-    /// The same sweep at other points, with so many seeds at each from `first_seed` on.
+    /// The same sweep at other points, with `seeds` seeds at each, starting at `first_seed`.
     pub(crate) fn at(&self, points: Vec<Point>, (first_seed, seeds): (u64, u64)) -> Plan {
         Plan { sweep: Sweep { seed: first_seed, ..self.sweep.clone() }, points, seeds, ..self.clone() }
     }
 
-    /// The same sweep of one entry alone.
+    /// The same sweep with one entry alone.
     pub(crate) fn of_entry(&self, entry: usize) -> Plan {
         let entries = vec![self.sweep.entries[entry].clone()];
         Plan { sweep: Sweep { entries, ..self.sweep.clone() }, ..self.clone() }
@@ -112,28 +112,28 @@ impl Plan {
         &self.points
     }
 
-    /// How many seeds each point plays.
+    /// The number of seeds at each point.
     #[must_use]
     pub fn seeds(&self) -> u64 {
         self.seeds
     }
 
-    /// How many games a point has.
+    /// The number of games at each point.
     #[must_use]
     pub fn games_per_point(&self) -> usize {
         usize::try_from(self.seeds).map_or(usize::MAX, |seeds| seeds.saturating_mul(2 * self.sweep.entries.len()))
     }
 
-    /// How many games there are.
+    /// The total number of games.
     #[must_use]
     pub fn games(&self) -> usize {
         self.games_per_point().saturating_mul(self.points.len())
     }
 
-    /// The game at `index`: point by point, there seed by seed, of each the entries in turn, each from both sides.
+    /// The game at `index`, ordered by point, then seed, then entry, then side.
     ///
     /// # Panics
-    /// If there are not as many.
+    /// If `index` is out of range.
     #[must_use]
     pub fn job(&self, index: usize) -> Job {
         assert!(index < self.games(), "game {index} of {}", self.games());
@@ -146,7 +146,7 @@ impl Plan {
     /// The scenario of an entry on a side at a point.
     ///
     /// # Errors
-    /// Everything that is wrong in any file.
+    /// All problems in any file.
     pub fn scenario(&self, point: usize, entry: usize, side: usize) -> Result<Scenario, Problems> {
         let overrides = self.overrides(point, entry, side);
         let scenario = load_with_files(&self.sweep.game, &overrides, &self.files)?;
@@ -162,7 +162,7 @@ impl Plan {
         Problems(vec![Problem::of_file(self.sweep.path.clone(), message)])
     }
 
-    /// The command that plays a game of it again.
+    /// The command that replays a game.
     #[must_use]
     pub fn command(&self, job: &Job) -> String {
         let Overrides { strategies, settings, .. } = self.overrides(job.point, job.entry, job.side);
@@ -177,15 +177,16 @@ impl Plan {
         words.join(" ")
     }
 
-    /// The files that its games need, in the order in which it asks for them.
+    /// The required files, in the order in which they are requested.
     fn files(&self) -> Vec<(PathBuf, Arc<[u8]>)> {
         let mut files = self.files.list();
         files.truncate(self.files_needed);
         files
     }
 
-    /// What identifies it: a study of another one is not gone on with. It depends on what files say and not on where they lie: of two
-    /// that lie elsewhere but name each other in the same way it is the same.
+    /// Identifies the plan: a study is resumed only with the same digest. It depends on the
+    /// contents of files, not on their location: moved files with the same references to each other
+    /// give the same digest.
     #[must_use]
     pub fn digest(&self) -> String {
         let nowhere = PathBuf::new;
@@ -203,22 +204,22 @@ impl Plan {
         digest_of(&format!("{sweep:?}"), &self.files())
     }
 
-    /// It with all that its games need, for a process on another machine.
+    /// The plan with all required files, for a process on another machine.
     #[must_use]
     pub fn pack(&self) -> Packed {
         Packed::new(&self.sweep, self.files(), self.digest())
     }
 
-    /// The plan that was packed elsewhere. Its points are not looked at again.
+    /// A plan packed elsewhere. Its points are not checked again.
     ///
     /// # Errors
-    /// [`UnpackError`]: it is damaged, or another version of Squall packed it.
+    /// [`UnpackError`] if it is damaged or was packed by another version of Squall.
     pub fn unpack(packed: Packed) -> Result<Plan, UnpackError> {
         packed.unpack(Plan::unchecked, Plan::digest)
     }
 }
 
-/// A setting whose file is named from the working folder.
+/// A setting whose file path is relative to the working folder.
 fn beside_here(setting: &Setting) -> Setting {
     let mut setting = setting.clone();
     let named: Option<String> = serde_json::from_str(&setting.value).ok();
@@ -230,7 +231,7 @@ fn beside_here(setting: &Setting) -> Setting {
     setting
 }
 
-/// A path as a word of a shell.
+/// A path quoted for a shell.
 fn shell(path: &Path) -> String {
     let text = path.display().to_string();
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "/._-".contains(c);
@@ -253,14 +254,15 @@ fn points(sweep: &Sweep) -> Result<Vec<Point>, Problems> {
             sampled(&|i, k| columns[k][i])
         }
         Design::Sobol => {
-            // The generator takes 32 bits, and 65536 points at most are of one sequence.
+            // The generator takes a 32-bit seed, and one sequence has at most 65536 points.
             let seed = (sweep.seed ^ (sweep.seed >> 32)) as u32;
             sampled(&|i, k| f64::from(sobol_burley::sample(i as u32, k as u32 % SOBOL_DIMENSIONS, seed)))
         }
     })
 }
 
-/// A column of a Latin hypercube: one number in each of `count` pieces from 0 to 1, in any order.
+/// A column of a Latin hypercube: one number in each of `count` equal intervals from 0 to 1, in
+/// random order.
 fn latin_column(seed: u64, key: &str, count: usize) -> Vec<f64> {
     let mut stream = Stream::new(seed, &format!("sweep/{key}"));
     let mut pieces: Vec<usize> = (0..count).collect();

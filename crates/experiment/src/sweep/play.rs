@@ -1,4 +1,4 @@
-//! The games of a sweep, and what is measured of each.
+//! Plays the games of a sweep and measures them.
 
 use super::metric::{Metrics, TeamMetrics};
 use super::plan::{Job, Plan};
@@ -16,27 +16,27 @@ use std::collections::BTreeMap;
 use std::num::NonZeroUsize;
 use std::sync::atomic::AtomicBool;
 
-/// A game that was played, or could not be.
+/// A game that was played or could not start.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Played {
     /// Its row in the table of games.
     pub row: Row,
-    /// By vehicle.
+    /// The measurements by vehicle.
     pub boats: Vec<BoatRow>,
 }
 
-/// What a boat did in a game.
+/// The measurements of a boat in a game.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BoatRow {
-    /// What is measured of any game.
+    /// The measurements common to all games.
     pub statistics: BoatStatistics,
-    /// Energy taken from its battery, kJ; NaN without one.
+    /// Energy drawn from its battery, kJ; NaN without one.
     pub energy_kj: f64,
-    /// Whether it is one of the entry's.
+    /// Whether it belongs to the entry.
     pub is_own: bool,
 }
 
-/// Scenarios of the point that is played, by entry and side.
+/// The scenarios of the current point, by entry and side.
 #[derive(Default)]
 struct Loaded {
     point: Option<usize>,
@@ -53,11 +53,12 @@ impl Loaded {
     }
 }
 
-/// Plays the games from `from` to before `to` on so many threads until all are played or `stop` is set, and gives each to `take`, in
-/// order. Games that `stop` cut short are not among them, nor any after those.
+/// Plays the games from `from` to `to` - 1 on several threads until all are played or `stop` is
+/// set, and passes each to `take` in order. Games cut short by `stop`, and all after them, are
+/// omitted.
 ///
 /// # Errors
-/// What `take` says: then no more are played.
+/// The error of `take`, which ends the games.
 pub fn play<E>(
     plan: &Plan,
     (from, to): (usize, usize),
@@ -69,7 +70,7 @@ pub fn play<E>(
     play_in_order(to.saturating_sub(from), (threads, stop), one, take)
 }
 
-/// The same for any games of a plan, in their order.
+/// The same for any games of a plan, in the given order.
 pub(crate) fn play_jobs<E>(
     plan: &Plan,
     order: &[Job],
@@ -99,19 +100,19 @@ fn one(plan: &Plan, job: Job, loaded: &mut Loaded, stop: Stop<'_>) -> Played {
     Played { row: Row { job, boats: boats.len(), digest, result }, boats }
 }
 
-/// Looks on at a game.
+/// Observes a game.
 struct Watch<'a> {
     scenario: &'a Scenario,
     cursor: EventCursor,
     quality: GameQuality,
     statistics: StatisticsBuilder<'a>,
-    /// The least distance of any two boats' centres, m.
+    /// The smallest distance between the centres of two boats, m.
     closest_m: f64,
-    /// By team: the least distance of its boats to the edge of the field, m.
+    /// By team: the smallest distance of its boats to the edge of the field, m.
     edges_m: [f64; 2],
-    /// The entry's team.
+    /// The index of the entry's team.
     side: usize,
-    /// By vehicle: energy taken from its battery, kJ.
+    /// Energy drawn from the battery, by vehicle, kJ.
     energies_kj: Vec<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! What came of a sweep.
+//! The report of a sweep.
 
 use super::Design;
 use super::effects::{Effect, Interaction, Observations, effects, interactions};
@@ -8,16 +8,16 @@ use super::table::Row;
 use crate::estimate::Estimate;
 use serde::Serialize;
 
-/// How many of the worst games of an entry are named.
+/// The number of worst games listed per entry.
 const WORST: usize = 5;
 
-/// What came of a sweep: `report.json`, and what the page and the terminal show. Only seeds count of which all games of a point were
-/// played.
+/// The report of a sweep: `report.json`, and the content of the page and the terminal output. A
+/// seed counts only if all its games at a point were played.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
     /// The sweep's name.
     pub sweep: String,
-    /// What it is meant for.
+    /// The purpose of the sweep, from its file.
     pub about: String,
     /// The version of Squall that played it.
     pub version: String,
@@ -25,103 +25,103 @@ pub struct Report {
     pub game: String,
     /// The strategy file of the opponents.
     pub opponent: String,
-    /// Which points were played.
+    /// How the points were chosen.
     pub design: Design,
     /// The first seed.
     pub seed: u64,
     /// Games of each entry at each point.
     pub games_per_point: u64,
-    /// Games that were to be played.
+    /// The number of games planned.
     pub games: usize,
-    /// Games that were played or could not start.
+    /// The number of games that were played or could not start.
     pub games_done: usize,
     /// The keys of the axes.
     pub axes: Vec<String>,
     /// The names of the entries.
     pub entries: Vec<String>,
-    /// What is measured; lists by metric are in this order.
+    /// The metrics; lists by metric are in this order.
     pub metrics: Vec<Metric>,
-    /// By point.
+    /// The results by point.
     pub points: Vec<PointReport>,
-    /// What each axis does to each entry.
+    /// The effect of each axis on each entry.
     pub effects: Vec<Effect>,
-    /// What two axes do together, those that matter first.
+    /// The interactions of pairs of axes, the significant ones first.
     pub interactions: Vec<Interaction>,
-    /// The games that each entry lost by most points.
+    /// The games with the worst score difference of each entry.
     pub worst: Vec<Worst>,
     /// Games that could not start.
     pub failures: Vec<Failure>,
 }
 
-/// How the entries did at a point.
+/// The results of the entries at a point.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PointReport {
-    /// By axis, as people read it.
+    /// The values of the axes as text.
     pub values: Vec<String>,
-    /// Seeds of which all games were played.
+    /// The number of seeds with all games played.
     pub seeds: usize,
-    /// By entry.
+    /// The results by entry.
     pub entries: Vec<EntryAtPoint>,
-    /// Each other entry against the first, on the same seeds.
+    /// Each other entry minus the first, on the same seeds.
     pub differences: Vec<Difference>,
-    /// A command that plays one of its games.
+    /// The command that replays one of its games.
     pub command: String,
 }
 
-/// How an entry did at a point: means a game, with their intervals over seeds.
+/// The results of an entry at a point: means per game, with intervals over seeds.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EntryAtPoint {
     /// Its name.
     pub entry: String,
-    /// By metric; none where no game has it.
+    /// By metric; `None` if no game has it.
     pub metrics: Vec<Option<Estimate>>,
 }
 
-/// How much more of a metric one entry has than another.
+/// The difference of each metric between two entries.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Difference {
-    /// Whose metric it is.
+    /// The entry whose metrics are the minuends.
     pub entry: String,
-    /// From which this one's is taken.
+    /// The entry whose metrics are subtracted.
     pub from: String,
-    /// By metric.
+    /// The differences by metric.
     pub metrics: Vec<Option<Estimate>>,
 }
 
-/// A game that went badly.
+/// One of an entry's worst games.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Worst {
-    /// The entry.
+    /// The name of the entry.
     pub entry: String,
-    /// The game's place in the tables.
+    /// The game's index in the tables.
     pub game: usize,
-    /// By axis, as people read it.
+    /// The values of the axes as text.
     pub values: Vec<String>,
-    /// Points, and the opponent's.
+    /// The points of the entry and of its opponent.
     pub score: [f64; 2],
-    /// How often two hulls touched.
+    /// The number of hull contacts.
     pub contacts: f64,
-    /// How often one of its boats left the field.
+    /// How often one of the entry's boats left the field.
     pub out_of_bounds: f64,
-    /// Digest of its final state and of all events.
+    /// Digest of the final state and of all events.
     pub digest: String,
-    /// The command that plays it again.
+    /// The command that replays it.
     pub command: String,
 }
 
 /// A game that could not start.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Failure {
-    /// The game's place in the tables.
+    /// The game's index in the tables.
     pub game: usize,
-    /// Why.
+    /// The error.
     pub why: String,
-    /// The command that tries it again.
+    /// The command that retries it.
     pub command: String,
 }
 
 impl Report {
-    /// What the rows of a plan's first games, in order, come to.
+    /// The report on the rows of a plan's first games, in order.
     #[must_use]
     pub fn new(plan: &Plan, rows: &[Row]) -> Report {
         let sweep = plan.sweep();
@@ -154,7 +154,7 @@ impl Report {
     }
 }
 
-/// By point, entry and seed: the mean of both sides.
+/// The mean of both sides, by point, entry and seed.
 fn observations(plan: &Plan, rows: &[Row]) -> Observations {
     let (entries, seeds) = (plan.sweep().entries.len(), plan.seeds() as usize);
     let of_seed = |point: usize, seed: usize| -> Option<Vec<Metrics>> {
@@ -191,7 +191,7 @@ fn point_report(plan: &Plan, observed: &Observations, names: &[String], point: u
     }
 }
 
-/// The games that each entry lost by most, or won by least.
+/// The games that each entry lost by the largest margin, or won by the smallest.
 fn worst(plan: &Plan, rows: &[Row]) -> Vec<Worst> {
     let mut worst = vec![];
     for (entry, entrant) in plan.sweep().entries.iter().enumerate() {

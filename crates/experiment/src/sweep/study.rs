@@ -1,8 +1,9 @@
 //! A sweep in a folder: the tables of its games as they are played, and the report.
 //!
-//! `games.csv` is written a line a game, in order; `boats.csv` has a line for each boat of each game; `sums.txt` has a checksum of
-//! each game's lines in both. A study is taken up again from the games whose lines are whole and fit their checksums: what was torn off
-//! when the machine stopped, or changed since, is played again.
+//! `games.csv` gets one line per game, in order; `boats.csv` has a line for each boat of each game;
+//! `sums.txt` has a checksum of each game's lines in both. A study resumes after the last game
+//! whose lines are complete and match their checksums. Lines torn off when the machine stopped, or
+//! changed since, are replaced by playing their games again.
 
 use super::html;
 use super::plan::Plan;
@@ -22,11 +23,11 @@ pub const GAMES: &str = "games.csv";
 const BOATS: &str = "boats.csv";
 /// The checksums of the games' lines.
 const SUMS: &str = "sums.txt";
-/// A checksum is 16 hexadecimal digits and the end of the line.
+/// A checksum has 16 hexadecimal digits and a newline.
 const SUM_BYTES: usize = 17;
-/// What identifies the plan.
+/// The file with the plan's digest.
 const PLAN: &str = "plan.txt";
-/// The plan with all that its games need, so that any of them can be played again.
+/// The file with the plan and all required files, so that any game can be replayed.
 pub const PACKED_PLAN: &str = "plan.json";
 /// The columns of the table of boats.
 const BOAT_COLUMNS: [&str; 17] = [
@@ -49,7 +50,7 @@ const BOAT_COLUMNS: [&str; 17] = [
     "energy_kj",
 ];
 
-/// A sweep that is kept in a folder.
+/// A sweep stored in a folder.
 pub struct Study {
     folder: PathBuf,
     games: File,
@@ -58,34 +59,34 @@ pub struct Study {
     done: usize,
 }
 
-/// Why a study cannot be kept.
+/// Why a study failed.
 #[derive(Debug, Error)]
 pub enum StudyError {
     /// A file cannot be read or written.
     #[error("cannot {doing} {}: {error}", path.display())]
     Io {
-        /// What was tried.
+        /// The failed action.
         doing: &'static str,
-        /// With which file.
+        /// The file.
         path: PathBuf,
-        /// Why not.
+        /// The system's error.
         error: std::io::Error,
     },
-    /// There is one already.
+    /// The folder already contains a study.
     #[error("{} holds a sweep of {games} games already; --resume goes on with it, or --out names another folder", folder.display())]
     Exists {
         /// The folder.
         folder: PathBuf,
-        /// How many games were played.
+        /// The number of games in it.
         games: usize,
     },
-    /// There is none.
+    /// The folder contains no study.
     #[error("{} holds no sweep to go on with", folder.display())]
     Missing {
         /// The folder.
         folder: PathBuf,
     },
-    /// It is of another sweep.
+    /// The study belongs to another sweep.
     #[error(
         "{} holds another sweep than this: its files, its seed, its games or Squall's version have changed; \
          expected {expected}, found {found}",
@@ -96,24 +97,24 @@ pub enum StudyError {
         folder: PathBuf,
         /// The digest of this plan.
         expected: String,
-        /// That of the one in the folder.
+        /// The digest of the plan in the folder.
         found: String,
     },
-    /// A table cannot be made.
+    /// A table cannot be created.
     #[error("cannot make {what}: {why}")]
     Table {
-        /// Which.
+        /// The name of the table.
         what: &'static str,
-        /// Why not.
+        /// The cause.
         why: String,
     },
 }
 
 impl Study {
-    /// A new study in a folder, which is made.
+    /// A new study in a folder, which is created.
     ///
     /// # Errors
-    /// [`StudyError`]: a file cannot be written, or there is a study already.
+    /// [`StudyError`] if a file cannot be written or the folder already contains a study.
     pub fn begin(folder: &Path, plan: &Plan) -> Result<Study, StudyError> {
         std::fs::create_dir_all(folder).map_err(io("make the folder", folder))?;
         let games = rows_in(plan, &text(&folder.join(GAMES)).unwrap_or_default()).len();
@@ -124,15 +125,17 @@ impl Study {
         for (name, head) in heads(plan) {
             write(&folder.join(name), &head)?;
         }
-        // Last: a folder without it holds no study, whatever a full disk has left of the others.
+        // Written last: a folder without it contains no study, whatever a full disk has left of the
+        // others.
         write(&folder.join(PLAN), &(plan.digest() + "\n"))?;
         Study::open(folder, 0)
     }
 
-    /// A study that is taken up again, from the first game on whose lines are whole.
+    /// Resumes a study from the first game without complete lines.
     ///
     /// # Errors
-    /// [`StudyError`]: a file cannot be read or written, or the folder holds none, or one of another plan.
+    /// [`StudyError`] if a file cannot be read or written, or if the folder contains no study or
+    /// one of another plan.
     pub fn resume(folder: &Path, plan: &Plan) -> Result<Study, StudyError> {
         let Ok(found) = text(&folder.join(PLAN)) else {
             return Err(StudyError::Missing { folder: folder.to_owned() });
@@ -164,7 +167,7 @@ impl Study {
         Ok(Study { folder: folder.to_owned(), games: open(GAMES)?, boats: open(BOATS)?, sums: open(SUMS)?, done })
     }
 
-    /// How many games it has: the next one's place.
+    /// The number of games in it, which is the index of the next one.
     #[must_use]
     pub fn done(&self) -> usize {
         self.done
@@ -179,7 +182,7 @@ impl Study {
     /// Adds the next game.
     ///
     /// # Errors
-    /// [`StudyError`]: a file cannot be written; what is in it so far is whole.
+    /// [`StudyError`] if a file cannot be written; its previous content stays intact.
     ///
     /// # Panics
     /// If it is not the next one.
@@ -191,13 +194,13 @@ impl Study {
     /// Adds the lines of the next game, as [`lines`] makes them.
     ///
     /// # Errors
-    /// [`StudyError`]: a file cannot be written; what is in it so far is whole.
+    /// [`StudyError`] if a file cannot be written; its previous content stays intact.
     ///
     /// # Panics
     /// If it is not the next one.
     pub fn add_lines(&mut self, index: usize, game: &str, boats: &str) -> Result<(), StudyError> {
         assert_eq!(index, self.done, "games come in order");
-        // The last one says that the others are there.
+        // The checksum is written last, to confirm the other lines.
         let (folder, sum) = (&self.folder, sum_line(game, boats));
         self.boats.write_all(boats.as_bytes()).map_err(io("write", &folder.join(BOATS)))?;
         self.games.write_all(game.as_bytes()).map_err(io("write", &folder.join(GAMES)))?;
@@ -206,10 +209,10 @@ impl Study {
         Ok(())
     }
 
-    /// Writes the report of all games so far: `report.json`, `report.html` and `games.parquet`.
+    /// Writes the report on all games so far: `report.json`, `report.html` and `games.parquet`.
     ///
     /// # Errors
-    /// [`StudyError`]: a file cannot be read or written.
+    /// [`StudyError`] if a file cannot be read or written.
     pub fn report(&self, plan: &Plan) -> Result<Report, StudyError> {
         let rows = rows_in(plan, &text(&self.folder.join(GAMES))?);
         let report = Report::new(plan, &rows);
@@ -225,7 +228,7 @@ impl Study {
     }
 }
 
-/// The line of a game in the table of games, and those of its boats.
+/// The line of a game in the table of games, and the lines of its boats.
 #[must_use]
 pub fn lines(plan: &Plan, played: &Played) -> (String, String) {
     let index = played.row.job.index;
@@ -242,25 +245,26 @@ pub fn lines(plan: &Plan, played: &Played) -> (String, String) {
     (table::csv_line(plan, &played.row), played.boats.iter().map(boat).collect())
 }
 
-/// The games of a table, whose text is that of `games.csv`, from the first on as far as its lines are whole and of this plan.
+/// The games in `text`, in the format of `games.csv`, up to the first line that is incomplete or of
+/// another plan.
 #[must_use]
 pub fn rows_in(plan: &Plan, text: &str) -> Vec<Row> {
     table::csv_rows(plan, text).map(|(row, _)| row).collect()
 }
 
-/// The tables as they begin.
+/// The header lines of the tables.
 fn heads(plan: &Plan) -> [(&'static str, String); 3] {
     let boats = table::record(BOAT_COLUMNS.map(str::to_owned));
     [(GAMES, table::csv_head(plan)), (BOATS, boats), (SUMS, String::new())]
 }
 
-/// The checksum of a game's lines, as a line.
+/// The checksum line of a game.
 fn sum_line(game: &str, boats: &str) -> String {
     format!("{:016x}\n", xxh3_64([game, boats].concat().as_bytes()))
 }
 
-/// How many games are whole in the tables of games and of boats and fit their checksums, and how long the three files are then: of no
-/// length where their beginnings are not what they should be.
+/// The number of games that are complete in both tables and match their checksums, and the lengths
+/// of the three files up to there; the lengths are zero if the headers are wrong.
 fn whole(plan: &Plan, [games, boats, sums]: &[String; 3]) -> (usize, [usize; 3]) {
     let [(_, games_head), (_, boats_head), _] = heads(plan);
     if !games.starts_with(&games_head) || !boats.starts_with(&boats_head) {
@@ -279,7 +283,7 @@ fn whole(plan: &Plan, [games, boats, sums]: &[String; 3]) -> (usize, [usize; 3])
     (done, lengths)
 }
 
-/// Writes the plan with all that its games need.
+/// Writes the plan with all required files.
 fn write_plan(folder: &Path, plan: &Plan) -> Result<(), StudyError> {
     let packed = serde_json::to_string(&plan.pack());
     let packed = packed.map_err(|error| StudyError::Table { what: PACKED_PLAN, why: error.to_string() })?;
@@ -287,7 +291,7 @@ fn write_plan(folder: &Path, plan: &Plan) -> Result<(), StudyError> {
 }
 
 pub(super) fn text(path: &Path) -> Result<String, StudyError> {
-    // As long as it is: all of it is needed.
+    // Without a size limit: the whole file is needed.
     let bytes = input_file::read(path, u64::MAX).map_err(io("read", path))?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }

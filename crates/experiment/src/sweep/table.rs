@@ -1,4 +1,4 @@
-//! The table of games: what is kept of each, a line of CSV as it is played, and all of them as Parquet.
+//! The table of games: one line of CSV per game as it is played, and all of them as Parquet.
 
 use super::AxisValue;
 use super::metric::{METRICS, Metrics};
@@ -11,22 +11,22 @@ use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::{Type, TypePtr};
 use std::sync::Arc;
 
-/// What is kept of a game.
+/// The record of a game.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// Which game.
+    /// The game's place in the plan.
     pub job: Job,
-    /// How many boats played.
+    /// The number of boats in the game.
     pub boats: usize,
-    /// Digest of its final state and of all events, hex; empty if it could not start.
+    /// Digest of the final state and of all events, hex; empty if it could not start.
     pub digest: String,
-    /// What was measured, or why it could not start.
+    /// The measurements, or why it could not start.
     pub result: Result<Metrics, String>,
 }
 
-/// The columns before those of the axes.
+/// The columns before the axes.
 const FIRST: [&str; 6] = ["game", "point", "entry", "seed", "side", BOATS];
-/// The column that only the CSV has: it says how many lines of the table of boats belong to a game.
+/// The column that only the CSV has: the number of the game's lines in the table of boats.
 const BOATS: &str = "boats";
 /// The last columns.
 const LAST: [&str; 2] = ["digest", "error"];
@@ -34,7 +34,7 @@ const LAST: [&str; 2] = ["digest", "error"];
 /// A cell.
 enum Cell {
     Whole(u64),
-    /// NaN is none.
+    /// NaN for a missing number.
     Number(f64),
     Value(AxisValue),
     Text(String),
@@ -57,7 +57,7 @@ fn columns(plan: &Plan) -> impl Iterator<Item = &str> {
     FIRST.into_iter().chain(axes).chain(METRICS.iter().map(|metric| metric.name)).chain(LAST)
 }
 
-/// A row, column by column.
+/// The cells of a row, by column.
 fn cells<'a>(plan: &'a Plan, row: &'a Row) -> impl Iterator<Item = Cell> + 'a {
     let Row { job, boats, digest, result } = row;
     let first = [
@@ -71,7 +71,7 @@ fn cells<'a>(plan: &'a Plan, row: &'a Row) -> impl Iterator<Item = Cell> + 'a {
     let axes = plan.points()[job.point].values.iter().map(|value| Cell::Value(value.clone()));
     let metrics = METRICS.iter().map(|metric| Cell::Number(result.as_ref().map_or(f64::NAN, |all| metric.of(all))));
     let why = result.as_ref().err().map(String::as_str).unwrap_or_default();
-    // A line is a game.
+    // Each game must be a single line.
     let why = why.split_whitespace().collect::<Vec<_>>().join(" ");
     first.into_iter().chain(axes).chain(metrics).chain([Cell::Text(digest.clone()), Cell::Text(why)])
 }
@@ -86,7 +86,7 @@ pub(super) fn csv_line(plan: &Plan, row: &Row) -> String {
     record(cells(plan, row).map(Cell::into_text))
 }
 
-/// The games whose lines are whole, from the first on, each with where its line ends.
+/// The games with complete lines, from the first on, each with the offset of its line's end.
 pub(super) fn csv_rows<'a>(plan: &'a Plan, text: &'a str) -> impl Iterator<Item = (Row, usize)> + 'a {
     let whole = text.rsplit_once('\n').map_or("", |(whole, _)| whole);
     let text = &text[..(whole.len() + 1).min(text.len())];
@@ -110,7 +110,7 @@ pub(super) fn csv_rows<'a>(plan: &'a Plan, text: &'a str) -> impl Iterator<Item 
     })
 }
 
-/// A number that is read again to the bit; nothing where there is none.
+/// A number that parses back to the same bits; empty for NaN.
 pub(super) fn cell_of(number: f64) -> String {
     if number.is_finite() { number.to_string() } else { String::new() }
 }
@@ -135,7 +135,7 @@ enum Column {
 }
 
 impl Column {
-    /// These cells of one kind; values of an axis are numbers where all of them are.
+    /// A column of these cells, all of one kind; values of an axis are numbers if all of them are.
     fn of(kind: &Cell, cells: Vec<Cell>) -> Column {
         let number = |cell: &Cell| match cell {
             Cell::Number(number) => Some(*number),

@@ -7,7 +7,7 @@ use super::report::{PointReport, Report};
 use crate::estimate::Estimate;
 use std::fmt::Write;
 
-/// What is shown of each level: the metric, its heading, and by what it is multiplied.
+/// The columns shown for each level: the metric, its heading, and its factor.
 const COLUMNS: [(&str, &str, f64); 5] = [
     ("win_share", "won %", 100.0),
     ("score", "points", 1.0),
@@ -15,10 +15,10 @@ const COLUMNS: [(&str, &str, f64); 5] = [
     ("out_of_bounds", "leaves field", 1.0),
     ("contacts", "contacts", 1.0),
 ];
-/// How many interactions and worst games are shown.
+/// The maximum number of interactions and of worst games shown.
 const SHOWN: usize = 6;
 
-/// The report for people: at most 80 columns but for commands.
+/// The report for people, at most 80 columns wide except for commands.
 #[must_use]
 pub fn text(report: &Report) -> String {
     let mut text = String::new();
@@ -73,7 +73,7 @@ fn shown(estimate: &Estimate, times: f64) -> String {
     format!("{:.digits$} ± {half}", estimate.mean * times)
 }
 
-/// What an entry wins more often than the first, at the points where it is sure.
+/// Differences in win share to the first entry, at the points where they are significant.
 fn differences(report: &Report, line: &mut impl FnMut(String)) {
     let Some(index) = Metric::place("win_share") else { return };
     for (k, entry) in report.entries.iter().enumerate().skip(1) {
@@ -108,7 +108,7 @@ fn interactions(all: &[Interaction], line: &mut impl FnMut(String)) {
     }
 }
 
-/// What a search for rare failures found, for people.
+/// The result of a search for rare failures, for people.
 #[must_use]
 pub fn found_text(found: &Found) -> String {
     let Found { entry, condition, games, failures, rate, .. } = found;

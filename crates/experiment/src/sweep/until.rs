@@ -1,8 +1,10 @@
-//! The breaking point: the value of an axis at which a condition on an entry begins to hold, by sequential search.
+//! The breaking point: the axis value where a condition starts to hold, found by sequential search.
 //!
-//! The condition is taken not to hold at one end, to hold at the other, and to change once between. At each value that is tried, seeds
-//! are played in batches, until the interval of the metric's mean leaves the threshold, or the games of a point are spent. The
-//! chance of any wrong verdict is shared among all looks (Bonferroni), so that the interval that comes of it is one of 95 % at least.
+//! The condition is assumed false at one end of the axis and true at the other, with a single
+//! change between. At each tested value, seeds are played in batches until the interval of the
+//! metric's mean excludes the threshold, or the games of a point are used up. The chance of any
+//! wrong verdict is shared among all looks (Bonferroni), so that the resulting interval has a
+//! confidence of at least 95 %.
 
 use super::AxisValue;
 use super::condition::Condition;
@@ -15,71 +17,74 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::num::NonZeroUsize;
 use std::sync::atomic::AtomicBool;
 
-/// Seeds of the first batch at a value; each later one doubles what was played.
+/// Seeds of the first batch at a value; each later one doubles the total.
 const FIRST_SEEDS: u64 = 8;
-/// Values that are tried between the ends.
+/// The number of values tested between the ends.
 const STEPS: u32 = 9;
-/// The chance of a wrong verdict.
+/// The chance of any wrong verdict.
 const ALPHA: f64 = 0.05;
 
-/// What was found.
+/// The result of the search.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BreakingPoint {
-    /// The axis' key.
+    /// The key of the axis.
     pub axis: String,
-    /// The entry.
+    /// The name of the entry.
     pub entry: String,
-    /// The condition.
+    /// The condition as text.
     pub condition: String,
-    /// The last value, seen from where it does not hold, at which it surely does not; none if there is none.
+    /// The last value, starting from the end where the condition is false, at which it is certainly
+    /// false; `None` if there is no such value.
     pub low: Option<f64>,
-    /// The first value at which it surely does; none if there is none.
+    /// The first value at which it is certainly true; `None` if there is no such value.
     pub high: Option<f64>,
-    /// Where the metric crosses the threshold, between the means of the values that were tried; none if it does not.
+    /// Where the metric crosses the threshold, interpolated between the means at tested values;
+    /// `None` if it does not.
     pub at: Option<f64>,
-    /// Every value that was tried, in order of its value.
+    /// Every tested value, in ascending order.
     pub tried: Vec<Tried>,
 }
 
-/// A value that was tried.
+/// A tested value.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Tried {
-    /// The value.
+    /// The value of the axis.
     pub value: f64,
-    /// Games that were played there.
+    /// The number of games played there.
     pub games: u64,
-    /// The metric's mean, with its usual interval.
+    /// The metric's mean, with its 95 % interval.
     pub mean: Estimate,
-    /// Whether the condition holds there; none where all games did not tell.
+    /// Whether the condition holds there; `None` if all games left it undecided.
     pub holds: Option<bool>,
-    /// A command that plays the first of its games.
+    /// The command that replays the first of its games.
     pub command: String,
     #[serde(skip)]
     share: f64,
 }
 
-/// Why there is no search.
+/// Why a search failed.
 #[derive(Debug, thiserror::Error)]
 pub enum UntilError {
-    /// It is not clear along which axis.
+    /// The axis is ambiguous.
     #[error("there are {0} axes with numbers, expected --along with the key of one of them: {1}")]
     Axes(usize, String),
     /// A game cannot start.
     #[error("{0}")]
     Game(String),
-    /// What was played cannot be written down.
+    /// The journal cannot be written.
     #[error(transparent)]
     Journal(#[from] StudyError),
-    /// It was stopped.
+    /// The search was stopped.
     #[error("stopped before the breaking point was found")]
     Stopped,
 }
 
-/// Searches along the axis of this key, or the only one with numbers, all others at their nominal values. Games that the journal has are
-/// not played again. `tell` is told of each value that was tried.
+/// Searches along the axis with this key, or the only one with numbers, with all others at their
+/// nominal values. Games in the journal are not played again. `tell` receives each tested value.
 ///
 /// # Errors
-/// [`UntilError`]: no axis, or several; a game that cannot start; `stop` was set.
+/// [`UntilError`] if there is no axis or there are several, if a game cannot start, or if `stop`
+/// was set.
 pub fn breaking_point(
     plan: &Plan,
     condition: &Condition,
@@ -105,14 +110,14 @@ pub fn breaking_point(
         tried.push(one);
         Ok::<Option<bool>, UntilError>(holds)
     };
-    // The ends first: between two of one kind there is nothing to find.
+    // The ends first: if both have the same verdict, there is nothing to find.
     let ends = [test(0.0, &mut tried)?, test(1.0, &mut tried)?];
     let (mut ok, mut broken) = match ends {
         [Some(false), Some(true)] => (0.0, 1.0),
         [Some(true), Some(false)] => (1.0, 0.0),
         _ => return Ok(found(&plan, condition, axis, tried)),
     };
-    // Where it cannot be told, both sides of that are looked at in turn.
+    // If a value stays undecided, the search continues on both sides of it in turn.
     let mut untold: Option<[f64; 2]> = None;
     for step in 0..STEPS {
         let share = match untold {
@@ -137,7 +142,7 @@ pub fn breaking_point(
     Ok(found(&plan, condition, axis, tried))
 }
 
-/// Plays at one value until it is clear, or all games are spent.
+/// Plays at one value until it is decided, or all games are used up.
 fn try_value(
     plan: &Plan,
     condition: &Condition,
@@ -178,12 +183,14 @@ fn try_value(
     }
 }
 
-/// Whether a condition holds for the mean of which these are observations, if that is sure but for a chance of `alpha`.
+/// Whether a condition holds for the mean of these observations; `None` if that is uncertain at
+/// level `alpha`.
 fn verdict(condition: &Condition, observations: &[f64], alpha: f64) -> Option<bool> {
     let count = observations.len() as f64;
     let mean = observations.iter().sum::<f64>() / count;
     let squares: f64 = observations.iter().map(|one| (one - mean) * (one - mean)).sum();
-    // Equal observations tell less than their spread says: as if one more had been half a unit off.
+    // Equal observations are less informative than their spread suggests: adds one that is half a
+    // unit off.
     let error = ((squares + 0.25) / (count - 1.0).max(1.0) / count).sqrt();
     let quantile = StudentsT::new(0.0, 1.0, (count - 1.0).max(1.0)).ok()?.inverse_cdf(1.0 - alpha / 2.0);
     let margin = condition.margin(mean);
@@ -194,7 +201,7 @@ fn found(plan: &Plan, condition: &Condition, axis: usize, mut tried: Vec<Tried>)
     tried.sort_by(|a, b| a.share.total_cmp(&b.share));
     let rises = tried.first().is_none_or(|first| first.holds != Some(true));
     let sure = |holds: bool| tried.iter().filter(move |one| one.holds == Some(holds)).map(|one| one.value);
-    // Seen from the end where it does not hold: the last value there before it ever holds.
+    // Starting from the end where it is false: the last such value before it is ever true.
     let pick = |holds: bool, greatest: bool| {
         let values = sure(holds);
         if greatest { values.reduce(f64::max) } else { values.reduce(f64::min) }
@@ -223,7 +230,8 @@ mod tests {
 
     #[test]
     fn a_verdict_is_as_seldom_wrong_as_it_says() {
-        // Coins of which 50 % fall right: whether they do so less than half the time cannot be told, and is told in error seldom.
+        // Coins with 50 % heads: whether fewer than half are heads cannot be decided, and is rarely
+        // decided wrongly.
         let condition = Condition { entry: 0, metric: &METRICS[0], is_below: true, threshold: 0.5 };
         let mut wrong = 0;
         for trial in 0..2000 {

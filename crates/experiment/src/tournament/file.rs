@@ -1,4 +1,4 @@
-//! A tournament: who enters, and which game they play against each other.
+//! Tournament files: the entries, and the game they play against each other.
 
 use scenario::keys::{FilePath, Name};
 use scenario::sea::Sea;
@@ -56,16 +56,16 @@ impl Tournament {
     /// The names of the game's teams, the first one first.
     ///
     /// # Errors
-    /// Everything that is wrong in the game's files.
+    /// All problems in the game's files.
     pub fn teams(&self, files: &Arc<Files>) -> Result<Vec<String>, Problems> {
         Ok(load_with_files(&self.game, &Overrides::default(), files)?.teams.into_iter().map(|team| team.name).collect())
     }
 
-    /// What takes the place of the game's own files when one entry plays as the first of these teams and another as
-    /// the second.
+    /// The overrides of the game's files when one entry plays as the first of these teams and
+    /// another as the second.
     ///
     /// # Panics
-    /// If there are no such entries.
+    /// If an entry does not exist.
     #[must_use]
     pub fn overrides(&self, teams: &[String], sides: [usize; 2]) -> Overrides {
         let of_side = |side: usize| self.entries[side].strategy.clone();
@@ -76,10 +76,10 @@ impl Tournament {
     /// The game in which one entry plays as the first team and another as the second.
     ///
     /// # Errors
-    /// Everything that is wrong in any file.
+    /// All problems in any file.
     ///
     /// # Panics
-    /// If there are no such entries.
+    /// If an entry does not exist.
     pub fn game_of(&self, teams: &[String], sides: [usize; 2], files: &Arc<Files>) -> Result<Scenario, Problems> {
         load_with_files(&self.game, &self.overrides(teams, sides), files)
     }

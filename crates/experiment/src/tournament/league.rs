@@ -1,7 +1,8 @@
-//! The results of a league: games that were played before are not played again when others join.
+//! The results of a league: games played before are not repeated when new entries join.
 //!
-//! They are a text of one line a game, JSON, that is only ever appended to. A game is known by what the program makes of its files and by
-//! its seed: whoever changes a strategy gets new games, and whoever gives it another name does not.
+//! Results are a text of one JSON line per game, to which lines are only appended. A game is
+//! identified by its parsed files and its seed: changing a strategy gives new games, renaming it
+//! does not.
 
 use super::plan::Plan;
 use super::play::Record;
@@ -11,21 +12,21 @@ use std::collections::BTreeMap;
 use thiserror::Error;
 use xxhash_rust::xxh3::xxh3_64;
 
-/// What stands before the checksum, the last key of a line: that of the line without it.
+/// Precedes the checksum of the rest of the line; the last key of a line.
 const SUM: &str = ",\"sum\":\"";
 
-/// What is known of a league's games.
+/// The known games of a league.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct League {
-    /// By pairing, as [`Plan::pairings`] says, and by seed.
+    /// Results by pairing, as in [`Plan::pairings`], and by seed.
     known: BTreeMap<(String, u64), Result<Game, String>>,
 }
 
-/// A game as it stands in the text.
+/// The JSON form of a game.
 #[derive(Serialize, Deserialize)]
 struct Line {
     pairing: String,
-    /// Who they were, for people.
+    /// The names of the two entries, for people.
     blue: String,
     red: String,
     seed: u64,
@@ -40,7 +41,7 @@ enum Outcome {
     Failed(String),
 }
 
-/// A line that is none.
+/// An invalid line.
 #[derive(Debug, Error)]
 #[error("line {line} is no game of a league: {why}")]
 pub struct LeagueError {
@@ -49,16 +50,17 @@ pub struct LeagueError {
 }
 
 impl League {
-    /// The games of a text. A last line without its end was torn off as it was written: it is left out.
+    /// Parses the games of a text. A last line without a newline was torn off while it was written,
+    /// and is ignored.
     ///
     /// # Errors
-    /// [`LeagueError`]: another line is no game.
+    /// [`LeagueError`] if any other line is not a game.
     pub fn parse(text: &str) -> Result<League, LeagueError> {
         let whole = text.rsplit_once('\n').map_or("", |(whole, _)| whole);
         let game = |(line, text): (usize, &str)| {
             let failed = |why: String| LeagueError { line: line + 1, why };
             let text = match text.rsplit_once(SUM) {
-                // Lines of earlier versions have none.
+                // Lines of earlier versions have no checksum.
                 None => text.to_owned(),
                 Some((body, sum)) => Some(format!("{body}}}"))
                     .filter(|body| format!("{:016x}\"}}", xxh3_64(body.as_bytes())) == sum)
@@ -78,7 +80,7 @@ impl League {
     /// The line of a game.
     ///
     /// # Panics
-    /// If the game is none of the plan's, whose pairings these are.
+    /// If the game is not part of the plan that these pairings belong to.
     #[must_use]
     pub fn line(plan: &Plan, pairings: &[String], record: &Record) -> String {
         let [blue, red] = record.of.sides.map(|entry| plan.tournament().entries[entry].name.clone());
@@ -93,7 +95,7 @@ impl League {
         format!("{}{SUM}{sum:016x}\"}}\n", &body[..body.len() - 1])
     }
 
-    /// The games of a plan that are known, and the places of the others.
+    /// The known games of a plan, and the indices of the others.
     #[must_use]
     pub fn split(&self, plan: &Plan, pairings: &[String]) -> (Vec<Record>, Vec<usize>) {
         let (mut known, mut new) = (vec![], vec![]);
@@ -107,7 +109,7 @@ impl League {
         (known, new)
     }
 
-    /// How many games it has.
+    /// The number of games.
     #[must_use]
     pub fn games(&self) -> usize {
         self.known.len()

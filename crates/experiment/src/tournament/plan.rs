@@ -1,4 +1,4 @@
-//! Which games a tournament consists of.
+//! The games of a tournament.
 
 use super::{Entrant, Tournament};
 use crate::{Packed, UnpackError};
@@ -7,14 +7,14 @@ use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// A tournament with everything that its games need.
+/// A tournament with all required files.
 #[derive(Clone, Debug)]
 pub struct Plan {
     tournament: Tournament,
     /// The names of the game's two teams.
     teams: Vec<String>,
     seeds: u64,
-    /// What is played with each seed: who is the first team and who the second, and the game.
+    /// The games of each seed: the entries of the first and second team, and the scenario.
     rounds: Vec<([usize; 2], Scenario)>,
     files: Arc<Files>,
 }
@@ -22,19 +22,19 @@ pub struct Plan {
 /// One game.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Match {
-    /// Chooses the game.
+    /// The seed of the game.
     pub seed: u64,
-    /// Which entry plays as the first team, and which as the second.
+    /// The indices of the entries that play as the first and the second team.
     pub sides: [usize; 2],
 }
 
 impl Plan {
-    /// The games of a tournament: of every entry with every other, or of the challenger with every other. All pairings play the
-    /// same seeds, each of them twice, with the sides exchanged; an entry against itself plays them once, since exchanged sides are
-    /// the same game.
+    /// The games of a tournament: of every entry, or of the challenger, against every other. All
+    /// pairings play the same seeds, each of them twice with sides exchanged. An entry against
+    /// itself plays each once, since exchanging sides gives the same game.
     ///
     /// # Errors
-    /// Everything that is wrong in the files, also in what they are together; and a game with real boats, which cannot
+    /// All problems in the files and their combination; also a game with real boats, which cannot
     /// be played here.
     pub fn new(tournament: &Tournament) -> Result<Plan, Problems> {
         Plan::of_files(tournament, Arc::default())
@@ -77,57 +77,57 @@ impl Plan {
         &self.teams
     }
 
-    /// How many seeds are played, from the tournament's own on.
+    /// The number of seeds, starting at the tournament's first.
     #[must_use]
     pub fn seeds(&self) -> u64 {
         self.seeds
     }
 
-    /// How many games are played with each seed.
+    /// The number of games per seed.
     #[must_use]
     pub fn games_per_seed(&self) -> usize {
         self.rounds.len()
     }
 
-    /// How many games are played.
+    /// The total number of games.
     #[must_use]
     pub fn games(&self) -> usize {
         usize::try_from(self.seeds).map_or(usize::MAX, |seeds| seeds.saturating_mul(self.rounds.len()))
     }
 
-    /// The game at `index`, seed by seed: whoever stops early has whole seeds.
+    /// The game at `index`, ordered by seed: an early stop leaves complete seeds.
     ///
     /// # Panics
-    /// If there are not as many.
+    /// If `index` is out of range.
     #[must_use]
     pub fn match_at(&self, index: usize) -> (Match, &Scenario) {
         assert!(index < self.games(), "match {index} of {}", self.games());
         let (sides, scenario) = &self.rounds[index % self.rounds.len()];
-        // Whole seeds first: a seed counts when all its games were played, or an entry would be
-        // measured against some of its opponents, perhaps the easy ones.
+        // Ordered by seed: a seed counts only if all its games were played. Otherwise an entry
+        // would be measured against some of its opponents, perhaps the easy ones.
         let seed = self.tournament.seed.wrapping_add((index / self.rounds.len()) as u64);
         (Match { seed, sides: *sides }, scenario)
     }
 
-    /// The place of a game.
+    /// The index of a game.
     ///
     /// # Panics
-    /// If it has none.
+    /// If the game is not part of the plan.
     #[must_use]
     pub fn place_of(&self, of: Match) -> usize {
         let round = self.rounds.iter().position(|(sides, _)| *sides == of.sides).expect("they play each other");
         of.seed.wrapping_sub(self.tournament.seed) as usize * self.rounds.len() + round
     }
 
-    /// What identifies the games that are played with each seed, in their order: what the program makes of their files. Of another version,
-    /// or with another file, it is another game; entries may have other names, and files may lie elsewhere.
+    /// Identifies the games of each seed, in order, by their parsed files. Another version of
+    /// Squall or another file gives another game; other entry names or file locations do not.
     #[must_use]
     pub fn pairings(&self) -> Vec<String> {
         self.rounds.iter().map(|(_, scenario)| scenario.digest()).collect()
     }
 
-    /// What identifies it. It depends on what files say and not on where they lie: of two that lie elsewhere but name each other in the
-    /// same way it is the same.
+    /// Identifies the plan. It depends on the contents of files, not on their location: moved files
+    /// with the same references to each other give the same digest.
     #[must_use]
     pub fn digest(&self) -> String {
         let nowhere = |entry: &Entrant| Entrant { strategy: PathBuf::new(), ..entry.clone() };
@@ -136,22 +136,23 @@ impl Plan {
         digest_of(&format!("{meant:?} {sea}"), &self.files.list())
     }
 
-    /// It with all that its games need, for a process on another machine.
+    /// The plan with all required files, for a process on another machine.
     #[must_use]
     pub fn pack(&self) -> Packed {
         Packed::new(&self.tournament, self.files.list(), self.digest())
     }
 
-    /// The plan that was packed elsewhere.
+    /// A plan packed elsewhere.
     ///
     /// # Errors
-    /// [`UnpackError`]: it is damaged, or another version of Squall packed it.
+    /// [`UnpackError`] if it is damaged or was packed by another version of Squall.
     pub fn unpack(packed: Packed) -> Result<Plan, UnpackError> {
         packed.unpack(Plan::of_files, Plan::digest)
     }
 }
 
-/// The game in which one entry plays as the first team and another as the second, if it can be played here.
+/// The game in which one entry plays as the first team and another as the second, if it has no real
+/// boats.
 fn game_of(
     tournament: &Tournament,
     teams: &[String],

@@ -1,4 +1,4 @@
-//! The games of a tournament, and how each ended.
+//! Plays the games of a tournament.
 
 use super::plan::{Match, Plan};
 use crate::pipeline::{Game, Stop, play_game, play_in_order};
@@ -10,38 +10,40 @@ use std::convert::Infallible;
 use std::num::NonZeroUsize;
 use std::sync::atomic::AtomicBool;
 
-/// A game that was played, or could not be.
+/// A game that was played or could not start.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Record {
-    /// Which game.
+    /// The match.
     pub of: Match,
-    /// How it ended, or why it could not start.
+    /// Its result, or why it could not start.
     pub result: Result<Game, String>,
 }
 
-/// Who looks on at every game of a tournament, and what it makes of it.
+/// Callbacks that observe every game of a tournament.
 #[derive(Clone, Copy, Debug)]
 pub struct Observer<B, S> {
-    /// Begins with a game, which has its seed.
+    /// Called at the start of a game, with its seed.
     pub begin: B,
-    /// Looks at it before every decision and at the end, and at the minds that have led there.
+    /// Called before every decision and at the end, with the minds that led there.
     pub see: S,
 }
 
-/// Plays the games of a plan at these places on so many threads, until all are played or `stop` is set, and gives each to `take`, in their
-/// order. Games that `stop` cut short are not among them, nor any after those.
+/// Plays the games of a plan with these indices on several threads, until all are played or `stop`
+/// is set, and passes each to `take` in order. Games cut short by `stop`, and all after them, are
+/// omitted.
 ///
 /// # Panics
-/// If the plan has not as many.
+/// If an index is out of range.
 pub fn play(plan: &Plan, games: &[usize], threads: NonZeroUsize, stop: &AtomicBool, mut take: impl FnMut(Record)) {
     let nobody = Observer { begin: |_: &Scenario| (), see: |(): &mut (), _: &Contest, _: &MindRunner| () };
     play_observed(plan, games, (threads, stop), &nobody, |record, _| take(record));
 }
 
-/// As [`play`], with somebody who looks on; with each record what came of that, of games that could start.
+/// Like [`play`], with an observer; each record of a game that started comes with the observer's
+/// result.
 ///
 /// # Panics
-/// If the plan has not as many.
+/// If an index is out of range.
 pub fn play_observed<T: Send>(
     plan: &Plan,
     games: &[usize],

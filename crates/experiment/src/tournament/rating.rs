@@ -1,8 +1,9 @@
-//! Elo ratings from games that all were played: who would beat whom how often.
+//! Elo ratings from a complete set of games, which predict how often one entry beats another.
 //!
-//! The model is Bradley and Terry's (Biometrika 1952): the odds of winning are the ratio of two strengths, and the Elo rating is the
-//! strength's logarithm, 400 points for a factor of 10. A draw is half a win for each. The most likely strengths are found at once from
-//! all games, so that their order does not matter.
+//! The model is Bradley and Terry's (Biometrika 1952): the odds of winning are the ratio of two
+//! strengths, and the Elo rating is the logarithm of the strength, 400 points for a factor of 10. A
+//! draw is half a win for each. The maximum-likelihood strengths are computed from all games at
+//! once, so that the order of games does not matter.
 
 use crate::estimate::quantile;
 use nalgebra::{DMatrix, DVector};
@@ -14,47 +15,50 @@ use serde::{Deserialize, Serialize};
 pub struct Rating {
     /// The rating.
     pub elo: f64,
-    /// The lower end of the interval; none with a single seed.
+    /// The lower bound of the interval; `None` with a single seed.
     pub low: Option<f64>,
-    /// The upper end.
+    /// The upper bound; `None` with a single seed.
     pub high: Option<f64>,
 }
 
-/// A game that two entries played against each other.
+/// A game between two entries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Meeting {
-    /// The entries.
+    /// The indices of the entries.
     pub sides: [usize; 2],
-    /// What the first of them got: 1 for a win, a half for a draw.
+    /// The result of the first: 1 for a win, a half for a draw.
     pub share: f64,
 }
 
 /// The mean of all ratings.
 const MEAN_ELO: f64 = 1500.0;
-/// Points to a factor of e in the odds: 400 / ln 10.
+/// Elo points per factor of e in the odds: 400 / ln 10.
 const ELO: f64 = 400.0 / std::f64::consts::LN_10;
-/// Every entry is taken to have won and lost so many games against an average one as well: who won all games is not infinitely strong.
+/// The prior: this many wins and losses of every entry against an average one. Without it, an entry
+/// that wins all games would be infinitely strong.
 const PRIOR: f64 = 1.0;
-/// Steps of Newton's method, at most, and the longest of them: farther off the curvature says nothing.
+/// The maximum number and length of Newton steps: farther away, the curvature is meaningless.
 const STEPS_MAX: usize = 200;
 const STEP_MAX: f64 = 1.0;
 const CLOSE: f64 = 1e-10;
 
-/// The ratings of so many entries from their games, seed by seed. Those of one against itself say nothing.
+/// The ratings of `entries` entries from their games, grouped by seed. Games of an entry against
+/// itself are ignored.
 ///
-/// The interval is the wider of two: by the curvature of the likelihood, as if all games were independent, and clustered by seeds (Liang
-/// and Zeger, Biometrika 1986), since all games of a seed are on the same sea.
+/// The interval is the wider of two: from the curvature of the likelihood, as if all games were
+/// independent, and clustered by seed (Liang and Zeger, Biometrika 1986), since all games of a seed
+/// have the same sea.
 ///
 /// # Panics
-/// If a game has an entry that is not there.
+/// If a game has an unknown entry.
 #[must_use]
 pub fn ratings(entries: usize, rounds: &[Vec<Meeting>]) -> Vec<Rating> {
     let all: Vec<Meeting> = rounds.iter().flatten().copied().collect();
     let mut strengths = DVector::zeros(entries);
     let mut curvature = DMatrix::identity(entries, entries);
-    // All games are there at once. Ratings that change game by game (Elo's own rule, Glicko,
-    // TrueSkill, Weng-Lin) would only add an order in which they happen to be played, and a
-    // speed of change for players that do not change.
+    // All games are available at once. Ratings that change game by game (Elo's own rule, Glicko,
+    // TrueSkill, Weng-Lin) would only add a dependence on the order of games, and a rate of change
+    // for players that do not change.
     for _ in 0..STEPS_MAX {
         let slope = slope_of(&all, &strengths) + prior_slope(&strengths);
         curvature = curvature_of(&all, &strengths);
@@ -76,7 +80,7 @@ pub fn ratings(entries: usize, rounds: &[Vec<Meeting>]) -> Vec<Rating> {
     (0..entries).map(rating).collect()
 }
 
-/// The expected share of the first of two.
+/// The expected result of the first of two.
 fn expected(strengths: &DVector<f64>, [one, other]: [usize; 2]) -> f64 {
     1.0 / (1.0 + math::exp(strengths[other] - strengths[one]))
 }
@@ -96,7 +100,7 @@ fn prior_slope(strengths: &DVector<f64>) -> DVector<f64> {
     strengths.map(|strength| PRIOR * (1.0 - 2.0 / (1.0 + math::exp(-strength))))
 }
 
-/// Less its second derivatives, with those of the prior.
+/// The negative Hessian of the log-likelihood, including the prior.
 fn curvature_of(games: &[Meeting], strengths: &DVector<f64>) -> DMatrix<f64> {
     let mut curvature = DMatrix::from_diagonal(&strengths.map(|strength| {
         let share = 1.0 / (1.0 + math::exp(-strength));
@@ -113,7 +117,7 @@ fn curvature_of(games: &[Meeting], strengths: &DVector<f64>) -> DMatrix<f64> {
     curvature
 }
 
-/// Half the width of each interval, in the unit of strengths; none with a single seed.
+/// The half width of each interval, in units of strength; `None` with a single seed.
 fn errors(rounds: &[Vec<Meeting>], strengths: &DVector<f64>, curvature: &DMatrix<f64>) -> Option<Vec<f64>> {
     let (seeds, entries) = (rounds.len() as f64, strengths.len());
     let quantile = quantile(seeds - 1.0)?;
@@ -123,11 +127,11 @@ fn errors(rounds: &[Vec<Meeting>], strengths: &DVector<f64>, curvature: &DMatrix
         let slope = slope_of(round, strengths);
         spread += &slope * slope.transpose();
     }
-    // The wider of the two, since that of an entry that always wins would be nothing by seeds
-    // alone. In 200 trials with known strengths 19 of 20 intervals have the truth, which a test
+    // The wider of the two, since an entry that always wins would have an interval of zero by seeds
+    // alone. In 200 trials with known strengths, 19 of 20 intervals contain the truth, which a test
     // counts.
     let clustered = &covariance * spread * &covariance * (seeds / (seeds - 1.0));
-    // Only how far an entry is from the mean of all is known: where all of them are is not asked.
+    // Only the difference of an entry from the mean of all is known; the mean itself is arbitrary.
     let centre = DMatrix::identity(entries, entries) - DMatrix::from_element(entries, entries, 1.0 / entries as f64);
     let of_mean = |covariance: DMatrix<f64>| (&centre * covariance * &centre).diagonal();
     let (independent, clustered) = (of_mean(covariance), of_mean(clustered));
@@ -145,12 +149,13 @@ mod tests {
 
     #[test]
     fn three_wins_of_four_are_the_191_points_of_elos_table() {
-        /// The prior pulls a little toward the middle.
+        /// The prior pulls slightly toward the mean.
         const PULL: f64 = 1.0;
         let rated = ratings(2, &meetings([0, 1], 750, 1000));
         let (ahead, want) = (rated[0].elo - rated[1].elo, 190.85);
         assert!((ahead - want).abs() < PULL && (rated[0].elo + rated[1].elo - 3000.0).abs() < 1e-6, "{rated:?}");
-        // By the delta method: the error of ln(p / (1 - p)) is 1 / sqrt(n p (1 - p)); half of it for each of two.
+        // By the delta method: the error of ln(p / (1 - p)) is 1 / sqrt(n p (1 - p)), split evenly
+        // between the two.
         let half = 1.96 * ELO / (1000.0_f64 * 0.75 * 0.25).sqrt() / 2.0;
         let got = rated[0].high.expect("an interval") - rated[0].elo;
         assert!((got - half).abs() < 0.02 * half, "{got}, expected {half}");
@@ -164,7 +169,7 @@ mod tests {
             rated[0].high.expect("an interval") - rated[0].elo > 100.0,
             "equal seeds do not mean no error: {rated:?}"
         );
-        // One against itself, and a single seed.
+        // An entry against itself, and a single seed.
         let rated = ratings(2, &[vec![Meeting { sides: [0, 0], share: 1.0 }, Meeting { sides: [0, 1], share: 0.5 }]]);
         assert!(rated.iter().all(|one| (one.elo - 1500.0).abs() < 1e-9 && one.low.is_none()), "{rated:?}");
         assert_eq!(ratings(0, &[]), []);
@@ -179,7 +184,7 @@ mod tests {
         assert!(width(&alike) > 0.95 * width(&apart), "{apart:?} {alike:?}");
     }
 
-    /// The strengths are known here: how many intervals have them?
+    /// With known strengths: counts the intervals that contain them.
     #[test]
     fn nineteen_of_twenty_intervals_have_the_truth() {
         let truth = [0.9, 0.3, 0.0, -1.2];

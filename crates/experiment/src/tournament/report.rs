@@ -1,4 +1,4 @@
-//! What came of a tournament: entries, who beats whom, and every game.
+//! The report of a tournament: entries, pairings, and every game.
 
 use super::plan::Plan;
 use super::play::Record;
@@ -10,70 +10,70 @@ use rules::count::Counts;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
-/// What came of a tournament: what `--json` writes.
+/// The report of a tournament, as `--json` writes it.
 ///
-/// Only seeds of which all games were played count in [`Report::entries`] and [`Report::matrix`]: with some of the
-/// games of a seed an entry would be measured against some of its opponents.
+/// Only seeds with all games played count in [`Report::entries`] and [`Report::matrix`]; with a
+/// partial seed, an entry would be measured against some of its opponents.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Report {
     /// The tournament's name.
     pub tournament: String,
     /// The version of Squall that played it.
     pub version: String,
-    /// The commit that it was built from; the shell knows.
+    /// The commit it was built from; the command fills it in.
     pub commit: String,
     /// The game file.
     pub game: String,
-    /// The sea file in place of the game's own.
+    /// The sea file that replaces the game's own.
     pub sea: Option<String>,
-    /// The game's teams.
+    /// The names of the game's teams.
     pub teams: Vec<String>,
-    /// The entry whose pairings alone were played.
+    /// The entry to whose pairings the tournament was limited.
     pub challenger: Option<String>,
     /// The first seed.
     pub seed: u64,
-    /// How many games each pairing was to play.
+    /// The planned number of games per pairing.
     pub games_per_pairing: u64,
-    /// Seeds of which all games were played.
+    /// The number of seeds with all games played.
     pub seeds_counted: u64,
-    /// Games that were not played, because somebody stopped the tournament.
+    /// The number of games not played because the tournament was stopped.
     pub games_unplayed: u64,
-    /// Games that were played and do not count, because others of their seed are missing.
+    /// The number of games played that do not count, because others of their seed are missing.
     pub games_left_out: u64,
-    /// Games a second, by the clock; the shell knows.
+    /// Games per second of wall-clock time; the command fills it in.
     pub rate: Option<f64>,
-    /// Entries, the highest mean score first.
+    /// The entries, by descending mean score.
     pub entries: Vec<Row>,
-    /// Each entry against each, rows and columns in the same order.
+    /// Each entry against each other, rows and columns in the same order.
     pub matrix: Vec<Cell>,
     /// Games that could not start.
     pub failures: Vec<Failure>,
-    /// Every game that was played.
+    /// Every game played.
     pub matches: Vec<MatchRow>,
-    /// The games themselves, so that any of them can be played again wherever the report is.
+    /// The games themselves, so that any of them can be replayed wherever the report is.
     #[serde(default)]
     pub plan: Option<Packed>,
 }
 
-/// How an entry did, a game.
+/// The results of an entry; means are per game.
 ///
-/// All games of a seed are on the same sea, so they are one observation: the entry's mean over its opponents and both
-/// sides. The intervals are over seeds.
+/// All games of a seed have the same sea, so they are one observation: the entry's mean over its
+/// opponents and both sides. The intervals are over seeds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// The entry's name.
     pub name: String,
     /// Its strategy file.
     pub strategy: String,
-    /// Games it played; one against itself counts from both sides.
+    /// The number of games it played; one against itself counts from both sides.
     pub games: u64,
-    /// How strong it is, by whom it beat.
+    /// Its strength, from wins against all opponents.
     pub rating: Rating,
     /// Points.
     pub score: Estimate,
     /// Flags taken.
     pub grabs: Estimate,
-    /// Flags brought in.
+    /// Flags brought home.
     pub captures: Estimate,
     /// Opponents tagged.
     pub tags: Estimate,
@@ -81,7 +81,7 @@ pub struct Row {
     pub tagged: Estimate,
     /// Times a boat left the field.
     pub out_of_bounds: Estimate,
-    /// Collisions of its boats; one between team-mates is two.
+    /// Collisions of its boats; one between team-mates counts twice.
     pub collisions: Estimate,
     /// Games won.
     pub wins: u64,
@@ -91,56 +91,57 @@ pub struct Row {
     pub losses: u64,
 }
 
-/// How one entry did against another.
+/// The results of one entry against another.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cell {
-    /// Whose wins are counted.
+    /// The entry whose wins are counted.
     pub row: String,
-    /// Against whom.
+    /// Its opponent.
     pub column: String,
-    /// Games; one against itself counts from both sides.
+    /// The number of games; one against itself counts from both sides.
     pub games: u64,
     /// Games that the row won.
     pub wins: u64,
-    /// Games that nobody won.
+    /// Games drawn.
     pub draws: u64,
     /// Games that the column won.
     pub losses: u64,
-    /// The share of the decided games that the row won; none if none was decided. The interval is over seeds.
+    /// The row's share of the decided games; `None` if none was decided. The interval is over
+    /// seeds.
     pub won_of_decided: Option<Estimate>,
     /// The mean points of the row and of the column.
     pub score: [f64; 2],
-    /// The row's points less the column's, mean over games.
+    /// The row's points minus the column's, mean over games.
     pub score_difference: f64,
-    /// Which seeds were played.
+    /// The seeds played.
     pub seeds: Seeds,
 }
 
-/// The first and last of some seeds.
+/// A range of seeds, inclusive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Seeds {
-    /// The first.
+    /// The first seed.
     pub first: u64,
-    /// The last.
+    /// The last seed.
     pub last: u64,
 }
 
 /// A game that was played.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MatchRow {
-    /// Its place in the order of the tournament.
+    /// Its index in the order of the tournament.
     pub game: usize,
     /// The first team's entry.
     pub blue: String,
-    /// The second team's.
+    /// The second team's entry.
     pub red: String,
     /// The seed.
     pub seed: u64,
-    /// Points of both.
+    /// The points of the first and the second team.
     pub score: [u32; 2],
-    /// Which of them won, 0 or 1; none is a draw.
+    /// The winning team, 0 or 1; `None` for a draw.
     pub winner: Option<usize>,
-    /// How long it was, simulated s.
+    /// Duration, simulated s.
     pub duration_s: f64,
     /// Digest of the final state and of all events.
     pub digest: String,
@@ -151,7 +152,7 @@ pub struct MatchRow {
 pub struct Failure {
     /// The first team's entry.
     pub blue: String,
-    /// The second team's.
+    /// The second team's entry.
     pub red: String,
     /// The seed.
     pub seed: u64,
@@ -167,7 +168,7 @@ struct Appearance<'a> {
 }
 
 impl Report {
-    /// What the records of a plan's games, in its order, come to.
+    /// The report on the records of a plan's games, in order.
     #[must_use]
     pub fn new(plan: &Plan, records: &[Record]) -> Report {
         let tournament = plan.tournament();
@@ -221,7 +222,7 @@ impl Report {
     }
 }
 
-/// Who met whom, seed by seed, and what came of it.
+/// The pairings and their results, grouped by seed.
 fn meetings(rounds: &[&[Record]]) -> Vec<Vec<Meeting>> {
     let of_record = |record: &Record| {
         let winner = record.result.as_ref().ok()?.winner;
@@ -230,7 +231,7 @@ fn meetings(rounds: &[&[Record]]) -> Vec<Vec<Meeting>> {
     rounds.iter().map(|round| round.iter().filter_map(of_record).collect()).collect()
 }
 
-/// The games of a seed that an entry played in; both sides of one against itself.
+/// The games of a seed with an entry; both sides of a game against itself.
 fn appearances(round: &[Record], entry: usize) -> impl Iterator<Item = Appearance<'_>> {
     round.iter().flat_map(move |record| {
         let sides = (0..2).filter(move |side| record.of.sides[*side] == entry);
@@ -241,7 +242,7 @@ fn appearances(round: &[Record], entry: usize) -> impl Iterator<Item = Appearanc
     })
 }
 
-/// How an entry did. Each of the rounds is one observation.
+/// The results of an entry. Each round is one observation.
 fn row(plan: &Plan, rounds: &[&[Record]], entry: usize, rating: Rating) -> Row {
     let entrant = &plan.tournament().entries[entry];
     let estimate = |value: &dyn Fn(&Appearance<'_>) -> u32| {
@@ -272,7 +273,7 @@ fn row(plan: &Plan, rounds: &[&[Record]], entry: usize, rating: Rating) -> Row {
     }
 }
 
-/// Games won, drawn and lost.
+/// The numbers of games won, drawn and lost.
 fn standing<'a>(appearances: impl Iterator<Item = Appearance<'a>>) -> [u64; 3] {
     appearances.fold([0; 3], |[wins, draws, losses], appearance| match appearance.game.winner {
         None => [wins, draws + 1, losses],
@@ -281,7 +282,7 @@ fn standing<'a>(appearances: impl Iterator<Item = Appearance<'a>>) -> [u64; 3] {
     })
 }
 
-/// Each of `ranks` against each that it played.
+/// The results of each entry in `ranks` against each of its opponents.
 fn matrix<'a>(plan: &Plan, rounds: &[&'a [Record]], ranks: &[usize]) -> Vec<Cell> {
     let (Some(first), Some(last)) = (rounds.first(), rounds.last()) else { return vec![] };
     let seeds = Seeds { first: first[0].of.seed, last: last[0].of.seed };

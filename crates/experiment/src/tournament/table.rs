@@ -1,4 +1,4 @@
-//! The report of a tournament as tables: for people, and one for spreadsheets.
+//! The report of a tournament as tables: for people, and as CSV.
 
 use super::rating::Rating;
 use super::report::{Cell, Report, Row};
@@ -18,10 +18,11 @@ const COLUMNS: [Column; 7] = [
     ("collisions", "collisions", |row| row.collisions),
 ];
 
-/// How wide tables are where no terminal says how wide they may be, in characters.
+/// The default width of tables without a terminal, characters.
 pub const WIDTH: usize = 120;
 
-/// The report for people, in tables of at most so many `columns`, as far as names leave room; commands stand in one line.
+/// The report for people, in tables of at most `columns` characters if names allow it; each command
+/// stays on one line.
 #[must_use]
 pub fn text(report: &Report, columns: usize) -> String {
     let mut text = String::new();
@@ -69,7 +70,7 @@ fn cells(report: &Report, heading: &str, of: impl Fn(&Row) -> String) -> Cells {
     (heading.to_owned(), report.entries.iter().map(of).collect())
 }
 
-/// A table with a line for each entry; where it is wider than so many columns, what does not fit stands in another one below.
+/// A table with a line for each entry. Columns beyond the width go into another table below.
 fn table(text: &mut String, names: &[&str], cells: &[Cells], columns: usize) {
     let name = width(names);
     let wide = |(heading, cells): &Cells| {
@@ -103,7 +104,7 @@ fn estimate(estimate: &Estimate) -> String {
     format!("{:.2} ± {half}", estimate.mean)
 }
 
-/// Who beats whom.
+/// The wins of each entry against each other.
 fn matrix(text: &mut String, report: &Report, columns: usize) {
     add_line(text, format_args!("\nrow beats column: won % / drawn %, and the row's score less the column's a game"));
     let against = |column: &Row| {
@@ -116,7 +117,7 @@ fn matrix(text: &mut String, report: &Report, columns: usize) {
     table(text, &names(report), &report.entries.iter().map(against).collect::<Vec<_>>(), columns);
 }
 
-/// How the challenger did against each other entry.
+/// The results of the challenger against each other entry.
 fn pairings(text: &mut String, report: &Report, challenger: &str) {
     let width = width(&names(report));
     add_line(text, format_args!("\n{challenger} against each, with the share of decided games that it won ± 95 %"));
@@ -145,7 +146,7 @@ fn beaten(cell: &Cell) -> String {
     format!("{:.0} / {:.0}  {:+.2}", pct(cell.wins), pct(cell.draws), cell.score_difference)
 }
 
-/// How strong they are.
+/// The ratings of the entries.
 fn ratings(text: &mut String, report: &Report) {
     let width = width(&names(report));
     add_line(text, format_args!("\nElo ratings with 95 %: 100 points ahead are 64 % of the points of a game"));
@@ -157,9 +158,9 @@ fn ratings(text: &mut String, report: &Report) {
     }
 }
 
-/// What is not in the tables.
+/// The games missing from the tables.
 fn missing(text: &mut String, report: &Report) {
-    /// Failures that are listed.
+    /// The maximum number of failures listed.
     const LISTED: usize = 5;
     let Report { games_unplayed, games_left_out, failures, .. } = report;
     if *games_unplayed > 0 {
@@ -180,7 +181,7 @@ fn missing(text: &mut String, report: &Report) {
     }
 }
 
-/// How to play one of the games again.
+/// The command that replays one of the games.
 fn again(text: &mut String, report: &Report) {
     let sea = report.sea.as_ref().map_or(String::new(), |sea| format!(" --sea {sea}"));
     let sides: String = report.teams.iter().zip(["A", "B"]).map(|(team, file)| option(team, file)).collect();
@@ -196,7 +197,7 @@ fn option(team: &str, file: &str) -> String {
     if ["blue", "red"].contains(&team) { format!(" --{team} {file}") } else { format!(" --strategy {team}={file}") }
 }
 
-/// A line for each entry, separated by commas. Names hold no commas, and paths are put in quotes.
+/// A comma-separated line for each entry. Names contain no commas, and paths are quoted.
 #[must_use]
 pub fn csv(report: &Report) -> String {
     let mut text = String::new();

@@ -1,4 +1,4 @@
-//! The referee, judged from outside: scenes with a few boats, and long random walks.
+//! The referee's public behaviour: scenes with a few boats, and long random walks.
 
 mod mirror;
 mod out_of_play;

@@ -1,10 +1,11 @@
-//! The mirror image of a game: seen upside down, with one team taken for the other.
+//! The mirror image of a game: rotated by half a turn, with the teams swapped.
 
 use primitives::{FlagId, Leg, Ned, TeamId, VehicleId};
 use rules::event::{Event, TagCause};
 use rules::{Standing, VehicleStanding};
 
-/// Half a turn about the middle of the field; the teams, which have so many boats each, change places.
+/// Half a turn about the middle of the field. The teams, which have equally many boats, are
+/// swapped.
 pub(crate) struct Mirror {
     pub(crate) boats: usize,
 }

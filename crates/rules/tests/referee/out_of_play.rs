@@ -1,4 +1,4 @@
-//! Out of play: boats that were taken out, and everybody after the end.
+//! Out of play: retired boats, and all boats after the end.
 
 use crate::preset::aquaticus_2023;
 use crate::scene::{Scene, ended, grabbed, lost};

@@ -1,4 +1,4 @@
-//! Power play: one boat of each team out of action for a while.
+//! Power play: one boat of each team temporarily out of action.
 
 use crate::preset::mctf_2026;
 use crate::scene::{Scene, freed, grabbed, tagged};
@@ -10,7 +10,7 @@ fn disabled(vehicle: u16) -> Event {
     Event::Disabled(VehicleId(vehicle))
 }
 
-/// The drawn windows in order of time, with the vehicle: from, until, vehicle.
+/// The drawn windows in time order: from, until, vehicle.
 fn windows(scene: &Scene, seed: u64) -> Vec<(SimTime, SimTime, usize)> {
     let standing = scene.referee.start(&mut Stream::new(seed, "rules"));
     let drawn = standing.disabled.iter().enumerate().filter(|(_, (from, _))| *from < SimTime::NEVER);

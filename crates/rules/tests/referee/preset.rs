@@ -1,4 +1,4 @@
-//! The four rule books the referee must be able to apply, and what scenes cannot tell of them.
+//! The four rule books that the referee must support, and checks that scenes cannot express.
 
 use crate::scene::Scene;
 use primitives::{Ned, SimTime, VehicleId};
@@ -6,7 +6,8 @@ use rules::Rules;
 use std::path::Path;
 use std::sync::LazyLock;
 
-/// The shipped rule books, but boats may be set down side by side, and every look is one at everything.
+/// The shipped rule books, modified so that boats may be placed side by side and every look checks
+/// everything.
 static SHIPPED: LazyLock<[Rules; 4]> = LazyLock::new(|| {
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
     let folder = tempfile::tempdir().expect("a folder for files");
@@ -34,7 +35,7 @@ pub(crate) fn pyquaticus() -> Rules {
     SHIPPED[1].clone()
 }
 
-/// The 2025 competition: Pyquaticus, sailed with other boats.
+/// The 2025 competition: Pyquaticus with other boats.
 pub(crate) fn mctf_2025() -> Rules {
     SHIPPED[2].clone()
 }

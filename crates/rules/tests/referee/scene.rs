@@ -1,4 +1,4 @@
-//! A scene: boats set down by hand on the 160 m by 80 m field, and looked at.
+//! A scene: boats placed by hand on the 160 m by 80 m field, and judged.
 
 use primitives::near::Near;
 use primitives::stream::Stream;
@@ -13,7 +13,7 @@ pub(crate) struct Scene {
     pub(crate) notes: Notes,
     pub(crate) near: Near,
     pub(crate) fleet: Vec<Leg>,
-    /// What boats ask for, where they have to.
+    /// The boats' requests, for rules that require them.
     pub(crate) asks: Vec<Asks>,
     pub(crate) now: SimTime,
 }
@@ -45,12 +45,12 @@ pub(crate) fn flag(team: u8, x: f64, y: f64) -> Flag {
     Flag { team: TeamId(team), home: Ned::from_xy(x, y) }
 }
 
-/// Vehicles `0..boats` play for the first team, the next as many for the second, and so on.
+/// The first `boats` vehicles play for the first team, the next `boats` for the second, and so on.
 pub(crate) fn teams_of(boats: usize, teams: usize) -> Vec<TeamId> {
     (0..boats * teams).map(|i| TeamId((i / boats) as u8)).collect()
 }
 
-/// Three sides of 64 m each, next to each other, one flag in each.
+/// Three sides of 64 m each, side by side, with one flag each.
 pub(crate) fn three_sided(rules: Rules) -> Scene {
     let mut field = rectangle(0.0, 192.0, vec![flag(2, 160.0, 40.0)]);
     let thirds = [0.0, 64.0, 128.0].map(|x_m| rectangle(x_m, 128.0, vec![]));
@@ -61,7 +61,7 @@ pub(crate) fn three_sided(rules: Rules) -> Scene {
 }
 
 impl Scene {
-    /// Two teams of so many boats on the plain field.
+    /// Two teams of `boats` boats each on the plain field.
     pub(crate) fn new(rules: Rules, boats: usize) -> Scene {
         Scene::on(rules, field(vec![]), teams_of(boats, 2))
     }
@@ -94,13 +94,13 @@ impl Scene {
         self
     }
 
-    /// Lets time pass in which nobody looks.
+    /// Lets time pass without a look.
     pub(crate) fn wait(&mut self, seconds: f64) -> &mut Scene {
         self.now = self.now + SimTime::from_s(seconds) - TICK;
         self
     }
 
-    /// One tick later: what happened?
+    /// Advances one tick and returns its events.
     pub(crate) fn look(&mut self) -> Vec<Event> {
         self.now = self.now + TICK;
         let near = self.near.pairs(|i| self.fleet[i].to, self.fleet.len(), self.referee.rules().reach_m());
@@ -116,7 +116,7 @@ impl Scene {
     }
 }
 
-/// A boat that lies there.
+/// A boat at rest at this place.
 fn still(x: f64, y: f64) -> Leg {
     let at = Ned::from_xy(x, y);
     Leg { from: at, to: at }

@@ -1,14 +1,17 @@
-//! Scenes told in text: the files in `scenes`, which are read by this test as they are.
+//! Scenes as text: this test runs the files in `scenes`.
 //!
 //! - `## NAME` begins a scene, `# …` is a comment.
-//! - `rules BOOK KEY=VALUE …` comes next: a book of `preset.rs`, rules that differ from it (JSON values, times in
-//!   nanoseconds), and `boats=2` for each team (1 if it is left out), `sides=3` (2), `flag=[TEAM,X,Y]` for another flag.
-//! - `0 at 60 40; 1 at 65 40 -> Tagged 1 Opponent 0, …`: boats are set down at x and y in metres, and at the next look
-//!   exactly this happens, in this order; or `nothing`. Boats keep their places until they are set down elsewhere. `0 goes 60 40` moves a boat
-//!   there from where it is. `0 asks tag` (or `grab`) is a request from then on. `wait 10`
-//!   lets 10 s pass before the look, `clock 0` sets the time. An event is its name, then its vehicle, flag or team.
-//! - `WHAT is VALUE`: a part of the referee's standing as JSON (`vehicles.0.tagged`, `score`, `flags.1.carrier`; a time may
-//!   be `LONG_AGO`), `directive VEHICLE`, or `keepout VEHICLE X Y` with the circle's x, y and radius.
+//! - `rules BOOK KEY=VALUE …` comes next: a book of `preset.rs`, its overrides (JSON values, times in
+//!   nanoseconds), and `boats=2` for each team (default 1), `sides=3` (default 2),
+//!   `flag=[TEAM,X,Y]` for another flag.
+//! - `0 at 60 40; 1 at 65 40 -> Tagged 1 Opponent 0, …`: boats are placed at x and y in metres, and
+//!   the next look returns exactly these events, in this order; or `nothing`. Boats stay until they
+//!   are placed elsewhere. `0 goes 60 40` moves a boat there from its position. `0 asks tag` (or
+//!   `grab`) is a request from then on. `wait 10` lets 10 s pass before the look, `clock 0` sets the
+//!   time. An event is its name, then its vehicle, flag or team.
+//! - `WHAT is VALUE`: a part of the referee's standing as JSON (`vehicles.0.tagged`, `score`,
+//!   `flags.1.carrier`; a time may be `LONG_AGO`), `directive VEHICLE`, or `keepout VEHICLE X Y` with
+//!   the circle's x, y and radius.
 
 use crate::preset;
 use crate::scene::{Scene, field, flag, teams_of, three_sided};
@@ -17,7 +20,7 @@ use rules::Event;
 use serde_json::Value;
 use std::path::Path;
 
-/// What a scene may not do without: it says where it goes wrong.
+/// A result whose error says where a scene fails.
 type Told<T> = Result<T, String>;
 
 fn read<T: serde::de::DeserializeOwned>(text: &str) -> Told<T> {
@@ -29,7 +32,7 @@ fn pointer(path: &str) -> String {
     format!("/{}", path.replace('.', "/"))
 }
 
-/// The scene that begins with this line.
+/// The scene opened by this line.
 fn opened(line: &str) -> Told<Scene> {
     let mut words = line.strip_prefix("rules ").ok_or("expected `rules BOOK`")?.split(' ');
     let book = words.next().and_then(|name| preset::all().into_iter().find(|rules| rules.name == name));
@@ -51,7 +54,7 @@ fn opened(line: &str) -> Told<Scene> {
     Ok(if sides == 3 { three_sided(rules) } else { Scene::on(rules, field(extra_flags), teams_of(boats, sides)) })
 }
 
-/// An event as scenes tell it: its name, then who and what, as in `Tagged 1 Opponent 0`.
+/// An event in scene notation: its name, then the ids, as in `Tagged 1 Opponent 0`.
 fn brief(event: &Event) -> String {
     let text = format!("{event:?}");
     let is_told = |word: &&str| !word.starts_with(char::is_lowercase) && !word.ends_with("Id") && *word != "Some";
@@ -59,7 +62,7 @@ fn brief(event: &Event) -> String {
     words.into_iter().filter(is_told).collect::<Vec<_>>().join(" ")
 }
 
-/// What there is where the scene says `WHAT is VALUE`.
+/// The actual value for a line `WHAT is VALUE`.
 fn asked(scene: &Scene, what: &str) -> Told<String> {
     let words: Vec<&str> = what.split(' ').collect();
     Ok(match words[..] {
@@ -76,7 +79,7 @@ fn asked(scene: &Scene, what: &str) -> Told<String> {
     })
 }
 
-/// One step before a look.
+/// Executes one step before a look.
 fn step(scene: &mut Scene, words: &str) -> Told<()> {
     match words.split(' ').collect::<Vec<_>>()[..] {
         [vehicle, "at", x, y] => {
@@ -102,7 +105,7 @@ fn step(scene: &mut Scene, words: &str) -> Told<()> {
     Ok(())
 }
 
-/// Does what a line says, and checks what it says of it.
+/// Executes a line and checks what it states.
 fn follow(scene: &mut Scene, line: &str) -> Told<()> {
     let (got, want) = if let Some((what, want)) = line.split_once(" is ") {
         (asked(scene, what)?, want.replace("LONG_AGO", &SimTime::LONG_AGO.0.to_string()))
@@ -117,7 +120,7 @@ fn follow(scene: &mut Scene, line: &str) -> Told<()> {
     if got == want { Ok(()) } else { Err(format!("is {got}")) }
 }
 
-/// Plays a scene to its end, or to the first line that does not hold.
+/// Plays a scene to its end, or to the first line that fails.
 fn played(told: &str) -> Told<()> {
     let mut lines = told.lines().filter(|line| !line.is_empty() && !line.starts_with("# "));
     let first = lines.next().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Long random walks: what must hold at every look, whatever the boats do.
+//! Long random walks: invariants of every look, whatever the boats do.
 
 use crate::mirror::Mirror;
 use crate::preset;
@@ -14,7 +14,7 @@ use rules::{Look, Notes, Referee, Resolution, Rules, SideJudged, Standing};
 const GRAIN_M: f64 = 1.0 / 64.0;
 const LOOKS: usize = 400;
 
-/// What is played: by which rules, how many boats a team, and which walk.
+/// The parameters of a walk: rules, boats per team, and seed.
 #[derive(Clone, Debug)]
 struct Walk {
     rules: Rules,
@@ -44,7 +44,7 @@ impl Walk {
         Referee::new(self.rules.clone(), field(extra), teams_of(self.boats, 2))
     }
 
-    /// How every boat moves, look by look. Boats hurry from one interesting place to the next.
+    /// The motion of every boat, look by look. Boats hurry from one interesting place to the next.
     fn fleets(&self) -> Vec<Vec<Leg>> {
         let mut stream = Stream::new(self.seed, "walk");
         let start_position = |_| Ned::from_xy(80.0, 40.0);
@@ -66,7 +66,7 @@ impl Walk {
     }
 }
 
-/// Flags, homes, corners, the line, the boundary; and anywhere in between.
+/// Flags, homes, corners, the scrimmage line, the boundary, and anywhere in between.
 fn place(stream: &mut Stream) -> Ned {
     let grain = |metres: f64| (metres / GRAIN_M).round() * GRAIN_M;
     let (x, y) = match stream.below(8) {
@@ -80,7 +80,7 @@ fn place(stream: &mut Stream) -> Ned {
     Ned::from_xy(x, y)
 }
 
-/// A step of up to 3 m that leads `way` nearer to 0, mostly.
+/// A step of up to 3 m that mostly reduces `way` towards 0.
 fn stepwise(way: f64, stream: &mut Stream) -> f64 {
     let step = GRAIN_M * stream.below(193) as f64;
     if stream.below(8) == 0 { step * way.signum() * -0.5 } else { step.min(way.abs()).copysign(way) }
@@ -88,7 +88,7 @@ fn stepwise(way: f64, stream: &mut Stream) -> f64 {
         * GRAIN_M
 }
 
-/// All pairs nearer than half as far again as they need to be.
+/// All pairs within 1.5 times the required distance.
 fn generous(fleet: &[Leg], reach_m: f64) -> Vec<Pair> {
     let reach_m = 1.5 * reach_m;
     let pairs = (0..fleet.len()).flat_map(|a| (a + 1..fleet.len()).map(move |b| (a, b)));
@@ -97,12 +97,12 @@ fn generous(fleet: &[Leg], reach_m: f64) -> Vec<Pair> {
     near.map(|(a, b, distance_squared)| Pair { a, b, distance_squared }).collect()
 }
 
-/// A look at boats that need not ask.
+/// A look at boats that need no requests.
 fn look<'a>(legs: &'a [Leg], near: &'a [Pair], now: SimTime) -> Look<'a> {
     Look { legs, asks: &[], near, now }
 }
 
-/// The game of a walk, with what stood before each look: (before, after, fleet, events).
+/// Plays a walk; calls `each` with every look's (before, after, fleet, events).
 fn play(walk: &Walk, mut each: impl FnMut(&Referee, &Standing, &Standing, &[Leg], &[Event])) {
     let referee = walk.referee();
     let mut standing = referee.start(&mut Stream::new(walk.seed, "rules"));
@@ -161,7 +161,8 @@ fn assert_lawful(referee: &Referee, before: &Standing, after: &Standing, fleet: 
         Event::Tagged { vehicle, cause: TagCause::Boundary } => assert!(!field.contains(at(vehicle))),
         Event::Grabbed { vehicle, flag } => {
             let boat = &after.vehicles[vehicle.index()];
-            // In turn, a boat may be tagged after it grabbed, and a flag grabbed that the boundary has just brought home.
+            // In turn, a boat may be tagged after it grabbed, and a flag grabbed that the boundary
+            // has just brought home.
             assert!(!before.vehicles[vehicle.index()].tagged && !boat.disabled && (!boat.tagged || in_turn));
             assert!(field.contains(at(vehicle)));
             assert!(at(vehicle).distance(field.flags[flag.index()].home) < rules.grab_radius_m);
@@ -192,7 +193,7 @@ fn points(referee: &Referee, events: &[Event], team: TeamId) -> u32 {
     scored.filter(|(vehicle, _)| referee.team_of()[vehicle.index()] == team).map(|(_, points)| points).sum()
 }
 
-/// Events of one look in an order that does not depend on which team comes first.
+/// Events of one look, independent of the order of teams.
 fn sorted(events: impl Iterator<Item = Event>) -> Vec<String> {
     let mut events: Vec<String> = events.map(|event| format!("{event:?}")).collect();
     events.sort_unstable();

@@ -1,12 +1,13 @@
-//! Access control of the page: accepted host names, origins, and the tokens of those who may act.
+//! Access control of the page: accepted host names, origins, and the tokens that permit actions.
 //!
-//! A page that somebody on this machine opens from elsewhere can send requests to this machine too: by its address, or
-//! by a name that is made to lead here. `Host` and `Origin`, which browsers set and pages cannot, tell them apart.
+//! A web page from elsewhere that is open on this machine can send requests to this machine too: by
+//! its address, or by a name made to resolve to it. `Host` and `Origin`, which browsers set and
+//! pages cannot, reveal them.
 
 use super::view::Access;
 use std::net::{IpAddr, SocketAddr};
 
-/// Which requests are accepted.
+/// The rules for accepting requests.
 #[derive(Clone, Debug)]
 pub(super) struct AccessControl {
     bound: SocketAddr,
@@ -14,25 +15,25 @@ pub(super) struct AccessControl {
     tokens: Tokens,
 }
 
-/// What pages have to show to act.
+/// The tokens that a page must present to act.
 #[derive(Clone, Debug)]
 pub(super) struct Tokens {
-    /// To control the game. Without one all may.
+    /// The token to control the game; `None` permits every page.
     pub(super) control: Option<String>,
-    /// To operate real boats. Nobody may without it, not even another user of this machine.
+    /// The token to operate real boats. Without it not even another user of this machine may.
     pub(super) operate: String,
 }
 
 impl AccessControl {
-    /// For a server at this address, with further host names and the tokens of those who may act.
+    /// The rules of a server at this address, with additional host names and the tokens.
     pub(super) fn new(bound: SocketAddr, hosts: &[String], tokens: Tokens) -> AccessControl {
         AccessControl { bound, hosts: hosts.iter().map(|host| host.to_ascii_lowercase()).collect(), tokens }
     }
 
-    /// Whether a request for this host (as in the header) is meant for this server.
+    /// Checks that a request with this `Host` header is meant for this server.
     ///
     /// # Errors
-    /// Says why not, and what would help.
+    /// The reason for the rejection, and a remedy.
     pub(super) fn check_host(&self, host: Option<&str>) -> Result<(), String> {
         let Some(host) = host else { return Err("The request does not say which host it is for.\n".to_owned()) };
         let host = host.to_ascii_lowercase();
@@ -48,16 +49,17 @@ impl AccessControl {
 
     fn is_own(&self, name: &str) -> bool {
         match name.parse::<IpAddr>() {
-            // Where it listens on all addresses, an address cannot be somebody else's name for it.
+            // If the server listens on all addresses, no attacker can use an address as a name for
+            // it.
             Ok(ip) => ip.is_loopback() || ip == self.bound.ip() || self.bound.ip().is_unspecified(),
             Err(_) => name == "localhost",
         }
     }
 
-    /// Whether a websocket is opened by our own page, or by a client that is no browser.
+    /// Checks that a websocket is opened by our own page, or by a client that is not a browser.
     ///
     /// # Errors
-    /// Says why not.
+    /// The reason for the rejection.
     pub(super) fn check_origin(host: Option<&str>, origin: Option<&str>) -> Result<(), String> {
         let Some(origin) = origin else { return Ok(()) };
         let site = origin.split_once("://").map(|(_, site)| site);
@@ -67,7 +69,7 @@ impl AccessControl {
         }
     }
 
-    /// What a page whose address has this query may do.
+    /// The access of a page with this query in its address.
     pub(super) fn access(&self, query: Option<&str>) -> Access {
         let shown = value(query, "token");
         let is_shown = |token: &String| shown.as_ref().is_some_and(|shown| is_same(shown, token.as_bytes()));
@@ -79,7 +81,7 @@ impl AccessControl {
     }
 }
 
-/// What the query of an address gives for this name.
+/// The value of a parameter in a query.
 pub(super) fn value(query: Option<&str>, name: &str) -> Option<Vec<u8>> {
     let pairs = query.unwrap_or_default().split('&').filter_map(|pair| pair.split_once('='));
     pairs.into_iter().find(|(given, _)| *given == name).map(|(_, value)| decoded(value))
@@ -99,7 +101,7 @@ fn is_same(a: &[u8], b: &[u8]) -> bool {
     a.len() == b.len() && differences == 0
 }
 
-/// The bytes that a part of an address stands for.
+/// The bytes of a percent-encoded part of an address.
 fn decoded(text: &str) -> Vec<u8> {
     percent_encoding::percent_decode_str(&text.replace('+', " ")).collect()
 }
@@ -115,7 +117,8 @@ mod tests {
         AccessControl::new(bound.parse().expect("an address"), &hosts, tokens)
     }
 
-    /// The cases in `access_cases.csv` of one check: the two other columns, where `none` is nothing, and what comes of it.
+    /// The cases of one check in `access_cases.csv`: the two other columns, where `none` means
+    /// absent, and the expected result.
     fn cases(check: &str) -> Vec<([Option<String>; 2], bool)> {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/src/page/access_cases.csv");
         let text = std::fs::read_to_string(file).expect("the cases");

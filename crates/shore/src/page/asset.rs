@@ -1,4 +1,4 @@
-//! The files of the page: the folder `web`, inside of the program.
+//! The files of the page: the folder `web`, built into the program.
 
 use axum::body::Body;
 use axum::http::header::{self, HeaderMap, HeaderName, HeaderValue};
@@ -7,8 +7,8 @@ use include_dir::{Dir, include_dir};
 
 static WEB: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/web");
 
-/// What every answer carries. The page is made of its own files only, talks to its own server only, and cannot be put
-/// into a frame, where somebody else's page could lead clicks to it.
+/// Headers of every response. The page consists of its own files only, talks to its own server
+/// only, and cannot be framed, which would let another page redirect clicks to it.
 const HEADERS: [(HeaderName, &str); 5] = [
     (
         header::CONTENT_SECURITY_POLICY,
@@ -21,7 +21,7 @@ const HEADERS: [(HeaderName, &str); 5] = [
     (HeaderName::from_static("cross-origin-resource-policy"), "same-origin"),
 ];
 
-/// The file at this path of the page's address.
+/// The response for this path of the page.
 pub(super) fn answer(path: &str) -> Response<Body> {
     let name = match path.trim_start_matches('/') {
         "" => "index.html",
@@ -33,24 +33,24 @@ pub(super) fn answer(path: &str) -> Response<Body> {
     }
 }
 
-/// A file of this name.
+/// A response with a file of this name.
 pub(super) fn own(name: &str, contents: Body) -> Response<Body> {
     plain(StatusCode::OK, kind(name), contents)
 }
 
-/// An answer that leads to another path.
+/// A redirect to another path.
 pub(super) fn elsewhere(path: &'static str) -> Response<Body> {
     let mut response = text(StatusCode::TEMPORARY_REDIRECT, "What there is to see is there.\n");
     response.headers_mut().insert(header::LOCATION, HeaderValue::from_static(path));
     response
 }
 
-/// An answer in words.
+/// A plain-text response.
 pub(super) fn text(status: StatusCode, words: &str) -> Response<Body> {
     plain(status, "text/plain; charset=utf-8", Body::from(words.to_owned()))
 }
 
-/// Adds what every answer carries.
+/// Adds the headers of every response.
 pub(super) fn add_security_headers(headers: &mut HeaderMap) {
     for (name, value) in HEADERS {
         headers.insert(name, HeaderValue::from_static(value));

@@ -1,54 +1,54 @@
-//! The background of the chart: an image of the site, or its shoreline as GeoJSON, drawn below the field.
+//! The background of the chart, below the field: an image of the site, or its shoreline as GeoJSON.
 //!
-//! Both are placed by latitude and longitude of WGS 84: GeoJSON has no other since RFC 7946, and an image has a world file beside
-//! it. The page lays them on the field by the field's datum.
+//! Both are placed by WGS 84 latitude and longitude: GeoJSON has no other system since RFC 7946,
+//! and an image has a world file. The page aligns them with the field by the field's datum.
 
 use primitives::input_file;
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// The largest file, bytes.
+/// Size limit of a file, bytes.
 const BYTES_MAX: u64 = 16 << 20;
-/// The largest world file, bytes: six numbers.
+/// Size limit of a world file, bytes: it contains six numbers.
 const WORLD_BYTES_MAX: u64 = 4096;
-/// The longest side of an image, pixels: browsers draw no larger ones.
+/// The longest side of an image, pixels: browsers draw none larger.
 const SIDE_MAX: usize = 8192;
-/// The most positions of a shoreline.
+/// The maximum number of positions of a shoreline.
 const POSITIONS_MAX: usize = 200_000;
-/// The most that a background may extend over, degrees.
+/// The maximum extent of a background, degrees.
 const EXTENT_MAX_DEG: f64 = 5.0;
-/// The longest name of a place, characters.
+/// The maximum length of a place name, characters.
 const NAME_MAX: usize = 60;
-/// Endings of world files, in place of the image's own.
+/// Extensions of world files, which replace the image's own.
 const WORLD_FILES: [&str; 6] = ["pgw", "pngw", "jgw", "jpgw", "jpegw", "wld"];
 
-/// What is drawn below the field.
+/// The background of the field.
 #[derive(Debug)]
 pub struct Background {
-    /// As `PROTOCOL.md` says.
+    /// The message defined in `PROTOCOL.md`.
     pub(super) json: String,
     /// The media type of an image, and its bytes.
     pub(super) image: Option<(&'static str, Vec<u8>)>,
 }
 
-/// Why a file is no background.
+/// Why a background file is rejected.
 #[derive(Debug, Error)]
 pub enum BackgroundError {
-    /// It cannot be read.
+    /// The file cannot be read.
     #[error("cannot read {}: {source}", path.display())]
     Read {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The system's error.
         source: std::io::Error,
     },
-    /// It is not what it should be.
+    /// The content is invalid.
     #[error("{}: {problem}", path.display())]
     Bad {
         /// The file.
         path: PathBuf,
-        /// What is wrong, and what is allowed.
+        /// The problem, and what is allowed.
         problem: String,
     },
 }
@@ -57,7 +57,8 @@ impl Background {
     /// Reads an image (PNG or JPEG) with its world file, or GeoJSON.
     ///
     /// # Errors
-    /// [`BackgroundError`] if it cannot be read, is of another kind, too large, or badly placed.
+    /// [`BackgroundError`] if it cannot be read, has another format, is too large, or has invalid
+    /// coordinates.
     pub fn read(path: &Path) -> Result<Background, BackgroundError> {
         let bytes = read(path, BYTES_MAX)?;
         let bad = |problem| BackgroundError::Bad { path: path.to_owned(), problem };
@@ -90,7 +91,7 @@ fn read(path: &Path, bytes_max: u64) -> Result<Vec<u8>, BackgroundError> {
     input_file::read(path, bytes_max).map_err(|source| BackgroundError::Read { path: path.to_owned(), source })
 }
 
-/// The world file beside an image.
+/// The path and text of the world file beside an image.
 fn world_file(image: &Path) -> Result<(PathBuf, String), BackgroundError> {
     let found = WORLD_FILES.iter().map(|end| image.with_extension(end)).find(|path| path.exists());
     let Some(path) = found else {
@@ -107,14 +108,14 @@ fn world_file(image: &Path) -> Result<(PathBuf, String), BackgroundError> {
     Ok((path, text))
 }
 
-/// The six numbers of a world file, in its order: longitude = a column + b row + c, latitude = d column + e row + f, as a, d, b, e, c, f.
-/// c and f are of the middle of the first pixel.
+/// The six numbers of a world file in file order a, d, b, e, c, f: longitude = a column + b row +
+/// c, latitude = d column + e row + f. c and f refer to the centre of the first pixel.
 fn world_matrix(text: &str, [width, height]: [f64; 2]) -> Result<[f64; 6], String> {
     let mut numbers = [0.0; 6];
     let mut words = text.split_ascii_whitespace();
     for (at, number) in numbers.iter_mut().enumerate() {
         let word = words.next().ok_or_else(|| format!("has {at} numbers, expected 6, a line each"))?;
-        // Some programs write commas.
+        // Some programs write decimal commas.
         let parsed = word.replace(',', ".").parse().ok().filter(|number: &f64| number.is_finite());
         *number = parsed.ok_or_else(|| format!("line {}: {word:?} is not a number", at + 1))?;
     }
@@ -134,7 +135,7 @@ fn world_matrix(text: &str, [width, height]: [f64; 2]) -> Result<[f64; 6], Strin
     Ok(numbers)
 }
 
-/// From where to where positions reach: least and greatest longitude and latitude.
+/// The extent of positions: minimum and maximum longitude and latitude.
 #[derive(Default)]
 struct Extent(Option<[[f64; 2]; 2]>);
 
@@ -163,10 +164,10 @@ impl Extent {
     }
 }
 
-/// What GeoJSON shows, as positions: longitude and latitude in degrees.
+/// The shapes in a GeoJSON file, as positions: longitude and latitude in degrees.
 #[derive(Default)]
 struct Shoreline {
-    /// Polygons, by ring; all but the first are holes.
+    /// Polygons as rings; all but the first ring are holes.
     areas: Vec<Vec<Vec<[f64; 2]>>>,
     lines: Vec<Vec<[f64; 2]>>,
     points: Vec<(f64, f64, String)>,
@@ -187,7 +188,7 @@ impl Shoreline {
         Ok(shoreline)
     }
 
-    /// Files of before RFC 7946 may be in another reference system.
+    /// Files older than RFC 7946 may use another reference system.
     fn check_reference_system(&self, value: &Value) -> Result<(), String> {
         let Some(name) = value["crs"]["properties"]["name"].as_str() else { return Ok(()) };
         if name.ends_with("CRS84") || name.ends_with(":4326") {
@@ -285,7 +286,7 @@ impl Shoreline {
             return Err(format!("has more than {POSITIONS_MAX} positions: simplify it, or cut it to the site"));
         }
         let numbers = list(value, at)?.iter().map(Value::as_f64).collect::<Option<Vec<f64>>>();
-        // A third number is a height.
+        // The third number is a height.
         let [lon, lat, ..] = numbers.unwrap_or_default()[..] else {
             return Err(format!("{at} is no position, expected [longitude, latitude]"));
         };
@@ -306,7 +307,7 @@ fn within(at: &str, key: &str) -> String {
     if at.is_empty() { key.to_owned() } else { format!("{at}.{key}") }
 }
 
-/// What a feature is called.
+/// The name of a feature.
 fn name_of(feature: &Value) -> String {
     feature["properties"]["name"].as_str().unwrap_or_default().to_owned()
 }
@@ -317,7 +318,7 @@ mod tests {
     use proptest::prelude::*;
     use std::fs;
 
-    /// A picture of one pixel.
+    /// An image of one pixel.
     const PNG: &[u8] = include_bytes!("background_pixel.png");
 
     fn read_in(files: &[(&str, &[u8])]) -> Result<Background, String> {

@@ -1,4 +1,4 @@
-//! The chart: what does not change while a game is played, as the page draws it.
+//! The chart: everything that stays constant during a game, as the page draws it.
 //!
 //! x is east and y is north, both in metres from the datum; bearings are compass degrees.
 
@@ -9,7 +9,7 @@ use rules::field::{Obstacle, Walls};
 use scenario::{Drawn, Scenario, Source, Vehicle};
 use serde_json::{Map, Value, json};
 
-/// The chart of a game, as it stands in `PROTOCOL.md`.
+/// The chart of a game in the format of `PROTOCOL.md`.
 pub(super) fn chart(scenario: &Scenario, water: &Water) -> Value {
     let rules = &scenario.rules;
     let drawn = |Drawn { parameter, value }: &Drawn| (parameter.clone(), json!(value));
@@ -86,7 +86,7 @@ fn wave(wave: &PlaneWave) -> Value {
     })
 }
 
-/// x and y of each.
+/// East and north of each corner, m.
 fn places(corners: &[Ned]) -> Vec<[f64; 2]> {
     corners.iter().map(|at| [at.east, at.north]).collect()
 }

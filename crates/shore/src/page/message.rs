@@ -11,17 +11,17 @@ use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// Curves over time of a recorded game, as a page draws them. Numbers that are not known are null.
+/// Curves over time of a recorded game, as a page draws them. Unknown numbers are null.
 #[derive(Clone, Debug, Default, Serialize)]
 pub(super) struct Curves<'a> {
     pub(super) vehicle: Option<&'a str>,
     pub(super) other: Option<&'a str>,
-    /// When the samples were.
+    /// The times of the samples.
     pub(super) t_s: Vec<f64>,
-    /// By team, by sample.
+    /// Points by team and sample.
     pub(super) score: Vec<Vec<u32>>,
     pub(super) boat: Option<BoatCurves>,
-    /// Between the two boats.
+    /// The range between the two boats.
     pub(super) range_m: Option<Vec<f64>>,
 }
 
@@ -32,9 +32,9 @@ pub(super) struct BoatCurves {
     pub(super) ordered_speed_m_s: Vec<f64>,
     pub(super) heading_deg: Vec<f64>,
     pub(super) ordered_heading_deg: Vec<f64>,
-    /// To the nearest flag of another team, wherever that is.
+    /// The distance to the nearest flag of another team, wherever that flag is.
     pub(super) flag_m: Vec<f64>,
-    /// Of its own estimated position.
+    /// The error of its own position estimate.
     pub(super) error_m: Vec<f64>,
 }
 
@@ -130,17 +130,17 @@ pub(super) enum PageMessage<'a> {
     },
 }
 
-/// What a page looks at.
+/// What a page shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Mode {
-    /// A game that is being played: what is done to it is done to everybody.
+    /// A game in progress: actions affect all pages.
     Live,
-    /// A recording: everybody has a player of their own.
+    /// A recording: each page has its own playback.
     Replay,
 }
 
-/// An event, with a sentence about it.
+/// An event, with a sentence that describes it.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct EventMessage<'a> {
     #[serde(flatten)]
@@ -149,7 +149,7 @@ pub(super) struct EventMessage<'a> {
 }
 
 impl<'a> EventMessage<'a> {
-    /// The event as a page shows it.
+    /// The event in the page's format.
     pub(super) fn new(event: &'a EventOutcome) -> EventMessage<'a> {
         let text = match (event.event.as_str(), &event.vehicle) {
             ("failsafe", Some(vehicle)) => format!("{vehicle} is STOPPED by its gateway"),
@@ -159,13 +159,15 @@ impl<'a> EventMessage<'a> {
     }
 }
 
-/// A time in seconds as people write it: 120 and not 120.00000000000001, which multiplying by 1e-9 gives.
+/// A time in seconds, rounded for people: 120 rather than 120.00000000000001, the result of
+/// multiplying by 1e-9.
 pub(super) fn seconds(time: SimTime) -> f64 {
     time.0 as f64 / 1e9
 }
 
 impl PageMessage<'_> {
-    /// The first message to a page: of the game of this name, and perhaps with a sentence about where that comes from.
+    /// The first message to a page: the game of this name, with an optional sentence about its
+    /// origin.
     pub(super) fn hello<'a>(
         version: &'a str,
         mode: Mode,
@@ -192,7 +194,7 @@ impl PageMessage<'_> {
         }
     }
 
-    /// The message as it goes over the wire.
+    /// The message as sent.
     pub(super) fn json(&self) -> String {
         serde_json::to_string(self).expect("a plain struct is JSON")
     }

@@ -1,8 +1,9 @@
 //! The live page: a web server that shows a game, or a recording of one, to browsers.
 //!
-//! [`Page`] serves the files of the page and talks with each browser that opens it as `PROTOCOL.md` says. What it shows
-//! is a [`View`]: `live::LiveView` or [`replay::ReplayView`]. Each page has a [`Viewer`] of its own, which is asked what
-//! to say next whenever the page can take it; so a slow page sees fewer frames, and nobody waits for it.
+//! [`Page`] serves the files of the page and talks to each browser as defined in `PROTOCOL.md`. It
+//! shows a [`View`]: `live::LiveView` or [`replay::ReplayView`]. Each page has its own [`Viewer`],
+//! which is asked for the next message whenever the page can take one. A slow page therefore gets
+//! fewer frames and delays no other.
 
 mod access;
 mod asset;
@@ -40,52 +41,53 @@ use std::time::Duration;
 use thiserror::Error;
 use tokio::sync::watch;
 
-/// What a page's server needs to know.
+/// The settings of the page's server.
 pub struct PageSettings {
-    /// Where it listens; port 0 is any that is free.
+    /// The address to listen on; port 0 chooses any free port.
     pub listen: SocketAddr,
-    /// What pages that may act have to show. Without one all may.
+    /// The token that a page must present to act; `None` permits every page.
     pub token: Option<String>,
-    /// Further names under which it may be asked for. They need a token: whoever has a name for it comes from elsewhere.
+    /// Additional host names of the server. They require a token, since users of such a name come
+    /// from other machines.
     pub hosts: Vec<String>,
-    /// What is drawn below the field.
+    /// The background drawn below the field.
     pub background: Option<Background>,
-    /// Set from outside to end it.
+    /// Set by the caller to end the server.
     pub stop: Arc<AtomicBool>,
 }
 
 /// Why a page cannot be served.
 #[derive(Debug, Error)]
 pub enum PageError {
-    /// Everybody on the network could act.
+    /// Every machine on the network could act.
     #[error(
         "the page would be open to the network at {0}: listen on a loopback address such as 127.0.0.1, or give a token \
          (--page-token-file) that those who may act have to show"
     )]
     Open(SocketAddr),
-    /// Everybody who comes by the name could act: a proxy in front of a loopback address lets in whom it likes.
+    /// Every user of the name could act: a proxy in front of a loopback address may admit anyone.
     #[error(
         "the page would be open to all who reach it as {0:?} (--host): give a token (--page-token-file) that those who may \
          act have to show"
     )]
     Named(String),
-    /// A token that is none.
+    /// An empty token.
     #[error("the page's token is empty")]
     EmptyToken,
-    /// It cannot listen there.
+    /// The server cannot listen there.
     #[error("the page cannot listen on {address}: {source}")]
     Listen {
-        /// Where.
+        /// The address.
         address: SocketAddr,
-        /// What the system says.
+        /// The system's error.
         source: std::io::Error,
     },
-    /// The server's thread cannot be had.
+    /// The server's thread cannot be started.
     #[error("the page's server cannot begin: {0}")]
     Begin(std::io::Error),
 }
 
-/// A web server in a thread of its own; dropped, it closes the connections to all pages.
+/// A web server in its own thread; on drop, it closes the connections to all pages.
 pub struct Page {
     address: SocketAddr,
     operator_token: String,
@@ -95,30 +97,30 @@ pub struct Page {
     thread: Option<JoinHandle<()>>,
 }
 
-/// Hexadecimal digits of a token that nobody chose: 128 bits.
+/// The number of hexadecimal digits of a generated token: 128 bits.
 const OPERATOR_TOKEN_DIGITS: usize = 32;
-/// How often the server checks whether it shall end.
+/// The interval of checks whether the server should end.
 const LOOK_AGAIN: Duration = Duration::from_millis(50);
 /// How long pages have to receive the close message.
 const GOODBYE: Duration = Duration::from_millis(200);
 
 impl Page {
-    /// Whether it could be opened.
+    /// Checks that the page could be opened.
     ///
     /// # Errors
-    /// [`PageError`] if it cannot listen there, or should not.
+    /// [`PageError`] if it cannot or must not listen there.
     pub fn check(settings: &PageSettings) -> Result<(), PageError> {
         listener(settings).map(drop)
     }
 
-    /// Listens, and serves pages that have no view yet.
+    /// Listens, and serves pages without a view.
     ///
     /// # Errors
-    /// [`PageError`] if it cannot listen there, or should not.
+    /// [`PageError`] if it cannot or must not listen there.
     pub fn open(settings: PageSettings) -> Result<Page, PageError> {
         let (listener, address) = listener(&settings)?;
         let PageSettings { token, hosts, background, stop, .. } = settings;
-        // One thread, beside the game's: a page must never cost the game a processor.
+        // One thread besides the game's: a page must never take a processor from the game.
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(PageError::Begin)?;
         let (shown, to_show) = watch::channel(None);
         let operator_token = token.clone().unwrap_or_else(|| Token::random().hex()[..OPERATOR_TOKEN_DIGITS].to_owned());
@@ -129,7 +131,7 @@ impl Page {
         let to_publish = Arc::clone(&report);
         let serve = move || {
             let access_control = AccessControl::new(address, &hosts, tokens);
-            // What cannot be taken over by the runtime was never a listener.
+            // A socket that the runtime cannot adopt was never a listener.
             drop(runtime.block_on(routes::serve(
                 listener,
                 access_control,
@@ -147,24 +149,25 @@ impl Page {
         Ok(Page { address, operator_token, shown: Some(shown), report, ended, thread: Some(thread) })
     }
 
-    /// Where it listens.
+    /// The address it listens on.
     #[must_use]
     pub fn address(&self) -> SocketAddr {
         self.address
     }
 
-    /// What a page has to show to operate real boats: the token, or where none is set one of its own.
+    /// The token that a page must present to operate real boats: the configured one, or else a
+    /// generated one.
     #[must_use]
     pub fn operator_token(&self) -> &str {
         &self.operator_token
     }
 
-    /// Publishes a report with its games; the first stays.
+    /// Publishes a report with its games; only the first call has an effect.
     pub fn publish(&self, report: Arc<dyn Report>) {
         self.report.get_or_init(|| report);
     }
 
-    /// From now on all pages are shown this.
+    /// Shows this view on all pages from now on.
     pub fn show(&self, show: Arc<dyn View>) {
         if let Some(shown) = &self.shown {
             shown.send_replace(Some(show));
@@ -172,13 +175,13 @@ impl Page {
     }
 }
 
-/// Where pages come in, and under which address.
+/// The listener for pages, and its address.
 fn listener(PageSettings { listen, token, hosts, .. }: &PageSettings) -> Result<(TcpListener, SocketAddr), PageError> {
     if token.as_ref().is_some_and(String::is_empty) {
         return Err(PageError::EmptyToken);
     }
-    // Watching is free, acting is not. TLS is left to a proxy: nobody maintains certificates
-    // for a laptop on a dock.
+    // Watching is free, acting is not. TLS is left to a proxy: nobody maintains certificates for a
+    // laptop on a dock.
     if !listen.ip().is_loopback() && token.is_none() {
         return Err(PageError::Open(*listen));
     }
@@ -195,10 +198,10 @@ fn listener(PageSettings { listen, token, hosts, .. }: &PageSettings) -> Result<
 impl Drop for Page {
     fn drop(&mut self) {
         self.ended.store(true, Ordering::Relaxed);
-        // Pages notice by the end of the channel.
+        // Pages notice that the channel has ended.
         self.shown = None;
         if let Some(thread) = self.thread.take() {
-            // A server that panicked has said so by itself.
+            // A server that panicked has reported that itself.
             drop(thread.join());
         }
     }

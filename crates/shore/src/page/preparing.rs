@@ -1,4 +1,4 @@
-//! What is shown of a game until it can be seen: how far it is, or why it cannot be.
+//! A view shown until a game is available: the progress, or the reason for a failure.
 
 use super::message::{Mode, PageMessage};
 use super::request::PageRequest;
@@ -7,7 +7,7 @@ use parking_lot::Mutex;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Words in place of a game.
+/// A text in place of a game.
 pub struct PreparingView {
     said: Arc<Mutex<Said>>,
     news: Changes,
@@ -20,13 +20,13 @@ struct Said {
 }
 
 impl PreparingView {
-    /// Says how far it is.
+    /// Shows the progress.
     #[must_use]
     pub fn new(text: &str) -> PreparingView {
         PreparingView::of(text, false)
     }
 
-    /// Says why there is no game.
+    /// Shows why no game is available.
     #[must_use]
     pub fn failed(text: &str) -> PreparingView {
         PreparingView::of(text, true)
@@ -36,7 +36,7 @@ impl PreparingView {
         PreparingView { said: Arc::new(Mutex::new(Said { text: text.to_owned(), failed })), news: Changes::default() }
     }
 
-    /// Says something else.
+    /// Replaces the text.
     pub fn tell(&self, text: &str) {
         text.clone_into(&mut self.said.lock().text);
         self.news.send_replace(());
@@ -53,7 +53,7 @@ impl View for PreparingView {
     }
 }
 
-/// One page that waits.
+/// The viewer of one waiting page.
 struct PreparingViewer {
     said: Arc<Mutex<Said>>,
     sent: Option<Said>,

@@ -83,13 +83,13 @@ pub enum PageRequest {
 }
 
 impl PageRequest {
-    /// What it is called on the wire.
+    /// Its name in the protocol.
     #[must_use]
     pub fn name(&self) -> &'static str {
         self.into()
     }
 
-    /// What a page must be allowed to ask it of a game that others play.
+    /// The access that a page needs for it in a live game.
     #[must_use]
     pub fn needs(&self) -> Access {
         match self {
@@ -103,13 +103,13 @@ impl PageRequest {
             | PageRequest::Speed { .. }
             | PageRequest::Drive { .. }
             | PageRequest::LetGo { .. } => Access::Control,
-            // As at the gateway, whoever may stop all boats may stop one.
+            // As at the gateway, a page that may stop all boats may stop one.
             PageRequest::Operate { command, .. } if !command.needs_token() => Access::Control,
             PageRequest::Operate { .. } | PageRequest::Mission { .. } => Access::Operate,
         }
     }
 
-    /// Whether it changes a game that others play.
+    /// Whether it changes a live game.
     #[must_use]
     pub fn acts(&self) -> bool {
         self.needs() > Access::Watch

@@ -1,4 +1,4 @@
-//! The rose: what a helm thinks, as the page draws it, its utilities as whole per cents.
+//! The rose: a helm's evaluation as the page draws it, with utilities in whole per cents.
 
 use super::message::PageMessage;
 use messages::helm::{BehaviourReport, HelmReport, PolicyReport, VariableReport};
@@ -6,7 +6,7 @@ use primitives::VehicleId;
 use scenario::Scenario;
 use serde::Serialize;
 
-/// A helm's report, as it stands in `PROTOCOL.md`.
+/// A helm's report in the format of `PROTOCOL.md`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(super) struct Helm {
     pub(super) at_s: f64,
@@ -38,7 +38,7 @@ pub(super) struct Policy {
     pub(super) observed: Vec<(String, f32)>,
 }
 
-/// So many actions of a policy are told, the likeliest ones.
+/// The number of actions listed for a policy, the likeliest ones.
 const ACTIONS: usize = 4;
 
 impl Policy {
@@ -69,7 +69,7 @@ pub(super) struct Function {
 }
 
 impl Helm {
-    /// A sound report with names in place of numbers, with utilities for those who asked for them.
+    /// A valid report with names in place of numbers, with utilities if requested.
     pub(super) fn new(scenario: &Scenario, report: &HelmReport, has_utilities: bool) -> Helm {
         let percents = |utilities: &[f32]| utilities.iter().map(|utility| whole(f64::from(*utility))).collect();
         let function = |function: &messages::helm::FunctionReport| Function {
@@ -99,20 +99,20 @@ impl Helm {
     }
 }
 
-/// What is known of a helm at a decision.
+/// The state of a helm at a decision.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct HelmAnswer {
-    /// What it thought.
+    /// Its report.
     pub report: Option<HelmReport>,
-    /// Why that is not known.
+    /// Why no report is available.
     pub reason: Option<String>,
-    /// Whether it was worked out again, and not just told.
+    /// Whether it was recomputed, not received from the helm.
     pub computed: bool,
-    /// Whether the order worked out again is the one on record.
+    /// Whether the recomputed order equals the recorded one.
     pub agrees: Option<bool>,
 }
 
-/// What a page is told of a helm.
+/// The message to a page about a helm.
 pub(super) fn helm_text(scenario: &Scenario, vehicle: VehicleId, functions: bool, answer: HelmAnswer) -> String {
     let HelmAnswer { report, mut reason, computed, agrees } = answer;
     let sound = report.as_ref().filter(|report| is_sound(report, vehicle, scenario.vehicles.len()));
@@ -125,7 +125,7 @@ pub(super) fn helm_text(scenario: &Scenario, vehicle: VehicleId, functions: bool
     PageMessage::Helm { vehicle: name, report: helm.as_ref(), reason: reason.as_deref(), computed, agrees }.json()
 }
 
-/// Whether a report is about this vehicle and of one piece: an agent that answers is not therefore right.
+/// Whether a report is consistent and about this vehicle: answers from agents are not trusted.
 #[must_use]
 pub fn is_sound(report: &HelmReport, vehicle: VehicleId, vehicles: usize) -> bool {
     let is_grid = (1..=3600).contains(&report.courses)
@@ -140,19 +140,20 @@ pub fn is_sound(report: &HelmReport, vehicle: VehicleId, vehicles: usize) -> boo
         })
 }
 
-/// The weighted sum of all functions, from its least to its greatest; none without functions.
+/// The weighted sum of all functions, scaled from its minimum to its maximum; `None` without
+/// functions.
 fn collective(report: &HelmReport) -> Option<Vec<u8>> {
     report.functions.iter().find(|function| !function.utilities.is_empty())?;
     let sums = report.sum(report.functions.iter());
     let (least, greatest) =
         sums.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), sum| (least.min(*sum), most.max(*sum)));
     let range = greatest - least;
-    // Where all courses are worth the same, none is worth less.
+    // If all courses have the same value, none is worse.
     let share = |sum: &f64| if range > 0.0 { whole((sum - least) / range * 100.0) } else { 100 };
     Some(sums.iter().map(share).collect())
 }
 
-/// The nearest whole number from 0 to 100; what is no number is nothing.
+/// The nearest whole number from 0 to 100; 0 for NaN.
 fn whole(per_cent: f64) -> u8 {
     per_cent.round().clamp(0.0, 100.0) as u8
 }

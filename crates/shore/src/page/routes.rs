@@ -1,4 +1,4 @@
-//! The routes of the web server: which request gets which response.
+//! The routes of the web server.
 
 use super::access::{AccessControl, value};
 use super::asset;
@@ -28,22 +28,22 @@ use tokio::sync::oneshot;
 use tokio::time::sleep;
 use tokio_io_timeout::TimeoutStream;
 
-/// The most pages at a time, of those that show no token.
+/// The maximum number of pages without a token.
 const PAGES_MAX: usize = 64;
-/// The most pages that operators have: others take no room from them.
+/// The maximum number of operators' pages: other pages cannot take their room.
 const OPERATORS_MAX: usize = 8;
-/// The most connections at a time that are no websockets yet.
+/// The maximum number of connections that are not websockets yet.
 const CONNECTIONS_MAX: usize = 192;
-/// A connection on which nothing arrives for so long is closed. Websockets are pinged more often.
+/// A connection that receives nothing for this long is closed. Websockets are pinged more often.
 const SILENCE: Duration = Duration::from_secs(60);
-/// A connection that accepts no bytes for so long, while there are some to send, is closed.
+/// A connection that accepts no bytes for this long, with some to send, is closed.
 const DEAF: Duration = Duration::from_secs(20);
-/// How long to wait after the system could not accept.
+/// The time to wait after a failed accept.
 const AGAIN: Duration = Duration::from_millis(200);
-/// How long a request may take to arrive, counted from the connection's beginning or the response before.
+/// Timeout of a request, from the connection's start or the previous response.
 const REQUEST: Duration = Duration::from_secs(10);
 
-/// What all requests have in common.
+/// The state that all requests share.
 #[derive(Clone)]
 struct AppState {
     access_control: Arc<AccessControl>,
@@ -55,30 +55,30 @@ struct AppState {
 }
 
 impl AppState {
-    /// Something of the report, in a thread that may take its time; none without a report.
+    /// Runs `get` on the report, in a thread that may block; `None` without a report.
     async fn of_report<T: Send + 'static>(&self, get: impl FnOnce(&dyn Report) -> T + Send + 'static) -> Option<T> {
         let report = Arc::clone(self.report.get()?);
-        // If it panicked it has said so by itself.
+        // A thread that panicked has reported that itself.
         tokio::task::spawn_blocking(move || get(&*report)).await.ok()
     }
 
-    /// Room for a page from this address with this query, and what it may do.
+    /// Room for a page with this address and query, and its access.
     fn admit(&self, from: IpAddr, query: Option<&str>) -> (Room, Access) {
         let access = self.access_control.access(query);
         (admit(if access == Access::Operate { &self.operators } else { &self.viewers }, from), access)
     }
 }
 
-/// Room for a connection, and the word that somebody else needs it.
+/// Room for a connection, and a signal that another one needs it.
 pub(super) type Room = (Slot, oneshot::Receiver<()>);
 
 fn admit(connections: &Connections, from: IpAddr) -> Room {
     let (close, closed) = oneshot::channel();
-    // It may have ended by itself.
+    // The connection may have ended already.
     (connections.admit(from, move || close.send(()).unwrap_or_default()), closed)
 }
 
-/// Answers until the end.
+/// Serves requests until the server ends.
 pub(super) async fn serve(
     listener: std::net::TcpListener,
     access_control: AccessControl,
@@ -92,8 +92,8 @@ pub(super) async fn serve(
         report,
         background: background.map(Arc::new),
         viewers: Connections::new(PAGES_MAX),
-        // Room of their own: an E-stop must not stand behind observers. Where there are too
-        // many nobody is refused; the idlest makes room, and comes back after half a minute, so
+        // Separate room for operators: an E-stop must not queue behind observers. If there are too
+        // many pages, none is refused. The idlest makes room and comes back after half a minute, so
         // that one page too many does not make all of them come and go.
         operators: Connections::new(OPERATORS_MAX),
     };
@@ -115,7 +115,8 @@ pub(super) async fn serve(
                 tokio::select! {
                     // An error ends the connection of one browser only.
                     ended = served => drop(ended),
-                    // Somebody else needs the room; an error is that of room that is free again.
+                    // Another connection needs the room; an error means that the room is free
+                    // again.
                     Ok(()) = closed => {}
                 }
             });
@@ -128,14 +129,14 @@ pub(super) async fn serve(
     Ok(())
 }
 
-/// Serves one connection. `axum::serve` would wait for ever for a request that never ends.
+/// Serves one connection. `axum::serve` would wait for ever for an incomplete request.
 async fn serve_connection(
     stream: TcpStream,
     site: Router,
     slot: Slot,
     from: IpAddr,
 ) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-    // A frame is one small write; waiting for more only makes it late.
+    // A frame is one small write; waiting for more only delays it.
     drop(stream.set_nodelay(true));
     let mut stream = TimeoutStream::new(stream);
     stream.set_read_timeout(Some(SILENCE));
@@ -151,7 +152,7 @@ async fn serve_connection(
     server.serve_connection_with_upgrades(TokioIo::new(Box::pin(stream)), TowerToHyperService::new(site)).await
 }
 
-/// Refuses requests that are not meant for this server, and adds security headers to responses.
+/// Rejects requests not meant for this server, and adds security headers to responses.
 async fn check(State(app): State<AppState>, request: Request, next: Next) -> Response<Body> {
     let mut response = match app.access_control.check_host(text_of(request.headers(), &HOST)) {
         Ok(()) => next.run(request).await,
@@ -178,7 +179,7 @@ async fn file(State(app): State<AppState>, method: Method, uri: Uri) -> Response
     }
 }
 
-/// What the page draws below the field: `null` where there is nothing.
+/// The background that the page draws below the field; `null` if there is none.
 fn background_file(background: Option<&Background>, path: &str) -> Option<Response<Body>> {
     let image = background.and_then(|background| background.image.as_ref());
     match path {
@@ -212,7 +213,7 @@ async fn upgrade(
     upgrade.on_upgrade(move |socket| socket::serve(socket, game.unwrap_or(app.shown), access, room))
 }
 
-/// A header, if it is a text. One that is there and is none is as good as a wrong one.
+/// A header as text. A header that is not text counts as a wrong one.
 fn text_of<'a>(headers: &'a HeaderMap, name: &HeaderName) -> Option<&'a str> {
     headers.get(name).map(|value| value.to_str().unwrap_or("?"))
 }

@@ -1,4 +1,4 @@
-//! The protocol with one page, without the network (sans-IO).
+//! The protocol with one page, without I/O (sans-IO).
 
 use super::message::{Mode, PageMessage};
 use super::request::PageRequest;
@@ -6,40 +6,41 @@ use super::view::{Access, Budget, Outgoing, Viewer};
 use std::collections::VecDeque;
 use std::time::Instant;
 
-/// The most frames sent and not yet drawn.
+/// The maximum number of frames sent and not drawn yet.
 const UNDRAWN_MAX: u8 = 2;
-/// After so much text a ping asks whether it has arrived, bytes. A frame is acknowledged when it is drawn; a text is not.
+/// After this much text, bytes, a ping checks that it has arrived. The page acknowledges drawn
+/// frames, but not text.
 const UNCONFIRMED_MAX: usize = 4096;
-/// The most refusals that wait to be sent; a page that sends bad requests faster than it reads misses some.
+/// Upper bound of queued refusals; a page that sends bad requests faster than it reads misses some.
 const REFUSALS_MAX: usize = 8;
 
 /// The session with one page.
 pub struct PageSession {
     viewer: Box<dyn Viewer>,
     access: Access,
-    /// Frames sent and not yet drawn.
+    /// The number of frames sent and not drawn yet.
     undrawn: u8,
     /// Text sent since the last ping, bytes.
     unconfirmed: usize,
-    /// The last ping that was made, and the last that came back.
+    /// The last ping made, and the last one returned.
     pings: (u64, u64),
-    /// Refusals to be sent: of what, and why.
+    /// Refusals to be sent: the request, and the reason.
     refusals: VecDeque<(String, String)>,
 }
 
 impl PageSession {
-    /// Begins to show something to a page.
+    /// Starts a session with a page.
     #[must_use]
     pub fn new(viewer: Box<dyn Viewer>, access: Access) -> PageSession {
         PageSession { viewer, access, undrawn: 0, unconfirmed: 0, pings: (0, 0), refusals: VecDeque::new() }
     }
 
-    /// Shows something else. Frames that were sent stay sent.
+    /// Replaces the viewer. Frames in flight still count.
     pub(super) fn show(self, viewer: Box<dyn Viewer>) -> PageSession {
         PageSession { viewer, ..self }
     }
 
-    /// A text message from the page.
+    /// Handles a text message from the page.
     pub fn receive(&mut self, text: &str, now: Instant) {
         let ask: PageRequest = match serde_json::from_str(text) {
             Ok(ask) => ask,
@@ -64,12 +65,12 @@ impl PageSession {
         }
     }
 
-    /// A binary message from the page.
+    /// Handles a binary message from the page.
     pub fn receive_binary(&mut self) {
         self.refuse("message", "not a text".to_owned());
     }
 
-    /// The next message to the page, if there is one now.
+    /// The next message to the page, if there is one.
     pub fn next_message(&mut self, now: Instant) -> Option<Outgoing> {
         if let Some((what, reason)) = self.refusals.pop_front() {
             return Some(Outgoing::Text(PageMessage::Refused { what: &what, reason: &reason }.json()));
@@ -83,19 +84,19 @@ impl PageSession {
         outgoing
     }
 
-    /// What the page can take now: of frames and of text no more is on its way than it can be late by.
+    /// What the page can take now: limits the frames and text in flight, so that none arrives late.
     fn budget(&self) -> Budget {
         let (made, back) = self.pings;
         match self.undrawn < UNDRAWN_MAX {
             false => Budget::None,
-            // What can wait (helms) waits for room on the connection: an E-stop must not stand
-            // behind pictures.
+            // Messages that can wait (helms) wait for room on the connection: an E-stop must not
+            // queue behind pictures.
             true if back < made || self.unconfirmed >= UNCONFIRMED_MAX => Budget::Frames,
             true => Budget::All,
         }
     }
 
-    /// A ping to be sent after the last message, if it is time for one. The page sends it back at once.
+    /// A ping to send after the last message, if one is due. The page returns it at once.
     pub fn ping(&mut self) -> Option<u64> {
         if self.unconfirmed < UNCONFIRMED_MAX {
             return None;
@@ -104,18 +105,18 @@ impl PageSession {
         Some(self.pings.0)
     }
 
-    /// The ping that was made last.
+    /// The last ping made.
     pub(super) fn last_ping(&self) -> u64 {
         self.pings.0
     }
 
-    /// A ping comes back: everything sent before it has arrived.
+    /// Handles a returned ping: everything sent before it has arrived.
     pub fn receive_pong(&mut self, ping: u64) {
         let (made, back) = self.pings;
         self.pings.1 = back.max(ping.min(made));
     }
 
-    /// When the next message is due, if nothing changes.
+    /// When the next message is due without further events.
     pub(super) fn due(&self, now: Instant) -> Option<Instant> {
         self.viewer.due(now)
     }
@@ -134,7 +135,7 @@ mod tests {
     use proptest::prelude::*;
     use std::sync::{Arc, Mutex};
 
-    /// A viewer with a frame for every question whether there is one, which notes what it is asked.
+    /// A viewer that offers a frame at every call and records the requests it receives.
     struct TestViewer {
         mode: Mode,
         asked: Arc<Mutex<Vec<PageRequest>>>,
@@ -174,7 +175,7 @@ mod tests {
         session.receive(r#"{"do":"ack"}"#, now);
         assert_eq!(session.next_message(now), Some(Outgoing::now(&[3])));
         assert_eq!(session.next_message(now), None);
-        // A page that claims to have drawn more than it got gets no more than two.
+        // A page that acknowledges more frames than it got receives no more than two.
         (0..9).for_each(|_| session.receive(r#"{"do":"ack"}"#, now));
         assert_eq!(std::iter::from_fn(|| session.next_message(now)).take(9).count(), 2);
     }
@@ -192,7 +193,7 @@ mod tests {
         assert_eq!(session.budget(), Budget::Frames, "an older ping says nothing of it");
         session.receive_pong(1);
         assert_eq!(session.budget(), Budget::All);
-        // A page that claims pings it never got has not got what is sent next.
+        // A page that returns pings it never got has not received later messages.
         session.receive_pong(u64::MAX);
         session.unconfirmed = UNCONFIRMED_MAX;
         assert_eq!((session.ping(), session.budget()), (Some(2), Budget::Frames));

@@ -1,4 +1,4 @@
-//! A websocket: the network shell around the session of one page.
+//! A websocket: the I/O shell around the session of one page.
 
 use super::report::Shown;
 use super::routes::Room;
@@ -12,20 +12,20 @@ use std::pin::pin;
 use std::time::Duration;
 use tokio::time::{Instant, sleep_until, timeout};
 
-/// The longest message from a page, bytes.
+/// Size limit of a message from a page, bytes.
 pub(super) const RECEIVED_MAX: usize = 16 * 1024;
-/// How long a good-bye may take.
+/// Timeout of the close message.
 const CLOSE_LIMIT: Duration = Duration::from_millis(100);
-/// How often a page is pinged.
+/// The interval of pings.
 const PING: Duration = Duration::from_secs(15);
-/// A page that sends nothing for so long is disconnected.
+/// A page silent for this long is disconnected.
 const DEAD: Duration = Duration::from_secs(45);
-/// A game at full speed changes more often than a page can draw: messages are sent no more often than this.
+/// The minimum interval of messages: a game at full speed changes more often than a page can draw.
 const MIN_INTERVAL: Duration = Duration::from_millis(4);
 
-/// What ends the session with a page.
+/// Why the session with a page ends.
 enum End {
-    /// The page is gone.
+    /// The page has left.
     Gone,
     /// The server closes.
     Closed,
@@ -33,21 +33,21 @@ enum End {
     Displaced,
 }
 
-/// The two halves of a socket: a page is read while it is slow to accept what is sent.
+/// The two halves of a socket, so that a page is read even while it is slow to accept data.
 struct Socket {
     sink: SplitSink<WebSocket, Message>,
     incoming: Incoming,
 }
 
-/// What a page sends.
+/// The receiving half.
 struct Incoming {
     stream: SplitStream<WebSocket>,
     slot: Slot,
-    /// When its last message came.
+    /// When its last message arrived.
     last_received: std::time::Instant,
 }
 
-/// Talks with a page until it goes, the server does, or another page needs the room.
+/// Talks to a page until the page leaves, the server closes, or another page needs the room.
 pub(super) async fn serve(socket: WebSocket, shown: Shown, access: Access, (slot, displaced): Room) {
     let (sink, stream) = socket.split();
     let mut socket = Socket { sink, incoming: Incoming { stream, slot, last_received: clock::now() } };
@@ -60,12 +60,12 @@ pub(super) async fn serve(socket: WebSocket, shown: Shown, access: Access, (slot
         End::Closed => None,
         End::Displaced => Some(CloseFrame { code: close_code::AGAIN, reason: "another page needs the room".into() }),
     };
-    // The page may be gone already.
+    // The page may have left already.
     drop(timeout(CLOSE_LIMIT, socket.sink.send(Message::Close(goodbye))).await);
 }
 
 impl Socket {
-    /// Shows one show after the other.
+    /// Shows one view after another.
     async fn talk(&mut self, mut shown: Shown, access: Access) -> End {
         let mut session: Option<PageSession> = None;
         loop {
@@ -87,7 +87,7 @@ impl Socket {
         }
     }
 
-    /// Waits until there is something to show.
+    /// Waits for a view to show.
     async fn wait(&mut self, shown: &mut Shown) -> Result<(), End> {
         loop {
             tokio::select! {
@@ -99,7 +99,7 @@ impl Socket {
         }
     }
 
-    /// Talks about one show, until there is another.
+    /// Shows one view until it is replaced.
     async fn run(&mut self, shown: &mut Shown, news: &Changes, session: &mut PageSession) -> Result<(), End> {
         let mut news = news.subscribe();
         self.incoming.last_received = clock::now();
@@ -131,16 +131,17 @@ impl Socket {
                     return Err(End::Gone);
                 }
                 pinged = now;
-                // Of several pings a page may answer the last only.
+                // A page may answer only the last of several pings.
                 self.send(ping(session.last_ping()), session).await?;
             }
         }
     }
 
-    /// While a page is slow to take a message, nothing queues up behind it: the next one is made afterwards. What
-    /// the page sends meanwhile is received: it may be an E-stop. A connection that accepts nothing at all times out by itself.
+    /// Sends a message. While a page is slow to accept it, no messages queue up behind it: the next
+    /// one is made afterwards. Messages from the page are still received meanwhile, since one may
+    /// be an E-stop. A connection that accepts nothing at all times out by itself.
     async fn send(&mut self, message: Message, session: &mut PageSession) -> Result<(), End> {
-        // It is sent whole: what is half sent cannot be taken back.
+        // It is sent completely: a partial message cannot be withdrawn.
         let mut sending = pin!(self.sink.send(message));
         loop {
             tokio::select! {
@@ -152,13 +153,13 @@ impl Socket {
 }
 
 impl Incoming {
-    /// Waits for a message of the page, and takes it.
+    /// Waits for a message from the page and handles it.
     async fn receive(&mut self, session: &mut PageSession) -> Result<(), End> {
         let message = self.stream.next().await;
         self.last_received = clock::now();
         match message {
             Some(Ok(Message::Text(text))) => {
-                // A page that shows something acknowledges frames: it is not idle.
+                // A page that shows a view acknowledges frames, so it is not idle.
                 self.slot.touch();
                 session.receive(&text, clock::now());
             }
@@ -182,7 +183,7 @@ fn message(outgoing: Outgoing) -> Message {
     }
 }
 
-/// Browsers answer it with the same bytes by themselves, in the order in which things arrive.
+/// Browsers automatically return the same bytes, in order of arrival.
 fn ping(number: u64) -> Message {
     Message::Ping(number.to_be_bytes().to_vec().into())
 }

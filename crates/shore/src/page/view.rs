@@ -1,4 +1,4 @@
-//! What a page can show: a running game, or a recording.
+//! Views of a page: a running game, or a recording.
 
 use super::message::Mode;
 use super::request::PageRequest;
@@ -6,20 +6,20 @@ use axum::body::Bytes;
 use std::time::{Duration, Instant};
 use tokio::sync::watch;
 
-/// How often a page is sent values that change all the time.
+/// The interval of messages with continuously changing values.
 pub(super) const SEND_INTERVAL: Duration = Duration::from_millis(200);
-/// How often a page is sent the report of a helm.
+/// The interval of helm reports to a page.
 pub(super) const HELM_INTERVAL: Duration = Duration::from_millis(500);
-/// How often a page is sent the modes of all boats.
+/// The interval of modes of all boats to a page.
 pub(super) const MODES_INTERVAL: Duration = Duration::from_secs(1);
-/// How often a page is sent the estimated position of a boat.
+/// The interval of a boat's estimated position to a page.
 pub(super) const ESTIMATE_INTERVAL: Duration = Duration::from_millis(100);
-/// The past that a page gets for trails: frames so far apart (simulated time), s.
+/// The time between past frames for trails, simulated s.
 pub(super) const TRAIL_STEP_S: f64 = 0.5;
-/// How far it goes back (simulated time), s.
+/// The length of trails, simulated s.
 pub(super) const TRAIL_S: f64 = 60.0;
 
-/// Something that pages show.
+/// A view that pages show.
 pub trait View: Send + Sync {
     /// Opens a viewer for one page.
     fn open_viewer(&self, access: Access) -> Box<dyn Viewer>;
@@ -27,7 +27,7 @@ pub trait View: Send + Sync {
     fn news(&self) -> &Changes;
 }
 
-/// What a page may do; each may do what those before it may.
+/// The access of a page; each level includes the ones before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Access {
     /// Watch.
@@ -38,25 +38,25 @@ pub enum Access {
     Operate,
 }
 
-/// One page's view. It gets the time as an argument, and never blocks.
+/// One page's view. It receives the time as an argument and never blocks.
 pub trait Viewer: Send {
     /// Whether this is a game or a recording.
     fn mode(&self) -> Mode;
 
-    /// The page asks something that it may ask.
+    /// Handles a request that the page's access permits.
     ///
     /// # Errors
-    /// Why it is not done.
+    /// The reason for a refusal.
     fn ask(&mut self, ask: &PageRequest, now: Instant) -> Result<(), String>;
 
-    /// The next message, if there is one now; what can wait only within the budget.
+    /// The next message, if there is one; replaceable messages only within the budget.
     fn next_message(&mut self, now: Instant, budget: Budget) -> Option<Outgoing>;
 
-    /// When the next message is due, if nothing changes.
+    /// When the next message is due without further events.
     fn due(&self, now: Instant) -> Option<Instant>;
 }
 
-/// What may be sent to a page now, of messages that newer ones replace.
+/// Which replaceable messages may be sent to a page now.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Budget {
     /// Nothing.
@@ -72,27 +72,27 @@ pub enum Budget {
 pub enum Outgoing {
     /// JSON.
     Text(String),
-    /// A frame of the past, with its first byte.
+    /// A past frame, with its leading byte.
     Past(Bytes),
-    /// A frame to be shown now, with its first byte. The page acknowledges it when it is drawn.
+    /// A current frame, with its leading byte. The page acknowledges it once drawn.
     Now(Bytes),
 }
 
 impl Outgoing {
-    /// A frame of the past, from its CDR.
+    /// A past frame, from its CDR.
     #[must_use]
     pub fn past(cdr: &[u8]) -> Outgoing {
         Outgoing::Past(marked(2, cdr))
     }
 
-    /// A frame to be shown now, from its CDR.
+    /// A current frame, from its CDR.
     #[must_use]
     pub fn now(cdr: &[u8]) -> Outgoing {
         Outgoing::Now(marked(1, cdr))
     }
 }
 
-/// A frame with its leading byte, which says what it is for.
+/// A frame with its leading byte, which states its purpose.
 pub(super) fn marked(byte: u8, cdr: &[u8]) -> Bytes {
     let mut bytes = Vec::with_capacity(1 + cdr.len());
     bytes.push(byte);
@@ -100,5 +100,5 @@ pub(super) fn marked(byte: u8, cdr: &[u8]) -> Bytes {
     bytes.into()
 }
 
-/// Notifies viewers that there may be something new: whatever is sent, from any thread.
+/// Notifies viewers of possible news; can be sent from any thread.
 pub type Changes = watch::Sender<()>;

@@ -1,4 +1,4 @@
-//! Who is let in, and who may act.
+//! Which clients are admitted, and which may act.
 
 use super::client::{Client, get};
 use super::replay::show;
@@ -63,7 +63,7 @@ fn with_a_token_only_those_who_show_it_have_rights() {
     }
 }
 
-/// The page goes to another time, and the server has heard it.
+/// Sends a seek, and waits until the server has received it.
 fn seek(client: &mut Client, t_s: f64) {
     client.send(&format!(r#"{{"do":"seek","t_s":{t_s}}}"#));
     client.until("player", |player| player["t_s"] == t_s);
@@ -90,7 +90,7 @@ fn those_who_only_look_keep_nobody_out_who_may_act() {
     let onlookers: Vec<Client> = (0..200).map(|_| open_viewer(&page)).collect();
     operators.iter_mut().for_each(|operator| assert_eq!(operator.text()["rights"], true));
     operators[1..].iter_mut().for_each(|operator| seek(operator, 3.0));
-    // One more of them takes the room of one of them.
+    // One more takes the room of another.
     let mut another = come();
     seek(&mut another, 3.0);
     assert_eq!(operators[0].close_code(), Some(AGAIN));

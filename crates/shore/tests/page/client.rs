@@ -1,4 +1,4 @@
-//! A browser's side of the talk.
+//! A browser's side of the protocol.
 
 use bus::clock::now;
 use serde_json::Value;
@@ -9,9 +9,9 @@ use tungstenite::client::IntoClientRequest;
 use tungstenite::http::{HeaderName, HeaderValue};
 use tungstenite::{Error, Message, WebSocket};
 
-/// How long anything may take.
+/// Timeout of every wait.
 const LIMIT: Duration = Duration::from_secs(30);
-/// How long it takes to believe that nothing comes.
+/// How long silence must last to count.
 const QUIET: Duration = Duration::from_secs(1);
 
 pub(crate) struct Client {
@@ -19,7 +19,7 @@ pub(crate) struct Client {
 }
 
 impl Client {
-    /// A websocket at this path, with these headers; or the answer's status.
+    /// A websocket at this path with these headers, or the status of the response.
     pub(crate) fn connect(address: SocketAddr, path: &str, headers: &[(&str, &str)]) -> Result<Client, u16> {
         let mut request = format!("ws://{address}{path}").into_client_request().expect("a sound request");
         for (name, value) in headers {
@@ -49,7 +49,7 @@ impl Client {
         self.send(r#"{"do":"ack"}"#);
     }
 
-    /// What comes next within a time, if anything does; an error if the server has hung up.
+    /// The next message within `limit`, if any; an error if the server has closed.
     fn next_within(&mut self, limit: Duration) -> Result<Option<Message>, Error> {
         let end = now() + limit;
         while now() < end {
@@ -63,12 +63,12 @@ impl Client {
         Ok(None)
     }
 
-    /// The next message that is one.
+    /// The next message, which must arrive.
     pub(crate) fn next(&mut self) -> Message {
         self.next_within(LIMIT).expect("it is open").expect("something comes in time")
     }
 
-    /// The next text, which must be next of all.
+    /// The next message, which must be text.
     pub(crate) fn text(&mut self) -> Value {
         match self.next() {
             Message::Text(text) => serde_json::from_str(&text).expect("texts are JSON"),
@@ -76,7 +76,8 @@ impl Client {
         }
     }
 
-    /// The next text of a kind that is as it should be; everything else is passed over, frames are drawn at once.
+    /// The next text of a kind that passes `is_good`; skips everything else, and acknowledges
+    /// frames.
     pub(crate) fn until(&mut self, kind: &str, is_good: impl Fn(&Value) -> bool) -> Value {
         let end = now() + LIMIT;
         let mut last = Value::Null;
@@ -96,7 +97,7 @@ impl Client {
         panic!("no such {kind} in time; the last was {last}");
     }
 
-    /// The next frame with its first byte; texts are passed over.
+    /// The next frame with its leading byte; skips texts.
     pub(crate) fn frame(&mut self) -> Vec<u8> {
         loop {
             if let Message::Binary(bytes) = self.next() {
@@ -105,12 +106,12 @@ impl Client {
         }
     }
 
-    /// All that comes until it is quiet for a while.
+    /// All messages until the connection is quiet.
     pub(crate) fn rest(&mut self) -> Vec<Message> {
         std::iter::from_fn(|| self.next_within(QUIET).ok().flatten()).collect()
     }
 
-    /// The code with which the server hangs up, if it does in time and says one.
+    /// The close code, if the server closes in time with one.
     pub(crate) fn close_code(&mut self) -> Option<u16> {
         loop {
             match self.next_within(LIMIT) {
@@ -121,7 +122,7 @@ impl Client {
         }
     }
 
-    /// Whether the server hangs up in time.
+    /// Whether the server closes in time.
     pub(crate) fn is_hung_up_on(&mut self) -> bool {
         loop {
             match self.next_within(LIMIT) {
@@ -133,7 +134,7 @@ impl Client {
     }
 }
 
-/// A request for a file, as a browser makes it: the answer's status, and all of it.
+/// Requests a file as a browser does: the status and body of the response.
 pub(crate) fn get(address: SocketAddr, path: &str, host: &str) -> (u16, String) {
     let mut stream = TcpStream::connect(address).expect("somebody listens");
     stream.set_read_timeout(Some(LIMIT)).expect("a socket has time-outs");

@@ -1,4 +1,4 @@
-//! A game on a network, seen by pages: a made-up sim, and the real way to it.
+//! A game on a network, seen by pages: with a test sim, and over the real network.
 
 use super::client::{Client, get};
 use super::source::{frame, own_boat, report, scenario, seq_of};
@@ -29,7 +29,7 @@ use std::time::Duration;
 const LIMIT: Duration = Duration::from_secs(30);
 const BLUE_ONE: VehicleId = VehicleId(0);
 
-/// A sim that plays nothing: it says what a test wants said.
+/// A sim that plays nothing and publishes what a test asks for.
 pub(crate) struct Sim {
     pub(crate) bus: Bus,
     pub(crate) port: u16,
@@ -43,7 +43,7 @@ pub(crate) struct Sim {
     _standing: Vec<Declaration>,
 }
 
-/// A game in which the first boat heeds a policy, and the others do not.
+/// A game in which only the first boat accepts an external policy.
 fn steered(file: &str) -> Scenario {
     let mut scenario = scenario(file);
     let number = |value| Parameter { expression: Expression::Constant(value), range: (0.0, 1000.0) };
@@ -144,7 +144,7 @@ impl Sim {
         self.run.send_json(json(&run)).expect("it is open");
     }
 
-    /// Waits until the page's server listens to frames.
+    /// Waits until the page's server subscribes to frames.
     fn wait_for_subscribers(&self) {
         wait_until("the page listens", || self.frames.is_heard() && self.run.is_heard());
     }
@@ -154,7 +154,7 @@ impl Sim {
     }
 }
 
-/// Waits until something is so.
+/// Waits until a condition holds.
 pub(crate) fn wait_until(what: &str, is_so: impl Fn() -> bool) {
     let never = Watched::new(());
     let waits = || !never.wait(Duration::from_millis(10), |()| false);
@@ -172,12 +172,12 @@ fn live(port: u16, game: Option<&str>) -> Arc<dyn View> {
     Arc::new(show.expect("a thread"))
 }
 
-/// The token of the game.
+/// The game's token.
 pub(crate) fn token() -> Option<Token> {
     Some("5c".repeat(32).parse().expect("64 digits"))
 }
 
-/// A game, a server, and a page in it that has been greeted.
+/// A game, a server, and a page in it that has received the greeting.
 pub(crate) fn meet(file: &str) -> (Sim, Page, Client) {
     let port = port();
     let sim = Sim::open(port, "pond", steered(file));
@@ -197,7 +197,7 @@ fn a_page_sees_frames_their_past_and_how_the_run_stands() {
     let (sim, page, mut client) = meet("pav01_vs_pav01.toml");
     sim.tell_run(Phase::Paused);
     client.until("state", |state| state["phase"] == "paused" && state["now_s"] == 7.0 && state["can_speed"] == true);
-    // One after the other: of a burst some would be left out, and perhaps the last.
+    // One after the other: in a burst some would be dropped, perhaps the last.
     for seq in 0..=100 {
         sim.show(seq, &[]);
         let shown = std::iter::from_fn(|| {
@@ -208,7 +208,7 @@ fn a_page_sees_frames_their_past_and_how_the_run_stands() {
         .find(|frame| seq_of(frame) == seq);
         assert_eq!(shown.expect("the newest comes")[0], 1);
     }
-    // A newcomer gets the past first.
+    // A new page gets the past frames first.
     let mut newcomer = open_viewer(&page);
     assert_eq!(newcomer.text()["chart"]["waves"][0]["amplitude_m"], 0.25);
     let past: Vec<u64> =
@@ -227,7 +227,7 @@ fn events_come_with_frames_and_missed_ones_are_asked_for() {
     sim.events.visit(|events| *events = vec![outcome(2), outcome(4)]);
     sim.show(1, &[tagged(2)]);
     client.until("events", |events| events["events"][0]["tick"] == 2);
-    // The frame between, with its event, is lost.
+    // The frame between is lost, with its event.
     sim.show(3, &[]);
     let news = client.until("events", |events| events["events"].as_array().is_some_and(|all| !all.is_empty()));
     let last = news["events"].as_array().and_then(|all| all.last()).expect("an event");
@@ -277,7 +277,7 @@ fn idle_connections_keep_no_page_out_and_its_e_stop_goes_through() {
     let sim = Sim::open(port, "pond", steered("pav01_vs_pav01.toml"));
     let page = super::page(live(port, None), None, &[]);
     let idle: Vec<TcpStream> = (0..300).map(|_| TcpStream::connect(page.address()).expect("it listens")).collect();
-    // A browser gets the page and its parts first, then opens the websocket.
+    // A browser fetches the page and its files first, then opens the websocket.
     let (status, _) = get(page.address(), "/", &page.address().to_string());
     assert_eq!(status, 200);
     let mut client = open_viewer(&page);
@@ -332,7 +332,7 @@ fn one_page_at_a_time_steers_a_boat_that_can_be_steered() {
     other.send(steer);
     other.until("drive", |drive| drive["by"] == "you");
     one.until("drive", |drive| drive["by"] == "other");
-    // Silent for two seconds, it has let go.
+    // After two seconds of silence, it has lost the lock.
     one.until("drive", |drive| drive["by"].is_null());
     one.send(steer);
     other.until("drive", |drive| drive["by"] == "other");
@@ -362,7 +362,7 @@ fn a_selected_boat_tells_what_its_helm_thinks_and_where_it_believes_to_be() {
         (&json!("blue_one"), &json!(4.0), &json!(2.0))
     );
     client.send(r#"{"do":"select","vehicle":null}"#);
-    // The other page looks at a red boat; nobody wants blue's picture any more.
+    // The other page selects a red boat, so blue's picture is no longer wanted.
     wait_until("nobody looks at it any more", || !sim.pictures.is_heard());
     sim.close();
 }
@@ -401,7 +401,7 @@ fn an_e_stop_goes_straight_to_gateways_too_with_a_game_and_after_it() {
     let is_stopped = |client: &mut Client| {
         client.send(r#"{"do":"control","what":"e_stop"}"#);
         let (stream, _) = gateway.accept().expect("it is bound");
-        // It is asked how it is meanwhile.
+        // Its status is queried meanwhile.
         let mut lines = BufReader::new(&stream).lines().map(|line| line.expect("a request"));
         assert!(lines.any(|line| line == "{\"body\":{\"fleet\":\"e_stop\"}}"));
         let reply = OperatorReply { refused: None, status: GatewayStatus::default() };
@@ -409,7 +409,7 @@ fn an_e_stop_goes_straight_to_gateways_too_with_a_game_and_after_it() {
     };
     is_stopped(&mut client);
     assert!(sim.controls.wait(LIMIT, |all| all.last() == Some(&Control::EStop)), "and the game is told");
-    // What else is asked waits its turn.
+    // Other requests wait their turn.
     for _ in 0..200 {
         client.send(r#"{"do":"control","what":"pause"}"#);
     }

@@ -13,7 +13,7 @@ use client::Client;
 use shore::page::{Page, PageSettings, View};
 use std::sync::Arc;
 
-/// A server on a free port that shows nothing yet.
+/// A server on a free port without a view.
 fn empty_page(token: Option<&str>, hosts: &[&str]) -> Page {
     Page::open(settings(token, hosts)).expect("a free port")
 }
@@ -28,21 +28,21 @@ fn settings(token: Option<&str>, hosts: &[&str]) -> PageSettings {
     }
 }
 
-/// A server on a free port that shows this.
+/// A server on a free port that shows this view.
 fn page(show: Arc<dyn View>, token: Option<&str>, hosts: &[&str]) -> Page {
     let page = empty_page(token, hosts);
     page.show(show);
     page
 }
 
-/// A server on a free port that shows this, and a page that looks at it.
+/// A server on a free port that shows this view, and a page connected to it.
 fn visit(show: Arc<dyn View>) -> (Page, Client) {
     let page = page(show, None, &[]);
     let client = open_viewer(&page);
     (page, client)
 }
 
-/// A page that looks at it.
+/// A page connected to the server.
 fn open_viewer(page: &Page) -> Client {
     Client::connect(page.address(), "/ws", &[]).expect("all may look")
 }

@@ -1,4 +1,4 @@
-//! Operators of real boats: who may command one from a page, and that nothing keeps a stop waiting.
+//! Operators of real boats: who may command one from a page, and that nothing delays a stop.
 
 use super::client::{Client, get};
 use super::live::{meet, token, wait_until};
@@ -13,14 +13,14 @@ use shore::page::{Background, Page};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// A real boat of the game, and one that is simulated.
+/// A real boat of the game, and a simulated one.
 const BOAT: &str = "blue_one";
 const SIMULATED: &str = "blue_two";
 
-/// What a gateway was told.
+/// The commands that a gateway received.
 type Told = Arc<Watched<Vec<OperatorCommand>>>;
 
-/// A gateway that arms after `takes` and refuses a release; it proves nobody.
+/// A gateway that arms after `takes`, refuses a release, and cannot prove the token.
 fn gateway(bus: &Bus, takes: Duration) -> (Told, Declaration) {
     let told = Told::default();
     let noted = Arc::clone(&told);
@@ -93,7 +93,7 @@ fn only_who_shows_the_operators_token_arms_and_everybody_who_may_stop_disarms() 
 #[test]
 fn no_flood_of_commands_keeps_a_stop_waiting() {
     let (sim, page, mut control) = meet("mixed_2v2.toml");
-    // A process of its own has a link of its own. It takes longer than anybody waits for an answer.
+    // A separate process has its own link. It takes longer than the timeout of an answer.
     let net = Net { connect: vec![format!("tcp/127.0.0.1:{}", sim.port)], token: token(), ..Net::default() };
     let other = Bus::leaf(&net).expect("the sim is there");
     let (_, standing) = gateway(&other, Duration::from_secs(4));

@@ -1,4 +1,4 @@
-//! A recording, played by pages.
+//! A recording, replayed by pages.
 
 use super::source::{Rememberer, bytes_of_recording, recorded, recorded_in, seq_of, two_minutes};
 use super::{open_viewer, page, visit};
@@ -163,7 +163,7 @@ fn a_frame_that_is_damaged_is_left_out_and_all_others_are_shown() {
     let mut bytes = bytes_of_recording(4);
     let frame = Recording::of(bytes.clone()).expect("a recording").frame(1).bytes;
     let place = bytes.windows(frame.len()).position(|window| window == frame).expect("it is in it");
-    // The encapsulation of a message says that it is CDR.
+    // The encapsulation of a message identifies it as CDR.
     bytes[place] = 0xff;
     let recorded = recorded_in(bytes);
     assert_eq!((recorded.damaged().count, recorded.frame_times().len()), (1, 3));
@@ -205,7 +205,7 @@ fn any_room() -> impl Strategy<Value = Budget> {
     prop::sample::select(vec![Budget::None, Budget::Frames, Budget::All])
 }
 
-/// Whether it is sent again and again of the boat that is selected.
+/// Whether it is a repeated message about the selected boat.
 fn is_of_selected(said: &Outgoing) -> bool {
     let kinds = [r#"{"kind":"helm""#, r#"{"kind":"estimate""#];
     matches!(said, Outgoing::Text(text) if kinds.iter().any(|kind| text.starts_with(kind)))

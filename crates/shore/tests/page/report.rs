@@ -6,7 +6,7 @@ use super::replay::show;
 use shore::page::{PreparingView, Report, Showing, Shown};
 use std::sync::Arc;
 
-/// A report with one game, which is not there at once.
+/// A report with one game, which is not available at once.
 struct OneGame {
     preparing: Arc<PreparingView>,
     showing: Arc<Showing>,
@@ -51,7 +51,7 @@ fn a_report_has_files_and_a_game_is_told_of_until_it_is_there() {
     let mut client = Client::connect(at, "/ws?game=a%20b%26c", &[]).expect("all may look");
     let told = client.until("preparing", |told| told["text"] == "in a moment");
     assert_eq!(told["failed"], false);
-    // There is nothing to be asked yet, and that is no harm.
+    // A request before the game is available does no harm.
     client.send(r#"{"do":"seek","t_s":3}"#);
     client.until("refused", |told| told["reason"] == "there is no game yet");
     report.preparing.tell("half of it");
@@ -62,7 +62,7 @@ fn a_report_has_files_and_a_game_is_told_of_until_it_is_there() {
     let mut other = Client::connect(at, "/ws?game=%3Cb%3E", &[]).expect("all may look");
     let told = other.until("preparing", |_| true);
     assert_eq!((&told["text"], &told["failed"]), (&"there is no game \"<b>\"".into(), &true.into()));
-    // A page that comes back for more would ask for ever.
+    // A page that reconnects for more would do so for ever.
     other.send(r#"{"do":"seek","t_s":3}"#);
     other.until("refused", |_| true);
 }

@@ -1,4 +1,4 @@
-//! How the server and a page talk, whatever is shown.
+//! The protocol between the server and a page, with any view.
 
 use super::replay::show;
 use super::source::seq_of;
@@ -9,10 +9,10 @@ use std::sync::mpsc::{Sender, channel};
 use std::time::{Duration, Instant};
 use tungstenite::Message;
 
-/// A show that never stops talking, whatever a page can take, and passes on what it is asked.
+/// A view that sends without pause, ignores the budget, and passes requests on.
 struct Talker(Sender<PageRequest>, Changes);
 
-/// A look at it.
+/// A viewer of it.
 struct Ear(Sender<PageRequest>);
 
 impl View for Talker {
@@ -39,7 +39,7 @@ impl Viewer for Ear {
     }
 }
 
-/// What is on its way to a page that draws nothing.
+/// The frames in flight to a page that draws nothing.
 fn frames(messages: &[Message]) -> Vec<u64> {
     let bytes = messages.iter().filter_map(|message| match message {
         Message::Binary(bytes) if bytes.first() == Some(&1) => Some(bytes),
@@ -66,14 +66,14 @@ fn a_page_that_draws_nothing_gets_two_frames() {
 fn a_page_is_heard_while_it_takes_nothing() {
     let (asked, asks) = channel();
     let (_page, mut client) = visit(Arc::new(Talker(asked, Changes::default())));
-    // The lines between are full when the page has read nothing for a while.
+    // The connection's buffers are full once the page has read nothing for a while.
     assert!(asks.recv_timeout(Duration::from_secs(1)).is_err());
     for ask in [r#"{"do":"control","what":"halt"}"#, r#"{"do":"control","what":"e_stop"}"#] {
         client.send(ask);
         let want: PageRequest = serde_json::from_str(ask).expect("an ask");
         assert_eq!(asks.recv_timeout(Duration::from_secs(10)), Ok(want));
     }
-    // What was half sent meanwhile is whole.
+    // The message partly sent meanwhile arrives complete.
     (0..40).for_each(|_| assert_eq!(client.next(), Message::text("x".repeat(1 << 20))));
 }
 
@@ -84,7 +84,7 @@ fn another_show_begins_with_a_hello() {
     page.show(show());
     client.until("hello", |_| true);
     assert_eq!(client.text()["kind"], "events");
-    // One frame is on its way from the show before.
+    // One frame of the previous view is in flight.
     let rest = client.rest();
     assert_eq!(frames(&rest), [0]);
 }
@@ -113,7 +113,7 @@ fn garbage_is_refused_and_survived() {
         rude.send_raw(garbage).expect("it listens on");
         assert_eq!(rude.until("refused", |_| true)["what"], "message");
     }
-    // Too long a message ends the talk, with this page only.
+    // A message that is too long ends the session of this page only.
     drop(rude.send_raw(Message::text("x".repeat(17 * 1024))));
     assert!(rude.is_hung_up_on());
     polite.send(r#"{"do":"seek","t_s":5}"#);

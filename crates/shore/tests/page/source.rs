@@ -1,4 +1,4 @@
-//! A made-up recording.
+//! A synthetic recording.
 
 use messages::external::{FailsafeReport, GatewayStatus};
 use messages::helm::{DriftReport, HelmReport};
@@ -30,7 +30,7 @@ pub(crate) fn frame(scenario: &Scenario, seq: u64) -> Frame {
     }
 }
 
-/// The decision that a frame on the wire is of.
+/// The decision of an encoded frame.
 pub(crate) fn seq_of(wire: &[u8]) -> u64 {
     primitives::codec::decode::<Frame>(&wire[1..]).expect("frames are CDR").stamp.seq
 }
@@ -68,12 +68,13 @@ pub(crate) fn two_minutes() -> Arc<Recorded> {
     Arc::clone(RECORDED.get_or_init(|| recorded(1201)))
 }
 
-/// A recording of so many frames without an end, with an event in the eleventh, one set of pictures, and a failsafe.
+/// A recording of `frames` frames without an end record, with an event in the eleventh, one set of
+/// pictures, and a failsafe.
 pub(crate) fn recorded(frames: u64) -> Arc<Recorded> {
     recorded_in(bytes_of_recording(frames))
 }
 
-/// The recording that these bytes are.
+/// The recording in these bytes.
 pub(crate) fn recorded_in(bytes: Vec<u8>) -> Arc<Recorded> {
     let recording = Recording::of(bytes).expect("a recording");
     Arc::new(Recorded::new(Arc::new(recording), "made_up.mcap".to_owned()))
@@ -119,7 +120,7 @@ pub(crate) fn bytes_of_recording(frames: u64) -> Vec<u8> {
     writer.end(recording::Facts::new()).expect("it ends").into_inner()
 }
 
-/// Helms that remember nothing but which decision they were asked about.
+/// Helms that report only the decision they were asked about.
 pub(crate) struct Rememberer;
 
 impl Helms for Rememberer {

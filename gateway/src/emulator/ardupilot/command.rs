@@ -29,7 +29,7 @@ impl ArduPilot {
             MavCmd::MAV_CMD_DO_SET_HOME => self.command_home(param1 == 1.0, at_e7),
             _ => MavResult::MAV_RESULT_UNSUPPORTED,
         };
-        self.outbox.push(MavMessage::COMMAND_ACK(COMMAND_ACK_DATA { command, result }));
+        self.outbox.push(MavMessage::COMMAND_ACK(COMMAND_ACK_DATA { command, result, ..COMMAND_ACK_DATA::default() }));
     }
 
     pub(super) fn command_mode(&mut self, number: u32) -> MavResult {
@@ -56,6 +56,9 @@ impl ArduPilot {
             return if arm { self.refuse("PreArm: GPS 1: Bad fix") } else { DONE };
         };
         if !self.is_armed {
+            if !self.mode.allows_arming() {
+                return self.refuse("Arm: Mode not armable");
+            }
             self.is_armed = true;
             // Where it is armed is its home, unless that was set.
             let at = self.frame.lat_lon(own.nav.at());
@@ -92,6 +95,7 @@ impl ArduPilot {
     /// Tells operators something.
     pub(super) fn say(&mut self, text: &str) {
         let severity = MavSeverity::MAV_SEVERITY_CRITICAL;
-        self.outbox.push(MavMessage::STATUSTEXT(STATUSTEXT_DATA { severity, text: text.into() }));
+        let status = STATUSTEXT_DATA { severity, text: text.into(), ..STATUSTEXT_DATA::default() };
+        self.outbox.push(MavMessage::STATUSTEXT(status));
     }
 }

@@ -74,6 +74,7 @@ impl MissionStore {
                 count: self.items.len() as u16,
                 target_system: from.0,
                 target_component: from.1,
+                ..MISSION_COUNT_DATA::default()
             })),
             MavMessage::MISSION_REQUEST_INT(request) => self.item(from, request.seq),
             MavMessage::MISSION_REQUEST(request) => self.item(from, request.seq),
@@ -105,9 +106,11 @@ impl MissionStore {
 }
 
 fn request((target_system, target_component): (u8, u8), seq: u16) -> MavMessage {
-    MavMessage::MISSION_REQUEST_INT(MISSION_REQUEST_INT_DATA { seq, target_system, target_component })
+    let default = MISSION_REQUEST_INT_DATA::default();
+    MavMessage::MISSION_REQUEST_INT(MISSION_REQUEST_INT_DATA { seq, target_system, target_component, ..default })
 }
 
 fn ack((target_system, target_component): (u8, u8), mavtype: MavMissionResult) -> MavMessage {
-    MavMessage::MISSION_ACK(MISSION_ACK_DATA { target_system, target_component, mavtype })
+    let ack = MISSION_ACK_DATA { target_system, target_component, mavtype, ..MISSION_ACK_DATA::default() };
+    MavMessage::MISSION_ACK(ack)
 }

@@ -232,6 +232,7 @@ impl ArduPilot {
             cog: ((100.0 * course_deg) as u16).min(35_999),
             fix_type: if has_fix { GpsFixType::GPS_FIX_TYPE_DGPS } else { GpsFixType::GPS_FIX_TYPE_NO_FIX },
             satellites_visible: if has_fix { 11 } else { 0 },
+            ..GPS_RAW_INT_DATA::default()
         })
     }
 

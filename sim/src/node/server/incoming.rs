@@ -1,4 +1,4 @@
-//! What a game server does with what comes in.
+//! Handles incoming messages of a game server.
 
 use super::GameServer;
 use crate::node::agents::{self, Accepted};
@@ -15,24 +15,24 @@ use primitives::{SimTime, VehicleId};
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
-/// Messages that are read before the game goes on.
+/// Limit of messages read before the game continues.
 const MESSAGES_MAX: usize = 1024;
-/// Questions that are answered before the game goes on.
+/// Limit of questions answered before the game continues.
 const ANSWERS_MAX: usize = 4;
 
 impl GameServer<'_> {
-    /// Takes in what comes, waiting up to `limit` for the first of it. Commands come first.
+    /// Processes incoming messages, waiting up to `limit` for the first. Commands come first.
     pub(in crate::node) fn listen(&mut self, limit: Duration) {
-        // Before and after waiting: what passes outside of a wait is the sim's own, and if it
-        // is more than a second the sim was suspended.
+        // Before and after waiting: time outside the wait is the sim's own work, and if it exceeds
+        // a second the sim was suspended.
         self.time.pass(clock::now(), Duration::ZERO);
         let mut next = self.inbox.next_within(limit);
         self.time.pass(clock::now(), limit);
         self.obey();
         self.answer();
-        // Messages may come faster than they are read: the game goes on all the same.
+        // Messages may arrive faster than they are read: the game continues anyway.
         for _ in 0..MESSAGES_MAX {
-            // Before each message: no flood delays an E-stop by more than one of them.
+            // Before each message: a flood delays an E-stop by at most one of them.
             self.obey();
             let Some(incoming) = next else { return };
             self.take_in(incoming);
@@ -41,7 +41,7 @@ impl GameServer<'_> {
         next.into_iter().for_each(|incoming| self.take_in(incoming));
     }
 
-    /// Answers some of the questions that wait: they are work, and whoever asks can wait or ask again.
+    /// Answers some of the waiting questions. They take time, and the sender can wait or ask again.
     fn answer(&mut self) {
         let questions: Vec<(Question, Query)> =
             std::iter::from_fn(|| self.questions.take_now()).take(ANSWERS_MAX).collect();
@@ -54,7 +54,7 @@ impl GameServer<'_> {
         }
     }
 
-    /// Follows the commands that wait.
+    /// Executes the waiting commands.
     fn obey(&mut self) {
         while let Some(command) = self.controls.pop_command() {
             match command {
@@ -79,10 +79,11 @@ impl GameServer<'_> {
                 }
             }
             Incoming::Gone(node) => {
-                // A gateway comes back with the same boat at once; nobody waits for it, so no
+                // A gateway reconnects with the same boat at once; nothing waits for it, so no
                 // patience is needed.
                 self.gateways.gone(&node);
-                // Links that were given up while the sim did nothing: patience tells whether agents come back.
+                // Links may have timed out while the sim was suspended: the patience then decides
+                // whether agents come back.
                 if !self.time.is_recovering() {
                     let vehicles = self.agents.gone(&node);
                     self.lose_agents(vehicles);
@@ -100,7 +101,7 @@ impl GameServer<'_> {
             let taken = self.contest.order(vehicle, order, message.stamp.valid_ns);
             self.refusals.add(Refusal::BadNumber, u64::from(taken.is_err()));
             self.heard[vehicle.index()] = self.time.worked();
-            // At once and not with the next pictures, up to a decision later.
+            // At once, not with the next pictures, which may be a decision later.
             self.pass_on_now(vehicle);
         }
     }
@@ -118,7 +119,7 @@ impl GameServer<'_> {
         self.refusals.add(Refusal::BadNumber, u64::from(taken.is_err()));
     }
 
-    /// Publishes what the gateway of a boat reports of it, if the gateway has joined for that boat.
+    /// Publishes a gateway's report about a boat, if the gateway has joined for that boat.
     fn pass_on_report(&mut self, ticket: u64, vehicle: VehicleId, what: Reported, message: Vec<u8>) {
         if !self.gateways.vehicles_of(ticket).any(|own| own == vehicle) {
             return self.refusals.count(Refusal::NotYours);
@@ -127,7 +128,7 @@ impl GameServer<'_> {
         if !what.is_about(&message, vehicle, &name) {
             return self.refusals.count(Refusal::Garbage);
         }
-        // That the session is closed shows at the next picture.
+        // A closed session is detected at the next picture.
         let passed_on = match (what, self.reports.get(&(vehicle, what))) {
             (_, None) => Ok(()),
             (Reported::Status, Some(publisher)) => publisher.send_json(message.clone()),
@@ -138,8 +139,8 @@ impl GameServer<'_> {
         self.record_message(format!("{what}/{name}"), schema, message);
     }
 
-    /// Simulated time by the clock: the open decision's, and what has passed since it was opened. Only fixes are told the
-    /// time by it: a fix would seem up to a decision older than it is otherwise.
+    /// Simulated time by the clock: that of the open decision plus the time since. Used only for
+    /// fixes, which would otherwise seem up to a decision older than they are.
     fn moment(&self) -> SimTime {
         let factor = if self.pace == Pace::Lockstep { 0.0 } else { self.pacing.speed().unwrap_or(0.0) };
         let passed = self.opened.map_or(0.0, |opened| clock::since(opened).as_secs_f64() * factor);
@@ -152,12 +153,13 @@ impl GameServer<'_> {
             Checked::Challenged(challenge) => return query.answer(challenge),
             Checked::Garbage(e) => JoinReply::Refused { reason: format!("the request is not understood: {e}") },
         };
-        // Before the node can show its ticket.
+        // Before the node can send its ticket.
         self.inbox.accept_tickets(self.agents.tickets().chain(self.gateways.tickets()).collect());
         query.answer(token::answer(&reply));
     }
 
-    /// Lets a node join that asks at the place of its team or boat: with keys, access control lets it ask at no other.
+    /// Handles a join request on the key of a team or boat: with keys, access control permits no
+    /// other.
     fn join_at(&mut self, key: &str, request: &JoinRequest) -> JoinReply {
         let place = topic::join(&self.game, self.contest.scenario(), request.role, &request.vehicles);
         match request.role {
@@ -173,7 +175,7 @@ impl GameServer<'_> {
         let reply = self.agents.join(request, random_number(), self.contest.now());
         if let JoinReply::Granted { vehicles, .. } = &reply {
             for vehicle in vehicles {
-                // Whatever was in force was the order of somebody else.
+                // Any order in force came from another agent.
                 self.contest.hold(*vehicle);
                 self.contest.regain_agent(*vehicle);
                 self.heard[vehicle.index()] = self.time.worked();
@@ -202,7 +204,7 @@ impl GameServer<'_> {
             Control::EStop => self.contest.e_stop(true),
             Control::Release => {
                 self.contest.e_stop(false);
-                // That the session is closed shows at the next picture.
+                // A closed session is detected at the next picture.
                 drop(self.released.send_json(b"true".to_vec()));
             }
             Control::Halt => self.contest.halt(true),
@@ -214,7 +216,7 @@ impl GameServer<'_> {
             }
         }
         self.is_news = true;
-        // An object, since all JSON in a recording is.
+        // An object, like all JSON in a recording.
         let json = serde_json::json!({"control": control}).to_string();
         self.record_message("control", None, json.into_bytes());
         (0..self.external_orders.len()).for_each(|i| self.pass_on_now(self.external_orders[i].0));

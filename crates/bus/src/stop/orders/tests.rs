@@ -1,11 +1,11 @@
-//! Stops that are said again, shown, doubted and told of as late.
+//! Stops that are repeated, shown, doubted and reported as late.
 
 use super::*;
 use crate::clock;
 
 const MS: fn(u64) -> Duration = Duration::from_millis;
 
-/// When it is said within the first 3 s, ms; a report comes at its time.
+/// When a stop is sent within the first 3 s, ms; each report arrives at its time.
 fn said(orders: &mut StopOrders, start: Instant, reports: &[(u64, &str, Source)]) -> Vec<u64> {
     let mut said = Vec::new();
     for ms in 0..3000 {
@@ -56,7 +56,7 @@ fn what_was_published_may_be_older_than_the_stop() {
 #[test]
 fn a_status_that_a_lost_packet_held_up_shows_no_later_stop() {
     let (mut orders, start) = orders(&["blue_one"]);
-    // One way takes 50 ms; the gateway began 10 s ago.
+    // A one-way trip takes 50 ms; the gateway started 10 s ago.
     let as_of = |orders: &mut StopOrders, came: u64, at_s| orders.as_of(start + MS(came), "blue_one", at_s);
     assert_eq!(as_of(&mut orders, 10_050, 10.0), start + MS(10_050));
     let held_up = as_of(&mut orders, 10_800, 10.5);
@@ -69,7 +69,7 @@ fn a_status_that_a_lost_packet_held_up_shows_no_later_stop() {
     let now = as_of(&mut orders, 10_720, 10.67);
     orders.report(start + MS(10_720), "blue_one", "e-stopped", Source::Published(now));
     assert!(orders.unfinished().is_empty());
-    // A gateway that was started again begins anew.
+    // A restarted gateway starts anew.
     assert_eq!(as_of(&mut orders, 60_000, 1.0), start + MS(60_000));
 }
 
@@ -77,7 +77,7 @@ fn a_status_that_a_lost_packet_held_up_shows_no_later_stop() {
 fn what_is_told_again_counts_only_for_a_boat_that_is_not_heard_itself() {
     let (mut orders, start) = orders(&["blue_one"]);
     orders.ask(start, Some("blue_one".to_owned()), StopCommand::Disarm);
-    // The sim heard it before the stop was asked for.
+    // The sim heard it before the stop was requested.
     orders.report(start + MS(40), "blue_one", "safed", Source::Relayed(start));
     assert_eq!(orders.unfinished(), ["blue_one does not report that it has stopped: safed"]);
     orders.report(start + MS(50), "blue_one", "safed", Source::Relayed(start + MS(1)));

@@ -1,40 +1,41 @@
-//! The event log of a running game: events from frames as they come, and from the sim where frames were missed.
+//! The event log of a running game: events from frames as they arrive, and from the sim after
+//! missed frames.
 
 use scenario::outcome::EventOutcome;
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-/// The most events that are kept; of more, the first are forgotten.
+/// The maximum number of events kept; the oldest are dropped first.
 const EVENTS_MAX: usize = 20_000;
-/// The sim is asked no more often than this.
+/// The minimum time between two queries to the sim.
 const ASK_AGAIN: Duration = Duration::from_secs(1);
 
-/// How far somebody has read.
+/// The position of a reader in the log.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct EventCursor {
     revision: u64,
     next: u64,
 }
 
-/// What has happened so far.
+/// The events so far.
 #[derive(Clone, Debug, Default)]
 pub(super) struct EventLog {
     events: VecDeque<EventOutcome>,
-    /// The number of the first of them.
+    /// The number of the first event kept.
     first: u64,
-    /// Rises whenever what was written before is not what is written now.
+    /// Increases whenever earlier entries change.
     revision: u64,
     has_gap: bool,
     asked: Option<Instant>,
 }
 
 impl EventLog {
-    /// A log that lacks all events so far.
+    /// A log that still lacks all events so far.
     pub(super) fn new() -> EventLog {
         EventLog { has_gap: true, revision: 1, ..EventLog::default() }
     }
 
-    /// An event from a frame. One that the sim has listed already is not added twice.
+    /// Adds an event from a frame, unless the sim has listed it already.
     pub(super) fn add(&mut self, event: EventOutcome) {
         let mut recent = self.events.iter().rev().take_while(|known| known.tick >= event.tick);
         if !recent.any(|known| *known == event) {
@@ -43,12 +44,12 @@ impl EventLog {
         }
     }
 
-    /// A frame was missed, with its events.
+    /// Records that a frame was missed, with its events.
     pub(super) fn note_gap(&mut self) {
         self.has_gap = true;
     }
 
-    /// Whether to query the sim for all events now; a caller that gets `true` does so.
+    /// Whether to query the sim for all events now; a caller that gets `true` must do so.
     pub(super) fn should_query(&mut self, now: Instant) -> bool {
         let rested = self.asked.is_none_or(|asked| now.saturating_duration_since(asked) >= ASK_AGAIN);
         let asks = self.has_gap && rested;
@@ -58,7 +59,7 @@ impl EventLog {
         asks
     }
 
-    /// All events up to a moment, from the sim. Later ones from frames stay.
+    /// Replaces all events up to a moment with those from the sim. Later ones from frames stay.
     pub(super) fn replace(&mut self, mut all: Vec<EventOutcome>) {
         let last = all.last().map_or(0, |event| event.tick);
         let later = |event: &&EventOutcome| event.tick > last || (event.tick == last && !all.contains(event));
@@ -74,8 +75,8 @@ impl EventLog {
         self.trim();
     }
 
-    /// What somebody has not read yet, whether that is all there is, and how far they have read with it. Nothing if they
-    /// have read everything.
+    /// The unread events, whether they replace all earlier ones, and the reader's new position.
+    /// `None` if the reader is up to date.
     pub(super) fn unread(
         &self,
         cursor: EventCursor,
@@ -103,7 +104,7 @@ mod tests {
         EventOutcome { tick, at_s: 0.0, event: word.into(), vehicle: None, other: None, team: None }
     }
 
-    /// The events that a reader gets, and that it gets them once.
+    /// The events that a reader gets; each is returned once.
     fn read(event_log: &EventLog, cursor: &mut EventCursor) -> (bool, Vec<u64>) {
         let Some((reset, unread, next)) = event_log.unread(*cursor) else { return (false, vec![]) };
         let sent = (reset, unread.map(|event| event.tick).collect());
@@ -130,10 +131,10 @@ mod tests {
         event_log.add(event(5, "a"));
         read(&event_log, &mut cursor);
         event_log.add(event(9, "c"));
-        // The sim's answer is older than the last frame, and has more events before it.
+        // The sim's answer is older than the last frame, and contains more events before it.
         event_log.replace(vec![event(5, "a"), event(7, "b")]);
         assert_eq!(read(&event_log, &mut cursor), (true, vec![5, 7, 9]));
-        // An answer that says nothing new changes nothing; a frame that comes after it is not added twice.
+        // An answer without news changes nothing; an event of a later frame is not added twice.
         event_log.replace(vec![event(5, "a"), event(7, "b"), event(9, "c"), event(9, "d")]);
         event_log.add(event(9, "d"));
         assert_eq!(read(&event_log, &mut cursor), (false, vec![9]));

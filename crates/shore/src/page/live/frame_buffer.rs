@@ -1,4 +1,4 @@
-//! A buffer of frames: the newest to be shown, and some of the past for trails.
+//! A buffer of frames: the newest one to show, and some past ones for trails.
 
 use crate::page::view::{TRAIL_S, TRAIL_STEP_S, marked};
 use axum::body::Bytes;
@@ -7,19 +7,19 @@ use primitives::SimTime;
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-/// Over how long frames are counted.
+/// The period over which the frame rate is measured.
 const METER: Duration = Duration::from_secs(1);
 
 /// The frames of a game.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FrameBuffer {
-    /// How many have find so far: the number of the newest, counted from 1.
+    /// The number of frames so far, which is also the number of the newest, counted from 1.
     pub(super) count: u64,
-    /// The stamp of the newest.
+    /// The stamp of the newest frame.
     pub(super) stamp: Stamp,
     /// Whether the game is over.
     pub(super) is_over: bool,
-    /// When the newest came.
+    /// When the newest frame arrived.
     pub(super) came: Option<Instant>,
     newest: Bytes,
     past: VecDeque<(SimTime, Bytes)>,
@@ -28,7 +28,7 @@ pub(super) struct FrameBuffer {
 }
 
 impl FrameBuffer {
-    /// Takes up a frame, with its CDR; whether others before it were missed.
+    /// Adds a frame with its CDR; returns whether frames before it were missed.
     pub(super) fn take(&mut self, frame: &Frame, cdr: &[u8], now: Instant) -> bool {
         let (at, seq) = (frame.stamp.valid_ns, frame.stamp.seq);
         let missed = self.count > 0 && seq > self.stamp.seq.saturating_add(1);
@@ -41,8 +41,8 @@ impl FrameBuffer {
         while self.past.front().is_some_and(|(first, _)| (at - *first).as_s() > TRAIL_S) {
             self.past.pop_front();
         }
-        // The sim's own bytes: the page reads CDR by the `.msg` texts that come with the first
-        // message, so there is no second encoding that could fall out of step.
+        // The sim's own bytes: the page decodes CDR by the `.msg` texts in the first message, so no
+        // second encoding can get out of step.
         (self.stamp, self.is_over, self.newest) = (frame.stamp, frame.over, marked(1, cdr));
         (self.count, self.came) = (self.count + 1, Some(now));
         self.measure(now);
@@ -54,13 +54,13 @@ impl FrameBuffer {
         self.newest.clone()
     }
 
-    /// The frames of the past before it, with its leading byte.
+    /// The past frames before the newest, each with its leading byte.
     pub(super) fn past(&self) -> VecDeque<Bytes> {
         let before = self.past.iter().filter(|(at, _)| *at < self.stamp.valid_ns);
         before.map(|(_, bytes)| bytes.clone()).collect()
     }
 
-    /// Frames a second, lately.
+    /// The recent frame rate, Hz.
     pub(super) fn rate_hz(&self, now: Instant) -> f64 {
         let is_late = self.counted.is_none_or(|(since, _)| now.saturating_duration_since(since) > 2 * METER);
         if is_late { 0.0 } else { self.rate_hz }

@@ -1,4 +1,5 @@
-//! Finds the game, subscribes to its topics, publishes what pages command, and finds it again when it is gone.
+//! Finds the game, subscribes to its topics, publishes commands from pages, and searches again when
+//! the game has gone.
 
 use super::live_state::LiveGame;
 use super::query_thread::QueryThread;
@@ -20,23 +21,24 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// How often to look again for a game that is not there.
+/// The interval between searches for a missing game.
 const LOOK_AGAIN: Duration = Duration::from_millis(250);
-/// How often to see to what changes by itself.
+/// The interval of checks for timeouts.
 const ROUND: Duration = Duration::from_millis(50);
-/// After so many attempts the session may be what is wrong.
+/// After this many failed attempts the session is opened anew, since it may be the cause.
 const ATTEMPTS: u64 = 20;
-/// Requests to the sim that may wait.
+/// Upper bound of queued requests to the sim.
 const REQUESTS: usize = 16;
-/// How long to wait for an answer.
+/// Timeout of a query.
 const ANSWER: Duration = Duration::from_secs(2);
-/// How long a sim's token may take to appear, and to find back: a sim is not gone because its link was cut for a moment.
+/// How long a sim's token may be missing, at first or after a cut: a briefly cut link does not mean
+/// that the sim has gone.
 const PATIENCE: Patience =
     Patience { silence: Duration::from_secs(5), missing: Duration::from_secs(1), unheard: Duration::from_secs(1) };
-/// Estimates are read no more often than this, however fast the game is.
+/// The minimum interval between estimates, however fast the game is.
 const PICTURE_AGAIN: Duration = Duration::from_millis(50);
 
-/// Watches for the game.
+/// Watches for the game in a thread.
 pub(super) struct GameWatcher {
     pub(super) shared: Arc<SharedState>,
     pub(super) place: Place,
@@ -44,7 +46,7 @@ pub(super) struct GameWatcher {
     pub(super) commands: Inbox<Command>,
 }
 
-/// A session in a game.
+/// A session in one game.
 struct GameSession {
     bus: Bus,
     game: Arc<LiveGame>,
@@ -55,12 +57,12 @@ struct GameSession {
 }
 
 impl GameWatcher {
-    /// Shows one game after the other until the view closes.
+    /// Shows one game after another until the view closes.
     pub(super) fn run(self) {
         let mut session = None;
         let (mut said, mut attempts) = (String::new(), 0_u64);
         while !self.shared.is_closing() {
-            // What was wanted of a game that is gone is not wanted of the next.
+            // Commands for a game that has gone must not reach the next one.
             while self.commands.take_now().is_some() {}
             match self.find(&mut session) {
                 Ok(found) => {
@@ -69,7 +71,7 @@ impl GameWatcher {
                     session = None;
                 }
                 Err(missing) => {
-                    // What will never be there may yet be replaced by something else.
+                    // A permanent refusal may still pass when another game takes its place.
                     let reason = missing.to_string();
                     if reason != said {
                         (self.shared.tell)(&format!("no game to show: {reason}"));
@@ -85,28 +87,28 @@ impl GameWatcher {
         }
     }
 
-    /// Connects to a game, if there is one. The session stays open for the next attempt.
+    /// Connects to a game, if one exists. The session stays open for the next attempt.
     fn find(&self, session: &mut PlacedSession) -> Result<GameSession, Missing> {
         let (bus, name, info) = game_search::find_game(&self.place, self.game.as_ref(), session)?;
-        // An older sim does not answer; then the water is drawn flat.
+        // Older sims do not answer; the water is then drawn flat.
         let water = bus.ask(&topic::water(&name), Vec::new(), ANSWER)?;
         let water: Water = water.and_then(|bytes| serde_json::from_slice(&bytes).ok()).unwrap_or_default();
         Ok(GameSession::begin(&self.shared, bus, LiveGame::new(name, info, &water))?)
     }
 
-    /// Serves the game until it is gone.
+    /// Serves the game until it has gone.
     fn run_until_gone(&self, mut session: GameSession) {
         let left = Arc::new(Watched::new(false));
         let queries =
             QueryThread { shared: Arc::clone(&self.shared), bus: session.bus.clone(), game: Arc::clone(&session.game) };
         let until = Arc::clone(&left);
-        // The game is shown without them too.
+        // The game is shown even without these threads.
         let no_thread = |e: &std::io::Error| (self.shared.tell)(&format!("no thread to ask the game from: {e}"));
         let query_thread = NodeThread::start(move || queries.ask(&until)).inspect_err(no_thread);
         let (requests, requested) = inbox(REQUESTS);
         let (shared, bus, game) = (Arc::clone(&self.shared), session.bus.clone(), session.game.name.clone());
         let until = Arc::clone(&left);
-        // The sim may take its time to answer, and a stop must not wait for that.
+        // The sim may answer slowly, and a stop must not wait for that.
         let request_thread =
             NodeThread::start(move || request(&shared, &bus, &game, (&requested, &until))).inspect_err(no_thread);
         while !self.shared.is_closing() && session.sim.state() == SimState::Alive {
@@ -126,7 +128,7 @@ impl GameWatcher {
     }
 }
 
-/// Asks the sim for what it may refuse, until the game is left.
+/// Sends requests that the sim may refuse, until the game is left.
 fn request(shared: &SharedState, bus: &Bus, game: &GameName, (requested, left): (&Inbox<Control>, &Watched<bool>)) {
     while !left.visit(|left| *left) {
         let Some(control) = requested.take(ROUND) else { continue };
@@ -137,7 +139,7 @@ fn request(shared: &SharedState, bus: &Bus, game: &GameName, (requested, left): 
 }
 
 impl GameSession {
-    /// Puts the game into the state and subscribes to it.
+    /// Stores the game in the state and subscribes to it.
     fn begin(shared: &Arc<SharedState>, bus: Bus, game: LiveGame) -> Result<GameSession, BusError> {
         let game = Arc::new(game);
         let sim = SimWatch::open(&bus, &game.name, PATIENCE)?;
@@ -159,12 +161,12 @@ impl GameSession {
         Ok(GameSession { bus, game, policies, pictures, sim, _standing: standing })
     }
 
-    /// Passes on a command of a page. What cannot be sent now is lost with the session.
+    /// Forwards a page's command. Unsent commands are lost with the session.
     fn send(command: Command, requests: &InboxSender<Control>) {
         match command {
-            // A page that asks for more than is answered has to ask again.
+            // Requests beyond the queue are dropped; the page has to repeat them.
             Command::Control(control) => requests.put(control),
-            // It is seen to in every round; this only begins one.
+            // Every round handles steering; this only starts a round.
             Command::Steer => {}
         }
     }
@@ -195,7 +197,7 @@ impl GameSession {
         }
     }
 
-    /// Subscribes to the pictures of the teams whose boats are selected, and no others.
+    /// Subscribes to the pictures of exactly the teams whose boats are selected.
     fn update_picture_subscriptions(&mut self, shared: &Arc<SharedState>) {
         let (wanted, generation) = {
             let mut state = shared.state.lock();
@@ -216,7 +218,7 @@ impl GameSession {
     }
 }
 
-/// Subscriptions of one game.
+/// The subscriptions of one game.
 #[derive(Clone)]
 struct Subscriptions {
     shared: Arc<SharedState>,
@@ -224,7 +226,7 @@ struct Subscriptions {
 }
 
 impl Subscriptions {
-    /// Updates the state, if it is still that of this game.
+    /// Updates the state, if it still belongs to this game.
     fn update(&self, change: impl FnOnce(&mut super::live_state::LiveState)) {
         let mut state = self.shared.state.lock();
         if state.generation == self.generation {
@@ -287,7 +289,7 @@ mod tests {
         let (found, finds) = sync_channel(1);
         let searched = Arc::clone(&shared);
         let place = move |_: Option<&GameName>| {
-            // There is room for one command only, and so for none if the one before is still there.
+            // The queue holds one command, so the offer fails while an earlier one is queued.
             found.send(commands.offer(Command::Steer)).unwrap();
             searched.is_closing.store(true, Ordering::Relaxed);
             Err("there is no network".to_owned())

@@ -21,16 +21,16 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Without a frame for so long, a game whose sim publishes no run state counts as paused.
+/// After this long without a frame, a game whose sim publishes no run state counts as paused.
 const STILL: Duration = Duration::from_secs(2);
 
-/// A game that is shown, and does not change.
+/// The constant data of a game.
 pub(super) struct LiveGame {
     /// Its name.
     pub(super) name: GameName,
     /// Its sim's description.
     pub(super) info: GameInfo,
-    /// How it is drawn.
+    /// Its chart as JSON.
     pub(super) chart: Value,
 }
 
@@ -38,27 +38,27 @@ pub(super) struct LiveGame {
 #[derive(Clone, Debug)]
 pub(super) struct HelmMessage {
     pub(super) light: String,
-    /// With utilities, if somebody wants them.
+    /// With utilities, if any page wants them.
     pub(super) full: Option<String>,
 }
 
-/// By vehicle what came last of something. What a page was sent is told from what is new by its place in memory.
+/// The latest item by vehicle. Viewers detect a new item by its address in memory.
 pub(super) type Latest<T> = BTreeMap<VehicleId, Arc<T>>;
 
-/// What is known.
+/// The shared state.
 #[derive(Default)]
 pub(super) struct LiveState {
-    /// The game; also after it has gone.
+    /// The game; kept after it has gone.
     pub(super) game: Option<Arc<LiveGame>>,
-    /// Where it can be reached, as long as it is there.
+    /// The session, while the game is reachable.
     pub(super) bus: Option<Bus>,
-    /// Counts the games.
+    /// The number of games so far.
     pub(super) generation: u64,
-    /// Whether the game is gone.
+    /// Whether the game has gone.
     pub(super) is_gone: bool,
     /// The state of its run, if its sim publishes it.
     pub(super) run: Option<RunState>,
-    /// Rises with news of the run.
+    /// Increases with each change of the run.
     pub(super) run_news: u64,
     pub(super) frames: FrameBuffer,
     pub(super) event_log: EventLog,
@@ -67,16 +67,16 @@ pub(super) struct LiveState {
     pub(super) statuses: Latest<GatewayStatus>,
     pub(super) operating: Operating,
     pub(super) steering_locks: SteeringLocks,
-    /// What is to be passed on to steered boats: course, rad, and speed, m/s.
+    /// The set-points for steered boats: course, rad, and speed, m/s.
     pub(super) steering: BTreeMap<VehicleId, (f64, f64)>,
     /// By page: the selected boat, and whether utilities are wanted.
     pub(super) selected: BTreeMap<u64, (VehicleId, bool)>,
     /// The pages that want the modes of all boats.
     pub(super) listed: BTreeSet<u64>,
-    /// By vehicle the mode that its helm told last, and when that was, s.
+    /// By vehicle, the last mode reported by its helm, and its time, s.
     pub(super) modes: Vec<Option<String>>,
     pub(super) modes_at_s: f64,
-    /// Rises with news of them.
+    /// Increases with each change of the modes.
     pub(super) modes_news: u64,
 }
 
@@ -87,7 +87,7 @@ impl LiveGame {
         LiveGame { name, info, chart }
     }
 
-    /// What is played.
+    /// The scenario of the game.
     pub(super) fn scenario(&self) -> &Scenario {
         &self.info.scenario
     }
@@ -97,19 +97,19 @@ impl LiveGame {
         &self.scenario().vehicles[vehicle.index()].name
     }
 
-    /// Whether the sim waits for minds, rather than going by the clock.
+    /// Whether the game runs in lockstep rather than by the clock.
     pub(super) fn is_lockstep(&self) -> bool {
         self.info.pace == "lockstep"
     }
 
-    /// Whether there are real boats.
+    /// Whether the game has real boats.
     pub(super) fn has_real_boats(&self) -> bool {
         self.scenario().externals().next().is_some()
     }
 }
 
 impl LiveState {
-    /// Another game is on. What pages had selected was of the one before.
+    /// Starts another game. Clears selections, which belong to the previous one.
     pub(super) fn begin(&mut self, game: Arc<LiveGame>) {
         *self = LiveState {
             game: Some(game),
@@ -120,20 +120,20 @@ impl LiveState {
         };
     }
 
-    /// The game that is on, for something to be done in it.
+    /// The current game, or an error if it has gone.
     pub(super) fn on(&self) -> Result<Arc<LiveGame>, String> {
         let game = self.game.clone().filter(|_| !self.is_gone);
         game.ok_or_else(|| "there is no game now".to_owned())
     }
 
-    /// The game is gone.
+    /// Marks the game as gone.
     pub(super) fn end(&mut self) {
         (self.is_gone, self.run_news, self.bus) = (true, self.run_news + 1, None);
         self.steering_locks = SteeringLocks::default();
         self.steering.clear();
     }
 
-    /// A frame, with its CDR.
+    /// Stores a frame with its CDR.
     pub(super) fn take_frame(&mut self, frame: &Frame, cdr: &[u8], now: Instant) {
         let Some(game) = self.game.clone() else { return };
         if !is_of(frame, game.scenario()) {
@@ -147,7 +147,7 @@ impl LiveState {
         }
     }
 
-    /// How the run stands.
+    /// Stores the state of the run.
     pub(super) fn take_run(&mut self, run: RunState) {
         let gist = |run: &RunState| {
             let recording = run.recording.as_ref().map(|recording| (recording.file.clone(), recording.failed.clone()));
@@ -158,7 +158,7 @@ impl LiveState {
         self.run = Some(run);
     }
 
-    /// A team's picture.
+    /// Stores a team's picture.
     pub(super) fn take_picture(&mut self, picture: &Picture) {
         let selected: Vec<VehicleId> = self.selected.values().map(|(vehicle, _)| *vehicle).collect();
         for boat in picture.own.iter().filter(|boat| selected.contains(&boat.vehicle)) {
@@ -166,7 +166,7 @@ impl LiveState {
         }
     }
 
-    /// A page selects a boat's helm, with utilities or without.
+    /// Selects a boat's helm for a page, with or without utilities.
     pub(super) fn select(&mut self, page: u64, selection: Option<&(String, bool)>) -> Result<(), String> {
         let (Some((name, functions)), Some(game)) = (selection, &self.game) else { return Ok(()) };
         let vehicle = game.scenario().vehicle_named(name).map_err(|e| e.to_string())?;
@@ -174,7 +174,7 @@ impl LiveState {
         Ok(())
     }
 
-    /// Selected boats, and whether any page wants utilities.
+    /// The selected boats, and whether any page wants utilities.
     pub(super) fn wanted(&self) -> BTreeMap<VehicleId, bool> {
         let mut wanted = BTreeMap::new();
         for (vehicle, functions) in self.selected.values() {
@@ -183,14 +183,14 @@ impl LiveState {
         wanted
     }
 
-    /// The boats whose modes some page wants.
+    /// The boats whose modes any page wants.
     pub(super) fn listed(&self) -> Vec<VehicleId> {
         let count =
             self.game.as_ref().filter(|_| !self.listed.is_empty()).map_or(0, |game| game.scenario().vehicles.len());
         (0..count).map(VehicleId::at).collect()
     }
 
-    /// A helm told its mode, if it has one.
+    /// Stores the mode in a helm's report, if it has one.
     pub(super) fn take_mode(&mut self, vehicle: VehicleId, report: Option<&HelmReport>) {
         let Some(game) = &self.game else { return };
         self.modes.resize(game.scenario().vehicles.len(), None);
@@ -201,14 +201,14 @@ impl LiveState {
         *known = mode;
     }
 
-    /// Drops what no page has selected any more.
+    /// Drops data of boats that no page selects any more.
     pub(super) fn forget_unwanted(&mut self) {
         let wanted = self.wanted();
         self.helms.retain(|vehicle, _| wanted.contains_key(vehicle));
         self.estimates.retain(|vehicle, _| wanted.contains_key(vehicle));
     }
 
-    /// What the run is about, in the protocol's word.
+    /// The phase of the run, in the protocol's terms.
     pub(super) fn phase(&self, now: Instant) -> &'static str {
         let still = self.frames.came.is_none_or(|came| now.saturating_duration_since(came) > STILL);
         match (&self.run, self.is_gone) {
@@ -219,7 +219,7 @@ impl LiveState {
                 Phase::Paused => "paused",
                 Phase::Over => "over",
             },
-            // An older sim publishes no run state.
+            // Older sims publish no run state.
             (None, _) if self.frames.is_over => "over",
             (None, _) if self.frames.count == 0 => "waiting",
             (None, _) if still => "paused",
@@ -228,7 +228,7 @@ impl LiveState {
     }
 }
 
-/// Whether a frame is of a time in the game, and about its boats, flags and teams.
+/// Whether a frame fits the game: its time, boats, flags and teams.
 fn is_of(frame: &Frame, scenario: &Scenario) -> bool {
     (SimTime::ZERO..SimTime::NEVER).contains(&frame.stamp.valid_ns)
         && frame.vehicles.len() == scenario.vehicles.len()

@@ -1,8 +1,8 @@
 //! A running game, shown to pages that may also control it.
 //!
-//! One thread finds the game, subscribes to it, and finds it again when it is gone (`game_watcher`). Another queries what is
-//! not published (`query_thread`). Both write the state that all viewers read (`live_state`). Stops have threads of their own
-//! (`stopping`).
+//! One thread finds the game, subscribes to it, and searches again when it has gone
+//! (`game_watcher`). Another queries data that is not published (`query_thread`). Both write the
+//! state that all viewers read (`live_state`). Stops have their own threads (`stopping`).
 
 mod event_log;
 mod frame_buffer;
@@ -28,13 +28,13 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use stopping::Stopping;
 use viewer::PageViewer;
 
-/// The most commands that wait for the network.
+/// Upper bound of commands queued for the network.
 const COMMANDS_MAX: usize = 64;
 
-/// Shows a person what went wrong, in a sentence.
+/// Reports a failure to a person, in one sentence.
 pub type Tell = Box<dyn Fn(&str) + Send + Sync>;
 
-/// Reads the text of a mission file, or says what is wrong with it.
+/// Parses the text of a mission file; the error says what is wrong.
 pub type ReadMission = fn(&str) -> Result<Mission, String>;
 
 /// A game on the network, shown to pages.
@@ -42,15 +42,15 @@ pub struct LiveView {
     shared: Arc<SharedState>,
 }
 
-/// What the threads and all viewers share.
+/// The state that the threads and all viewers share.
 struct SharedState {
-    /// To be locked for moments only.
+    /// Lock only briefly.
     state: Mutex<LiveState>,
     news: Changes,
     commands: InboxSender<Command>,
     stops: StopClient,
     stopping: Stopping,
-    /// Where a person reads what went wrong.
+    /// Reports failures to a person.
     tell: Tell,
     read_mission: ReadMission,
     pages: AtomicU64,
@@ -60,18 +60,19 @@ struct SharedState {
 /// A command to the game.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Command {
-    /// For all of it, and nothing that stops boats.
+    /// For the whole game, except commands that stop boats.
     Control(Control),
-    /// For steered boats; the set-points are in the state.
+    /// New set-points of steered boats are in the state.
     Steer,
 }
 
 impl LiveView {
-    /// Looks for a game at `place`, this one or the only one there is, for as long as the view is kept. `tell` gets what is missing
-    /// meanwhile, whenever that changes, and what the sim refuses; `read_mission` reads mission files that operators send.
+    /// Searches for a game at `place` (the named one, or the only one running) until dropped.
+    /// `tell` receives what is missing, whenever that changes, and the sim's refusals;
+    /// `read_mission` parses mission files from operators.
     ///
     /// # Errors
-    /// If the system has no thread to give.
+    /// If the system cannot start a thread.
     pub fn open(
         place: Place,
         game: Option<GameName>,
@@ -87,7 +88,7 @@ impl LiveView {
         Ok(LiveView { shared })
     }
 
-    /// Whether the game that is shown has real boats.
+    /// Whether the game shown has real boats.
     #[must_use]
     pub fn has_real_boats(&self) -> bool {
         self.shared.state.lock().on().is_ok_and(|game| game.has_real_boats())
@@ -96,7 +97,7 @@ impl LiveView {
 
 impl Drop for LiveView {
     fn drop(&mut self) {
-        // The thread may wait for an answer; it ends by itself.
+        // The thread may be waiting for an answer; it ends by itself.
         self.shared.is_closing.store(true, Ordering::Relaxed);
     }
 }
@@ -113,13 +114,13 @@ impl View for LiveView {
 }
 
 impl SharedState {
-    /// With an empty state.
+    /// An empty state.
     fn new(commands: InboxSender<Command>, tell: Tell, read_mission: ReadMission) -> std::io::Result<SharedState> {
         Ok(SharedState {
             state: Mutex::default(),
             news: Changes::default(),
             commands,
-            // Whoever looks at the page asks again.
+            // A person at the page can repeat the stop.
             stops: StopClient::open(ANSWER)?,
             stopping: Stopping::default(),
             tell,

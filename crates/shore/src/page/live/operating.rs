@@ -1,5 +1,6 @@
-//! Commands of operators to the gateways of real boats. Each goes over the game's network in a thread of its own. A boat has one
-//! command under way that it needs the token for, and one that stops it: no number of them keeps a stop waiting.
+//! Operator commands to the gateways of real boats. Each goes over the game's network in its own
+//! thread. Per boat, one command that needs the token and one that stops it can be under way at a
+//! time, so that no number of commands delays a stop.
 
 use super::SharedState;
 use super::live_state::{LiveGame, LiveState};
@@ -11,39 +12,39 @@ use primitives::VehicleId;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
 
-/// The most replies that wait for a page; one that does not read misses some.
+/// Upper bound of replies queued for a page; a page that does not read misses some.
 const REPLIES_MAX: usize = 16;
 
-/// What came of a command.
+/// The result of a command.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Operated {
     pub(super) vehicle: VehicleId,
     pub(super) command: &'static str,
-    /// Why it was not done.
+    /// The reason for a refusal.
     pub(super) refused: Option<String>,
 }
 
 /// The commands to the boats of a game.
 #[derive(Default)]
 pub(super) struct Operating {
-    /// Those under way: to which boat, and whether they need the token.
+    /// Commands under way: the boat, and whether they need the token.
     under_way: BTreeSet<(VehicleId, bool)>,
-    /// By page, of those that are there and have given any, what came of its own.
+    /// Results by connected page, of its own commands.
     replies: BTreeMap<u64, VecDeque<Operated>>,
 }
 
 impl Operating {
-    /// The next reply to a page.
+    /// Removes the next reply to a page.
     pub(super) fn reply(&mut self, page: u64) -> Option<Operated> {
         self.replies.get_mut(&page)?.pop_front()
     }
 
-    /// A page is gone.
+    /// Forgets a page that has left.
     pub(super) fn forget(&mut self, page: u64) {
         self.replies.remove(&page);
     }
 
-    /// A command is under way, unless one of its kind to the same boat is.
+    /// Starts a command, unless one of its kind is under way to the same boat.
     fn begin(&mut self, page: u64, vehicle: VehicleId, command: &OperatorCommand) -> Result<(), String> {
         self.replies.entry(page).or_default();
         if self.under_way.insert((vehicle, command.needs_token())) {
@@ -60,7 +61,7 @@ impl Operating {
     }
 }
 
-/// Sends a command to the gateway of a boat. Its reply is for the page that gave the command.
+/// Sends a command to the gateway of a boat. The reply goes to the page that sent the command.
 pub(super) fn operate(
     shared: &Arc<SharedState>,
     state: &mut LiveState,
@@ -75,7 +76,7 @@ pub(super) fn operate(
     }
     let Some(bus) = state.bus.clone() else { return Err("there is no game now".to_owned()) };
     state.operating.begin(page, vehicle, &command)?;
-    // A stop takes every path, and this query is one of them. What is asked last counts.
+    // A stop takes every path, and this query is one of them. The latest command counts.
     let stop = StopCommand::of(&command);
     match stop {
         Some(stop) => shared.stops.stop(Some(name), stop),
@@ -91,14 +92,14 @@ pub(super) fn operate(
             at_work.stops.wait(ANSWER, |orders| orders.is_shown(&named, stop));
         }
         let mut state = at_work.state.lock();
-        // Of a game that is gone nobody waits for it.
+        // No page waits for the reply of a game that has gone.
         if state.generation == generation {
             let refused = match reply {
                 Ok(OperatorReply { refused, status }) => {
                     state.statuses.insert(vehicle, Arc::new(status));
                     refused
                 }
-                // It was shown to have come by another path.
+                // The boat's status shows that it arrived by another path.
                 Err(_) if stop.is_some_and(|stop| at_work.stops.visit(|orders| orders.is_shown(&named, stop))) => None,
                 Err(reason) => Some(reason),
             };
@@ -125,7 +126,7 @@ fn ask(bus: &Bus, game: &LiveGame, vehicle: VehicleId, command: &OperatorCommand
     }
 }
 
-/// A command, as pages name it.
+/// The name of a command in the protocol.
 fn word(command: &OperatorCommand) -> &'static str {
     match command {
         OperatorCommand::Status => "status",

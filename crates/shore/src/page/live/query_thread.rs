@@ -1,4 +1,4 @@
-//! The queries: asks a game for what is not published, in a thread of its own, since answers take their time.
+//! Queries data of a game that is not published, in its own thread, since answers take time.
 
 use super::SharedState;
 use super::live_state::{HelmMessage, LiveGame};
@@ -14,48 +14,48 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// How often to see whether there is something to ask.
+/// The interval of checks for pending queries.
 const ROUND: Duration = Duration::from_millis(50);
-/// How long a helm may think about its answer.
+/// Timeout of a helm's answer.
 const HELM_ANSWER: Duration = Duration::from_secs(1);
-/// No more than one part in so many of the time is spent on the answers of helms that somebody looks at.
+/// Answers of selected helms take at most one part in this many of the time.
 const SHARE: u32 = 5;
 /// The same for helms of which only the mode is wanted, for a list of all boats.
 const LIST_SHARE: u32 = 20;
-/// How often a helm is asked for its mode.
+/// The interval between queries for a helm's mode.
 const LIST_INTERVAL: Duration = Duration::from_secs(2);
-/// How long the sim may collect its events.
+/// Timeout of the sim's list of events.
 const EVENTS_ANSWER: Duration = Duration::from_secs(3);
 
-/// Asks one game.
+/// Queries one game.
 pub(super) struct QueryThread {
     pub(super) shared: Arc<SharedState>,
     pub(super) bus: Bus,
     pub(super) game: Arc<LiveGame>,
 }
 
-/// Whose helm is asked next.
+/// Schedules queries to helms.
 #[derive(Default)]
 struct QuerySchedule {
-    /// When each was asked last, and whether with utilities.
+    /// When each helm was last queried, and whether with utilities.
     asked: BTreeMap<VehicleId, (Instant, bool)>,
-    /// Until when nobody is asked.
+    /// No helm is queried before this time.
     rest: Option<Instant>,
 }
 
-/// A helm that is asked.
+/// A query to a helm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Turn {
     vehicle: VehicleId,
-    /// Whether with utilities.
+    /// Whether it asks for utilities.
     functions: bool,
-    /// Whether only its mode is wanted, and nobody looks at it.
+    /// Whether it asks only for the mode, for a boat that no page selects.
     is_listed: bool,
 }
 
 impl QuerySchedule {
-    /// Whose turn it is, if it is anybody's: of those that are due, the one that has waited longest. Those of which only the
-    /// mode is wanted come after those that are looked at.
+    /// The helm to query now, if any: of those due, the one that has waited longest. Selected helms
+    /// come before those of which only the mode is wanted.
     fn next(&mut self, wanted: &BTreeMap<VehicleId, bool>, listed: &[VehicleId], now: Instant) -> Option<Turn> {
         self.asked.retain(|vehicle, _| wanted.contains_key(vehicle) || listed.contains(vehicle));
         if self.rest.is_some_and(|rest| now < rest) {
@@ -83,8 +83,9 @@ impl QuerySchedule {
         longest.map(|vehicle| Turn { vehicle: *vehicle, functions: false, is_listed: true })
     }
 
-    /// A helm was asked from `start` to `end`. In lockstep a game waits while a mind answers, and one process may mind all
-    /// boats: after a long answer all have a rest. A game that stands waits for nobody.
+    /// Records a query that lasted from `start` to `end`. In lockstep a game waits while a mind
+    /// answers, and one process may run all minds: after a long answer all have a rest. A paused
+    /// game waits for no mind.
     fn update(&mut self, turn: Turn, start: Instant, end: Instant, is_going: bool) {
         self.asked.insert(turn.vehicle, (start, turn.functions));
         let share = if turn.is_listed { LIST_SHARE } else { SHARE };
@@ -93,7 +94,7 @@ impl QuerySchedule {
 }
 
 impl QueryThread {
-    /// Asks until the game is left.
+    /// Queries until the game is left.
     pub(super) fn ask(&self, left: &Watched<bool>) {
         let mut schedule = QuerySchedule::default();
         while !left.wait(ROUND, |left| *left) {
@@ -112,13 +113,13 @@ impl QueryThread {
         }
     }
 
-    /// All that has happened, where something of it was missed.
+    /// Queries the sim for all events, if some were missed.
     fn ask_events(&self) {
         if !self.shared.state.lock().event_log.should_query(clock::now()) {
             return;
         }
         let answer = self.bus.ask(&topic::events(&self.game.name), Vec::new(), EVENTS_ANSWER);
-        // An older sim does not answer; then frames are all there is.
+        // Older sims do not answer; the log then has only events from frames.
         let events = answer.ok().flatten().and_then(|bytes| serde_json::from_slice::<Vec<EventOutcome>>(&bytes).ok());
         if let Some(events) = events {
             self.shared.state.lock().event_log.replace(events);
@@ -142,7 +143,7 @@ impl QueryThread {
             self.shared.news.send_replace(());
             return;
         }
-        // Long work with a long report, for which the state is not kept from others.
+        // Encoding a full report takes long, so the state is not locked meanwhile.
         let full = functions.then(|| helm_text(self.game.scenario(), vehicle, true, answer.clone()));
         let light = helm_text(self.game.scenario(), vehicle, false, answer);
         self.shared.state.lock().helms.insert(vehicle, Arc::new(HelmMessage { light, full }));
@@ -160,7 +161,8 @@ mod tests {
 
     const BOATS: [VehicleId; 3] = [VehicleId(0), VehicleId(1), VehicleId(2)];
 
-    /// Asks for so long, each answer after as long: who was asked when, ms.
+    /// Simulates queries for a while, each with the same answer time: the helms queried and when,
+    /// ms.
     fn asked(wanted: &BTreeMap<VehicleId, bool>, took_ms: u64, until_ms: u64, is_going: bool) -> Vec<(VehicleId, u64)> {
         asked_and_listed((wanted, &[]), took_ms, until_ms, is_going)
     }
@@ -229,7 +231,7 @@ mod tests {
         let of = |all: &[(VehicleId, u64)], boat| all.iter().filter(|(asked, _)| *asked == boat).count();
         let quick = asked_and_listed((&wanted, &BOATS), 0, 4000, true);
         assert_eq!(BOATS.map(|boat| of(&quick, boat)), [8, 2, 2], "{quick:?}");
-        // Nobody is looked at: a twentieth of the time, each in turn.
+        // With no boat selected: a twentieth of the time, each in turn.
         let slow = asked_and_listed((&BTreeMap::new(), &BOATS), 100, 12_000, true);
         assert_eq!(slow.len(), 6, "{slow:?}");
         assert_eq!(BOATS.map(|boat| of(&slow, boat)), [2, 2, 2]);

@@ -1,18 +1,18 @@
-//! Which page steers which boat: one page at a time.
+//! Locks that let one page at a time steer a boat.
 
 use primitives::VehicleId;
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-/// A page that is silent for so long no longer steers.
+/// A page silent for this long loses its locks.
 const SILENCE: Duration = Duration::from_secs(2);
 
-/// By boat: the page that steers it, and when that was confirmed last.
+/// By boat: the page that steers it, and when the page last confirmed that.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SteeringLocks(BTreeMap<VehicleId, (u64, Instant)>);
 
 impl SteeringLocks {
-    /// A page wants to steer; whether it may.
+    /// Acquires or confirms the lock for a page; returns whether it may steer.
     pub(super) fn acquire(&mut self, vehicle: VehicleId, page: u64, now: Instant) -> bool {
         self.expire(now);
         let (holder, at) = self.0.entry(vehicle).or_insert((page, now));
@@ -22,7 +22,7 @@ impl SteeringLocks {
         *holder == page
     }
 
-    /// A page stops steering; whether it did steer.
+    /// Releases a page's lock; returns whether it held it.
     pub(super) fn release(&mut self, vehicle: VehicleId, page: u64) -> bool {
         let has = self.holder(vehicle) == Some(page);
         if has {
@@ -31,12 +31,12 @@ impl SteeringLocks {
         has
     }
 
-    /// A page disconnects.
+    /// Releases all locks of a page that has disconnected.
     pub(super) fn release_all(&mut self, page: u64) {
         self.0.retain(|_, (holder, _)| *holder != page);
     }
 
-    /// Releases boats of silent pages; whether there were any.
+    /// Releases boats of silent pages; returns whether there were any.
     pub(super) fn expire(&mut self, now: Instant) -> bool {
         let before = self.0.len();
         self.0.retain(|_, (_, at)| now.saturating_duration_since(*at) < SILENCE);
@@ -48,7 +48,7 @@ impl SteeringLocks {
         self.0.get(&vehicle).map(|(holder, _)| *holder)
     }
 
-    /// All boats that are steered.
+    /// All steered boats.
     pub(super) fn held(&self) -> impl Iterator<Item = VehicleId> + '_ {
         self.0.keys().copied()
     }

@@ -1,5 +1,6 @@
-//! E-stops and halts that pages ask for. An E-stop goes over the game's network and straight to every gateway that has told its
-//! control port, at once (`bus::stop`). None waits for anything else that pages ask for.
+//! E-stops and halts from pages. An E-stop goes over the game's network and directly to every
+//! gateway with a known control port, all at once (`bus::stop`). It never waits for other requests
+//! from pages.
 
 use super::SharedState;
 use super::live_state::LiveState;
@@ -10,12 +11,12 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
-/// The most threads at once; each ends within some seconds.
+/// The maximum number of concurrent threads; each ends within seconds.
 const THREADS_MAX: usize = 256;
-/// How often it is looked at whether the view closes.
+/// The interval of checks whether the view closes.
 const ROUND: Duration = Duration::from_millis(500);
 
-/// The threads that are under way.
+/// The number of running threads.
 #[derive(Default)]
 pub(super) struct Stopping(AtomicUsize);
 
@@ -37,7 +38,7 @@ pub(super) fn stop(shared: &Arc<SharedState>, state: &LiveState, control: Contro
     Ok(())
 }
 
-/// Tells which boats do not stop, until the view closes.
+/// Reports boats that do not stop, until the view closes.
 pub(super) fn tell_late(shared: &SharedState) {
     while !shared.is_closing() {
         for news in shared.stops.news(ROUND) {
@@ -53,7 +54,7 @@ pub(super) fn tell_late(shared: &SharedState) {
     }
 }
 
-/// Runs `work` in a thread of its own.
+/// Runs `work` in its own thread.
 fn begin(shared: &Arc<SharedState>, work: impl FnOnce(&SharedState) + Send + 'static) -> Result<(), String> {
     let under_way = &shared.stopping.0;
     if under_way.fetch_add(1, Ordering::SeqCst) >= THREADS_MAX {

@@ -20,31 +20,32 @@ pub(super) struct PageViewer {
     shared: Arc<SharedState>,
     access: Access,
     page: u64,
-    /// The selected boat, and whether utilities are wanted: also in the next game, if it has that boat.
+    /// The selected boat, and whether utilities are wanted; kept for the next game, if it has that
+    /// boat.
     selection: Option<(String, bool)>,
     /// Whether the modes of all boats are wanted.
     wants_modes: bool,
     sent: Sent,
 }
 
-/// What was sent to a page about one game.
+/// The messages sent to a page about one game.
 #[derive(Default)]
 struct Sent {
-    /// Which game it is.
+    /// The number of the game.
     generation: u64,
     events: super::event_log::EventCursor,
-    /// Changes of the run, and when.
+    /// The number of the last run state sent, and when.
     run: Option<(u64, Instant)>,
-    /// Which page steers which boat.
+    /// Steering locks as last sent, by boat.
     steering_locks: BTreeMap<VehicleId, &'static str>,
     statuses: Latest<GatewayStatus>,
     helm: Option<Arc<HelmMessage>>,
     estimate: Option<(Arc<(OwnBoat, SimTime)>, Instant)>,
-    /// Which news of modes, and when.
+    /// The number of the last modes sent, and when.
     modes: Option<(u64, Instant)>,
-    /// The newest frame; 0 is none.
+    /// The number of the newest frame sent; 0 for none.
     frame: u64,
-    /// The frames of the past that find before it, once there is one.
+    /// The past frames to send before it, once a frame exists.
     past: Option<VecDeque<Bytes>>,
 }
 
@@ -53,7 +54,8 @@ impl PageViewer {
         PageViewer { shared, access, page, selection: None, wants_modes: false, sent: Sent::default() }
     }
 
-    /// Passes on a command to this game. The state stays locked meanwhile, so that the next game does not get it.
+    /// Forwards a command to this game. The state stays locked meanwhile, so that the next game
+    /// cannot receive it.
     fn control(&self, state: &LiveState, control: Control) -> Result<(), String> {
         if control.stops() {
             return stopping::stop(&self.shared, state, control);
@@ -190,7 +192,7 @@ impl Viewer for PageViewer {
         let game = state.game.clone()?;
         if self.sent.generation != state.generation {
             self.sent = Sent { generation: state.generation, ..Sent::default() };
-            // The boat may not be in this game; then the page selects another.
+            // The boat may not exist in this game; the page then selects another.
             drop(state.select(self.page, self.selection.as_ref()));
             if self.wants_modes {
                 state.listed.insert(self.page);
@@ -297,7 +299,7 @@ impl Sent {
         Some(PageMessage::Status { vehicle: game.name_of(*vehicle), status }.json())
     }
 
-    /// What is known of the boat that the page has selected.
+    /// The next message about the boat that the page has selected.
     fn next_selected(&mut self, state: &LiveState, game: &LiveGame, page: u64, now: Instant) -> Option<String> {
         let (vehicle, functions) = *state.selected.get(&page)?;
         let is_sent = |helm: &Arc<HelmMessage>| self.helm.as_ref().is_some_and(|sent| Arc::ptr_eq(sent, helm));
@@ -331,7 +333,7 @@ impl Sent {
         Some(PageMessage::Modes { at_s: state.modes_at_s, modes: &state.modes }.json())
     }
 
-    /// The newest frame, before the first of all those of the past.
+    /// The newest frame, or before the first one, the next of the past frames.
     fn next_frame(&mut self, state: &LiveState) -> Option<Outgoing> {
         if state.frames.count == self.frame {
             return None;

@@ -9,12 +9,12 @@ use recording::Recording;
 use rules::Field;
 use std::sync::Arc;
 
-/// How many samples of a boat a page gets at most: more than a screen has pixels.
+/// The maximum number of samples per boat sent to a page: more than a screen has pixels.
 const SAMPLES: usize = 1500;
-/// How many samples of all boats together are kept at most, about 140 bytes each.
+/// The maximum number of samples kept for all boats together, about 140 bytes each.
 const SAMPLES_MAX: usize = 400_000;
 
-/// Reads the curves off a recording, once somebody asks for them.
+/// Reads the curves from a recording on first use.
 #[derive(Default)]
 pub(super) struct Plotter {
     recording: Option<Arc<Recording>>,
@@ -22,7 +22,7 @@ pub(super) struct Plotter {
 }
 
 impl Plotter {
-    /// Of this recording. Nothing is read yet.
+    /// A plotter for this recording, which reads nothing yet.
     pub(super) fn new(recording: Arc<Recording>) -> Plotter {
         Plotter { recording: Some(recording), series: None }
     }
@@ -79,7 +79,7 @@ fn boat_curves(series: &GameSeries, field: &Field, vehicle: VehicleId) -> BoatCu
     }
 }
 
-/// How far a boat is from the nearest flag of another team, which may be on its way.
+/// The distance of a boat to the nearest flag of another team, which may be moving.
 fn flag_distances(series: &GameSeries, field: &Field, vehicle: VehicleId) -> Vec<f64> {
     let boat = &series.boats[vehicle.index()];
     let mut carriers: Vec<Option<VehicleId>> = vec![None; field.flags.len()];
@@ -104,7 +104,7 @@ fn flag_distances(series: &GameSeries, field: &Field, vehicle: VehicleId) -> Vec
     distances
 }
 
-/// Millimetres are enough for a plot, and make a short message.
+/// Rounds to millimetres, which suffice for a plot and keep the message short.
 fn rounded(value: f64) -> f64 {
     (value * 1000.0).round() / 1000.0
 }

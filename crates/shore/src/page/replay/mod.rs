@@ -24,24 +24,24 @@ pub struct ReplayView {
     news: Changes,
 }
 
-/// What all viewers of a recording share.
+/// The state that all viewers of a recording share.
 struct SharedReplay {
     source: Arc<Recorded>,
     chart: Value,
-    /// Where the game comes from, in words.
+    /// A text about the origin of the game.
     about: Option<String>,
     queries: QueryThread,
     viewers: AtomicU64,
 }
 
 impl ReplayView {
-    /// Shows a recording. Without helms there are no helm reports.
+    /// Shows a recording. Without `helms` there are no helm reports.
     #[must_use]
     pub fn new(source: Arc<Recorded>, helms: Option<Box<dyn Helms>>) -> ReplayView {
         ReplayView::about(None, source, helms)
     }
 
-    /// Shows a recording, and says in words where it comes from.
+    /// Shows a recording with a text about its origin.
     #[must_use]
     pub fn about(about: Option<String>, source: Arc<Recorded>, helms: Option<Box<dyn Helms>>) -> ReplayView {
         let news = Changes::default();

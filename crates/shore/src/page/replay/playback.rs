@@ -1,9 +1,9 @@
-//! The playback position in a recording, and how it advances.
+//! The playback position in a recording, and its progress.
 
 use primitives::SimTime;
 use std::time::{Duration, Instant};
 
-/// The slowest and the fastest that a recording is played, simulated seconds a second.
+/// The limits of the playback speed, simulated seconds per second.
 const SPEED: (f64, f64) = (0.01, 100.0);
 
 /// The state of a playback.
@@ -12,13 +12,13 @@ pub(super) struct Playback {
     from: SimTime,
     to: SimTime,
     at: SimTime,
-    /// Since when `at` has moved on, if it does.
+    /// Since when `at` has been advancing, if it is.
     since: Option<Instant>,
     speed: f64,
 }
 
 impl Playback {
-    /// A playback that stands at the beginning.
+    /// A paused playback at the beginning.
     pub(super) fn new(from: SimTime, to: SimTime) -> Playback {
         Playback { from, to, at: from, since: None, speed: 1.0 }
     }
@@ -30,23 +30,23 @@ impl Playback {
         (self.at + SimTime::from_s(passed_s)).min(self.to)
     }
 
-    /// Whether it moves on.
+    /// Whether it is advancing.
     pub(super) fn is_playing(&self) -> bool {
         self.since.is_some()
     }
 
-    /// Simulated seconds a second.
+    /// The speed, simulated seconds per second.
     pub(super) fn speed(&self) -> f64 {
         self.speed
     }
 
-    /// When a moment will be shown, if nobody intervenes.
+    /// When a moment will be shown, without further commands; `None` if never.
     pub(super) fn when(&self, moment: SimTime) -> Option<Instant> {
         let ahead_s = (moment - self.at).as_s().max(0.0) / self.speed;
         self.since?.checked_add(Duration::try_from_secs_f64(ahead_s).ok()?)
     }
 
-    /// Plays; from the beginning if it stands at the end.
+    /// Plays; restarts from the beginning if it is at the end.
     pub(super) fn play(&mut self, now: Instant) {
         if self.since.is_none() {
             self.at = if self.at >= self.to { self.from } else { self.at };
@@ -54,13 +54,13 @@ impl Playback {
         }
     }
 
-    /// Stands.
+    /// Pauses.
     pub(super) fn pause(&mut self, now: Instant) {
         self.at = self.at(now);
         self.since = None;
     }
 
-    /// Stands if it has come to the end; says whether it did just now.
+    /// Pauses if it has reached the end; returns whether it has just done so.
     pub(super) fn end(&mut self, now: Instant) -> bool {
         let ends = self.since.is_some() && self.at(now) >= self.to;
         if ends {
@@ -69,13 +69,13 @@ impl Playback {
         ends
     }
 
-    /// Shows another moment, and plays on if it played.
+    /// Jumps to another moment, and keeps playing or pausing.
     pub(super) fn seek(&mut self, moment: SimTime, now: Instant) {
         self.at = moment.clamp(self.from, self.to.max(self.from));
         self.since = self.since.map(|_| now);
     }
 
-    /// Plays so many simulated seconds a second; none is as fast as it goes.
+    /// Sets the speed, simulated seconds per second; `None` for the fastest.
     pub(super) fn set_speed(&mut self, speed: Option<f64>, now: Instant) {
         self.at = self.at(now);
         self.since = self.since.map(|_| now);

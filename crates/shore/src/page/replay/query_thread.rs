@@ -1,4 +1,5 @@
-//! A thread that works out for replays what is not in a frame: helm reports, modes, curves. That may take a while.
+//! A thread that computes data for replays that frames lack: helm reports, modes, curves. That may
+//! take a while.
 
 use super::curves::Plotter;
 use crate::page::message::{PageMessage, seconds};
@@ -14,36 +15,36 @@ use std::time::Duration;
 
 /// Recomputes helm reports of a recorded game. That may take a while.
 pub trait Helms: Send {
-    /// What a boat's helm thought at a decision, with utilities or without.
+    /// The report of a boat's helm at a decision, with or without utilities.
     fn report(&mut self, vehicle: VehicleId, decision: u64, functions: bool) -> HelmAnswer;
 
-    /// By vehicle, the mode its helm was in at a decision; none where there is no helm or no mode.
+    /// The modes of all helms at a decision, by vehicle; `None` without a helm or mode.
     fn modes(&mut self, decision: u64) -> Vec<Option<String>>;
 }
 
-/// What is asked.
+/// A query of a viewer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Query {
     /// The report of a helm.
     Helm(HelmRequest),
-    /// The modes of all boats at a decision, which was at this time.
+    /// The modes of all boats at a decision, with its time.
     Modes(u64, SimTime),
     /// Curves of a boat, and its range to another.
     Curves(Option<VehicleId>, Option<VehicleId>),
 }
 
-/// Whose helm is asked for.
+/// A query for a helm's report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct HelmRequest {
-    /// Whose helm.
+    /// The boat of the helm.
     pub(super) vehicle: VehicleId,
-    /// At which decision.
+    /// The decision.
     pub(super) decision: u64,
-    /// Whether with utilities.
+    /// Whether to include utilities.
     pub(super) functions: bool,
 }
 
-/// A viewer, and which kind of query: of each kind it has one at most.
+/// A viewer and a kind of query: it has at most one query of each kind.
 type Asker = (u64, u8);
 
 impl Query {
@@ -56,46 +57,46 @@ impl Query {
     }
 }
 
-/// Those who wait.
+/// Queued queries and finished answers.
 #[derive(Default)]
 struct Queue {
     requests: BTreeMap<Asker, Query>,
     answers: BTreeMap<Asker, (Query, String)>,
-    /// Whose answer is worked on, unless they have left.
+    /// The viewer and kind being answered, unless the viewer has left.
     current: Option<Asker>,
-    /// Who was served last: all get their turn.
+    /// The last one served, so that all get their turn.
     last: Asker,
     is_closed: bool,
 }
 
-/// What answers.
+/// The sources of the answers.
 pub(super) struct Sources {
     pub(super) scenario: Scenario,
-    /// Without helms nobody knows what they thought.
+    /// `None` if helm reports cannot be recomputed.
     pub(super) helms: Option<Box<dyn Helms>>,
     pub(super) plotter: Plotter,
 }
 
-/// The thread.
+/// The query thread.
 pub(super) struct QueryThread(Arc<Watched<Queue>>);
 
 impl QueryThread {
-    /// Opens it.
+    /// Starts the thread.
     pub(super) fn open(sources: Sources, news: Changes) -> QueryThread {
         let counter = Arc::new(Watched::<Queue>::default());
         let server = Arc::clone(&counter);
         let serve = move || serve(&server, sources, &news);
-        // Without a thread nobody answers; pages see that.
+        // Without a thread no query is answered; pages show that.
         drop(std::thread::Builder::new().name("page-queries".to_owned()).spawn(serve));
         QueryThread(counter)
     }
 
-    /// A viewer asks this now, and nothing else of this kind any more.
+    /// Queues a viewer's query, in place of its earlier one of the same kind.
     pub(super) fn request(&self, viewer: u64, query: Query) {
         self.0.visit(|queue| queue.requests.insert((viewer, query.kind()), query));
     }
 
-    /// The newest report of a helm for a viewer, as it goes to the page.
+    /// Removes the newest report of a helm for a viewer, encoded for the page.
     pub(super) fn take_helm(&self, viewer: u64) -> Option<(HelmRequest, String)> {
         match self.0.visit(|queue| queue.answers.remove(&(viewer, 0)))? {
             (Query::Helm(request), text) => Some((request, text)),
@@ -103,12 +104,12 @@ impl QueryThread {
         }
     }
 
-    /// Another answer to a viewer, as it goes to the page.
+    /// Removes another answer for a viewer, encoded for the page.
     pub(super) fn take_other(&self, viewer: u64) -> Option<String> {
         self.0.visit(|queue| (1..=2).find_map(|kind| queue.answers.remove(&(viewer, kind)))).map(|(_, text)| text)
     }
 
-    /// A viewer goes.
+    /// Removes a viewer.
     pub(super) fn remove(&self, viewer: u64) {
         self.0.visit(|queue| {
             queue.requests.retain(|(of, _), _| *of != viewer);
@@ -120,12 +121,12 @@ impl QueryThread {
 
 impl Drop for QueryThread {
     fn drop(&mut self) {
-        // The thread may be at work for a while; it ends by itself.
+        // The thread may be busy for a while; it ends by itself.
         self.0.visit(|queue| queue.is_closed = true);
     }
 }
 
-/// Answers one query after the other until the view is closed.
+/// Answers queries one by one until the view closes.
 fn serve(shared: &Watched<Queue>, mut sources: Sources, news: &Changes) {
     const ROUND: Duration = Duration::from_secs(60);
     loop {
@@ -135,7 +136,7 @@ fn serve(shared: &Watched<Queue>, mut sources: Sources, news: &Changes) {
         }
         let Some(query) = shared.visit(Queue::next) else { continue };
         let text = sources.answer(query);
-        // Nobody takes it if they have left meanwhile.
+        // If the viewer has left meanwhile, the answer is dropped.
         shared.visit(|queue| queue.current.take().map(|asker| queue.answers.insert(asker, (query, text))));
         news.send_replace(());
     }
@@ -163,7 +164,7 @@ impl Sources {
 }
 
 impl Queue {
-    /// The next request in turn.
+    /// The next query in turn.
     fn next(&mut self) -> Option<Query> {
         let later = (Bound::Excluded(self.last), Bound::Unbounded);
         let after = self.requests.range(later).next().or_else(|| self.requests.iter().next());
@@ -179,7 +180,7 @@ mod tests {
     use std::path::Path;
     use std::sync::mpsc::{Receiver, Sender, channel};
 
-    /// Helms that signal when they begin, and work until they may go on.
+    /// Helms that signal when they start, and wait until they may continue.
     struct SlowHelms(Sender<()>, Receiver<()>);
 
     impl Helms for SlowHelms {
@@ -210,7 +211,7 @@ mod tests {
             }
             go.send(()).unwrap();
         }
-        // The third is at work only after the second was handed out.
+        // The third starts only after the second was handed out.
         let kept: Vec<u64> = thread
             .0
             .visit(|queue| queue.answers.keys().map(|(viewer, _)| *viewer).filter(|viewer| *viewer < 3).collect());

@@ -1,4 +1,4 @@
-//! A recording as a replay needs it.
+//! A recording, indexed for replay.
 
 use messages::GameInfo;
 use messages::external::GatewayStatus;
@@ -13,20 +13,20 @@ pub struct Recorded {
     recording: Arc<Recording>,
     /// The file's name.
     pub(super) file: String,
-    /// Of the frames that are sound: their numbers in the recording, and their times.
+    /// The indices of valid frames in the recording, and their times.
     frames: Vec<usize>,
     times: Vec<SimTime>,
     damaged: Damaged,
-    /// By team, the time and place of every picture.
+    /// By team, the time and location of every picture.
     pictures: Vec<Vec<(SimTime, usize)>>,
-    /// By vehicle, the same of what its gateway sent.
+    /// By vehicle, the same for every status from its gateway.
     statuses: Vec<Vec<(SimTime, usize)>>,
-    /// All that happened, gateways' failsafes included.
+    /// All events, including failsafes of gateways.
     pub(super) events: Vec<EventOutcome>,
 }
 
 impl Recorded {
-    /// Reads all of it once, and leaves out frames that are damaged.
+    /// Reads the whole recording once, and omits damaged frames.
     #[must_use]
     pub fn new(recording: Arc<Recording>, file: String) -> Recorded {
         let scenario = recording.scenario();
@@ -63,7 +63,7 @@ impl Recorded {
             let mut known = 0;
             for (at, place) in sent {
                 let Some(status) = self.status_at(*place) else { continue };
-                // A gateway that began anew counts from nothing.
+                // A restarted gateway counts from zero.
                 known = known.min(status.failsafes.len());
                 for failsafe in &status.failsafes[known..] {
                     self.events.push(EventOutcome {
@@ -85,17 +85,17 @@ impl Recorded {
         serde_json::from_slice(&self.recording.bag().message(place).bytes).ok()
     }
 
-    /// All of it.
+    /// The underlying recording.
     pub(super) fn recording(&self) -> Arc<Recording> {
         Arc::clone(&self.recording)
     }
 
-    /// What the recording says of its game.
+    /// The recording's header.
     pub(super) fn header(&self) -> &Header {
         self.recording.header()
     }
 
-    /// What the game was.
+    /// The description of the game.
     pub(super) fn info(&self) -> &GameInfo {
         &self.header().info
     }
@@ -105,24 +105,24 @@ impl Recorded {
         self.recording.is_cut()
     }
 
-    /// The frames that are left out.
+    /// The omitted frames.
     #[must_use]
     pub fn damaged(&self) -> &Damaged {
         &self.damaged
     }
 
-    /// When the frames are, in order.
+    /// The times of the frames, in order.
     #[must_use]
     pub fn frame_times(&self) -> &[SimTime] {
         &self.times
     }
 
-    /// A frame, as CDR.
+    /// A frame as CDR.
     pub(super) fn frame_bytes(&self, frame: usize) -> Vec<u8> {
         self.recording.frame(self.frames[frame]).bytes
     }
 
-    /// Where a boat's own sensors put it at a frame.
+    /// A boat's own position estimate at a frame.
     #[must_use]
     pub fn estimate(&self, vehicle: VehicleId, frame: usize) -> Option<OwnBoat> {
         let team = self.info().scenario.vehicles.get(vehicle.index())?.team;
@@ -131,14 +131,14 @@ impl Recorded {
         picture.own(vehicle).copied()
     }
 
-    /// What a boat's gateway had sent last.
+    /// The last status from a boat's gateway up to this time.
     #[must_use]
     pub fn status(&self, vehicle: VehicleId, at: SimTime) -> Option<GatewayStatus> {
         self.status_at(last_until(self.statuses.get(vehicle.index())?, at)?)
     }
 }
 
-/// The last of these that is not after `at`.
+/// The location of the last of these up to `at`.
 fn last_until(sent: &[(SimTime, usize)], at: SimTime) -> Option<usize> {
     let after = sent.partition_point(|(when, _)| *when <= at);
     sent[..after].last().map(|(_, place)| *place)

@@ -16,9 +16,9 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Where in a frame the number of its decision stands: after the encapsulation and the time.
+/// The bytes of a frame that hold the number of its decision: after the encapsulation and the time.
 const DECISION: std::ops::Range<usize> = 12..20;
-/// A page gets frames no more often than this, however fast it plays.
+/// The minimum interval between frames, at any playback speed.
 const FRAME_AGAIN: Duration = Duration::from_millis(10);
 
 /// One page's view of a recording.
@@ -26,25 +26,26 @@ pub(super) struct PageViewer {
     shared: Arc<SharedReplay>,
     viewer: u64,
     playback: Playback,
-    /// What the page is told first: what it looks at, and all events.
+    /// The first messages to the page: what it shows, and all events.
     greeting: VecDeque<String>,
-    /// The playback as it was sent last, and when.
+    /// The playback as last sent, and when.
     sent_playback: Option<(Playback, Instant)>,
-    /// The frame that was shown last.
+    /// The frame shown last.
     shown: Option<usize>,
-    /// The frames of the past to be given before the next.
+    /// The past frames to send before the next one.
     past: VecDeque<usize>,
     selected: Option<(VehicleId, bool)>,
     requested: Option<(HelmRequest, Instant)>,
     estimated: Option<(usize, Instant)>,
-    /// Whether the modes of all boats are wanted, and for which decision they were requested last, and when.
+    /// Whether the modes of all boats are wanted, the decision for which they were last requested,
+    /// and when.
     wants_modes: bool,
     requested_modes: Option<(u64, Instant)>,
-    /// The real boats, with the status that was sent of each.
+    /// The real boats, each with the status last sent.
     gateways: Vec<(VehicleId, Option<GatewayStatus>)>,
-    /// The frame for which they were read last, and when.
+    /// The frame for which statuses were last read, and when.
     looked: Option<(usize, Instant)>,
-    /// What of that is still to be sent.
+    /// Statuses still to be sent.
     statuses: VecDeque<String>,
 }
 
@@ -76,7 +77,7 @@ impl PageViewer {
         }
     }
 
-    /// The frame to be shown at this moment: the last one that is not of the future.
+    /// The frame to show at this moment: the last one up to it.
     fn frame_at(&self, moment: SimTime) -> Option<usize> {
         let times = self.shared.source.frame_times();
         let after = times.partition_point(|time| *time <= moment);
@@ -89,7 +90,7 @@ impl PageViewer {
         self.past = self.frame_at(self.playback.at(now)).map(|frame| self.trail(frame)).unwrap_or_default();
     }
 
-    /// The frames of the past that lead to this one.
+    /// The past frames that lead to this one.
     fn trail(&self, frame: usize) -> VecDeque<usize> {
         let times = self.shared.source.frame_times();
         let steps = (TRAIL_S / TRAIL_STEP_S) as i64;
@@ -161,7 +162,7 @@ impl PageViewer {
         (answered.vehicle == vehicle).then_some(Outgoing::Text(text))
     }
 
-    /// The modes of all boats, and curves.
+    /// The next message with the modes of all boats, or with curves.
     fn next_other(&mut self, frame: usize, now: Instant) -> Option<Outgoing> {
         let is_due = |(before, at): (u64, Instant), decision| {
             before != decision && now.saturating_duration_since(at) >= MODES_INTERVAL
@@ -183,13 +184,13 @@ impl PageViewer {
         Ok(())
     }
 
-    /// The decision that a frame is of.
+    /// The decision of a frame.
     fn decision(&self, frame: usize) -> Option<u64> {
         let bytes = self.shared.source.frame_bytes(frame);
         Some(u64::from_le_bytes(bytes.get(DECISION)?.try_into().ok()?))
     }
 
-    /// Whether something else is shown than what was requested for last.
+    /// Whether the view has changed since this request.
     fn is_outdated(&self, request: HelmRequest) -> bool {
         let decision = self.shown.and_then(|frame| self.decision(frame));
         decision.is_some_and(|decision| decision != request.decision)
@@ -229,7 +230,7 @@ impl PageViewer {
         self.statuses.pop_front().map(Outgoing::Text)
     }
 
-    /// The frame for the page's trails or for now, if it is not shown yet.
+    /// The next past frame for trails, or the current frame if it is not shown yet.
     fn next_frame(&mut self, now: Instant) -> Option<Outgoing> {
         let frame = self.frame_at(self.playback.at(now))?;
         if self.shown == Some(frame) {
@@ -314,7 +315,7 @@ impl Viewer for PageViewer {
         let times = self.shared.source.frame_times();
         let next = self.shown.and_then(|frame| times.get(frame + 1)).and_then(|time| self.playback.when(*time));
         let sent = self.sent_playback.as_ref().filter(|_| playing).map(|(_, at)| *at + SEND_INTERVAL);
-        // What was held back because the same was sent shortly before.
+        // Messages delayed because the same kind was sent shortly before.
         let is_old = |frame: usize| self.shown.is_some_and(|shown| shown != frame);
         let selected = self.selected.is_some();
         let estimate =

@@ -1,0 +1,83 @@
+//! The quality of a fix as GGA numbers it, and the order of these numbers, which is not theirs.
+
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// How a fix was made, by its number in GGA.
+// Without `Ord`: its numbers are names, and comparing them let dead reckoning (6) pass for better than RTK (4).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct FixQuality(u8);
+
+impl FixQuality {
+    /// No fix.
+    pub const NONE: FixQuality = FixQuality(0);
+
+    /// The quality of a number in GGA.
+    #[must_use]
+    pub const fn from_gga(number: u8) -> FixQuality {
+        FixQuality(number)
+    }
+
+    /// Whether it is a fix of satellites, and as good as `required`.
+    #[must_use]
+    pub fn meets(self, required: FixQuality) -> bool {
+        self.is_fix() && self.rank() >= required.rank()
+    }
+
+    /// Whether satellites made it: dead reckoning, manual input and simulators do not know where the boat is.
+    #[must_use]
+    pub fn is_fix(self) -> bool {
+        self.rank() > 0
+    }
+
+    /// What it means.
+    #[must_use]
+    pub fn in_words(self) -> &'static str {
+        match self.0 {
+            0 => "no fix",
+            1 => "GPS",
+            2 => "DGPS",
+            3 => "PPS",
+            4 => "RTK fixed",
+            5 => "RTK float",
+            6 => "dead reckoning",
+            7 => "manual input",
+            8 => "simulator",
+            _ => "an unknown quality",
+        }
+    }
+
+    /// Its place in the order from no fix to the best.
+    fn rank(self) -> u8 {
+        match self.0 {
+            1 => 1,
+            2 | 3 => 2,
+            5 => 3,
+            4 => 4,
+            _ => 0,
+        }
+    }
+}
+
+impl fmt::Display for FixQuality {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} ({})", self.0, self.in_words())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::FixQuality;
+
+    #[test]
+    fn a_quality_meets_those_below_it_and_what_is_no_fix_meets_none() {
+        let order: [&[u8]; 4] = [&[1], &[2, 3], &[5], &[4]];
+        let rank = |number: u8| order.iter().position(|numbers| numbers.contains(&number));
+        for (got, required) in (0..=255).flat_map(|got| (1..=5).map(move |required| (got, required))) {
+            let want = rank(got).is_some_and(|rank_of_got| Some(rank_of_got) >= rank(required));
+            let meets = FixQuality::from_gga(got).meets(FixQuality::from_gga(required));
+            assert_eq!(meets, want, "{got} where {required} is required");
+        }
+    }
+}

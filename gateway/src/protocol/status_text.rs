@@ -1,0 +1,125 @@
+//! The texts that a boat says by STATUSTEXT: one of more than 50 letters comes in chunks.
+
+use crate::mavlink::dialect::STATUSTEXT_DATA;
+use primitives::SimTime;
+
+/// A text whose next chunk has not come for this long is shown without it, s.
+const CHUNK_AGE_MAX_S: f64 = 1.0;
+/// The longest text, bytes: ArduPilot's has 256, and memory must not grow with what a stranger sends.
+const TEXT_MAX: usize = 1000;
+/// The most unfinished texts.
+const UNFINISHED_MAX: usize = 4;
+/// What stands in place of lost chunks.
+const LOST: &[u8] = "…".as_bytes();
+
+/// The texts of which chunks are missing.
+#[derive(Clone, Debug, Default)]
+pub(super) struct StatusTexts {
+    unfinished: Vec<Unfinished>,
+}
+
+#[derive(Clone, Debug)]
+struct Unfinished {
+    id: u16,
+    next_chunk: u8,
+    at: SimTime,
+    text: Vec<u8>,
+}
+
+impl StatusTexts {
+    /// Takes a message; calls `say` with each text that is complete with it.
+    pub(super) fn take(&mut self, now: SimTime, status: &STATUSTEXT_DATA, say: &mut dyn FnMut(String)) {
+        let (letters, capacity) = (status.text.iter().take_while(|letter| **letter != 0), status.text.len());
+        let letters: Vec<u8> = letters.copied().collect();
+        // MAVLink 1 has neither field: the text is whole.
+        if status.id == 0 {
+            return say(in_words(&letters));
+        }
+        let place = self.unfinished.iter().position(|text| text.id == status.id);
+        // A chunk that was there already begins another text: numbers are used again.
+        let (mut text, again) = match place.map(|place| self.unfinished.remove(place)) {
+            Some(text) if text.next_chunk <= status.chunk_seq => (text, None),
+            other => (Unfinished { id: status.id, next_chunk: 0, at: now, text: vec![] }, other),
+        };
+        again.into_iter().for_each(|text| say(text.cut_off()));
+        if status.chunk_seq > text.next_chunk {
+            text.text.extend(LOST);
+        }
+        text.text.extend(&letters);
+        (text.at, text.next_chunk) = (now, status.chunk_seq.saturating_add(1));
+        // The last chunk is the one that is not full.
+        if letters.len() < capacity {
+            return say(in_words(&text.text));
+        }
+        if text.text.len() >= TEXT_MAX {
+            return say(text.cut_off());
+        }
+        if self.unfinished.len() == UNFINISHED_MAX {
+            say(self.unfinished.remove(0).cut_off());
+        }
+        self.unfinished.push(text);
+    }
+
+    /// Calls `say` with each text whose next chunk is overdue.
+    pub(super) fn take_overdue(&mut self, now: SimTime, say: &mut dyn FnMut(String)) {
+        let is_overdue = |text: &mut Unfinished| (now - text.at).as_s() > CHUNK_AGE_MAX_S;
+        self.unfinished.extract_if(.., is_overdue).for_each(|text| say(text.cut_off()));
+    }
+}
+
+impl Unfinished {
+    fn cut_off(self) -> String {
+        in_words(&[&self.text, LOST].concat())
+    }
+}
+
+/// Joined before it is read, since a chunk may end within a letter.
+fn in_words(letters: &[u8]) -> String {
+    String::from_utf8_lossy(letters).trim().to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LONG: &str =
+        "PreArm: Compass not calibrated and the accelerometers are inconsistent at 12° and 50°, please wait a while";
+
+    /// What is said of these chunks, which come every 0.1 s, and 2 s later.
+    fn said(chunks: &[(u16, u8, &[u8])]) -> Vec<String> {
+        let (mut texts, mut said) = (StatusTexts::default(), vec![]);
+        for (i, (id, chunk_seq, text)) in chunks.iter().enumerate() {
+            let mut letters = [0; 50];
+            letters[..text.len()].copy_from_slice(text);
+            let (id, chunk_seq, text) = (*id, *chunk_seq, letters.into());
+            let status = STATUSTEXT_DATA { id, chunk_seq, text, ..STATUSTEXT_DATA::default() };
+            texts.take(SimTime::from_s(0.1 * i as f64), &status, &mut |text| said.push(text));
+        }
+        texts.take_overdue(SimTime::from_s(0.1 * chunks.len() as f64 + 2.0), &mut |text| said.push(text));
+        said
+    }
+
+    #[test]
+    fn chunks_are_joined_and_a_lost_one_leaves_a_mark() {
+        let parts: Vec<&[u8]> = LONG.as_bytes().chunks(50).collect();
+        let [a, b, c] = parts[..] else { panic!("{} parts", parts.len()) };
+        let part = |bytes: &[u8]| String::from_utf8_lossy(bytes).trim().to_owned();
+        let full = &[b'x'; 50][..];
+        let whole = vec![LONG.to_owned()];
+        for (chunks, want) in [
+            (vec![(7, 0, a), (7, 1, b), (7, 2, c)], whole),
+            (vec![(0, 0, c), (0, 0, c)], vec![part(c), part(c)]),
+            (vec![(7, 0, a), (8, 0, c), (7, 1, b), (7, 2, c)], vec![part(c), LONG.to_owned()]),
+            (vec![(7, 0, a), (7, 2, c)], vec![part(&[a, LOST, c].concat())]),
+            (vec![(7, 1, b), (7, 2, c)], vec![part(&[LOST, b, c].concat())]),
+            (vec![(7, 0, a)], vec![part(&[a, LOST].concat())]),
+            (vec![(7, 0, a), (7, 0, c)], vec![part(&[a, LOST].concat()), part(c)]),
+            // Of exactly 50 letters, with the empty chunk that ends it.
+            (vec![(7, 0, full), (7, 1, b"")], vec![part(full)]),
+        ] {
+            assert_eq!(said(&chunks), want);
+        }
+        let endless: Vec<_> = (0..=255).map(|i| (7, i, full)).collect();
+        assert!(said(&endless).iter().all(|text| text.len() < TEXT_MAX + 100));
+    }
+}
