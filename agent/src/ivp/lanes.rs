@@ -49,7 +49,7 @@ impl<T: Copy> Lanes<T> {
 }
 
 impl Lanes<i32> {
-    /// The largest.
+    /// The largest of all lanes.
     #[inline(always)]
     pub(super) fn most(&self) -> i32 {
         self.reduced(larger)

@@ -29,7 +29,7 @@ impl<'a> Numbers<'a> {
         self.push(f64::from(u8::from(is)));
     }
 
-    /// Writes this many zeros.
+    /// Writes `count` zeros.
     pub(super) fn skip(&mut self, count: usize) {
         (0..count).for_each(|_| self.push(0.0));
     }

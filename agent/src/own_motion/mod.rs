@@ -23,8 +23,8 @@ use std::f64::consts::PI;
 /// Upper bound of a turn in one order, rad: a front seat turns the shorter way, which is ambiguous
 /// for half a turn.
 const TURN_MAX_RAD: f64 = 2.6;
-/// A point boat whose thrust follows the order brakes at full deceleration if it must lose that
-/// speed within this time, s.
+/// A point boat whose thrust follows the order brakes at full deceleration when ordered slower by
+/// the speed that it then loses in this time, s.
 const BRAKES_S: f64 = 1.0;
 /// A turn at least this large keeps its initial side, rad.
 const LARGE_TURN_RAD: f64 = 2.2;

@@ -6,7 +6,7 @@ use primitives::Ned;
 use primitives::instructions::Instructions;
 use primitives::stream::Stream;
 
-/// A table.
+/// A random table of utilities.
 pub(crate) struct Table(agent::ivp::Table);
 
 impl Table {

@@ -75,7 +75,7 @@ pub struct Fault {
 /// A fault of one boat during one period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FaultSpan {
-    /// What fails.
+    /// The kind of fault.
     pub kind: FaultKind,
     /// Its beginning.
     pub from: SimTime,

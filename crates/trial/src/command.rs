@@ -18,9 +18,9 @@ pub enum Command {
     },
     /// Thrust and rudder of a kinematic boat, without its control loops.
     Impose {
-        /// Per cent.
+        /// Thrust, per cent.
         thrust: f64,
-        /// Per cent, to starboard.
+        /// Rudder, per cent, positive to starboard.
         rudder: f64,
     },
     /// The front seat steers this course.
