@@ -55,7 +55,7 @@ struct Cli {
 enum Command {
     #[cfg(feature = "network")]
     #[command(flatten)]
-    Network(network::Command),
+    Network(Box<network::Command>),
     #[cfg(not(feature = "network"))]
     /// Plays a whole game, shows what happens, prints the result.
     #[command(
