@@ -20,8 +20,8 @@ impl Tree {
     }
 
     fn add(&mut self, folder: &Path, path: &str) {
-        // Cargo marks its output folders, wherever they are.
-        if folder.join("CACHEDIR.TAG").exists() {
+        // Cargo marks its output folders, wherever they are; npm does not.
+        if folder.join("CACHEDIR.TAG").exists() || folder.ends_with("node_modules") {
             return;
         }
         let entries = fs::read_dir(folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));

@@ -239,7 +239,7 @@ mod tests {
             })
         };
         let error = open(None).err().expect("it is refused").to_string();
-        assert!(["boat.local", "--host", "--token"].iter().all(|word| error.contains(word)), "{error}");
+        assert!(["boat.local", "--host", "--page-token-file"].iter().all(|word| error.contains(word)), "{error}");
         assert!(open(Some("secret")).is_ok());
     }
 
