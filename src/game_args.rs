@@ -11,39 +11,38 @@ use std::sync::Arc;
 /// A game, from the command line.
 #[derive(Clone, clap::Args)]
 pub(crate) struct GameArgs {
-    /// The game: a file, or the name of one in scenarios/games or inside of the program
+    /// The game: a file, or the name of one in scenarios/games or built in
     #[arg(value_name = "GAME", value_parser = scenario_files::game)]
     scenario: PathBuf,
-    /// Chooses the game [default: as the file says]
+    /// Random seed [default: the seed in the file]
     #[arg(long)]
     pub(crate) seed: Option<u64>,
-    /// A sea in place of the game's own: a file or a name, as in --sea gale
+    /// Replaces the game's sea: a file or a name, as in --sea gale
     #[arg(long, value_name = "SEA", value_parser = scenario_files::sea)]
     sea: Option<PathBuf>,
-    /// A field in place of the game's own: a file or a name
+    /// Replaces the game's field: a file or a name
     #[arg(long, value_name = "FIELD", value_parser = scenario_files::field)]
     field: Option<PathBuf>,
-    /// The strategy of all boats of the team blue, also of those that the game gives one of their own: a file or a name, which is
-    /// first looked for in the folder strategies beside the game's
+    /// Strategy for every blue boat, overriding any set in the game: a file or a name (looked up first in the folder
+    /// strategies beside the game's folder)
     #[arg(long, value_name = "STRATEGY")]
     blue: Option<String>,
-    /// The same for the team red
+    /// The same for every red boat
     #[arg(long, value_name = "STRATEGY")]
     red: Option<String>,
-    /// The same for a team of any name; may be given again for another
+    /// The same for a team of any name; repeatable
     #[arg(long, value_name = "TEAM=FILE", value_parser = team_and_file)]
     strategy: Vec<(String, String)>,
-    /// Each team follows the strategy of the other
+    /// Exchanges the strategies of the two teams
     #[arg(long)]
     pub(crate) exchange_strategies: bool,
-    /// A value in place of what the files say, as in sea.waves.hs_m=0.3, boat.gps.noise_m=2 or link.delay_s=1; may be given
-    /// again for another
+    /// Overrides a value of the files, as in sea.waves.hs_m=0.3, boat.gps.noise_m=2 or link.delay_s=1; repeatable
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = Setting::parse)]
     settings: Vec<Setting>,
-    /// Plays external boats as simulated ones: a rehearsal
+    /// Rehearsal: simulates every external boat
     #[arg(long)]
     rehearse: bool,
-    /// Writes the result to this file
+    /// Writes the result to this JSON file
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }

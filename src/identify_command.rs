@@ -16,8 +16,8 @@ use trial::identify::{self, Fit, Log, Setting, Step};
 pub(crate) struct Args {
     /// A boat file, or the name of a boat in scenarios/boats: where the search begins
     boat: String,
-    /// The recorded series: t_s, commands as for `trial --orders`, and of a trial's columns heading_deg, surge_m_s,
-    /// yaw_rate_deg_s, and sway_m_s, x_m,y_m if there are
+    /// The recorded data: t_s, commands as for `trial --orders`, plus these columns of a trial: heading_deg, surge_m_s,
+    /// yaw_rate_deg_s and, if present, sway_m_s and x_m,y_m
     #[arg(long, value_name = "FILE")]
     log: PathBuf,
     /// What to fit [default: surge_linear, surge_quadratic, sway_linear, yaw_linear, yaw_quadratic, yaw_lift,

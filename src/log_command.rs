@@ -17,45 +17,45 @@ mod gif;
 mod page;
 mod quality;
 
-/// Which recording, and what of it.
+/// The recording, and the outputs.
 #[derive(clap::Args)]
 #[command(after_help = AFTER_HELP)]
 pub(crate) struct Args {
     /// The recording
     #[arg(required_unless_present_any = ["compare", "quality"])]
     file: Option<PathBuf>,
-    /// Prints what happened and nothing else
+    /// Prints only the events
     #[arg(long)]
     events: bool,
-    /// Writes everything that the summary, the comparison or the quality says into this file
+    /// Writes the summary, comparison or quality report to this file as JSON
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Prints a topic as CSV; `events` is one as well
+    /// Prints a topic as CSV; `events` is also a topic
     #[arg(long, value_name = "TOPIC", conflicts_with = "compare")]
     csv: Option<String>,
-    /// Writes the CSV into this file
+    /// Writes the CSV to this file
     #[arg(long, value_name = "FILE", requires = "csv")]
     out: Option<PathBuf>,
-    /// Draws tracks, score, and every boat's speed, heading and navigation into this folder, as SVG and PNG
+    /// Draws tracks, score, and every boat's speed, heading and navigation as SVG and PNG files in this folder
     #[arg(long, value_name = "DIR")]
     plot: Option<PathBuf>,
-    /// Writes MOOS logs into this folder, for the shoreside and for every boat; of a name that ends in .alog only the
-    /// shoreside's
+    /// Writes MOOS logs for the shoreside and every boat to this folder; if the name ends in .alog, only the shoreside
+    /// log
     #[arg(long, value_name = "DIR", conflicts_with = "compare")]
     alog: Option<PathBuf>,
-    /// Draws the game as a moving picture into this GIF file
+    /// Writes an animation of the game to this GIF file
     #[arg(long, value_name = "FILE", conflicts_with = "compare")]
     gif: Option<PathBuf>,
     #[command(flatten)]
     film: gif::FilmArgs,
-    /// Lays two recordings side by side, for example a game on the water and its simulation
+    /// Compares two recordings, for example a game on the water and its simulation
     #[arg(long, num_args = 2, value_names = ["A", "B"], conflicts_with_all = ["file", "events"])]
     compare: Option<Vec<PathBuf>>,
-    /// Says how sensibly boats play, in all these recordings together: chatter, standing still, edges, contacts, orbits
+    /// Reports how sensibly boats play in all these recordings: chatter, standing still, edges, contacts, orbits
     #[arg(long, num_args = 1.., value_name = "GAME")]
     #[arg(conflicts_with_all = ["file", "events", "csv", "plot", "alog", "gif", "compare"])]
     quality: Option<Vec<PathBuf>>,
-    /// Events of two recordings that are nearer than this are the same, s
+    /// Events in two recordings count as the same if they are closer than this, s
     #[arg(long, value_name = "S", default_value_t = 5.0, value_parser = within(0.0, 3600.0, "s"), requires = "compare")]
     tolerance_s: f64,
 }

@@ -63,40 +63,40 @@ enum Command {
     )]
     Run(Box<run_command::Args>),
     #[cfg(not(feature = "network"))]
-    /// Plays a recorded game again, and checks that the same comes of it.
+    /// Verifies that a rerun reproduces a recorded game.
     #[command(after_help = "Examples:\n  squall replay runs/game.mcap --check")]
     Replay(replay_command::Args),
-    /// Plays every strategy against every other over many seeds, and says who is better, and how surely.
+    /// Plays every strategy against every other over many seeds, and ranks them with confidence intervals.
     #[command(
         after_help = "Examples:\n  squall tournament paper_2023 --games 20\n  squall tournament simple --json report.json --quality\n  squall tournament simple --league league"
     )]
     Tournament(tournament_command::Args),
-    /// Plays strategies at many points of a space of scenarios: more wind, worse sensors, slower links.
+    /// Finds out how much wind, noise and failure strategies tolerate.
     #[command(
         after_help = "Examples:\n  squall sweep wind\n  squall sweep wind --until strategy_4.win_share<0.5\n  squall sweep storm --find out_of_bounds"
     )]
     Sweep(sweep_command::Args),
-    /// Trains a policy by playing against itself, strategies and what it was.
+    /// Trains a policy against itself, earlier versions of itself and scripted strategies.
     #[command(after_help = "Examples:\n  squall train first\n  squall train first --resume")]
     Train(train_command::Args),
-    /// Says what a recorded game tells: a summary, tables, plots, MOOS logs, and how it differs from another.
+    /// Analyses a recorded game: summary, tables, plots, MOOS logs, comparison with another game.
     #[command(
         after_help = "Examples:\n  squall log runs/game.mcap\n  squall log --compare one.mcap other.mcap\n  squall log runs/game.mcap --gif game.gif --from 120 --to 190"
     )]
     Log(log_command::Args),
-    /// Says what a sea means for a boat, and draws it.
+    /// Describes and draws a sea, and how it affects a boat.
     #[command(after_help = "Examples:\n  squall sea gale\n  squall sea gale --boat heron --plot gale.svg")]
     Sea(sea_command::Args),
-    /// Sails one boat in open water: by recorded commands, or a standard manoeuvre.
+    /// Drives one boat in open water: with recorded commands, or through a standard manoeuvre.
     #[command(after_help = "Examples:\n  squall trial surveyor_m1_8 --help")]
     Trial(trial_command::Args),
-    /// Fits a boat file to a recorded series, and says how well.
+    /// Fits a boat file to recorded data, and reports the quality of the fit.
     #[command(after_help = "Examples:\n  squall identify --help")]
     Identify(identify_command::Args),
-    /// Shows what a strategy file means: its modes, and what may run in each.
+    /// Explains a strategy file: its modes, and the behaviours of each.
     #[command(after_help = "Examples:\n  squall strategy strategy_4\n  squall strategy pav01 --dot")]
     Strategy(strategy_command::Args),
-    /// Tells what a trained policy is, and explains a decision of it in a recorded game.
+    /// Describes a trained policy, and explains a decision that it made in a recorded game.
     #[command(after_help = "Examples:\n  squall policy scenarios/policies/options.onnx")]
     Policy(policy_command::Args),
     /// Checks scenario files and explains every error.
@@ -105,16 +105,16 @@ enum Command {
     /// Prints the JSON Schema of a kind of scenario file, for editors.
     #[command(after_help = "Examples:\n  squall schema game")]
     Schema(check_command::SchemaArgs),
-    /// Lists the scenario files that are there by name.
+    /// Lists the scenario files available by name.
     #[command(after_help = "Examples:\n  squall files")]
     Files,
-    /// Puts a file that is there by name on the disk, to change it.
+    /// Copies a built-in file so that you can edit it.
     #[command(after_help = "Examples:\n  squall copy strategy_4 mine\n  squall copy seas/gale")]
     Copy(new_command::CopyArgs),
-    /// Begins a scenario file from a template that explains itself.
+    /// Creates a scenario file from a commented template.
     #[command(after_help = "Examples:\n  squall new strategy mine\n  squall new sweep how_much_wind")]
     New(new_command::NewArgs),
-    /// Prints what a shell needs to complete commands.
+    /// Prints a shell completion script.
     #[command(after_help = "Examples:\n  squall completions bash > ~/.local/share/bash-completion/completions/squall")]
     Completions(cli::CompletionArgs),
     /// Writes man pages into a folder.

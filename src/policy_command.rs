@@ -126,7 +126,7 @@ fn explained(model: &PolicyModel, game: &Path, vehicle: &str, at_s: f64, inputs:
     let decision = (at_s / scenario.decision().as_s() + 1e-9).floor() as u64;
     let found = Minds::new(Arc::clone(&recording)).report_of(of, decision).filter(|_| at_s >= 0.0);
     let Some((report, _)) = found else {
-        bail!("{} has no decision of {vehicle} at {at_s} s", game.display());
+        bail!("{} contains no decision by {vehicle} at {at_s} s", game.display());
     };
     let Some(policy) = report.policies.iter().find(|policy| !policy.observed.is_empty()) else {
         bail!("no policy decides for {vehicle} in {}: its strategy is {}", game.display(), report.program);

@@ -9,7 +9,7 @@ use std::process::ExitCode;
 
 mod check;
 
-/// Which recording, and what to do with it.
+/// The recording, and how to replay it.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// The recording

@@ -22,7 +22,7 @@ pub(crate) struct Args {
     /// The boat that it is told for: a file, or the name of one in scenarios/boats
     #[arg(long, value_name = "BOAT", default_value = "surveyor_m1_8")]
     boat: String,
-    /// Chooses the waves, gusts and eddies, and the numbers that sea and boat leave to chance
+    /// Random seed for waves, gusts, eddies and the randomised values of sea and boat
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Draws spectrum, surface, wind and the drift of the boat into this file, as SVG [default: SEA.svg here]

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use trial::{Engine, Manoeuvre, Orders, Plan, Sample, Sheet, Start, TrialBoat};
 
-/// Which boat, on which water, doing what.
+/// The boat, the water and the manoeuvre.
 #[derive(clap::Args)]
 #[command(group(clap::ArgGroup::new("what").required(true).args(["orders", "manoeuvre"])))]
 pub(crate) struct Args {
@@ -66,7 +66,7 @@ pub(crate) struct ManoeuvreArgs {
     /// The heading at which a zigzag switches, degrees: 10 for 10/10, 20 for 20/20
     #[arg(long, value_name = "DEG", default_value_t = 10.0, value_parser = within(1.0, 90.0, "degrees"), conflicts_with = "orders")]
     angle_deg: f64,
-    /// How far a zigzag sets the thrusters off their mean, or the rudder, per cent of full [default: as many as --angle-deg]
+    /// Rudder angle, or thruster offset from the mean, in a zigzag, per cent of full [default: the value of --angle-deg]
     #[arg(long, value_name = "PCT", value_parser = within(1.0, 100.0, "per cent"), conflicts_with = "orders")]
     differential_pct: Option<f64>,
 }

@@ -14,7 +14,7 @@ pub(crate) struct WaterArgs {
     /// The sea: a file or a name [default: salt water at rest, no wind]
     #[arg(long, value_name = "SEA", value_parser = scenario_files::sea)]
     sea: Option<PathBuf>,
-    /// Chooses the waves and gusts, and the numbers that boat and sea leave to chance
+    /// Random seed for waves, gusts and the randomised values of boat and sea
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
     /// The mean current, in place of the sea's own, m/s

@@ -17,7 +17,7 @@ pub(crate) struct Args {
 enum Command {
     #[command(flatten)]
     Boat(gateway_cli::Command),
-    /// Emulates a boat for a real back seat, with the real one's sentences.
+    /// Emulates a boat for a real back seat, using the real boat's sentences.
     Emulate(emulate::Args),
 }
 

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 /// How a hub can be reached.
 #[derive(clap::Args, Clone, Debug)]
 pub(crate) struct HubArgs {
-    /// Endpoint to listen on, for example tcp/0.0.0.0:7447 [default: a free loopback port, 7447 if it is]
+    /// Endpoint to listen on, for example tcp/0.0.0.0:7447 [default: loopback port 7447, or any free one if it is taken]
     #[arg(long, value_name = "ENDPOINT")]
     pub(crate) listen: Vec<String>,
     /// Be found by multicast on the local network (listens on all interfaces unless --listen says otherwise)

@@ -30,38 +30,38 @@ pub(crate) enum Command {
     /// Shows a game in strong wind in the browser.
     #[command(after_help = "Examples:\n  squall demo\n  SQUALL_PAGE_TOKEN=secret squall demo --listen 0.0.0.0:8088")]
     Demo(run_command::DemoArgs),
-    /// Plays a whole game: starts the sim and the agents, shows what happens, prints the result.
+    /// Plays a whole game: starts the simulation and the agents, shows events, prints the result.
     #[command(
         after_help = "Examples:\n  squall run strategy_4_vs_3\n  squall run surveyor_2v2 --sea gale --blue learned --red strategy_3 --view\n  squall run surveyor_2v2 --set link.delay_s=1 --seed 7 --both-sides"
     )]
     Run(run_command::Args),
-    /// Serves one game to agents and gateways that join it.
+    /// Simulates and serves one game, which agents and gateways join.
     #[command(after_help = "Examples:\n  squall sim surveyor_2v2 --game mine --listen tcp/0.0.0.0:7447 --insecure")]
     Sim(sim_command::Args),
-    /// Decides for one or many boats in a game that a sim serves.
+    /// Controls one or more boats in a game that is served elsewhere.
     #[command(after_help = "Examples:\n  squall agent --vehicle blue_1 --game mine --connect tcp/10.0.0.5:7447")]
     Agent(agent_command::Args),
     /// Shows a running game in the terminal, or one boat's helm.
     #[command(after_help = "Examples:\n  squall watch\n  squall watch --game mine --connect tcp/10.0.0.5:7447")]
     Watch(watch_command::Args),
-    /// Shows a running game on a page, or a report with its games.
+    /// Shows a running game, or a report with its games, in the browser.
     #[command(
         after_help = "Examples:\n  squall view\n  squall view report.json\n  squall view runs/sweep/wind\n  squall view runs/train/first\n  SQUALL_PAGE_TOKEN=secret squall view --listen 0.0.0.0:8088"
     )]
     View(view_command::Args),
-    /// Shows a recorded game again, or checks that the same comes of it.
+    /// Replays a recorded game, or verifies that a rerun reproduces it.
     #[command(after_help = "Examples:\n  squall replay runs/game.mcap\n  squall replay runs/game.mcap --check")]
     Replay(replay_command::Args),
-    /// Dumps one decision of a boat's helm: a table, numbers.
+    /// Prints one decision of a boat's helm as a table or as CSV.
     #[command(after_help = "Examples:\n  squall helm --vehicle blue_1 --csv helm.csv")]
     Helm(helm_command::Args),
     /// Brings real boats into games, and lets real back seats drive simulated ones.
     #[command(after_help = "Examples:\n  squall gateway emulate --help\n  squall gateway surveyor --help")]
     Gateway(gateway_command::Args),
-    /// Makes keys for a network with strangers in it: encrypted links, and certificates that say who may do what.
+    /// Creates keys for untrusted networks: encrypted links, and certificates that define who may do what.
     #[command(after_help = "Examples:\n  squall keys new keys --help")]
     Keys(keys_command::Args),
-    /// Lists the games on the network and how they stand.
+    /// Lists the games on the network with their scores.
     #[command(after_help = "Examples:\n  squall list\n  squall list --connect tcp/10.0.0.5:7447")]
     List(list_command::Args),
 }

@@ -25,17 +25,17 @@ pub(crate) struct PageArgs {
     /// another port if that is taken]
     #[arg(long, value_name = "ADDRESS")]
     listen: Option<SocketAddr>,
-    /// The token that a page needs to pause, stop or drive; watching is free. Every user of this machine can read it in the
-    /// list of processes: better use --page-token-file
+    /// The token that a page needs to pause, stop or drive; watching needs none. Every user of this machine can read it in
+    /// the list of processes: prefer --page-token-file
     #[arg(long, value_name = "TEXT")]
     token: Option<String>,
     /// A file with that token [default: from SQUALL_PAGE_TOKEN]
     #[arg(long, value_name = "FILE", conflicts_with = "token")]
     page_token_file: Option<PathBuf>,
-    /// A further name under which the page may be asked for; it needs a token
+    /// An additional host name for the page; requires a token
     #[arg(long, value_name = "NAME")]
     host: Vec<String>,
-    /// What is drawn below the field: GeoJSON, or PNG or JPEG with its world file
+    /// A chart to draw below the field: GeoJSON, or PNG or JPEG with its world file
     #[arg(long, value_name = "FILE")]
     chart: Option<PathBuf>,
     /// Opens the page in the browser

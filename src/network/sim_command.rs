@@ -28,7 +28,7 @@ pub(crate) struct Args {
     /// The game's name on the network [default: the file's name and a random number]
     #[arg(long, value_name = "NAME", value_parser = GameName::new)]
     game: Option<GameName>,
-    /// Serves only the water of the game, with these of its boats in it and nobody who judges: for gateway emulate
+    /// Serves only the game's water with these boats, without a referee; for `squall gateway emulate`
     #[arg(long, value_name = "NAME", num_args = 1..)]
     afloat: Vec<String>,
     #[command(flatten)]

@@ -72,8 +72,8 @@ fn a_decision_of_a_recorded_game_is_explained() {
 
     for (vehicle, at, said) in [
         ("red_one", "20", "no policy decides for red_one"),
-        ("blue_one", "99999", "no decision of blue_one at 99999 s"),
-        ("blue_one", "-1", "no decision of blue_one at -1 s"),
+        ("blue_one", "99999", "no decision by blue_one at 99999 s"),
+        ("blue_one", "-1", "no decision by blue_one at -1 s"),
         ("nobody", "20", "nobody"),
     ] {
         let asked = explain(vehicle, at);

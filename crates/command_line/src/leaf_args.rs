@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// The keys of a game.
 #[derive(clap::Args, Clone, Debug)]
 pub struct KeysArgs {
-    /// The keys of this node, of a game with keys: a folder that `squall keys new` has made
+    /// This node's keys, for a game that uses keys: a folder created by `squall keys new`
     #[arg(long, value_name = "FOLDER")]
     keys: Option<PathBuf>,
 }

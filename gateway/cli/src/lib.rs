@@ -30,20 +30,20 @@ pub const KINDS: &[Kind] =
 /// What a gateway is to do.
 #[derive(Subcommand)]
 pub enum Command {
-    /// Connects a real boat with a game: agents drive it as any other.
+    /// Connects a real boat to a game, where agents drive it like any other.
     Surveyor(surveyor::Args),
     /// Checks a boat before arming, without sending anything; with --vehicle, the pre-flight check.
     Check(check::Args),
-    /// Stops a boat with nothing else running: thrust zero and standby, straight over its link.
+    /// Stops a boat without any other program: sends zero thrust and standby over its link.
     Stop(stop_boat::Args),
     /// Sends an operator command to a boat's gateway: arm, disarm, estop, release, ...
     Tell(tell::Args),
-    /// Operates boats line by line over connections that stay open: for quick stops.
+    /// Operates boats from a prompt with open connections, so that stops are fast.
     Console(console::Args),
     /// What a gateway starts to stop its boat when it is killed or hangs.
     #[command(hide = true)]
     Guard,
-    /// Plays a recording of a gateway through its codec and supervisor again.
+    /// Replays a gateway's recording through its codec and supervisor.
     Replay(replay::Args),
 }
 

@@ -33,7 +33,7 @@ const NEXT_ANSWER: Duration = Duration::from_secs(10);
 /// Timeout for boats to report that they have stopped.
 const STOP_MAX: Duration = Duration::from_secs(10);
 
-/// Whom, and what.
+/// The recipients and the command.
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
