@@ -4,6 +4,7 @@
 //! order. Reports are made from rows: [`tournament`] ranks strategies and keeps the games of a
 //! league; [`sweep`] varies a scenario.
 
+mod checksum;
 mod estimate;
 mod jobs;
 mod packed;

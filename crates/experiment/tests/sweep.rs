@@ -193,6 +193,22 @@ fn all_points_play_the_same_seeds_and_designs_cover_the_space() {
 }
 
 #[test]
+#[cfg(unix)]
+fn a_named_pipe_in_place_of_a_table_is_refused_and_not_waited_for() {
+    let dir = tempfile::tempdir().unwrap();
+    let plan = plan_of(dir.path(), WIND);
+    let folder = dir.path().join("study");
+    for name in ["games.csv", "boats.csv", "sums.txt", "plan.txt"] {
+        drop(Study::begin(&folder, &plan).unwrap());
+        std::fs::remove_file(folder.join(name)).unwrap();
+        assert!(std::process::Command::new("mkfifo").arg(folder.join(name)).status().unwrap().success());
+        let why = Study::resume(&folder, &plan).err().expect(name).to_string();
+        assert!(why.contains(name) && why.contains("it is not a file"), "{why}");
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+}
+
+#[test]
 fn what_is_wrong_is_said_before_a_game_with_its_place() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("wrong.toml");

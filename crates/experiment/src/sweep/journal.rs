@@ -4,15 +4,15 @@
 use super::metric::{METRICS, Metric, Metrics};
 use super::plan::{Job, Plan};
 use super::play::play_jobs;
-use super::study::{StudyError, io, text};
+use super::study::{StudyError, io, text_if_any};
 use super::table::{cell_of, number_of, record};
+use crate::checksum::checksum;
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
 use std::io::Write;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
-use xxhash_rust::xxh3::xxh3_64;
 
 /// The file name.
 const NAME: &str = "search.csv";
@@ -36,7 +36,7 @@ impl Journal {
     pub fn begin(folder: &Path, plan: &Plan) -> Result<Journal, StudyError> {
         let path = folder.join(NAME);
         std::fs::create_dir_all(folder).map_err(io("make the folder", folder))?;
-        let games = text(&path).unwrap_or_default().lines().count().saturating_sub(1);
+        let games = text_if_any(&path)?.lines().count().saturating_sub(1);
         if games > 0 {
             return Err(StudyError::Exists { folder: folder.to_owned(), games });
         }
@@ -52,9 +52,10 @@ impl Journal {
     /// sweep.
     pub fn resume(folder: &Path, plan: &Plan) -> Result<Journal, StudyError> {
         let path = folder.join(NAME);
-        let Ok(text) = text(&path) else {
+        let text = text_if_any(&path)?;
+        if text.is_empty() {
             return Err(StudyError::Missing { folder: folder.to_owned() });
-        };
+        }
         let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
         let (found, lines) = whole.split_once('\n').unwrap_or_default();
         if found != plan.digest() {
@@ -124,7 +125,7 @@ fn line_of(key: &[String], result: &Outcome) -> String {
 fn sum_of<'a>(cells: impl Iterator<Item = &'a str>) -> String {
     let cells: Vec<&str> = cells.collect();
     // The separator occurs in no cell.
-    format!("{:016x}", xxh3_64(cells.join("\u{1f}").as_bytes()))
+    checksum(&cells.join("\u{1f}"))
 }
 
 /// The content of a line, if its checksum matches.

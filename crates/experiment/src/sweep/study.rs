@@ -10,12 +10,12 @@ use super::plan::Plan;
 use super::play::{BoatRow, Played};
 use super::report::Report;
 use super::table::{self, Row};
+use crate::checksum::checksum;
 use primitives::input_file;
 use std::fs::{File, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
-use xxhash_rust::xxh3::xxh3_64;
 
 /// The table of games.
 pub const GAMES: &str = "games.csv";
@@ -117,7 +117,7 @@ impl Study {
     /// [`StudyError`] if a file cannot be written or the folder already contains a study.
     pub fn begin(folder: &Path, plan: &Plan) -> Result<Study, StudyError> {
         std::fs::create_dir_all(folder).map_err(io("make the folder", folder))?;
-        let games = rows_in(plan, &text(&folder.join(GAMES)).unwrap_or_default()).len();
+        let games = rows_in(plan, &text_if_any(&folder.join(GAMES))?).len();
         if games > 0 {
             return Err(StudyError::Exists { folder: folder.to_owned(), games });
         }
@@ -137,15 +137,17 @@ impl Study {
     /// [`StudyError`] if a file cannot be read or written, or if the folder contains no study or
     /// one of another plan.
     pub fn resume(folder: &Path, plan: &Plan) -> Result<Study, StudyError> {
-        let Ok(found) = text(&folder.join(PLAN)) else {
+        let found = text_if_any(&folder.join(PLAN))?.trim().to_owned();
+        if found.is_empty() {
             return Err(StudyError::Missing { folder: folder.to_owned() });
-        };
-        let (found, expected) = (found.trim().to_owned(), plan.digest());
+        }
+        let expected = plan.digest();
         if found != expected {
             return Err(StudyError::Other { folder: folder.to_owned(), expected, found });
         }
         write_plan(folder, plan)?;
-        let texts = [GAMES, BOATS, SUMS].map(|name| text(&folder.join(name)).unwrap_or_default());
+        let text = |name: &str| text_if_any(&folder.join(name));
+        let texts = [text(GAMES)?, text(BOATS)?, text(SUMS)?];
         let (done, lengths) = whole(plan, &texts);
         for (((name, head), text), length) in heads(plan).into_iter().zip(&texts).zip(lengths) {
             let path = folder.join(name);
@@ -260,7 +262,7 @@ fn heads(plan: &Plan) -> [(&'static str, String); 3] {
 
 /// The checksum line of a game.
 fn sum_line(game: &str, boats: &str) -> String {
-    format!("{:016x}\n", xxh3_64([game, boats].concat().as_bytes()))
+    checksum(&[game, boats].concat()) + "\n"
 }
 
 /// The number of games that are complete in both tables and match their checksums, and the lengths
@@ -290,7 +292,16 @@ fn write_plan(folder: &Path, plan: &Plan) -> Result<(), StudyError> {
     write(&folder.join(PACKED_PLAN), &(packed + "\n"))
 }
 
-pub(super) fn text(path: &Path) -> Result<String, StudyError> {
+/// The text of a file; empty if there is none.
+// Anything else in its place is an error: writing to a named pipe would wait for a reader.
+pub(super) fn text_if_any(path: &Path) -> Result<String, StudyError> {
+    match text(path) {
+        Err(StudyError::Io { error, .. }) if error.kind() == std::io::ErrorKind::NotFound => Ok(String::new()),
+        other => other,
+    }
+}
+
+fn text(path: &Path) -> Result<String, StudyError> {
     // Without a size limit: the whole file is needed.
     let bytes = input_file::read(path, u64::MAX).map_err(io("read", path))?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())

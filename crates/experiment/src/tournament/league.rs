@@ -6,11 +6,11 @@
 
 use super::plan::Plan;
 use super::play::Record;
+use crate::checksum::checksum;
 use crate::pipeline::Game;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use thiserror::Error;
-use xxhash_rust::xxh3::xxh3_64;
 
 /// Precedes the checksum of the rest of the line; the last key of a line.
 const SUM: &str = ",\"sum\":\"";
@@ -63,7 +63,7 @@ impl League {
                 // Lines of earlier versions have no checksum.
                 None => text.to_owned(),
                 Some((body, sum)) => Some(format!("{body}}}"))
-                    .filter(|body| format!("{:016x}\"}}", xxh3_64(body.as_bytes())) == sum)
+                    .filter(|body| format!("{}\"}}", checksum(body)) == sum)
                     .ok_or_else(|| failed("it has changed since it was written: its checksum is another".to_owned()))?,
             };
             let Line { pairing, seed, outcome, .. } =
@@ -91,8 +91,8 @@ impl League {
         let pairing = pairings[plan.place_of(record.of) % pairings.len()].clone();
         let line = Line { pairing, blue, red, seed: record.of.seed, outcome };
         let body = serde_json::to_string(&line).expect("it has names for keys");
-        let sum = xxh3_64(body.as_bytes());
-        format!("{}{SUM}{sum:016x}\"}}\n", &body[..body.len() - 1])
+        let sum = checksum(&body);
+        format!("{}{SUM}{sum}\"}}\n", &body[..body.len() - 1])
     }
 
     /// The known games of a plan, and the indices of the others.
