@@ -8,7 +8,7 @@ use primitives::{input_file, printable};
 use scenario::{built_in, tidied_path};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
-use xxhash_rust::xxh3::xxh3_64;
+use xxhash_rust::xxh3::Xxh3;
 
 /// The header of the table of updates.
 const UPDATES: &str = "samples,stage,reward,policy_loss,value_loss,entropy,divergence,clipped,epochs\n";
@@ -25,10 +25,35 @@ const GAMES: &str = "games";
 /// The folder of a training.
 pub(super) struct Files {
     folder: PathBuf,
-    /// Each table's file name and its contents to write.
-    tables: [(&'static str, String); 3],
+    tables: [Table; 3],
     /// The strategy whose helm uses the policy, if there is one.
     base: Option<PathBuf>,
+}
+
+/// A table as far as it is written.
+struct Table {
+    name: &'static str,
+    bytes: usize,
+    // Kept up with each line: reading a table again at every saved state would take longer and longer.
+    sum: Xxh3,
+}
+
+impl Table {
+    fn of(name: &'static str, text: &str) -> Table {
+        let mut table = Table { name, bytes: 0, sum: Xxh3::new() };
+        table.note(text);
+        table
+    }
+
+    /// Counts a text that follows in the file.
+    fn note(&mut self, text: &str) {
+        self.bytes += text.len();
+        self.sum.update(text.as_bytes());
+    }
+
+    fn checksum(&self) -> String {
+        format!("{:016x}", self.sum.digest())
+    }
 }
 
 impl Files {
@@ -38,11 +63,7 @@ impl Files {
         let (samples, _) = trainer.samples();
         let tables = [("updates.csv", UPDATES), ("evaluations.csv", EVALUATIONS), ("episodes.csv", EPISODES)];
         output_file::make_folder(folder)?;
-        let mut files = Files {
-            folder: folder.to_owned(),
-            tables: tables.map(|(name, head)| (name, head.to_owned())),
-            base: base_for(base),
-        };
+        let mut texts = tables.map(|(name, head)| (name, head.to_owned()));
         let mut sums = String::new();
         if samples > 0 {
             let path = folder.join(SUMS);
@@ -50,14 +71,14 @@ impl Files {
             // The last line may have been cut off while it was written.
             let is_kept = |line: &&str| line.ends_with('\n') && first_number(line).is_some_and(|at| at <= samples);
             sums.extend(text.split_inclusive('\n').filter(is_kept));
-            for (name, table) in &mut files.tables {
+            for (name, table) in &mut texts {
                 *table = read(&folder.join(*name))?;
                 let begins = format!("{samples},{name},");
                 let noted = sums.lines().find_map(|line| line.strip_prefix(&begins)?.split_once(','));
                 let (bytes, sum) =
                     noted.with_context(|| format!("{} does not know {name} at {samples} samples", path.display()))?;
                 let kept = bytes.parse().ok().and_then(|bytes: usize| table.get(..bytes)).map(str::to_owned);
-                *table = kept.filter(|kept| checksum(kept) == sum).with_context(|| {
+                *table = kept.filter(|kept| Table::of(name, kept).checksum() == sum).with_context(|| {
                     let path = folder.join(*name);
                     format!(
                         "{}: it has changed since it was written, or a part is missing; --out begins elsewhere",
@@ -67,10 +88,11 @@ impl Files {
             }
         }
         output_file::write(&folder.join(SUMS), "the training", sums)?;
-        for (name, table) in &files.tables {
-            output_file::write(&folder.join(name), "the training", table)?;
+        for (name, text) in &texts {
+            output_file::write(&folder.join(name), "the training", text)?;
         }
-        Ok(files)
+        let tables = texts.map(|(name, text)| Table::of(name, &text));
+        Ok(Files { folder: folder.to_owned(), tables, base: base_for(base) })
     }
 
     /// The file from which a training resumes.
@@ -124,8 +146,9 @@ impl Files {
                 self.recording(one)
             );
         }
-        for ((name, _), lines) in self.tables.iter().zip(lines) {
-            append(&self.folder.join(name), &lines)?;
+        for (table, lines) in self.tables.iter_mut().zip(lines) {
+            append(&self.folder.join(table.name), &lines)?;
+            table.note(&lines);
         }
         Ok(())
     }
@@ -133,9 +156,8 @@ impl Files {
     /// Writes the state after this many samples atomically.
     pub(super) fn keep_state(&self, samples: u64, state: &[u8]) -> Result<()> {
         let mut sums = String::new();
-        for (name, _) in &self.tables {
-            let table = read(&self.folder.join(name))?;
-            let _ = writeln!(sums, "{samples},{name},{},{}", table.len(), checksum(&table));
+        for table in &self.tables {
+            let _ = writeln!(sums, "{samples},{},{},{}", table.name, table.bytes, table.checksum());
         }
         // Write the checksums first: the state depends on them.
         append(&self.folder.join(SUMS), sums)?;
@@ -177,10 +199,6 @@ fn base_for(strategy: &Path) -> Option<PathBuf> {
 /// Reads a text file of the folder, without a size limit.
 fn read(path: &Path) -> Result<String> {
     input_file::read_text(path, u64::MAX).with_context(|| format!("cannot read {}", path.display()))
-}
-
-fn checksum(text: &str) -> String {
-    format!("{:016x}", xxh3_64(text.as_bytes()))
 }
 
 fn first_number(line: &str) -> Option<u64> {
