@@ -1,9 +1,9 @@
 //! Command line arguments that define where the page is served.
 
 use crate::screen;
-use anyhow::{Context, Result, ensure};
+use anyhow::{Result, ensure};
+use command_line::leaf_args;
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
-use primitives::input_file;
 use shore::page::{Background, Page, PageError, PageSettings};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, UdpSocket};
 use std::path::PathBuf;
@@ -15,8 +15,6 @@ use std::sync::atomic::AtomicBool;
 const PORT: u16 = 8088;
 /// The environment variable with the page's token.
 const TOKEN_VARIABLE: &str = "SQUALL_PAGE_TOKEN";
-/// Size limit of a token file, bytes: it has one line; anything longer is another file.
-const TOKEN_FILE_MAX: u64 = 4096;
 
 /// Where the page is served.
 #[derive(clap::Args, Clone, Debug)]
@@ -82,16 +80,11 @@ impl PageArgs {
 
     /// The token that the user chose.
     fn token(&self) -> Result<Option<String>> {
-        let (text, place) = match (&self.token, &self.page_token_file, std::env::var(TOKEN_VARIABLE)) {
-            (Some(token), ..) => return Ok(Some(token.clone())),
-            (None, Some(file), _) => {
-                let text = input_file::read_text(file, TOKEN_FILE_MAX);
-                let place = file.display().to_string();
-                (text.with_context(|| format!("cannot read {place}"))?, place)
-            }
-            (None, None, Ok(text)) => (text, TOKEN_VARIABLE.to_owned()),
-            (None, None, Err(_)) => return Ok(None),
-        };
+        if self.token.is_some() {
+            return Ok(self.token.clone());
+        }
+        let given = leaf_args::text_of(self.page_token_file.as_deref(), TOKEN_VARIABLE)?;
+        let Some((text, place)) = given else { return Ok(None) };
         let token = text.trim();
         ensure!(!token.is_empty() && !token.contains('\n'), "{place}: expected a token, one line of text");
         Ok(Some(token.to_owned()))

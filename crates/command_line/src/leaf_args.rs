@@ -7,7 +7,7 @@ use bus::{Net, Place, Token};
 use messages::topic::GameName;
 use primitives::input_file;
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// The keys of a game.
@@ -52,17 +52,19 @@ const TOKEN_FILE_MAX: u64 = 4096;
 impl TokenArgs {
     /// The given token.
     pub fn token(&self) -> Result<Option<Token>> {
-        let (text, place) = match (&self.token_file, std::env::var(TOKEN_VARIABLE)) {
-            (Some(file), _) => {
-                let text = input_file::read_text(file, TOKEN_FILE_MAX)
-                    .with_context(|| format!("cannot read {}", file.display()))?;
-                (text, file.display().to_string())
-            }
-            (None, Ok(text)) => (text, TOKEN_VARIABLE.to_owned()),
-            (None, Err(_)) => return Ok(None),
-        };
-        text.parse().map(Some).with_context(|| place)
+        let given = text_of(self.token_file.as_deref(), TOKEN_VARIABLE)?;
+        given.map(|(text, place)| text.parse().with_context(|| place)).transpose()
     }
+}
+
+/// A text that must not stand on a command line: from the file, or else from the environment variable; with its place, for errors.
+pub fn text_of(file: Option<&Path>, variable: &str) -> Result<Option<(String, String)>> {
+    let Some(file) = file else {
+        return Ok(std::env::var(variable).ok().map(|text| (text, variable.to_owned())));
+    };
+    let place = file.display().to_string();
+    let text = input_file::read_text(file, TOKEN_FILE_MAX).with_context(|| format!("cannot read {place}"))?;
+    Ok(Some((text, place)))
 }
 
 /// How to reach a hub.
