@@ -1,6 +1,7 @@
 //! Checks the language of documents and the targets of their links.
 
 use crate::rule::Breaches;
+use crate::text::prose;
 use crate::tree::Tree;
 
 /// Maximum length of a sentence in a document, words. Half of that is better.
@@ -27,16 +28,6 @@ fn documents(tree: &Tree) -> impl Iterator<Item = (&String, &String)> {
     let is_written =
         |path: &str| path.ends_with(".md") && !path.ends_with("REFERENCE.md") && !path.contains("/reference/");
     tree.files.iter().filter(move |(path, _)| is_written(path))
-}
-
-/// Lines outside fenced blocks, numbered from 1; lines inside are empty.
-fn prose(text: &str) -> impl Iterator<Item = (usize, &str)> {
-    let mut is_fenced = false;
-    text.lines().enumerate().map(move |(i, line)| {
-        let is_fence = line.trim_start().starts_with("```");
-        is_fenced ^= is_fence;
-        (i + 1, if is_fence || is_fenced { "" } else { line.trim() })
-    })
 }
 
 pub(crate) fn language(tree: &Tree) -> Breaches {

@@ -222,7 +222,7 @@ fn architecture(tree: &Tree) -> Breaches {
     let missing = |document: &str, (number, path): (usize, String)| {
         (!tree.has(&path)).then(|| format!("{document}:{number}: `{path}` does not exist"))
     };
-    let paths_in = |text: &str| quoted(text).into_iter().filter(|(_, word)| is_path(word)).collect::<Vec<_>>();
+    let paths_in = |text: &str| quoted(text).filter(|(_, word)| is_path(word)).collect::<Vec<_>>();
     let breaches = |(document, text): (&String, &String)| {
         paths_in(text).into_iter().filter_map(|path| missing(document, path)).collect::<Breaches>()
     };

@@ -43,7 +43,7 @@ fn rows(text: &str) -> Vec<(usize, &str)> {
 }
 
 fn problems(tree: &Tree, cell: &str) -> Breaches {
-    let tests: Vec<String> = quoted(cell).into_iter().map(|(_, test)| test).collect();
+    let tests: Vec<String> = quoted(cell).map(|(_, test)| test).collect();
     if tests.is_empty() && cell != UNTESTED {
         return vec![format!("names no test, expected `file::name`, or: {UNTESTED}")];
     }

@@ -50,17 +50,18 @@ fn package_of(line: &str) -> Option<String> {
 }
 
 /// Every text in single backticks outside fenced blocks, with its line number.
-pub(crate) fn quoted(text: &str) -> Vec<(usize, String)> {
-    let mut fenced = false;
-    let mut words = Vec::new();
-    for (i, line) in text.lines().enumerate() {
-        if line.trim_start().starts_with("```") {
-            fenced = !fenced;
-        } else if !fenced {
-            words.extend(line.split('`').skip(1).step_by(2).map(|word| (i + 1, word.to_owned())));
-        }
-    }
-    words
+pub(crate) fn quoted(text: &str) -> impl Iterator<Item = (usize, String)> {
+    prose(text).flat_map(|(number, line)| line.split('`').skip(1).step_by(2).map(move |word| (number, word.to_owned())))
+}
+
+/// Lines outside fenced blocks, numbered from 1; lines inside are empty.
+pub(crate) fn prose(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    let mut is_fenced = false;
+    text.lines().enumerate().map(move |(i, line)| {
+        let is_fence = line.trim_start().starts_with("```");
+        is_fenced ^= is_fence;
+        (i + 1, if is_fence || is_fenced { "" } else { line.trim() })
+    })
 }
 
 /// Whether a word in backticks is a path of this repository: it has a folder or a file extension,

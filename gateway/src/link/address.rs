@@ -24,7 +24,7 @@ pub enum LinkAddress {
     Tcp(Side, HostPort),
     /// A UDP port. One of our own answers whoever sent to it.
     Udp(Side, HostPort),
-    /// A UDP port of our own that is linked to whoever sends to it first: boats send to their ground station's.
+    /// A local UDP port that is linked to its first sender: boats send to the port of their ground station.
     UdpListen(HostPort),
     /// A serial line, 8N1.
     Serial {

@@ -144,7 +144,7 @@ fn connect_udp(at: &HostPort) -> io::Result<(Port, String)> {
     Ok((Port::Udp(socket), address.to_string()))
 }
 
-/// Waits for the first datagram, and connects to whoever sent it.
+/// Waits for the first datagram, and connects to its sender.
 // One peer, in place of a server for all: the boat is one, and the guard needs a socket on which a
 // plain write reaches it. A boat that starts anew sends from another port: after the silence that
 // ends a link, the next one is found.

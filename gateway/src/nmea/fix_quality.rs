@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// How a fix was made, by its number in GGA.
-// Without `Ord`: its numbers are names, and comparing them let dead reckoning (6) pass for better than RTK (4).
+// Without `Ord`: its numbers are names, and comparing them ranked dead reckoning (6) above RTK (4).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct FixQuality(u8);
@@ -25,7 +25,7 @@ impl FixQuality {
         self.is_fix() && self.rank() >= required.rank()
     }
 
-    /// Whether satellites made it: dead reckoning, manual input and simulators do not know where the boat is.
+    /// Whether it comes from satellites. Dead reckoning, manual input and simulators measure no position.
     #[must_use]
     pub fn is_fix(self) -> bool {
         self.rank() > 0

@@ -266,6 +266,16 @@ fn the_guards_message_stops_a_boat_that_is_driven_and_leaves_one_to_its_pilot() 
     assert_eq!(first, again, "the same bytes, so that the guard need not be told again");
 }
 
+/// A waypoint at 80, 40, and a recovery point at 40, 30.
+fn mission() -> Mission {
+    let frame = LocalFrame::new(plan().site.expect("the rig has one").field.plan.datum);
+    let place = |x: f64, y: f64| {
+        let at = frame.lat_lon(Ned::from_xy(x, y));
+        [at.lat_deg, at.lon_deg]
+    };
+    Mission { throttle_pct: 40.0, erp: place(40.0, 30.0), waypoints: vec![place(80.0, 40.0)] }
+}
+
 #[test]
 fn a_boat_keeps_its_station_and_goes_to_the_recovery_point_that_it_showed() {
     let mut rig = Rig::under_way();
@@ -274,13 +284,7 @@ fn a_boat_keeps_its_station_and_goes_to_the_recovery_point_that_it_showed() {
     assert_eq!((rig.state().as_str(), rig.mode()), ("delegated: station keeping", (RoverMode::Loiter, true)));
     rig.operator(OperatorCommand::GoToErp);
     assert!(rig.refused.take().is_some_and(|reason| reason.contains("recovery point")), "its home is not ours");
-    let frame = LocalFrame::new(plan().site.expect("the rig has one").field.plan.datum);
-    let place = |x: f64, y: f64| {
-        let at = frame.lat_lon(Ned::from_xy(x, y));
-        [at.lat_deg, at.lon_deg]
-    };
-    let mission = Mission { throttle_pct: 40.0, erp: place(40.0, 30.0), waypoints: vec![place(80.0, 40.0)] };
-    rig.operator(OperatorCommand::Mission(mission));
+    rig.operator(OperatorCommand::Mission(mission()));
     assert_eq!(rig.refused.take(), None);
     rig.run_until(5.0, |rig| rig.state() == "delegated: mission");
     rig.run(3.0);
@@ -298,13 +302,7 @@ fn a_boat_keeps_its_station_and_goes_to_the_recovery_point_that_it_showed() {
 #[test]
 fn a_boat_at_rest_is_armed_before_it_is_sent_to_its_recovery_point() {
     let mut rig = Rig::under_way();
-    let frame = LocalFrame::new(plan().site.expect("the rig has one").field.plan.datum);
-    let place = |x: f64, y: f64| {
-        let at = frame.lat_lon(Ned::from_xy(x, y));
-        [at.lat_deg, at.lon_deg]
-    };
-    let mission = Mission { throttle_pct: 40.0, erp: place(40.0, 30.0), waypoints: vec![place(80.0, 40.0)] };
-    rig.operator(OperatorCommand::Mission(mission));
+    rig.operator(OperatorCommand::Mission(mission()));
     rig.run_until(5.0, |rig| rig.state() == "delegated: mission");
     rig.operator(OperatorCommand::Disarm);
     rig.run(2.0);
