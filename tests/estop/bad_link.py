@@ -13,6 +13,7 @@ prints `ready`, then takes one command a line from standard input and answers ea
     restore          ends all cuts
     delay-ms N       one-way delay of packets that are sent from now on
     loss-pct N       share of packets that are lost
+    rate-kbit N      rate limit of each direction between two hosts
     stats            counts since the last `stats`, as JSON
     trace FROM_NS    packets since this time of the monotonic clock, one a line, then `end`
 """
@@ -137,6 +138,8 @@ class Link:
             self.devices[name] = open_device(f"sqbl{os.getpid()}-{number}", namespace, address)
             self.host_of[ipaddress.ip_address(address).packed] = name
         self.counts = Counter()
+        # What hosts send, lost or not.
+        self.sent_bytes = Counter()
         self.late_ms = []
         self.trace = deque(maxlen=TRACE_MAX)
 
@@ -173,6 +176,7 @@ class Link:
                 continue
             fate = self.scheduler.send(time.monotonic(), source, target, packet)
             self.counts[fate] += 1
+            self.sent_bytes[f"{source} > {target}"] += len(packet)
             self.trace.append((time.monotonic_ns(), fate, source, target, packet[:60], len(packet)))
 
     def deliver(self):
@@ -198,6 +202,8 @@ class Link:
                 self.scheduler.quality.delay_s = number_between(rest[0], 0.0, 10_000.0) / 1e3
             elif word == "loss-pct" and len(rest) == 1:
                 self.scheduler.quality.loss = number_between(rest[0], 0.0, 100.0) / 100
+            elif word == "rate-kbit" and len(rest) == 1:
+                self.scheduler.quality.rate_bytes_s = number_between(rest[0], 1.0, 1e6) * 1e3 / 8
             elif word == "stats" and not rest:
                 return self.statistics()
             elif word == "trace" and len(rest) == 1:
@@ -210,8 +216,9 @@ class Link:
 
     def statistics(self):
         late_ms = sorted(self.late_ms) or [0.0]
-        answer = {**self.counts, "late_ms_p99": late_ms[int(0.99 * (len(late_ms) - 1))], "late_ms_max": late_ms[-1]}
+        answer = {**self.counts, "bytes": dict(self.sent_bytes), "late_ms_p99": late_ms[int(0.99 * (len(late_ms) - 1))], "late_ms_max": late_ms[-1]}
         self.counts.clear()
+        self.sent_bytes.clear()
         self.late_ms.clear()
         return json.dumps(answer)
 

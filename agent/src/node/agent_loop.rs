@@ -8,7 +8,7 @@ use super::settings::Settings;
 use super::talk::Talk;
 use crate::{MindRunner, mind_by, mind_of};
 use bus::game_search::Joined;
-use bus::{Bus, Declaration, Latest, Patience, Priority, Publisher, SimState, SimWatch};
+use bus::{Bus, Declaration, Delivery, Latest, Patience, Priority, Publisher, SimState, SimWatch};
 use messages::refusal::{Refusal, Refusals};
 use messages::topic::{self, GameName};
 use messages::{GameInfo, Picture};
@@ -66,6 +66,7 @@ impl AgentLoop {
         // it, so that a late mate cannot cost this agent the game.
         let half_patience = Duration::from_secs_f64(0.5 * scenario.patience_s);
         let is_lockstep = info.pace == "lockstep";
+        let delivery = if is_lockstep { Delivery::Reliable } else { Delivery::Newest };
         let limit = |wait: Duration| if is_lockstep { wait.min(half_patience) } else { Duration::ZERO };
         let subscriptions = Subscriptions::open(bus, game, scenario, &runner, settings.silence)?;
         let orders = topic::orders(game, scenario, &subscriptions.teams, &bus.id());
@@ -73,7 +74,7 @@ impl AgentLoop {
             talk: Talk::open(bus, game, scenario, &runner, limit(MESSAGES_LATE))?,
             policies: PolicyInbox::open(bus, game, scenario, &runner, limit(settings.policy_wait))?,
             helm_queries: None,
-            orders: bus.publisher(orders, Priority::Normal)?,
+            orders: bus.publisher_with(orders, Priority::Normal, delivery)?,
             subscriptions,
             runner,
             ticket: 0,

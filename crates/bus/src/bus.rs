@@ -24,6 +24,15 @@ pub enum Priority {
     Normal,
 }
 
+/// How a QUIC link treats the messages of a publisher. All other links are reliable and in order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Delivery {
+    /// In order; a lost packet is sent again, and what follows it waits.
+    Reliable,
+    /// Each in its own datagram. A lost one is not sent again, and delays no other.
+    Newest,
+}
+
 /// The session of a node, with its token and keys. Clones share the session.
 #[derive(Clone)]
 pub struct Bus {
@@ -91,7 +100,15 @@ impl Bus {
     /// # Errors
     /// [`BusError`] if the session is closed.
     pub fn publisher(&self, key: String, priority: Priority) -> Result<Publisher, BusError> {
-        self.session.publisher(key, priority).map(Publisher)
+        self.session.publisher(key, priority, Delivery::Reliable).map(Publisher)
+    }
+
+    /// Prepares to publish on `key`, with this delivery over QUIC links.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed.
+    pub fn publisher_with(&self, key: String, priority: Priority, delivery: Delivery) -> Result<Publisher, BusError> {
+        self.session.publisher(key, priority, delivery).map(Publisher)
     }
 
     /// Calls `receive` with the bytes of every message published on `key`.

@@ -43,7 +43,7 @@ mod watched;
 mod zenoh_session;
 mod zenoh_threads;
 
-pub use bus::{Bus, Priority, Publisher};
+pub use bus::{Bus, Delivery, Priority, Publisher};
 pub use connections::{Connections, Slot};
 pub use control::control;
 pub use entropy::{random_bytes, random_number};

@@ -152,18 +152,21 @@ impl Net {
             });
             set(&mut config, "transport/link/tls", &tls.to_string())?;
             // Endpoints learnt from other nodes must use TLS too.
-            set(&mut config, "transport/link/protocols", r#"["tls"]"#)?;
+            set(&mut config, "transport/link/protocols", r#"["tls", "quic"]"#)?;
         }
         Ok(config)
     }
 
-    /// Endpoints in zenoh's form: with keys, TCP becomes TLS.
+    /// Endpoints in zenoh's form: with keys, TCP becomes TLS. QUIC carries what is not
+    /// [reliable](crate::Delivery) in datagrams; without keys, zenoh calls it reliable UDP.
     pub(crate) fn endpoints(&self, endpoints: &[String]) -> Vec<String> {
-        let told = |endpoint: &String| match endpoint.strip_prefix("tcp/") {
-            Some(address) if self.keys.is_some() => format!("tls/{address}"),
+        let zenoh_form = |endpoint: &String| match (endpoint.split_once('/'), self.keys.is_some()) {
+            (Some(("tcp", address)), true) => format!("tls/{address}"),
+            (Some(("quic", address)), true) if !address.contains('?') => format!("quic/{address}?mixed_rel=1"),
+            (Some(("quic", address)), false) if !address.contains('?') => format!("udp/{address}?rel=1;mixed_rel=1"),
             _ => endpoint.clone(),
         };
-        endpoints.iter().map(told).collect()
+        endpoints.iter().map(zenoh_form).collect()
     }
 
     /// The ports on which this node listens.

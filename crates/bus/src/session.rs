@@ -2,7 +2,7 @@
 //! tokens.
 
 use crate::parcel::Parcel;
-use crate::{BusError, Priority};
+use crate::{BusError, Delivery, Priority};
 use std::time::Duration;
 
 /// A declaration that lasts until dropped.
@@ -48,7 +48,7 @@ pub trait Session: Send + Sync {
     fn id(&self) -> String;
 
     /// Prepares to publish on `key`.
-    fn publisher(&self, key: String, priority: Priority) -> Result<Box<dyn Sender>, BusError>;
+    fn publisher(&self, key: String, priority: Priority, delivery: Delivery) -> Result<Box<dyn Sender>, BusError>;
 
     /// Calls `receive` with every message published on `key`; with `hears_own`, including this
     /// session's own.

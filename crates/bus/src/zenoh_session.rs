@@ -6,7 +6,7 @@ use crate::net::{FILES_MAX, nodes_max};
 use crate::open_files::OpenFiles;
 use crate::parcel::Parcel;
 use crate::session::{Declaration, Encoding, OnBytes, OnLinkLost, OnQuery, OnToken, PendingQuery, Sender, Session};
-use crate::{BusError, Net, Priority, admission, linger};
+use crate::{BusError, Delivery, Net, Priority, admission, linger};
 use messages::topic::GameName;
 use scenario::Scenario;
 use std::sync::Arc;
@@ -66,7 +66,7 @@ impl Session for ZenohSession {
         self.0.zid().to_string()
     }
 
-    fn publisher(&self, key: String, priority: Priority) -> Result<Box<dyn Sender>, BusError> {
+    fn publisher(&self, key: String, priority: Priority, delivery: Delivery) -> Result<Box<dyn Sender>, BusError> {
         // Senders repeat what must arrive: in lockstep the sim repeats pictures and agents repeat
         // answers, and in real time a newer message follows. A waiting message would block the
         // thread that serves all links.
@@ -75,6 +75,10 @@ impl Session for ZenohSession {
             Priority::Urgent => builder.priority(qos::Priority::RealTime).express(true),
             Priority::Normal => builder.priority(qos::Priority::Data),
         };
+        let builder = builder.reliability(match delivery {
+            Delivery::Reliable => qos::Reliability::Reliable,
+            Delivery::Newest => qos::Reliability::BestEffort,
+        });
         let publisher = builder.wait().map_err(failed("publish on", &key))?;
         let is_heard = Arc::new(AtomicBool::new(false));
         let flag = Arc::clone(&is_heard);

@@ -7,8 +7,8 @@ use crate::query::{Asked, PendingQuery, RoutedQuery};
 use crate::scheduler::{World, current, is_in_callback, wait_until};
 use crate::state::{SessionState, State};
 use bus::{
-    BusError, Declaration, Encoding, Net, OnBytes, OnLinkLost, OnQuery, OnToken, Parcel, Priority, Sender, Session,
-    Watched, clock,
+    BusError, Declaration, Delivery, Encoding, Net, OnBytes, OnLinkLost, OnQuery, OnToken, Parcel, Priority, Sender,
+    Session, Watched, clock,
 };
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
@@ -198,7 +198,7 @@ impl Session for SimulatedSession {
         self.id.clone()
     }
 
-    fn publisher(&self, key: String, _: Priority) -> Result<Box<dyn Sender>, BusError> {
+    fn publisher(&self, key: String, _: Priority, _: Delivery) -> Result<Box<dyn Sender>, BusError> {
         Ok(Box::new(SimulatedSender { session: self.clone(), key: key.into() }))
     }
 

@@ -12,6 +12,7 @@ mod control;
 mod interface;
 mod on_site;
 mod operator_request;
+mod rearm;
 mod recovery_point;
 mod status;
 mod stop;
@@ -35,6 +36,7 @@ use on_site::OnSite;
 use operator_request::request_from;
 use primitives::SimTime;
 use primitives::frame::Ned;
+use rearm::Rearm;
 use recovery_point::RecoveryPoint;
 use status::Counters;
 use std::collections::VecDeque;
@@ -79,6 +81,7 @@ pub struct Bridge {
     alarms: Alarms,
     clock: ClockWatch,
     recovery_point: RecoveryPoint,
+    rearm: Rearm,
     /// The last command sent, and when.
     last_sent: Option<(SimTime, Command)>,
     /// Start-up words still to send.
@@ -109,6 +112,7 @@ impl Bridge {
             supervisor: Supervisor::new(plan.arms_itself && plan.preflight.missing().is_none(), *failsafe),
             battery: BatteryLog::new(*battery, SimTime::ZERO),
             alarms: Alarms::new(*currents),
+            rearm: Rearm::new(failsafe.rearm_within_s),
             plan,
             link_up: false,
             hung_s: None,
@@ -346,6 +350,7 @@ impl Bridge {
         let state = self.supervisor.state();
         out.events.push(Event::State { from: before.to_string(), to: state.to_string() });
         if let State::Failsafe { cause, .. } = state {
+            self.rearm.note_failsafe(now);
             self.failsafes.push(FailsafeReport { at_s: now.as_s(), cause: cause.to_string() });
             let surplus = self.failsafes.len().saturating_sub(FAILSAFES_MAX);
             self.failsafes.drain(..surplus);
@@ -480,7 +485,10 @@ impl Bridge {
                 blocked = bow.is_blocked(now, &nav, known);
             }
         }
+        // The age counts from arrival by our own clock: the clocks of sim and gateway are not
+        // synchronised.
         let ttl_s = self.plan.gateway.order_ttl_s;
+        let order_fresh = self.order.is_some_and(|current| (now - current.came).as_s() <= ttl_s);
         Conditions {
             link: self.link_up,
             hung_s: self.hung_s,
@@ -491,9 +499,8 @@ impl Bridge {
             inside,
             battery_low: self.battery.is_low(now),
             blocked,
-            // The age counts from arrival by our own clock: the clocks of sim and gateway are not
-            // synchronised.
-            order_fresh: self.order.is_some_and(|current| (now - current.came).as_s() <= ttl_s),
+            order_fresh,
+            may_rearm: self.rearm.is_allowed(now, order_fresh),
         }
     }
 }

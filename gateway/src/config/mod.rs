@@ -278,7 +278,7 @@ pub struct CurrentWatch {
 
 /// What a boat does after a failsafe, by its cause. Those after which it cannot be told anything, does not know where it is or points, or
 /// is not moved by its thrusters, are not here: it stops.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FailsafeActions {
     /// No fresh order came.
     #[schemars(extend("default" = "standby"))]
@@ -292,6 +292,10 @@ pub struct FailsafeActions {
     /// The gateway hung.
     #[schemars(extend("default" = "standby"))]
     pub hung: FailsafeAction,
+    /// Arms the boat again after a failsafe for want of a fresh order, once orders have been fresh for 1 s and every
+    /// other condition holds, if that is within this time, s. At 0, an operator has to arm it.
+    #[schemars(range(min = 0, max = 600), extend("default" = 0))]
+    pub rearm_within_s: f64,
 }
 
 /// What a boat does after a failsafe, as far as it can: else it stops.

@@ -16,7 +16,7 @@ use crate::link::{BoatLink, LinkEvent};
 use crate::record::StepEncoder;
 use crate::supervisor::Scope;
 use bus::token::{self, Checked, Guard};
-use bus::{Bus, CurrentToken, Declaration, Priority, Publisher, Query, clock};
+use bus::{Bus, CurrentToken, Declaration, Delivery, Priority, Publisher, Query, clock};
 use messages::external::{FleetCommand, GatewayCommand, OperatorCommand, OperatorReply, Reported};
 use messages::{Frame, Order, topic};
 use primitives::frame::Ned;
@@ -244,10 +244,11 @@ impl GatewayLoop<'_> {
     fn enter(&mut self, found: FoundGame) -> Result<(), NodeError> {
         let FoundGame { bus, game, info, vehicle, factor, site } = found;
         let (scenario, name) = (&info.scenario, &self.settings.vehicle);
+        let newest = |key| bus.publisher_with(key, Priority::Normal, Delivery::Newest);
         let in_game = InGame {
-            nav: bus.publisher(topic::nav(&game, scenario, vehicle), Priority::Normal)?,
-            status: bus.publisher(topic::report(&game, Reported::Status, name), Priority::Normal)?,
-            link_bytes: bus.publisher(topic::report(&game, Reported::Link, name), Priority::Normal)?,
+            nav: newest(topic::nav(&game, scenario, vehicle))?,
+            status: newest(topic::report(&game, Reported::Status, name))?,
+            link_bytes: newest(topic::report(&game, Reported::Link, name))?,
             vehicle,
             others: scenario.externals().filter(|other| *other != vehicle).collect(),
             _subscriptions: subscribe(&bus, &game, &info, vehicle, &self.back)?,

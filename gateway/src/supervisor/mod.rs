@@ -59,6 +59,8 @@ pub struct Conditions {
     pub blocked: bool,
     /// Whether there is a valid order within its time to live.
     pub order_fresh: bool,
+    /// Whether a boat that stopped for want of a fresh order may arm itself again.
+    pub may_rearm: bool,
 }
 
 impl Conditions {
@@ -74,6 +76,7 @@ impl Conditions {
         battery_low: false,
         blocked: false,
         order_fresh: false,
+        may_rearm: false,
     };
 }
 
@@ -199,7 +202,8 @@ pub struct Supervisor {
 
 impl Supervisor {
     /// A safed supervisor. With `arms_itself` it arms when it is ready for the first time, unless
-    /// an operator makes a request before. After any later stop it must be armed by request.
+    /// an operator makes a request before. After any later stop it must be armed by request, unless
+    /// [`Conditions::may_rearm`] says otherwise.
     #[must_use]
     pub fn new(arms_itself: bool, actions: FailsafeActions) -> Supervisor {
         Supervisor { state: State::Safed, stops: [false; 2], arms_itself, actions }
@@ -226,7 +230,12 @@ impl Supervisor {
     pub fn step(&mut self, now: &Conditions, request: Option<OperatorRequest>) -> Step {
         let before = self.state;
         let refusal = request.and_then(|request| self.take_request(now, request));
-        if self.arms_itself && self.state == State::Safed && now.missing().is_empty() {
+        let arms_itself = match self.state {
+            State::Safed => self.arms_itself,
+            State::Failsafe { cause: Cause::OrderStale, .. } => now.may_rearm,
+            _ => false,
+        };
+        if arms_itself && now.missing().is_empty() {
             self.state = State::Armed;
         }
         // After the request: if arming is granted and fails in the same step, it ends in the

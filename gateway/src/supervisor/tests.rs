@@ -13,6 +13,7 @@ const GOOD: Conditions = Conditions {
     battery_low: false,
     blocked: false,
     order_fresh: true,
+    may_rearm: false,
 };
 
 /// Failsafe actions for the causes that allow one: all the same, and all different.
@@ -23,6 +24,8 @@ fn all_actions() -> Vec<FailsafeActions> {
         geofence,
         battery_low,
         hung,
+        // The bridge uses it, not the supervisor.
+        rearm_within_s: 0.0,
     };
     [
         [Standby; 4],
@@ -45,7 +48,7 @@ fn all_conditions() -> Vec<Conditions> {
         Control::Foreign,
     ];
     let mut all = Vec::new();
-    for bits in 0..512_u16 {
+    for bits in 0..1024_u16 {
         let is = |bit: u16| bits & (1 << bit) != 0;
         let nav = is(1).then_some(NavFault::NoFix);
         let of = |control| Conditions {
@@ -59,6 +62,7 @@ fn all_conditions() -> Vec<Conditions> {
             battery_low: is(3),
             blocked: is(4),
             order_fresh: is(5),
+            may_rearm: is(9),
         };
         all.extend(controls.map(of));
     }
@@ -115,7 +119,7 @@ fn no_path_leads_to_thrust_without_link_control_navigation_and_a_fresh_order() {
     let reached = explore(|before, now, request, after, step| {
         let case = format!("{before:?}, {now:?}, {request:?} -> {step:?}");
         if step.action == Action::Follow {
-            assert_eq!(Conditions { recovery_point: true, ..*now }, GOOD, "{case}");
+            assert_eq!(Conditions { recovery_point: true, may_rearm: false, ..*now }, GOOD, "{case}");
             assert_eq!((after.state, after.stops), (State::Armed, [false; 2]), "{case}");
         }
         assert_eq!(
@@ -132,11 +136,13 @@ fn is_held(after: &Supervisor, now: &Conditions, step: &Step) -> bool {
 }
 
 #[test]
-fn only_an_explicit_command_arms_and_only_once_by_itself() {
+fn only_an_explicit_command_arms_but_once_at_first_and_after_stale_orders() {
     explore(|before, now, request, after, step| {
         if after.state == State::Armed && before.state != State::Armed {
             let by_itself = before.arms_itself && before.state == State::Safed && !before.is_stopped();
-            assert!(request == Some(OperatorRequest::Arm) || by_itself, "{before:?}, {now:?}, {request:?} -> {step:?}");
+            let again = now.may_rearm && matches!(before.state, State::Failsafe { cause: Cause::OrderStale, .. });
+            let case = format!("{before:?}, {now:?}, {request:?} -> {step:?}");
+            assert!(request == Some(OperatorRequest::Arm) || by_itself || again, "{case}");
         }
         let used_up =
             before.state != State::Safed || !before.arms_itself || request.is_some() || after.state != State::Safed;

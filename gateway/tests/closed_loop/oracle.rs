@@ -21,6 +21,10 @@ pub(crate) struct Oracle {
     /// E-stops in force: boat, fleet.
     pub(crate) stops: [bool; 2],
     pub(crate) armed: bool,
+    /// How long after a stop for want of orders the gateway may arm the boat itself, s, and when
+    /// the boat was stopped so last.
+    pub(crate) rearm_within_s: f64,
+    pub(crate) starved: SimTime,
     pub(crate) link_up: bool,
     /// Number of driving sentences, and of all sentences.
     pub(crate) driving: u64,
@@ -44,6 +48,8 @@ impl Oracle {
             other_operator: false,
             stops: [false; 2],
             armed: false,
+            rearm_within_s: 0.0,
+            starved: never,
             link_up: false,
             driving: 0,
             all: 0,

@@ -73,13 +73,14 @@ impl Rig {
         let Site { field, declination_rad, .. } = plan.site.as_ref().expect("the rig has one");
         let mut emulator = emulated(field.plan.datum, *declination_rad);
         change(&mut emulator);
+        let rearm_within_s = plan.gateway.failsafe.rearm_within_s;
         let mut rig = Rig {
             now: SimTime::ZERO,
             steps: 0,
             boat: Boat { at: Ned::from_xy(60.0, 40.0), ..Boat::default() },
             emulator: Emulator::new(emulator),
             boat_order: Order::Hold,
-            oracle: Oracle { armed: plan.arms_itself, ..Oracle::new() },
+            oracle: Oracle { armed: plan.arms_itself, rearm_within_s, ..Oracle::new() },
             bridge: Bridge::new(plan),
             open: (true, true),
             tamper: None,
@@ -126,8 +127,12 @@ impl Rig {
     fn take_out(&mut self, out: Output) {
         for event in out.events {
             // Any state change from armed requires arming again.
-            if matches!(&event, Event::State { from, .. } if from == "armed") {
-                self.oracle.armed = false;
+            if let Event::State { from, to } = &event {
+                let may_rearm = (self.now - self.oracle.starved).as_s() <= self.oracle.rearm_within_s;
+                self.oracle.armed &= from != "armed";
+                self.oracle.armed |= to == "armed" && from == "failsafe: no fresh order" && may_rearm;
+                let is_starved = from == "armed" && to == "failsafe: no fresh order";
+                self.oracle.starved = if is_starved { self.now } else { SimTime::LONG_AGO };
             }
             self.events.push((self.now, event));
         }

@@ -158,6 +158,7 @@ fn boat(options: &[&str]) -> Rig {
             ["integers", "only"] => integers = true,
             ["charge", percent] => charge = Some(0.01 * number(percent)),
             ["startup", words] => plan.gateway.startup_words = words.split(',').map(named).collect(),
+            ["rearm", seconds] => plan.gateway.failsafe.rearm_within_s = number(seconds),
             ["dry-run", "yes"] => plan.dry_run = true,
             ["preflight", "missing"] => plan.preflight = Preflight::Missing("a passed pre-flight check".to_owned()),
             ["arms-itself", "once"] => plan.arms_itself = true,

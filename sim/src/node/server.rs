@@ -14,7 +14,7 @@ use super::{GameRecorder, NodeError, Pace, ProgressMessage, Reporter, Settings};
 use crate::contest::Contest;
 use bus::stop::HubStopPort;
 use bus::token::Guard;
-use bus::{Bus, Declaration, Inbox, Priority, Publisher, Query, clock, inbox};
+use bus::{Bus, Declaration, Delivery, Inbox, Priority, Publisher, Query, clock, inbox};
 use messages::external::{ExternalOrder, Reported};
 use messages::refusal::{Refusal, Refusals};
 use messages::run_state::{Phase, RunState};
@@ -114,9 +114,14 @@ impl<'w> GameServer<'w> {
         let timing = if is_lockstep { Timing::Lockstep } else { Timing::Realtime };
         let speed = if let Pace::Realtime { factor } = settings.pace { Some(factor) } else { settings.speed };
         let teams = (0..scenario.teams.len()).map(|team| topic::picture(game, scenario, TeamId(team as u8)));
-        let pictures: Result<Vec<Publisher>, _> = teams.map(|key| bus.publisher(key, Priority::Normal)).collect();
+        // In lockstep every picture counts. In real time the next one replaces it.
+        let delivery = if is_lockstep { Delivery::Reliable } else { Delivery::Newest };
+        let pictures = teams.map(|key| bus.publisher_with(key, Priority::Normal, delivery));
+        let pictures: Result<Vec<Publisher>, _> = pictures.collect();
         // Commands to boats are urgent: they overtake everything that waits on a link.
-        let to_boat = |v| Ok((v, bus.publisher(topic::external_order(game, scenario, v), Priority::Urgent)?));
+        let to_boat = |v| {
+            Ok((v, bus.publisher_with(topic::external_order(game, scenario, v), Priority::Urgent, Delivery::Newest)?))
+        };
         let external_orders: Vec<_> = scenario.externals().map(to_boat).collect::<Result<_, NodeError>>()?;
         let reports = subscriptions::report_publishers(&bus, game, scenario)?;
         let is_real = !external_orders.is_empty();
@@ -139,7 +144,7 @@ impl<'w> GameServer<'w> {
             asked: None,
             external_orders,
             reports,
-            frames: bus.publisher(topic::frame(game), Priority::Normal)?,
+            frames: bus.publisher_with(topic::frame(game), Priority::Normal, delivery)?,
             shown: EventCursor::default(),
             frame: None,
             run: bus.publisher(topic::run(game), Priority::Normal)?,

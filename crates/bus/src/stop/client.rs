@@ -7,7 +7,8 @@ use super::orders::{Saying, Source, StopOrders};
 use super::{StopCommand, StopNews};
 use crate::net::address;
 use crate::{
-    Bus, BusError, CurrentToken, Declaration, Priority, Publisher, Token, Watched, clock, control, start_thread,
+    Bus, BusError, CurrentToken, Declaration, Delivery, Priority, Publisher, Token, Watched, clock, control,
+    start_thread,
 };
 use messages::Control;
 use messages::external::{FleetCommand, GatewayCommand, GatewayStatus, OperatorCommand};
@@ -115,13 +116,14 @@ impl StopClient {
     pub fn join(&self, bus: &Bus, game: &GameName, boats: &[String]) -> Result<(), BusError> {
         let (mut stops, mut statuses, is_here) = (BTreeMap::new(), Vec::new(), bus.is_on_this_machine());
         for boat in boats {
-            stops.insert(boat.clone(), bus.publisher(topic::stop(game, boat), Priority::Urgent)?);
+            stops
+                .insert(boat.clone(), bus.publisher_with(topic::stop(game, boat), Priority::Urgent, Delivery::Newest)?);
             let shared = Arc::downgrade(&self.0);
             statuses.push(bus.subscribe_status(game, boat, move |status| {
                 shared.upgrade().iter().for_each(|shared| shared.hear(&status, is_here));
             })?);
         }
-        let control = bus.publisher(topic::control(game), Priority::Urgent)?;
+        let control = bus.publisher_with(topic::control(game), Priority::Urgent, Delivery::Newest)?;
         let path = GamePath { bus: bus.clone(), name: game.clone(), control, stops, _statuses: statuses };
         let before = self.0.game.lock().replace(Arc::new(path));
         // A callback of a dropped subscription may still be running, so no lock is held here.

@@ -4,7 +4,7 @@ use super::datagram::{States, StopRequest};
 use super::datagram_port::DatagramPort;
 use crate::net::address;
 use crate::runtime::runtime;
-use crate::{Bus, BusError, Declaration, Net, Priority, Publisher, Watched, clock};
+use crate::{Bus, BusError, Declaration, Delivery, Net, Priority, Publisher, Watched, clock};
 use messages::Control;
 use messages::external::{FleetCommand, GatewayCommand, OperatorCommand};
 use messages::topic::{self, GameName};
@@ -48,13 +48,14 @@ impl HubStopPort {
             return Ok(HubStopPort { _ports: vec![], _statuses: vec![] });
         }
         for boat in boats {
-            stops.insert(boat.clone(), bus.publisher(topic::stop(game, boat), Priority::Urgent)?);
+            stops
+                .insert(boat.clone(), bus.publisher_with(topic::stop(game, boat), Priority::Urgent, Delivery::Newest)?);
             let heard = Arc::clone(&heard);
             statuses.push(bus.subscribe_status(game, boat, move |status| {
                 heard.visit(|heard| heard.insert(status.vehicle, Some((status.state, clock::now()))));
             })?);
         }
-        let control = bus.publisher(topic::control(game), Priority::Urgent)?;
+        let control = bus.publisher_with(topic::control(game), Priority::Urgent, Delivery::Newest)?;
         let server = Arc::new(Server { game: game.clone(), bus: bus.clone(), control, stops, heard });
         let mut ports = Vec::new();
         for endpoint in net.listen.iter().filter(|endpoint| endpoint.starts_with("tcp/")) {

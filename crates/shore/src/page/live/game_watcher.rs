@@ -7,8 +7,8 @@ use super::{Command, SharedState};
 use bus::clock;
 use bus::game_search::{self, Missing};
 use bus::{
-    Bus, BusError, Declaration, Inbox, InboxSender, NodeThread, Patience, Place, PlacedSession, Priority, Publisher,
-    SimState, SimWatch, Watched, inbox,
+    Bus, BusError, Declaration, Delivery, Inbox, InboxSender, NodeThread, Patience, Place, PlacedSession, Priority,
+    Publisher, SimState, SimWatch, Watched, inbox,
 };
 use messages::picture::Picture;
 use messages::run_state::RunState;
@@ -181,7 +181,7 @@ impl GameSession {
         for (vehicle, (course_rad, speed_m_s)) in steering {
             if !self.policies.contains_key(&vehicle) {
                 let key = topic::policy(&self.game.name, self.game.scenario(), vehicle);
-                let Ok(publisher) = self.bus.publisher(key, Priority::Normal) else { continue };
+                let Ok(publisher) = self.bus.publisher_with(key, Priority::Normal, Delivery::Newest) else { continue };
                 self.policies.insert(vehicle, publisher);
             }
             if let Some(publisher) = self.policies.get(&vehicle) {

@@ -1,0 +1,33 @@
+//! When a boat may arm itself again after a failsafe for want of fresh orders.
+
+use primitives::SimTime;
+
+/// Orders must have been fresh for this long, s. An E-stop that a cut link held up arrives within
+/// this time, because operators' programs repeat it.
+const STEADY_S: f64 = 1.0;
+
+/// Watches orders and failsafes.
+pub(super) struct Rearm {
+    /// After a failsafe, the boat may arm itself for this long, s.
+    within_s: f64,
+    failsafe_at: SimTime,
+    /// Since when orders have been fresh without interruption.
+    fresh_since: Option<SimTime>,
+}
+
+impl Rearm {
+    pub(super) fn new(within_s: f64) -> Rearm {
+        Rearm { within_s, failsafe_at: SimTime::LONG_AGO, fresh_since: None }
+    }
+
+    pub(super) fn note_failsafe(&mut self, now: SimTime) {
+        self.failsafe_at = now;
+    }
+
+    /// Whether the boat may arm itself now.
+    pub(super) fn is_allowed(&mut self, now: SimTime, order_fresh: bool) -> bool {
+        self.fresh_since = order_fresh.then(|| self.fresh_since.unwrap_or(now));
+        let is_steady = self.fresh_since.is_some_and(|since| (now - since).as_s() >= STEADY_S);
+        is_steady && (now - self.failsafe_at).as_s() <= self.within_s
+    }
+}
