@@ -15,6 +15,7 @@ mod pacing;
 mod realtime;
 mod server;
 mod subscriptions;
+mod throttle;
 mod working_time;
 
 pub use crate::progress::{Progress, ProgressMessage, Reporter};

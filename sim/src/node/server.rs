@@ -9,6 +9,7 @@ use super::message_inbox::MessageInbox;
 use super::observers::{self, RecordedTopic};
 use super::pacing::Pacing;
 use super::subscriptions::{self, Inboxes, Question};
+use super::throttle::Throttle;
 use super::working_time::WorkingTime;
 use super::{GameRecorder, NodeError, Pace, ProgressMessage, Reporter, Settings};
 use crate::contest::Contest;
@@ -50,6 +51,8 @@ pub(super) struct GameServer<'w> {
     inbox: Arc<MessageInbox>,
     bus: Bus,
     pictures: Vec<Publisher>,
+    /// In real time, by team.
+    throttles: Vec<Throttle>,
     /// The decision whose pictures were sent last.
     asked: Option<u64>,
     frames: Publisher,
@@ -141,6 +144,7 @@ impl<'w> GameServer<'w> {
             inbox: messages,
             time: WorkingTime::new(clock::now()),
             pictures: pictures?,
+            throttles: scenario.teams.iter().filter(|_| !is_lockstep).map(|_| Throttle::new(clock::now())).collect(),
             asked: None,
             external_orders,
             reports,
@@ -262,7 +266,9 @@ impl<'w> GameServer<'w> {
                 let topic = format!("picture/{}", self.contest.scenario().teams[i].name);
                 self.record_message(topic, Some(Picture::SCHEMA), bytes.clone());
             }
-            self.pictures[i].send_encoded::<Picture>(bytes)?;
+            if self.throttles.get_mut(i).is_none_or(|throttle| throttle.admits(clock::now())) {
+                self.pictures[i].send_encoded::<Picture>(bytes)?;
+            }
         }
         (0..self.external_orders.len()).try_for_each(|i| self.pass_on(self.external_orders[i].0))
     }

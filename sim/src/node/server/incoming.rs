@@ -97,6 +97,9 @@ impl GameServer<'_> {
         let open = (self.contest.decision(), self.timing);
         let Accepted { orders, back } = agents::accept(&mut self.agents, message, open, &mut self.refusals);
         back.into_iter().for_each(|vehicle| self.contest.regain_agent(vehicle));
+        if let Some((vehicle, _)) = orders.first() {
+            self.note_round_trip(*vehicle, message.stamp.seq);
+        }
         for (vehicle, order) in orders {
             let taken = self.contest.order(vehicle, order, message.stamp.valid_ns);
             self.refusals.add(Refusal::BadNumber, u64::from(taken.is_err()));
@@ -104,6 +107,17 @@ impl GameServer<'_> {
             // At once, not with the next pictures, which may be a decision later.
             self.pass_on_now(vehicle);
         }
+    }
+
+    /// Records how long a team's agents took to answer the picture of a decision.
+    fn note_round_trip(&mut self, vehicle: VehicleId, seq: u64) {
+        let team = self.contest.scenario().team_of(vehicle);
+        let Some(throttle) = self.throttles.get_mut(team.index()) else { return };
+        let now = clock::now();
+        let decision_s = self.contest.scenario().decision().as_s() / self.pacing.speed().unwrap_or(1.0);
+        let decisions = self.contest.decision().saturating_sub(seq) as f64;
+        let since_open = self.opened.map_or(Duration::ZERO, |opened| now.saturating_duration_since(opened));
+        throttle.note(now, since_open + Duration::from_secs_f64(decision_s * decisions));
     }
 
     fn take_nav(&mut self, report: &NavReport, bytes: Vec<u8>) {
