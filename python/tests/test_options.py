@@ -59,9 +59,9 @@ def test_actions_have_names() -> None:
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"action": "options"}, "action is options, expected another action, or a helm whose strategy has the options"),
-        ({"action": "options", "control": "policy"}, 'no behaviour of the kind "policy" with `sets`'),
-        ({"control": "options"}, 'no behaviour of the kind "policy" for course and speed'),
+        ({"action": "options"}, "action is options, expected another action space, or a helm whose strategy declares options"),
+        ({"action": "options", "control": "policy"}, 'no behaviour of kind "policy" with `sets`'),
+        ({"control": "options"}, 'no behaviour of kind "policy" for course and speed'),
     ],
 )
 def test_options_without_a_strategy_that_has_them_are_refused(options: dict, message: str) -> None:

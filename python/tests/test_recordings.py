@@ -144,7 +144,7 @@ def test_games_go_on_where_they_cannot_be_recorded_any_more(tmp_path: Path) -> N
     environment = squall.TeamEnv(record=folder, **SHORT)
     folder.rmdir()
     environment.reset()
-    with pytest.warns(RuntimeWarning, match="the game of seed 1 is not recorded in .*runs: .*No such file"):
+    with pytest.warns(RuntimeWarning, match="cannot record the game with seed 1 in .*runs: .*No such file"):
         play(environment, 1)
     play(environment, 9)
     environment.close()
