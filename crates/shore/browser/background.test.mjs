@@ -65,7 +65,7 @@ test('an image lies where its world file says', async (t) => {
 test('a chart of another site is not drawn, and its place is told', async (t) => {
   const { geojson } = site(folder(t), [51.5, -0.1]);
   const sight = await Sight.open(t, browser, await live(t, geojson));
-  await sight.until('it says where it is', () => /is not drawn: it lies around 51\.\d+° N .*\skm from the field at 41/.test(document.getElementById('notices').textContent));
+  await sight.until('it says where it is', () => /is not drawn: it is at 51\.\d+° N .*\skm from the field at 41/.test(document.getElementById('notices').textContent));
   assert(!(await sight.get(() => squall.background)) && !(await sight.page.isVisible('#show-chart')));
 });
 
@@ -76,7 +76,7 @@ test('what is no chart is refused before anything begins', async (t) => {
   copyFileSync(image, lone);
   const bad = join(place, 'bad.geojson');
   writeFileSync(bad, '{"type":"LineString","coordinates":[[0,0],[712345,4512345]]}');
-  for (const [chart, want] of [[join(place, 'none.geojson'), /none\.geojson: No such file/], [GAME, /of no known kind, expected PNG or JPEG/],
+  for (const [chart, want] of [[join(place, 'none.geojson'), /none\.geojson: No such file/], [GAME, /has an unknown format, expected PNG or JPEG/],
     [lone, /lone\.png: has no world file beside it/], [bad, /bad\.geojson: coordinates\[1\] is at \[712345, 4512345\], expected \[longitude/]]) {
     const run = new Program(t, 'run', GAME, '--view', '--no-record', '--chart', chart);
     assert.equal(await run.ended, 1, run.said);

@@ -85,7 +85,7 @@ test('a helm that nobody looked at before the pause says so, and shows its rose 
   await sight.press('#pause');
   await sight.phase('paused');
   await sight.press('[data-vehicle=blue_two]');
-  await sight.until('it says so', () => /before anybody looked/.test(document.getElementById('helm-reason').textContent));
+  await sight.until('it says so', () => /No utilities yet/.test(document.getElementById('helm-reason').textContent));
   assert(!(await sight.page.isVisible('#rose')));
   assert(await sight.page.isVisible('#behaviours'));
   await sight.press('#step');

@@ -144,7 +144,7 @@ test('a helm that thinks again agrees with what is recorded', async (t) => {
     assert.equal(collective.length, courses * speeds);
     assert(functions.length > 0 && functions.every((each) => each.utilities.length === collective.length));
     modes.add(mode);
-    await sight.until('the page says so', () => /agrees with the order recorded/.test(document.getElementById('helm-reason').textContent));
+    await sight.until('the page says so', () => /matches the recorded order/.test(document.getElementById('helm-reason').textContent));
     const facts = await sight.text('#boat-facts');
     assert(facts.includes('Mode'), facts);
     // What is chosen is wanted: no bare disc.

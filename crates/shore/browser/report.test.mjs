@@ -126,7 +126,7 @@ test('what is wrong with a report or a game is said in words', async (t) => {
   delete report.plan;
   writeFileSync(path, JSON.stringify(report));
   const bare = await Sight.load(t, browser, `${await view(t, path)}#row=strategy_4&column=pav01`);
-  await bare.until('it says so', () => /No game of it can be watched/.test(document.getElementById('remarks').textContent));
+  await bare.until('it says so', () => /Games cannot be watched/.test(document.getElementById('remarks').textContent));
   assert.equal(await bare.get(() => document.querySelectorAll('.watch').length), 0);
 });
 

@@ -64,7 +64,7 @@ test('a page without the token looks on, and one with it acts', async (t) => {
   assert(!(await acting.page.isVisible('#rights')));
   await acting.press('[data-vehicle=blue_one]');
   await acting.press('#drive');
-  await acting.until('it steers', () => /You steer this boat/.test(document.getElementById('pane-boat').textContent));
+  await acting.until('it steers', () => /You are driving this boat/.test(document.getElementById('pane-boat').textContent));
   await acting.press('#let-go');
   await acting.press('#pause');
   await acting.phase('paused');

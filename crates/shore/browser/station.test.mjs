@@ -36,7 +36,7 @@ test('an operator arms, delegates and disarms a boat from the page, and everybod
   await badge(theirs, 'blue_one', 'disarmed');
   await theirs.press('[data-vehicle=blue_one]');
   for (const id of ['operate', 'mission', 'operate-station_keep', 'operate-go_to_erp']) assert(!(await enabled(theirs, id)), `#${id} is off`);
-  assert.match((await forge(theirs, { do: 'operate', vehicle: 'blue_one', command: 'arm' })).reason, /may only look/);
+  assert.match((await forge(theirs, { do: 'operate', vehicle: 'blue_one', command: 'arm' })).reason, /may only watch/);
 
   await mine.press('[data-vehicle=blue_one]');
   await mine.until('it is ready', () => document.querySelector('#checks .good'));
@@ -121,7 +121,7 @@ test('without a token of its own a page may stop real boats, and operates them w
 test('a failsafe is seen and heard until it is acknowledged, and no flood keeps the E-stop waiting', async (t) => {
   const boats = await realBoats(t);
   const sight = await Sight.open(t, browser, boats.url);
-  assert.match(await sight.text('#mute'), /Press for sound/, 'before anything is pressed browsers allow none');
+  assert.match(await sight.text('#mute'), /Enable sound/, 'before anything is pressed browsers allow none');
   await badge(sight, 'blue_one', 'disarmed');
   await arm(sight, 'blue_one');
   await arm(sight, 'red_one');

@@ -76,8 +76,8 @@ test('two pages see one game; a boat goes as one of them says, and the other is 
   });
   await theirs.press(`[data-vehicle=${BOAT}]`);
   await take(mine);
-  await mine.until('we steer', () => /You steer this boat/.test(document.getElementById('pane-boat').textContent));
-  await theirs.until('they are told', () => /Somebody else steers/.test(document.getElementById('pane-boat').textContent));
+  await mine.until('we steer', () => /You are driving this boat/.test(document.getElementById('pane-boat').textContent));
+  await theirs.until('they are told', () => /Another page is driving/.test(document.getElementById('pane-boat').textContent));
   const start = await mine.get((name) => squall.frame.boats.find((boat) => boat.name === name), BOAT);
   const course_deg = 90;
   const begun_deg = await mine.get(() => Number(document.getElementById('steering-text').textContent.match(/\d+/)[0]));
@@ -91,17 +91,17 @@ test('two pages see one game; a boat goes as one of them says, and the other is 
   t.diagnostic(`from ${start.x.toFixed(1)}, ${start.y.toFixed(1)} to ${x.toFixed(1)}, ${y.toFixed(1)}; ordered ${ordered_deg}° at ${ordered_m_s} m/s, went ${JSON.stringify(went)}`);
   await theirs.press('#drive');
   await theirs.until('they are refused', () => squall.driving === null
-    && /Somebody else/.test(document.getElementById('notices').textContent));
+    && /Another page/.test(document.getElementById('notices').textContent));
   assert.equal(await mine.get(() => squall.driving), BOAT, 'and it stays ours');
   await mine.page.focus('#steering');
   await mine.keys(...Array(6).fill('ArrowDown'));
   await stands(mine);
   await mine.keys('Escape');
   assert.equal(await mine.get(() => squall.driving), null);
-  await theirs.until('nobody steers it', () => !/Somebody else steers/.test(document.querySelector('.note:not([hidden])')?.textContent ?? ''));
+  await theirs.until('nobody steers it', () => !/Another page is driving/.test(document.querySelector('.note:not([hidden])')?.textContent ?? ''));
   await theirs.press('#drive');
-  await theirs.until('it is theirs', () => /You steer this boat/.test(document.getElementById('pane-boat').textContent));
-  await mine.until('and we are told', () => /Somebody else steers/.test(document.getElementById('pane-boat').textContent));
+  await theirs.until('it is theirs', () => /You are driving this boat/.test(document.getElementById('pane-boat').textContent));
+  await mine.until('and we are told', () => /Another page is driving/.test(document.getElementById('pane-boat').textContent));
 });
 
 const person = (t, ...words) => new Program(t, 'run', scenario('games/person_2v2.toml'), '--view', '--no-record', '--listen', '127.0.0.1:0', ...words);
@@ -169,7 +169,7 @@ test('whoever looks elsewhere lets go, and the boat stops', async (t) => {
   };
   for (const [why, go] of Object.entries(away)) {
     await take(sight);
-    await sight.until('it steers', () => /You steer this boat/.test(document.getElementById('pane-boat').textContent));
+    await sight.until('it steers', () => /You are driving this boat/.test(document.getElementById('pane-boat').textContent));
     await sight.keys(...Array(8).fill('w'));
     await sight.until('it goes', (name) => squall.frame.boats.find((boat) => boat.name === name).speed_m_s > 0.8, BOAT);
     await sight.get(go);
