@@ -1,6 +1,5 @@
-//! Games of point boats by Pyquaticus' rules, compared with Pyquaticus: numbers from runs of its
-//! own environment (main, November 2025, and the branch of the 2026 competition; power play off, a
-//! step of 0.1 s).
+//! Games of point boats under Pyquaticus' rules, compared with runs of its own environment (main,
+//! November 2025, and the branch of the 2026 competition; power play off, steps of 0.1 s).
 
 mod common;
 
@@ -17,8 +16,8 @@ use std::f64::consts::PI;
 const BLUE: VehicleId = VehicleId(0);
 const RED: VehicleId = VehicleId(1);
 
-/// One boat per side with a step of 0.1 s: blue's at a place (x, y) with a heading in degrees,
-/// red's out of the way.
+/// One boat per side with steps of 0.1 s: blue at (x, y) with a heading in degrees, red out of the
+/// way.
 fn game(rules: &str, boat: &str, (x, y, heading_deg): (f64, f64, f64)) -> Scenario {
     let scenario = written(&format!(
         "base = \"../games/pav01_kinematic.toml\"\nrules = \"../rules/{rules}.toml\"\n\
@@ -51,13 +50,13 @@ fn state(contest: &Contest, vehicle: VehicleId) -> [f64; 4] {
 }
 
 fn assert_near(what: &str, got: [f64; 4], want: [f64; 4], within: f64) {
-    assert!(got.iter().zip(want).all(|(got, want)| (got - want).abs() < within), "{what}: {got:?}, not {want:?}");
+    assert!(got.iter().zip(want).all(|(got, want)| (got - want).abs() < within), "{what}: {got:?}, want {want:?}");
 }
 
 #[test]
 fn a_boat_that_leaves_at_the_side_comes_back_as_soon_as_in_the_competition() {
-    // Full ahead from (40, 70) to the north: when it leaves, how long it is outside, and when it is
-    // freed, with looks at every step of 0.1 s and, as in the competition, at every tenth.
+    // Full ahead from (40, 70) to the north: when it leaves, how long it stays outside, and when it
+    // is freed, with looks at every step of 0.1 s and, as in the competition, at every tenth.
     for (boat, speed_m_s, looks_s, want_s) in [
         ("heron", 2.0, 0.0, [8.9, 8.8, 28.6]),
         ("heron", 2.0, 1.0, [9.0, 9.0, 29.0]),
@@ -65,7 +64,7 @@ fn a_boat_that_leaves_at_the_side_comes_back_as_soon_as_in_the_competition() {
         ("surveyor", 3.0, 1.0, [17.0, 18.0, 35.0]),
     ] {
         let mut scenario = game("mctf_2026", boat, (40.0, 70.0, 0.0));
-        assert_eq!(scenario.rules.tag_look_period.as_s(), 1.0, "the competition's");
+        assert_eq!(scenario.rules.tag_look_period.as_s(), 1.0, "the period of the competition");
         scenario.rules.tag_look_period = SimTime::from_s(looks_s);
         scenario.rules.flag_look_period = SimTime::from_s(looks_s);
         let mut contest = afloat(&scenario);
@@ -112,7 +111,7 @@ fn a_point_boat_slides_along_the_keepout_circle_as_in_pyquaticus() {
             }
         }
         let [x, y, ..] = state(&contest, BLUE);
-        // Pyquaticus has headings and speeds in single precision, and every set-back enlarges the
+        // Pyquaticus has single-precision headings and speeds, and every set-back enlarges the
         // difference.
         assert!((x - end[0]).abs() < 0.01 && (y - end[1]).abs() < 0.01, "{boat} {start:?}: ({x}, {y}), not {end:?}");
     }
@@ -149,7 +148,7 @@ fn boats_pass_through_each_other_where_the_rules_say_so() {
             step(&mut contest, steer(90.0, 2.0));
             gap_m = gap_m.min(common::gap_m(contest.world(), &scenario, 0, 1));
         }
-        // Their keels pass at half a metre, and the hulls are a metre wide.
+        // Their keels pass half a metre apart, and the hulls are a metre wide.
         let want_m = if contact == Contact::Ghost { -0.5..-0.45 } else { -0.02..0.05 };
         assert!(want_m.contains(&gap_m), "{contact:?}: {gap_m} m");
         let collided = |logged: &rules::event::Logged| matches!(logged.event, Event::Collided { .. });
@@ -247,8 +246,8 @@ impl Trace {
     }
 }
 
-/// The order for an action of Pyquaticus: half a turn to an eighth of a turn to port, at full and
-/// at half speed.
+/// The order for a Pyquaticus action: half a turn to an eighth of a turn to port, at full and half
+/// speed.
 fn order_of(action: usize, speed_max_m_s: f64) -> Order {
     let by_rad = (180.0 - 45.0 * (action % 8) as f64).to_radians();
     match action {
@@ -287,7 +286,7 @@ fn whole_games_go_event_for_event_as_in_pyquaticus() {
              boat = \"../boats/{boat}_kinematic.toml\"\ndecision_s = 0.1\n{}",
             vehicles.collect::<String>()
         ));
-        // Pyquaticus sets boats back with headings in single precision, and every set-back enlarges
+        // Pyquaticus sets boats back with single-precision headings, and every set-back enlarges
         // the difference.
         scenario.rules.flag_keepout_m = 0.0;
         let mut contest = afloat(&scenario);
@@ -310,11 +309,11 @@ fn whole_games_go_event_for_event_as_in_pyquaticus() {
             events.sort_unstable();
             events
         };
-        assert!(trace.events.len() > 30, "{boat}: something happens");
+        assert!(trace.events.len() > 30, "{boat}: too few events");
         assert_eq!(sorted(got), sorted(trace.events), "{boat}");
         for (i, [x, y]) in trace.ends.iter().enumerate() {
             let apart_m = contest.world().state().boats[i].pose.at.distance(Ned::from_xy(*x, *y));
-            assert!(apart_m < 1e-6, "{boat}: boat {i} ends {apart_m} m from where it does there");
+            assert!(apart_m < 1e-6, "{boat}: boat {i} ends {apart_m} m from its place in Pyquaticus");
         }
     }
 }
