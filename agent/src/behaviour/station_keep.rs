@@ -1,4 +1,4 @@
-//! Station keeping: holds a place, with more weight the farther the boat has drifted off.
+//! Station keeping: holds a place, with more weight the farther the boat has drifted away.
 
 use super::logic::BehaviourLogic;
 use super::output::BehaviourOutput;
@@ -13,7 +13,7 @@ const SPEED_BASE_M_S: f64 = 0.8;
 
 pub(super) struct StationKeepBehaviour {
     task: StationKeep,
-    /// The boat's position when the behaviour began.
+    /// The boat's position at the start of the behaviour.
     anchor: Ned,
 }
 

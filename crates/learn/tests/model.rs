@@ -107,11 +107,11 @@ fn what_a_policy_cannot_do_its_helm_says_and_safety_is_left() {
     let for_one = model(PolicySpec { observation: ObservationSpace::Pyquaticus, ..SPEC });
     let large = scenario::load(&file("games/fleet_20v20.toml")).unwrap_or_else(|problems| panic!("{problems}"));
     for (scenario, model, want) in [
-        (&scenario, model_of_nan(), "the model gave a number that is NaN or infinite"),
+        (&scenario, model_of_nan(), "the model output a non-finite value"),
         (
             &large,
             for_one,
-            "the model takes 45 numbers, and a boat of this game has 333: it is for teams of another size",
+            "the model takes 45 values, but a boat of this game has 333: it was trained for another team size",
         ),
     ] {
         let vehicle = VehicleId::at(0);

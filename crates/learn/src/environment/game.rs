@@ -65,8 +65,8 @@ impl Game {
                 (false, Player::Model(model), _) => {
                     GameMind::Pilot(Box::new(policy_pilot(setup, scenario, vehicle).by_model(model.clone())))
                 }
-                // Same as in the arena, but with pilots as minds: a test plays the same game in the arena
-                // and compares digests.
+                // Same as in the arena, but with pilots as minds: a test plays the same game in the
+                // arena and compares digests.
                 _ => GameMind::Pilot(Box::new(pilot(setup, scenario, vehicle))),
             }
         };
@@ -187,10 +187,10 @@ impl Game {
         let step_s = scenario.tick.as_s() * f64::from(scenario.ticks_per_decision * setup.decisions_per_step);
         for (i, reward) in self.rewards.iter_mut().enumerate() {
             // A potential of the state alone, 0 at the end: it does not change the best policy (Ng,
-            // Harada and Russell, ICML 1999). Places pay the undiscounted gain of a step. A payment per
-            // second failed: half a second on the right course changed the sum by a hundredth, and
-            // boats trained to retreat on 300,000 such samples ended no nearer to home than stationary
-            // ones.
+            // Harada and Russell, ICML 1999). Places pay the undiscounted gain of a step. A payment
+            // per second failed: half a second on the right course changed the sum by a hundredth,
+            // and boats trained to retreat on 300,000 such samples ended no nearer to home than
+            // stationary ones.
             let after = if ending == Ending::Over { 0.0 } else { rewards.potential.of(&self.boats[i]) };
             *reward = setup.discount * after + rewards.place.of(&self.boats[i]) - before[i] + rewards.second * step_s;
         }

@@ -50,8 +50,8 @@ pub struct Rows<'a> {
     pub final_observations: &'a mut [f32],
     /// The reward of the step, by row.
     pub rewards: &'a mut [f32],
-    /// By row, whether the next action takes effect: not for a tagged boat, nor where a strategy plays
-    /// the enemies.
+    /// By row, whether the next action takes effect: not for a tagged boat, nor where a strategy
+    /// plays the enemies.
     pub counts: &'a mut [bool],
 }
 
@@ -160,8 +160,8 @@ impl Games {
         &self.slots[game].taught
     }
 
-    /// A game's values for a critic beyond the observations, row by row: current, and at the end of a
-    /// game that ended in the last step. Rows of boats without actions are left out.
+    /// A game's values for a critic beyond the observations, row by row: current, and at the end of
+    /// a game that ended in the last step. Rows of boats without actions are left out.
     #[must_use]
     pub fn truth(&self, game: usize) -> (&[f32], &[f32]) {
         let [now, last] = &self.slots[game].truth;

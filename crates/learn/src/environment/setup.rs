@@ -16,7 +16,8 @@ use thiserror::Error;
 pub enum Control {
     /// As orders.
     Direct,
-    /// As proposals to the helms of this strategy. Each of its roles needs a behaviour of kind `policy`.
+    /// As proposals to the helms of this strategy. Each of its roles needs a behaviour of kind
+    /// `policy`.
     Helm(Box<Strategy>),
 }
 
@@ -25,8 +26,8 @@ pub enum Control {
 pub struct Teacher {
     /// The strategy.
     pub strategy: Box<Strategy>,
-    /// With [`ActionSpace::Options`]: the option of each mode, by the mode's path. Other modes teach
-    /// nothing.
+    /// With [`ActionSpace::Options`]: the option of each mode, by the mode's path. Other modes
+    /// teach nothing.
     pub options: BTreeMap<String, usize>,
 }
 
@@ -58,13 +59,13 @@ pub struct Setup {
     pub decisions_per_step: u32,
     /// Maximum number of steps of an episode. None: until the game is over.
     pub steps_max: Option<u32>,
-    /// The number of different starts, which repeat. The slowest part of a new game, its sea and its
-    /// boats, is created once per start. None: every game has a new start.
+    /// The number of different starts, which repeat. The slowest part of a new game, its sea and
+    /// its boats, is created once per start. None: every game has a new start.
     pub starts: Option<u32>,
     /// The learning team. None: alternates with the seed.
     pub learner: Option<TeamId>,
-    /// The strategy of all but one boat of a policy's team; that boat alternates. None: policies control
-    /// all boats.
+    /// The strategy of all but one boat of a policy's team; that boat alternates. None: policies
+    /// control all boats.
     pub mates: Option<Box<Strategy>>,
     /// The enemies and their draw weights.
     pub opponents: Vec<(f64, Player)>,

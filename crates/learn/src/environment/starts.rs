@@ -32,9 +32,9 @@ impl Starts {
     /// The game with this number.
     pub(super) fn game(&self, setup: &Setup, number: u64) -> Result<Game, SetupError> {
         let watch = self.watches.as_ref().and_then(|watches| watches(number));
-        // Repeating starts must outnumber the parallel games: with 64 of each, every game always had
-        // the same start, and the policy learnt nothing. A repeated start takes 0.03 ms; a new one
-        // with a sea takes 0.41 ms.
+        // Repeating starts must outnumber the parallel games: with 64 of each, every game always
+        // had the same start, and the policy learnt nothing. A repeated start takes 0.03 ms; a new
+        // one with a sea takes 0.41 ms.
         let number = if self.made.is_empty() { number } else { number % self.made.len() as u64 };
         let seed = self.seed.wrapping_add(number);
         let place = self.made.get(number as usize);

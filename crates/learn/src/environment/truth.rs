@@ -1,10 +1,10 @@
 //! The truth about a game as input for a critic: values beyond the sensors of any boat, in the same
 //! frame for both teams.
 //!
-//! Positions and directions are relative to the centre of the field: ahead, as the boat's team faces
-//! the enemies' end, and to port. Speeds are in units of 3 m/s, wind in units of 10 m/s. Booleans
-//! are 0 or 1. The boat itself comes first, then its mates, then its enemies, each in scenario
-//! order.
+//! Positions and directions are relative to the centre of the field: ahead, as the boat's team
+//! faces the enemies' end, and to port. Speeds are in units of 3 m/s, wind in units of 10 m/s.
+//! Booleans are 0 or 1. The boat itself comes first, then its mates, then its enemies, each in
+//! scenario order.
 
 use messages::{Picture, VehicleTruth};
 use primitives::frame::{Body, Rotation, ned_from_body};

@@ -19,8 +19,8 @@ struct Shown {
     final_observations: Vec<f32>,
     rewards: Vec<f32>,
     counts: Vec<bool>,
-    /// A critic's inputs, rows × values, and those at the end of a game; empty if the critic receives
-    /// the observations.
+    /// A critic's inputs, rows × values, and those at the end of a game; empty if the critic
+    /// receives the observations.
     states: Vec<f32>,
     final_states: Vec<f32>,
 }
@@ -97,8 +97,8 @@ impl VectorEnvironment {
         &self.shown.observations
     }
 
-    /// The last observations before a new game began, rows × values. Valid only for games that ended in
-    /// the last step.
+    /// The last observations before a new game began, rows × values. Valid only for games that
+    /// ended in the last step.
     #[must_use]
     pub fn final_observations(&self) -> &[f32] {
         &self.shown.final_observations

@@ -39,8 +39,8 @@ struct Layer {
 }
 
 impl Perceptron {
-    /// Random orthogonal weights with a gain of √2, or `output_gain` in the last layer, and zero biases
-    /// (as for PPO in Andrychowicz and others, ICLR 2021).
+    /// Random orthogonal weights with a gain of √2, or `output_gain` in the last layer, and zero
+    /// biases (as for PPO in Andrychowicz and others, ICLR 2021).
     ///
     /// # Panics
     /// With fewer than two sizes, or a size of 0.
@@ -94,7 +94,8 @@ impl Perceptron {
         })
     }
 
-    /// Computes the output for every row of `input`, rows × values. Keeps the backward pass's data in
+    /// Computes the output for every row of `input`, rows × values. Keeps the backward pass's data
+    /// in
     /// `trace`, reusing its memory.
     pub fn forward(&self, input: &[f32], trace: &mut Trace) {
         let rows = input.len() / self.sizes[0];
@@ -109,14 +110,16 @@ impl Perceptron {
             let biases = &self.parameters[layer.biases..layer.end];
             after.clear();
             (0..rows).for_each(|_| after.extend_from_slice(biases));
-            // Rows are stored consecutively, so a column-major library sees every matrix transposed.
+            // Rows are stored consecutively, so a column-major library sees every matrix
+            // transposed.
             let weights = columns(&self.parameters[layer.weights..layer.biases], layer.outputs, layer.inputs);
-            // For networks of a few hundred units this is faster than JAX, torch, burn and candle, each
-            // measured for one PPO update.
+            // For networks of a few hundred units this is faster than JAX, torch, burn and candle,
+            // each measured for one PPO update.
             columns_mut(after, layer.outputs, rows).gemm(1.0, &weights, &columns(before, layer.inputs, rows), 1.0);
             if i < last {
-                // The rational approximation from the model evaluator: libm's tanh would take most of the
-                // time, and a policy must compute the same values on the boat as in training.
+                // The rational approximation from the model evaluator: libm's tanh would take most
+                // of the time, and a policy must compute the same values on the boat as in
+                // training.
                 after.iter_mut().for_each(|number| *number = tanh(*number));
             }
         }
@@ -142,8 +145,8 @@ impl Perceptron {
                 biases.iter_mut().zip(row).for_each(|(sum, number)| *sum += number);
             }
             let by = columns(by_output, layer.outputs, rows);
-            // A copy, not a strided view: nalgebra 0.35's product of such a view with a matrix of up to
-            // five rows wrote beyond the end of the result.
+            // A copy, not a strided view: nalgebra 0.35's product of such a view with a matrix of
+            // up to five rows wrote beyond the end of the result.
             let turned = transposed(before, layer.inputs);
             columns_mut(weights, layer.outputs, layer.inputs).gemm(
                 1.0,

@@ -35,8 +35,8 @@ impl DqnLearner {
         DqnLearner { target: network.clone(), network, optimiser, steps: 0 }
     }
 
-    /// Takes one optimiser step on transitions drawn from a buffer, in the calling thread pool. Returns
-    /// the loss.
+    /// Takes one optimiser step on transitions drawn from a buffer, in the calling thread pool.
+    /// Returns the loss.
     pub fn update(&mut self, replay: &Replay<u16>, settings: &Dqn, stream: &mut Stream) -> f32 {
         self.step(&replay.draw(settings.minibatch, stream), settings)
     }
@@ -52,8 +52,8 @@ impl DqnLearner {
         loss
     }
 
-    /// The gradient with respect to the network's parameters, and the loss: the mean Huber loss, with a
-    /// limit of 1, of the temporal-difference errors.
+    /// The gradient with respect to the network's parameters, and the loss: the mean Huber loss,
+    /// with a limit of 1, of the temporal-difference errors.
     #[must_use]
     pub fn gradient(&self, minibatch: &Minibatch<u16>, settings: &Dqn) -> (Vec<f32>, f32) {
         let size = self.network.sizes()[0];

@@ -16,8 +16,8 @@ pub struct Transition<'a, A> {
     pub next_observation: &'a [f32],
     /// Whether the step ended the game, so that no further reward follows.
     pub over: bool,
-    /// Whether the boat followed the action. Otherwise only values are learnt from the transition: a
-    /// tagged boat is steered home.
+    /// Whether the boat followed the action. Otherwise only values are learnt from the transition:
+    /// a tagged boat is steered home.
     pub counts: bool,
 }
 
@@ -61,8 +61,8 @@ impl<A: Copy> Replay<A> {
     /// If either is 0.
     #[must_use]
     pub fn new(size: usize, capacity: usize) -> Replay<A> {
-        // Part of a training's saved state, about 100 MB by default. Refilling it by playing would need
-        // the games' earlier state.
+        // Part of a training's saved state, about 100 MB by default. Refilling it by playing would
+        // need the games' earlier state.
         assert!(size > 0 && capacity > 0, "{size}, {capacity}");
         Replay {
             size,

@@ -21,7 +21,8 @@ pub type Numbers = [f32; NUMBERS];
 pub struct Td3Learner {
     /// From an observation to numbers whose hyperbolic tangents are the action.
     pub actor: Perceptron,
-    /// From an observation and an action to the value of the rest of the episode, in scaled rewards.
+    /// From an observation and an action to the value of the rest of the episode, in scaled
+    /// rewards.
     pub critics: [Perceptron; 2],
     /// The target policy, which follows the policy slowly.
     pub target_actor: Perceptron,
@@ -38,8 +39,8 @@ pub struct Td3Learner {
 pub struct Td3Losses {
     /// Half the mean squared error, averaged over both critics.
     pub critic: f32,
-    /// The negative mean value of the policy's actions according to the first critic. None if the step
-    /// did not update the policy.
+    /// The negative mean value of the policy's actions according to the first critic. None if the
+    /// step did not update the policy.
     pub actor: Option<f32>,
 }
 
@@ -75,7 +76,8 @@ impl Td3Learner {
         self.step(&minibatch, &noise, settings)
     }
 
-    /// Takes one optimiser step on these transitions, with this noise on the target policy's actions.
+    /// Takes one optimiser step on these transitions, with this noise on the target policy's
+    /// actions.
     ///
     /// # Panics
     /// If the numbers of noise values and transitions differ.
@@ -102,8 +104,8 @@ impl Td3Learner {
         Td3Losses { critic, actor: Some(actor) }
     }
 
-    /// The target value of each step: its reward plus the smaller of the target critics' values for a
-    /// noisy action of the target policy.
+    /// The target value of each step: its reward plus the smaller of the target critics' values for
+    /// a noisy action of the target policy.
     fn targets(&self, minibatch: &Minibatch<Numbers>, noise: &[Numbers], settings: &Td3) -> Vec<f32> {
         let size = self.actor.sizes()[0];
         let of_shard = |(first, rows): (usize, &[f32])| -> Vec<f32> {
@@ -134,7 +136,8 @@ impl Td3Learner {
         shards.concat()
     }
 
-    /// Half a critic's mean squared error, and its gradient with respect to the critic's parameters.
+    /// Half a critic's mean squared error, and its gradient with respect to the critic's
+    /// parameters.
     fn critic_slope(&self, which: usize, minibatch: &Minibatch<Numbers>, targets: &[f32]) -> Slope {
         let (critic, size) = (&self.critics[which], self.actor.sizes()[0]);
         let per_row = 1.0 / minibatch.len() as f32;
@@ -157,8 +160,9 @@ impl Td3Learner {
         Slope::sum(shards.map(of_shard).collect::<Vec<Slope>>())
     }
 
-    /// The negative mean value of the policy's actions according to the first critic, over transitions
-    /// whose action the boat followed, and its gradient with respect to the policy's parameters.
+    /// The negative mean value of the policy's actions according to the first critic, over
+    /// transitions whose action the boat followed, and its gradient with respect to the policy's
+    /// parameters.
     #[must_use]
     pub fn actor_gradient(&self, minibatch: &Minibatch<Numbers>) -> (Vec<f32>, f32) {
         let (critic, size) = (&self.critics[0], self.actor.sizes()[0]);

@@ -72,8 +72,8 @@ pub struct Batch<'a> {
     pub returns: &'a [f32],
     /// The learning objective.
     pub lesson: Lesson,
-    /// Whether the boat followed the action. From other samples only the critic learns: it must know
-    /// the value of being tagged.
+    /// Whether the boat followed the action. From other samples only the critic learns: it must
+    /// know the value of being tagged.
     pub counts: &'a [bool],
 }
 
@@ -82,8 +82,8 @@ pub struct Batch<'a> {
 pub enum Lesson {
     /// Repeat what turned out better than expected, within limits (PPO).
     Reinforcement,
-    /// Repeat the sampled actions regardless of their results: behaviour cloning with a cross-entropy
-    /// loss.
+    /// Repeat the sampled actions regardless of their results: behaviour cloning with a
+    /// cross-entropy loss.
     Imitation,
 }
 
@@ -200,10 +200,10 @@ impl ActorCritic {
         let of_rows = shard.iter().zip(trace.output().chunks_exact(actions)).zip(by_logits.chunks_exact_mut(actions));
         for ((i, logits), by) in of_rows {
             let i = *i as usize;
-            // A tagged boat's actions have no effect; policies that learnt from them drove out of the
-            // field. The critic does learn from these samples: before it did, it misjudged being
-            // tagged, and policies that won 16 of 20 games against Pav01 won none after another half a
-            // million samples.
+            // A tagged boat's actions have no effect; policies that learnt from them drove out of
+            // the field. The critic does learn from these samples: before it did, it misjudged
+            // being tagged, and policies that won 16 of 20 games against Pav01 won none after
+            // another half a million samples.
             if !batch.counts[i] {
                 continue;
             }
@@ -212,8 +212,8 @@ impl ActorCritic {
             let (action, was) = (usize::from(batch.actions[i]), batch.log_probabilities[i]);
             match batch.lesson {
                 Lesson::Reinforcement => policy_gradient(&logs, action, (was, advantage), settings, by, &mut sums),
-                // Without imitation, a million samples did not reach the level of a hundred thousand
-                // with it.
+                // Without imitation, a million samples did not reach the level of a hundred
+                // thousand with it.
                 Lesson::Imitation => imitation_gradient(&logs, action, by, &mut sums),
             }
             by.iter_mut().for_each(|number| *number *= per_counted);

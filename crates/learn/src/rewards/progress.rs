@@ -31,8 +31,8 @@ pub struct BoatProgress {
     pub carrying: bool,
     /// Distance from the nearest enemy flag, in field widths.
     pub from_flag: f64,
-    /// Distance from the nearest flag of its own, in field widths. Under most rules flags are brought
-    /// there and tagged boats are untagged there.
+    /// Distance from the nearest flag of its own, in field widths. Under most rules flags are
+    /// brought there and tagged boats are untagged there.
     pub from_home: f64,
     /// Its position among the others, if requested.
     pub among: Among,
@@ -73,11 +73,11 @@ pub fn progress(field: &Field, boats: &[Placed], among_others: bool, out: &mut [
 
 /// The places from which flags and mates are protected.
 struct Posts {
-    /// By team, the place that guards its flag; of several flags, the one nearest to an untagged enemy.
-    /// None without untagged enemies.
+    /// By team, the place that guards its flag; of several flags, the one nearest to an untagged
+    /// enemy. None without untagged enemies.
     flag: [Option<Ned>; 2],
-    /// Untagged boats on the enemies' side: index, distance of the nearest untagged enemy in metres,
-    /// and the place that shields the boat from that enemy.
+    /// Untagged boats on the enemies' side: index, distance of the nearest untagged enemy in
+    /// metres, and the place that shields the boat from that enemy.
     mates: Vec<(usize, f64, Ned)>,
 }
 
@@ -195,8 +195,8 @@ mod tests {
 
     #[test]
     fn a_flag_is_guarded_from_an_eighth_of_the_field_before_it_towards_the_nearest_enemy() {
-        // The enemy nearest to the flag at (20, 40) is straight ahead, so the place is (40, 40), or the
-        // enemy's position.
+        // The enemy nearest to the flag at (20, 40) is straight ahead, so the place is (40, 40), or
+        // the enemy's position.
         for (enemy_along_m, boat_along_m, want) in
             [(90.0, 40.0, 1.0), (90.0, 50.0, 0.75), (90.0, 85.0, 0.0), (30.0, 40.0, 0.75), (30.0, 30.0, 1.0)]
         {

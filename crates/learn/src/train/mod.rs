@@ -135,9 +135,9 @@ impl Trainer {
         Ok(Trainer { training, setups, judges, threads, pool, environment, watches, updates_per_epoch, state })
     }
 
-    /// Adds watches for all episodes from now on except those of evaluations. Numbers count up through a
-    /// training as if games were played to the end; where games end early, a number may recur with
-    /// another seed. Watches do not affect learning.
+    /// Adds watches for all episodes from now on except those of evaluations. Numbers count up
+    /// through a training as if games were played to the end; where games end early, a number may
+    /// recur with another seed. Watches do not affect learning.
     ///
     /// # Errors
     /// [`SetupError::NoStart`] if a game cannot begin.
@@ -295,7 +295,8 @@ impl Trainer {
         Ok((Some(evaluated), is_best))
     }
 
-    /// Starts the next stage or restarts all games if due; the state of the games is then irrelevant.
+    /// Starts the next stage or restarts all games if due; the state of the games is then
+    /// irrelevant.
     fn begin_anew(&mut self, evaluated: Option<&Evaluated>) -> Result<bool, SetupError> {
         let state = &mut self.state;
         let stage: &Stage = &self.training.stage[state.stage];
@@ -304,8 +305,8 @@ impl Trainer {
         if !is_over && state.updates_of_epoch < self.updates_per_epoch[state.stage] {
             return Ok(false);
         }
-        // Elsewhere, resuming would require the state of every helm in every game. After a restart of
-        // all games, the state is only the learner and the opponents.
+        // Elsewhere, resuming would require the state of every helm in every game. After a restart
+        // of all games, the state is only the learner and the opponents.
         (state.epoch, state.updates_of_epoch) = (state.epoch + 1, 0);
         if is_over {
             (state.stage, state.samples_of_stage) = (state.stage + 1, 0);

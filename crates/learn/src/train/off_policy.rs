@@ -1,5 +1,5 @@
-//! An update of an off-policy algorithm: exploring games fill the replay buffer, then the optimisers
-//! take steps on samples drawn from it.
+//! An update of an off-policy algorithm: exploring games fill the replay buffer, then the
+//! optimisers take steps on samples drawn from it.
 
 use super::learnt::Learnt;
 use super::{Update, outputs};
@@ -36,15 +36,15 @@ impl OffPolicy<Td3Learner, Td3, Numbers> {
         let OffPolicy { learner, settings, replay } = self;
         let actor = &learner.actor;
         let choose = |observations: &[f32], counts: &[bool], known: usize| -> Vec<Numbers> {
-            // Entries of the 2023 games used TD3 and double DQN; with both, their paper's results can be
-            // reproduced.
+            // Entries of the 2023 games used TD3 and double DQN; with both, their paper's results
+            // can be reproduced.
             if is_new && known < settings.warm_up {
                 return counts.iter().map(|_| td3::drawn(stream)).collect();
             }
             let outputs = pool.install(|| outputs(actor, observations));
             let explored = |(output, counts): (&[f32], &bool)| {
-                // The action of a boat that does not follow it has no effect: critics learn this for
-                // every action.
+                // The action of a boat that does not follow it has no effect: critics learn this
+                // for every action.
                 if *counts {
                     td3::explored(td3::action(output), settings.exploration, stream)
                 } else {
@@ -89,8 +89,8 @@ impl OffPolicy<DqnLearner, Dqn, u16> {
         let choose = |observations: &[f32], counts: &[bool], _: usize| -> Vec<u16> {
             let outputs = pool.install(|| outputs(network, observations));
             let explored = |(values, counts): (&[f32], &bool)| {
-                // The action of a boat that does not follow it has no effect: the network learns this
-                // for every action.
+                // The action of a boat that does not follow it has no effect: the network learns
+                // this for every action.
                 dqn::explored(values, if *counts { epsilon } else { 1.0 }, stream) as u16
             };
             outputs.chunks_exact(outputs.len() / counts.len()).zip(counts).map(explored).collect()

@@ -120,8 +120,8 @@ impl State {
         if version != primitives::VERSION {
             return Err(StateError::Version { found: version });
         }
-        // A flipped bit in a weight is a valid number. The checksum keeps it from changing the policy
-        // silently.
+        // A flipped bit in a weight is a valid number. The checksum keeps it from changing the
+        // policy silently.
         let (bytes, sum) = bytes.split_last_chunk().ok_or(StateError::Damaged)?;
         if xxh3_64(bytes) != u64::from_le_bytes(*sum) {
             return Err(StateError::Damaged);
