@@ -52,12 +52,12 @@ pub struct Network {
 }
 
 impl Network {
-    /// Reads an ONNX file. A first dimension of 1 or without a size is the batch dimension, of which
-    /// one row is evaluated.
+    /// Reads an ONNX file. A first dimension of 1 or without a size is the batch dimension, of
+    /// which one row is evaluated.
     ///
     /// # Errors
-    /// If the bytes are not an ONNX file, exceed the limits on memory or time, or use an unsupported
-    /// shape or operator; or if weights are non-finite or outside the file.
+    /// If the bytes are not an ONNX file, exceed the limits on memory or time, or use an
+    /// unsupported shape or operator; or if weights are non-finite or outside the file.
     pub fn read(bytes: &[u8]) -> Result<Network, NetworkError> {
         let (plan, values) = reader::read(bytes)?;
         Ok(Network { plan: Arc::new(plan), values })

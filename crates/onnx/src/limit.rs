@@ -79,7 +79,8 @@ struct Fields<'a> {
 }
 
 impl Fields<'_> {
-    /// Walks through a message up to `end`. Messages, and so the recursion, nest only a few levels deep.
+    /// Walks through a message up to `end`. Messages, and so the recursion, nest only a few levels
+    /// deep.
     fn walk(&mut self, kind: Kind, end: usize) -> Result<(), NetworkError> {
         while self.at < end {
             let begin = self.at;

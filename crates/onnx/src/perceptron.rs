@@ -84,8 +84,8 @@ impl Perceptron {
     /// This perceptron as an ONNX file; always the same bytes for the same perceptron.
     ///
     /// # Errors
-    /// If sizes do not match, a number is non-finite, or [`Network::read`] would reject the file for
-    /// another reason.
+    /// If sizes do not match, a number is non-finite, or [`Network::read`] would reject the file
+    /// for another reason.
     pub fn onnx(&self) -> Result<Vec<u8>, NetworkError> {
         let first = self.hidden.first().or_else(|| self.heads.first().map(|head| &head.layer));
         let inputs = first.map_or(0, |layer| layer.inputs);

@@ -17,6 +17,7 @@ const TO_CONNECT: &str = "tcp://HOST:PORT, udp://HOST:PORT, udp-listen://HOST:PO
 const TO_LISTEN: &str =
     "tcp://HOST:PORT, udp://HOST:PORT, serial:///dev/DEVICE?baud=38400, pty, pty:///path/of/symlink";
 
+/// The address of a link.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LinkAddress {
     /// A TCP port.
@@ -25,6 +26,7 @@ pub enum LinkAddress {
     Udp(Side, HostPort),
     /// A local UDP port for its first sender only: boats send to their ground station's port.
     UdpListen(HostPort),
+    /// A serial line, 8N1.
     Serial {
         /// The device.
         path: PathBuf,

@@ -159,7 +159,8 @@ fn read<M: Message + Serialize + DeserializeOwned>(bytes: &[u8]) -> Option<M> {
 }
 
 impl Readers {
-    /// Checks that the game advances with finite positions after any message; then restores its state.
+    /// Checks that the game advances with finite positions after any message; then restores its
+    /// state.
     fn go_on(&mut self) {
         self.contest.advance();
         let frame = self.contest.frame(&mut EventCursor::default());

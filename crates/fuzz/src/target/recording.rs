@@ -186,7 +186,8 @@ fn records(mut bytes: &[u8]) -> Vec<Record> {
     while let Some((opcode, length, rest)) = prefix(bytes) {
         let Some((body, rest)) = rest.split_at_checked(length) else { break };
         match opcode {
-            // Skip two times, a size, a checksum, the empty compression name, and the content's length.
+            // Skip two times, a size, a checksum, the empty compression name, and the content's
+            // length.
             CHUNK => records.extend(self::records(body.get(8 + 8 + 8 + 4 + 4 + 8..).unwrap_or_default())),
             DATA_END => break,
             _ => records.push((opcode, body.to_vec())),

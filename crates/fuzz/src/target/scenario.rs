@@ -1,5 +1,5 @@
-//! Scenario files of every kind (TOML): a line with the folder of the kind, then the file. Bases and
-//! references are files in the tree.
+//! Scenario files of every kind (TOML): a line with the folder of the kind, then the file. Bases
+//! and references are files in the tree.
 
 use super::{Target, check_shown, texts};
 use crate::played::scenarios;

@@ -1,7 +1,7 @@
 //! Access control of the page: accepted host names and origins, and the tokens for actions.
 //!
-//! Another web page that is open on this machine can send requests here too: to the address, or to a
-//! name that resolves to it. `Host` and `Origin` reveal that, because browsers set them and pages
+//! Another web page that is open on this machine can send requests here too: to the address, or to
+//! a name that resolves to it. `Host` and `Origin` reveal that, because browsers set them and pages
 //! cannot.
 
 use super::view::Access;
@@ -48,7 +48,8 @@ impl AccessControl {
 
     fn is_own(&self, name: &str) -> bool {
         match name.parse::<IpAddr>() {
-            // If the server listens on all addresses, an address is no name that an attacker controls.
+            // If the server listens on all addresses, an address is no name that an attacker
+            // controls.
             Ok(ip) => ip.is_loopback() || ip == self.bound.ip() || self.bound.ip().is_unspecified(),
             Err(_) => name == "localhost",
         }
@@ -115,8 +116,8 @@ mod tests {
         AccessControl::new(bound.parse().expect("an address"), &hosts, tokens)
     }
 
-    /// The cases of one check in `access_cases.csv`: its other two columns, where `none` means absent,
-    /// and the expected result.
+    /// The cases of one check in `access_cases.csv`: its other two columns, where `none` means
+    /// absent, and the expected result.
     fn cases(check: &str) -> Vec<([Option<String>; 2], bool)> {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/src/page/access_cases.csv");
         let text = std::fs::read_to_string(file).expect("the cases");

@@ -73,7 +73,9 @@ impl Background {
                 return Ok(Background { json, image: None });
             }
             _ => {
-                return Err(bad("has an unknown format, expected PNG or JPEG with a world file, or GeoJSON".to_owned()));
+                return Err(
+                    bad("has an unknown format, expected PNG or JPEG with a world file, or GeoJSON".to_owned()),
+                );
             }
         };
         let size = imagesize::blob_size(&bytes).map_err(|e| bad(format!("is damaged: {e}")))?;

@@ -159,7 +159,8 @@ impl<'a> EventMessage<'a> {
     }
 }
 
-/// A time in seconds, rounded: 120 instead of 120.00000000000001, the result of multiplying by 1e-9.
+/// A time in seconds, rounded: 120 instead of 120.00000000000001, the result of multiplying by
+/// 1e-9.
 pub(super) fn seconds(time: SimTime) -> f64 {
     time.0 as f64 / 1e9
 }

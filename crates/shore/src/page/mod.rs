@@ -47,8 +47,8 @@ pub struct PageSettings {
     pub listen: SocketAddr,
     /// The token that pages need for actions. `None` permits every page.
     pub token: Option<String>,
-    /// Additional host names of the server. They require a token, because their users come from other
-    /// machines.
+    /// Additional host names of the server. They require a token, because their users come from
+    /// other machines.
     pub hosts: Vec<String>,
     /// The background drawn below the field.
     pub background: Option<Background>,

@@ -12,7 +12,8 @@ pub trait Report: Send + Sync {
     /// The report's own file at this path, such as `/report.json`, if any. May take some time.
     fn file(&self, path: &str) -> Option<Vec<u8>>;
 
-    /// The view of a game. `name` may be any text; for an unknown game the view shows why there is none.
+    /// The view of a game. `name` may be any text; for an unknown game the view shows why there is
+    /// none.
     fn game(&self, name: &str) -> Shown;
 }
 

@@ -102,6 +102,7 @@ impl Helm {
 /// The state of a helm at a decision.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct HelmAnswer {
+    /// The report, if any.
     pub report: Option<HelmReport>,
     /// Why there is no report.
     pub reason: Option<String>,

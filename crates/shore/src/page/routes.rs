@@ -91,9 +91,9 @@ pub(super) async fn serve(
         report,
         background: background.map(Arc::new),
         viewers: Connections::new(PAGES_MAX),
-        // Operators have separate slots: an E-stop must not queue behind observers. With too many pages,
-        // none is refused. The idlest one is displaced and reconnects after half a minute, so that one
-        // page too many does not make all of them reconnect.
+        // Operators have separate slots: an E-stop must not queue behind observers. With too many
+        // pages, none is refused. The idlest one is displaced and reconnects after half a minute,
+        // so that one page too many does not make all of them reconnect.
         operators: Connections::new(OPERATORS_MAX),
     };
     let site = Router::new()
@@ -114,7 +114,8 @@ pub(super) async fn serve(
                 tokio::select! {
                     // An error ends only one browser's connection.
                     ended = served => drop(ended),
-                    // Another connection needs the slot; an error means that the slot is free again.
+                    // Another connection needs the slot; an error means that the slot is free
+                    // again.
                     Ok(()) = closed => {}
                 }
             });

@@ -8,10 +8,11 @@ use std::time::Instant;
 
 /// Maximum number of frames sent and not yet drawn.
 const UNDRAWN_MAX: u8 = 2;
-/// After this much text, bytes, a ping checks that it has arrived. The page acknowledges drawn frames,
-/// but not text.
+/// After this much text, bytes, a ping checks that it has arrived. The page acknowledges drawn
+/// frames, but not text.
 const UNCONFIRMED_MAX: usize = 4096;
-/// Maximum number of queued refusals. A page that sends bad requests faster than it reads misses some.
+/// Maximum number of queued refusals. A page that sends bad requests faster than it reads misses
+/// some.
 const REFUSALS_MAX: usize = 8;
 
 /// The session with one page.
@@ -87,8 +88,8 @@ impl PageSession {
         let (made, back) = self.pings;
         match self.undrawn < UNDRAWN_MAX {
             false => Budget::None,
-            // Messages that can wait (helms) wait for space on the connection: an E-stop must not queue behind
-            // pictures.
+            // Messages that can wait (helms) wait for space on the connection: an E-stop must not
+            // queue behind pictures.
             true if back < made || self.unconfirmed >= UNCONFIRMED_MAX => Budget::Frames,
             true => Budget::All,
         }

@@ -135,9 +135,9 @@ impl Socket {
         }
     }
 
-    /// Sends a message. While a page is slow to accept it, no other messages queue up; the next one is
-    /// created afterwards. Messages from the page are still received, because one may be an E-stop. A
-    /// connection that accepts nothing at all times out.
+    /// Sends a message. While a page is slow to accept it, no other messages queue up; the next one
+    /// is created afterwards. Messages from the page are still received, because one may be an
+    /// E-stop. A connection that accepts nothing at all times out.
     async fn send(&mut self, message: Message, session: &mut PageSession) -> Result<(), End> {
         // It is sent completely, because a partial message cannot be withdrawn.
         let mut sending = pin!(self.sink.send(message));

@@ -76,7 +76,8 @@ impl Client {
         }
     }
 
-    /// The next text of this kind that passes `is_good`. Skips everything else and acknowledges frames.
+    /// The next text of this kind that passes `is_good`. Skips everything else and acknowledges
+    /// frames.
     pub(crate) fn until(&mut self, kind: &str, is_good: impl Fn(&Value) -> bool) -> Value {
         let end = now() + LIMIT;
         let mut last = Value::Null;

@@ -73,8 +73,8 @@ impl EventLog {
         self.trim();
     }
 
-    /// The unread events, whether they replace all earlier ones, and the reader's new position. `None`
-    /// if there is nothing to read.
+    /// The unread events, whether they replace all earlier ones, and the reader's new position.
+    /// `None` if there is nothing to read.
     pub(super) fn unread(
         &self,
         cursor: EventCursor,

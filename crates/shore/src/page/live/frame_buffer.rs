@@ -40,8 +40,8 @@ impl FrameBuffer {
         while self.past.front().is_some_and(|(first, _)| (at - *first).as_s() > TRAIL_S) {
             self.past.pop_front();
         }
-        // The sim's own bytes: the page decodes CDR by the `.msg` texts in the first message, so no second
-        // encoding can diverge.
+        // The sim's own bytes: the page decodes CDR by the `.msg` texts in the first message, so no
+        // second encoding can diverge.
         (self.stamp, self.is_over, self.newest) = (frame.stamp, frame.over, marked(1, cdr));
         (self.count, self.came) = (self.count + 1, Some(now));
         self.measure(now);

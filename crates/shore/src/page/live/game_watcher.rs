@@ -31,8 +31,8 @@ const ATTEMPTS: u64 = 20;
 const REQUESTS: usize = 16;
 /// Timeout of a query.
 const ANSWER: Duration = Duration::from_secs(2);
-/// How long a sim's token may be missing, at first or after a cut: a short interruption does not mean
-/// that the sim has gone.
+/// How long a sim's token may be missing, at first or after a cut: a short interruption does not
+/// mean that the sim has gone.
 const PATIENCE: Patience =
     Patience { silence: Duration::from_secs(5), missing: Duration::from_secs(1), unheard: Duration::from_secs(1) };
 /// Minimum interval between estimates, however fast the game is.

@@ -66,9 +66,9 @@ enum Command {
 }
 
 impl LiveView {
-    /// Searches for a game at `place` (the named one, or the only one running) until dropped. `tell`
-    /// receives what is missing, whenever that changes, and refusals from the sim. `read_mission` parses
-    /// operators' mission files.
+    /// Searches for a game at `place` (the named one, or the only one running) until dropped.
+    /// `tell` receives what is missing, whenever that changes, and refusals from the sim.
+    /// `read_mission` parses operators' mission files.
     ///
     /// # Errors
     /// If the system cannot start a thread.

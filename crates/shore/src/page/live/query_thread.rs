@@ -52,8 +52,8 @@ struct Turn {
 }
 
 impl QuerySchedule {
-    /// The helm to query now, if any: the one that has waited longest. Selected helms precede those of
-    /// which only the mode is wanted.
+    /// The helm to query now, if any: the one that has waited longest. Selected helms precede those
+    /// of which only the mode is wanted.
     fn next(&mut self, wanted: &BTreeMap<VehicleId, bool>, listed: &[VehicleId], now: Instant) -> Option<Turn> {
         self.asked.retain(|vehicle, _| wanted.contains_key(vehicle) || listed.contains(vehicle));
         if self.rest.is_some_and(|rest| now < rest) {
@@ -81,8 +81,8 @@ impl QuerySchedule {
         longest.map(|vehicle| Turn { vehicle: *vehicle, functions: false, is_listed: true })
     }
 
-    /// Records a query from `start` to `end`. A lockstep game waits while a mind answers, and one process
-    /// may run all minds, so after a long reply all rest. A paused game waits for no mind.
+    /// Records a query from `start` to `end`. A lockstep game waits while a mind answers, and one
+    /// process may run all minds, so after a long reply all rest. A paused game waits for no mind.
     fn update(&mut self, turn: Turn, start: Instant, end: Instant, is_going: bool) {
         self.asked.insert(turn.vehicle, (start, turn.functions));
         let share = if turn.is_listed { LIST_SHARE } else { SHARE };

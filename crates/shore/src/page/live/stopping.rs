@@ -1,6 +1,6 @@
-//! E-stops and halts from pages. An E-stop goes over the game's network and directly to every gateway
-//! with a known control port, all at once (`bus::stop`). It never waits for other requests from
-//! pages.
+//! E-stops and halts from pages. An E-stop goes over the game's network and directly to every
+//! gateway with a known control port, all at once (`bus::stop`). It never waits for other requests
+//! from pages.
 
 use super::SharedState;
 use super::live_state::LiveState;

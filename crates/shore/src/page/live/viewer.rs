@@ -19,7 +19,8 @@ pub(super) struct PageViewer {
     shared: Arc<SharedState>,
     access: Access,
     page: u64,
-    /// The selected boat, and whether utilities are wanted. Kept for the next game if it has that boat.
+    /// The selected boat, and whether utilities are wanted. Kept for the next game if it has that
+    /// boat.
     selection: Option<(String, bool)>,
     /// Whether the modes of all boats are wanted.
     wants_modes: bool,
@@ -52,8 +53,8 @@ impl PageViewer {
         PageViewer { shared, access, page, selection: None, wants_modes: false, sent: Sent::default() }
     }
 
-    /// Forwards a command to this game. The state stays locked meanwhile, so that the next game cannot
-    /// receive it.
+    /// Forwards a command to this game. The state stays locked meanwhile, so that the next game
+    /// cannot receive it.
     fn control(&self, state: &LiveState, control: Control) -> Result<(), String> {
         if control.stops() {
             return stopping::stop(&self.shared, state, control);

@@ -1,5 +1,5 @@
-//! A thread that computes replay data missing from frames: helm reports, modes, curves. It may take a
-//! while.
+//! A thread that computes replay data missing from frames: helm reports, modes, curves. It may take
+//! a while.
 
 use super::curves::Plotter;
 use crate::page::message::{PageMessage, seconds};

@@ -35,8 +35,8 @@ pub(super) struct PageViewer {
     selected: Option<(VehicleId, bool)>,
     requested: Option<(HelmRequest, Instant)>,
     estimated: Option<(usize, Instant)>,
-    /// Whether the modes of all boats are wanted; the decision for which they were last requested, and
-    /// when.
+    /// Whether the modes of all boats are wanted; the decision for which they were last requested,
+    /// and when.
     wants_modes: bool,
     requested_modes: Option<(u64, Instant)>,
     /// The real boats, each with the status last sent.
