@@ -1,4 +1,4 @@
-"""What is wrong is said in full, as a ValueError, and nothing is played."""
+"""Invalid input raises a ValueError with all faults, and nothing is played."""
 
 from pathlib import Path
 
@@ -57,7 +57,7 @@ def test_everything_that_is_wrong_with_a_file_is_told(tmp_path: Path) -> None:
         (np.zeros(3, dtype=int), r"shape \(3,\), expected one for each of 4 boats"),
         (np.full(4, 17), "the action of row 0 is 17, expected 0 to 16"),
         (np.array([0, 0, -1, 0]), "the action of row 2 is -1, expected 0 to 16"),
-        (np.zeros(4), "of the type float64, expected integers"),
+        (np.zeros(4), "have the type float64, expected integers"),
     ],
 )
 def test_actions_are_refused_and_nothing_is_played(actions: np.ndarray, message: str) -> None:
@@ -102,7 +102,7 @@ def test_a_game_that_is_over_has_to_be_reset() -> None:
         environment.step([0, 0])
     agents = squall.parallel_env(episode_max_s=0.5)
     agents.reset()
-    with pytest.raises(ValueError, match=r"actions has nothing for \['blue_2', 'red_1', 'red_2'\]"):
+    with pytest.raises(ValueError, match=r"actions has no entries for \['blue_2', 'red_1', 'red_2'\]"):
         agents.step({"blue_1": 0})
     agents.step(dict.fromkeys(agents.agents, 0))
     assert agents.agents == []

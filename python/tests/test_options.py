@@ -1,4 +1,4 @@
-"""Options: what a policy chooses is what a boat is at, and a strategy says how that is done."""
+"""Options: a policy chooses what a boat does, and a strategy defines how."""
 
 import gymnasium
 import numpy as np
@@ -35,7 +35,7 @@ def test_agents_choose_among_options() -> None:
 
 
 def along_after(plan: str) -> float:
-    """How far from the own end a boat is after half a minute, m."""
+    """A boat's distance from its own end after half a minute, m."""
     environment = squall.BoatEnv(game="pyquaticus_2v2", seed=4, team="blue", **OPTIONS)
     environment.reset()
     for _ in range(60):
