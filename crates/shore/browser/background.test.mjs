@@ -1,4 +1,4 @@
-// An image or a shoreline of the site, drawn below the field.
+// The background of the chart: an image or a shoreline of the site.
 
 import assert from 'node:assert/strict';
 import { copyFileSync, readdirSync, writeFileSync } from 'node:fs';
@@ -12,11 +12,11 @@ before(async () => { browser = await openBrowser(); });
 after(() => browser.close());
 
 const GAME = scenario('games/pav01_vs_pav01.toml');
-/** What the browser advises while a test looks at single pixels. */
+/** The browser's advice when a test reads single pixels. */
 const allows = /willReadFrequently/;
 const live = async (t, chart) => new Program(t, 'run', GAME, '--view', '--speed', '2x', '--no-record', '--listen', '127.0.0.1:0', '--chart', chart).url();
 
-/** The colour of the field's layer at a place, m: red, green, blue, opacity. */
+/** The colour of the field's layer at a position, m: red, green, blue, opacity. */
 const colour = (sight, x, y) => sight.get(([x, y]) => {
   const canvas = document.getElementById('layer-field');
   const ratio = canvas.width / canvas.clientWidth;

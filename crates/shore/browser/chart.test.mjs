@@ -1,4 +1,4 @@
-// The chart: selecting brings a boat into it, keys zoom at it, ranges are measured, and it has coordinates, a legend and the dark.
+// The chart: selecting a boat moves the chart to it, keys zoom at it, ranges are measured, and there are coordinates, a legend and dark mode.
 
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
@@ -8,12 +8,12 @@ let browser;
 before(async () => { browser = await openBrowser(); });
 after(() => browser.close());
 
-/** Metres to a degree of latitude, mean of the ellipsoid WGS 84. */
+/** Metres per degree of latitude, mean of the ellipsoid WGS 84. */
 const DEGREE_M = 111_132.95;
-/** How far coordinates may be off, m: places are written to a decimetre, degrees to a metre. */
+/** Tolerance of coordinates, m: positions are written to a decimetre, degrees to a metre. */
 const WRITTEN_M = 1.2;
 
-/** A game that stands at its beginning. */
+/** A game paused at its start. */
 async function paused(t, more = {}) {
   const run = new Program(t, 'run', scenario('games/pav01_vs_pav01.toml'), '--view', '--speed', '5x', '--no-record', '--listen', '127.0.0.1:0');
   const sight = await Sight.open(t, browser, await run.url(), { size: { width: 1400, height: 900 }, ...more });
@@ -24,7 +24,7 @@ async function paused(t, more = {}) {
   return sight;
 }
 
-/** Where a boat is on the chart, px from its middle, as the page's view has it. */
+/** A boat's position on the chart, px from its centre, according to the page's view. */
 const OFF = (name) => {
   const { x, y } = squall.frame.boats.find((boat) => boat.name === name);
   return [(x - squall.view.x) * squall.view.scale, (squall.view.y - y) * squall.view.scale];

@@ -1,4 +1,4 @@
-// Pages and servers that come and go.
+// Pages and servers that end and restart.
 
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
@@ -8,10 +8,10 @@ let browser;
 before(async () => { browser = await openBrowser(); });
 after(() => browser.close());
 
-/** A connection on which nothing comes for so long is given up, s. */
+/** A connection that is silent for this long is given up, s. */
 const SILENCE_S = 4;
 
-/** Lets a test cut the newest connection as a phone does that leaves a network: nothing comes, goes or ends. */
+/** Lets a test cut the newest connection like a phone that leaves a network: nothing arrives, leaves or closes. */
 const CUTTABLE = () => {
   const Real = window.WebSocket;
   window.sockets = [];
@@ -32,14 +32,14 @@ const CUTTABLE = () => {
   };
 };
 
-/** Notes what the page says of its connection, since it may say so for a moment only. */
+/** Records the page's messages about its connection, which may be brief. */
 const NOTE = () => {
   window.noted = [];
   const box = document.getElementById('connection');
   new MutationObserver(() => window.noted.push(box.hidden ? '' : box.textContent)).observe(box, { attributes: true });
 };
 
-/** A browser says it, whatever the page does, when nobody listens. */
+/** A browser reports this itself when no server listens. */
 const NOBODY = /WebSocket connection to .* failed/;
 
 test('a page that is loaded again, or whose server is, goes on by itself', async (t) => {

@@ -1,4 +1,4 @@
-// A replay over time: it begins to play, its address carries the moment, and its score and curves are in step with the chart.
+// A replay over time: it plays by itself, its address contains the moment, and score and curves match the chart.
 
 import assert from 'node:assert/strict';
 import { readFileSync, readdirSync } from 'node:fs';
@@ -12,7 +12,7 @@ after(() => browser.close());
 
 const SIZE = { size: { width: 1400, height: 900 } };
 
-/** Plays a game, records it, and gives the address of its replay. */
+/** Plays and records a game. Returns the address of its replay. */
 async function replay(t) {
   const place = folder(t);
   await squall(t, 'run', scenario('games/pav01_vs_pav01.toml'), '--in-process', '--record', place);
@@ -56,7 +56,7 @@ test('curves are those of the boats, in step with the chart, and a press on them
       const [red, blue] = ['red_two', 'blue_one'].map((name) => squall.frame.boats.find((boat) => boat.name === name));
       const range = Math.hypot(red.x - blue.x, red.y - blue.y).toFixed(1);
       const [speed, , , , apart] = [...document.querySelectorAll('.plot .value')].map((each) => parseFloat(each.textContent));
-      // A long game is thinned out: a sample may be half a second old.
+      // A long game is thinned out, so a sample may be half a second old.
       return Math.abs(speed - red.speed_m_s) < 1 && Math.abs(apart - range) < 3.2;
     });
     const [, heading, flag, error] = await told();

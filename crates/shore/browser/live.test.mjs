@@ -1,4 +1,4 @@
-// A game that is played: what the page shows of it, and what its buttons do to it.
+// A running game: what the page shows, and what its buttons do.
 
 import assert from 'node:assert/strict';
 import { join } from 'node:path';
@@ -9,12 +9,12 @@ let browser;
 before(async () => { browser = await openBrowser(); });
 after(() => browser.close());
 
-/** Slower than this a boat stands, m/s. */
+/** A boat slower than this stands still, m/s. */
 const STANDS_M_S = 0.15;
-/** Faster than this it goes, m/s. */
+/** A boat faster than this is moving, m/s. */
 const GOES_M_S = 0.5;
 
-/** Whether the game runs at a speed; a busy machine may not keep it up, but none goes faster. */
+/** Whether the game runs at a speed. A busy machine may not reach it, but none exceeds it. */
 const SPEED = (want) => squall.state.speed === want && squall.state.rate > want / 2 && squall.state.rate < want * 1.2 && squall.state.rate;
 
 const pav01 = scenario('games/pav01_vs_pav01.toml');
@@ -80,7 +80,7 @@ test('pause, one decision, speed and going on', async (t) => {
 test('a helm that nobody looked at before the pause says so, and shows its rose after a step', async (t) => {
   const run = new Program(t, 'run', pav01, '--view', '--speed', '5x', '--no-record', '--listen', '127.0.0.1:0');
   const sight = await Sight.open(t, browser, await run.url());
-  // A helm without a fix of its position weighs nothing yet.
+  // A helm without a position fix weighs nothing yet.
   await sight.until('every boat goes', (least) => squall.frame?.boats.every((boat) => boat.speed_m_s > least), GOES_M_S);
   await sight.press('#pause');
   await sight.phase('paused');

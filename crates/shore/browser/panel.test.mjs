@@ -1,4 +1,4 @@
-// The side of the page: the helm's picture is whole, events fold, lists tell.
+// The side of the page: the rose is fully visible, events fold, and the lists are correct.
 
 import assert from 'node:assert/strict';
 import { readdirSync } from 'node:fs';
@@ -22,7 +22,7 @@ async function replay(t, game, ...words) {
   return `${await new Program(t, 'replay', join(place, file), '--listen', '127.0.0.1:0').url()}#t=0`;
 }
 
-/** Whether all of an element is within what its pane shows. */
+/** Whether an element is fully visible within its pane. */
 const WHOLE = (selector) => {
   const box = document.querySelector(selector).getBoundingClientRect();
   const pane = document.querySelector(selector).closest('.pane').getBoundingClientRect();
@@ -79,7 +79,7 @@ test('events fold and open again, below each tab by itself, and stay so', async 
   assert.deepEqual(await open(), [true, true]);
 });
 
-/** What stands in a line of the list of boats. */
+/** The contents of a line in the list of boats. */
 const LINE = (name) => {
   const [what, carries, heading, curve, speed] = document.querySelector(`[data-vehicle=${name}]`).children;
   const { data } = curve.getContext('2d').getImageData(0, 0, curve.width, curve.height);
@@ -115,7 +115,7 @@ test('a line of the list tells heading, speed and its curve, mode, and what is c
   await game.until('and written', () => [...document.querySelectorAll('.boat-row .state')].every((each) => each.textContent !== ''));
 });
 
-/** How dark a team's ink is about a boat: the sum over a small square of the layer with the boats. */
+/** How dark a team's ink is around a boat: the sum over a small square of the boats' layer. */
 const INK = (name) => {
   const hull = squall.hulls.find((each) => each.name === name);
   const ratio = Math.min(2, devicePixelRatio);

@@ -1,4 +1,4 @@
-// Reports on the page: a tournament, a league, a sweep and a training, and from their tables to the games behind them.
+// Reports on the page: a tournament, a league, a sweep and a training, and the games behind their tables.
 
 import assert from 'node:assert/strict';
 import { copyFileSync, mkdirSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
@@ -10,12 +10,12 @@ let browser;
 before(async () => { browser = await openBrowser(); });
 after(() => browser.close());
 
-/** What would change the title of the page if it ever ran. */
+/** Would change the page's title if it ever ran. */
 const HOSTILE = '</script><script>document.title = "owned"</script><img src=x onerror="document.title=\'owned\'">';
 
 const entry = (name) => `[[entry]]\nname = "${name}"\nstrategy = "${scenario(`strategies/${name}.toml`)}"\n`;
 
-/** Plays a tournament of short games, and gives its report and the file with it. */
+/** Plays a tournament of short games. Returns its report and the file. */
 async function tournament(t, ...words) {
   const place = folder(t);
   const game = gameFile(t, 'short', 'pav01_vs_pav01.toml', 'duration_s = 60');
@@ -28,10 +28,10 @@ async function tournament(t, ...words) {
 
 const view = async (t, path) => (await new Program(t, 'view', path, '--listen', '127.0.0.1:0')).url();
 
-/** Whether nothing of a text was taken for more than text. */
+/** Whether a text was inserted only as text. */
 const isText = (sight) => sight.get(() => document.title !== 'owned' && document.querySelector('img') === null);
 
-/** Texts whose contrast to what is behind them is less than 4.5, by WCAG 2.1, 1.4.3. */
+/** Texts with a contrast below 4.5 (WCAG 2.1, 1.4.3). */
 function faint() {
   const numbers = (colour) => {
     const found = colour.match(/[\d.]+/g).map(Number);
@@ -97,7 +97,7 @@ test('from a cell of the win matrix to its games, to a replay of one, and back',
 
 test('what is wrong with a report or a game is said in words', async (t) => {
   const { place, path, report } = await tournament(t);
-  // Texts from elsewhere, a game that went otherwise, and a seed with more digits than the page's numbers.
+  // Foreign texts, a game with another result, and a seed with more digits than the page's numbers.
   const seed = '9007199254740993';
   report.tournament = HOSTILE;
   report.game = HOSTILE;
@@ -122,7 +122,7 @@ test('what is wrong with a report or a game is said in words', async (t) => {
     assert.equal(await none.text('#phase'), 'no game');
     assert(await isText(none));
   }
-  // A report without its plan is shown, and nothing can be watched.
+  // A report without its plan is shown, but its games cannot be watched.
   delete report.plan;
   writeFileSync(path, JSON.stringify(report));
   const bare = await Sight.load(t, browser, `${await view(t, path)}#row=strategy_4&column=pav01`);
@@ -144,7 +144,7 @@ test('who joins a league plays its own games alone, and the folder is shown', as
   await sight.until('all three are rated', () => document.querySelectorAll('.ratings tbody tr').length === 3);
 });
 
-/** Plays a sweep of short games at two winds, two seeds each, and gives its folder. */
+/** Plays a sweep of short games at two winds with two seeds each. Returns its folder. */
 async function sweep(t) {
   const place = folder(t);
   const game = gameFile(t, 'short', 'surveyor_2v2.toml', 'duration_s = 60');
@@ -174,7 +174,7 @@ test('the worst games of a sweep are watched from its page', async (t) => {
 
 test('from a point of a sweep to all its games, to a replay of one, and back', async (t) => {
   const out = await sweep(t);
-  // Lines of `games.csv`: what came of each game, by its columns.
+  // Lines of `games.csv`: each game's result, by its columns.
   const [heads, ...lines] = readFileSync(join(out, 'games.csv'), 'utf8').trim().split('\n').map((line) => line.split(','));
   const games = lines.map((line) => Object.fromEntries(heads.map((head, i) => [head, line[i]])));
   const url = await view(t, out);
@@ -197,7 +197,7 @@ test('from a point of a sweep to all its games, to a replay of one, and back', a
   await sight.press('#legend button >> nth=1');
   assert.deepEqual(await listed(), rows(own.filter((game) => game.entry === 'strategy_4')), 'an entry that is hidden');
 
-  // The last one's seed and side are others than those of the command of the point.
+  // The last game has another seed and side than the point's command.
   await sight.press('#games-table tbody tr:last-child .watch');
   await sight.until('the game is shown', () => window.squall?.mode === 'replay' && squall.frame !== null);
   const last = own.findLast((game) => game.entry === 'strategy_4');
@@ -213,7 +213,7 @@ test('from a point of a sweep to all its games, to a replay of one, and back', a
     const answer = await fetch(new URL(`/sweep_games/${none}.json`, url));
     assert.equal(answer.status, 404, none);
   }
-  // Without its table the games are there, and nothing is known of them; without its plan there are none.
+  // Without its table the games exist without results; without its plan there are no games.
   rmSync(join(out, 'games.csv'));
   const bare = await Sight.load(t, browser, `${await view(t, out)}#point=0`);
   await bare.page.waitForSelector('#games-table .watch');

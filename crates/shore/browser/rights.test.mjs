@@ -1,4 +1,4 @@
-// Who may act: a page with the token, and nobody else.
+// Access: only a page with the token may act.
 
 import assert from 'node:assert/strict';
 import { networkInterfaces } from 'node:os';
@@ -9,7 +9,7 @@ let browser;
 before(async () => { browser = await openBrowser(); });
 after(() => browser.close());
 
-/** What a forged page hears back that sends this message over a websocket of its own. */
+/** The reply to a forged page that sends this message over its own WebSocket. */
 const forge = (sight, message) => sight.get((message) => new Promise((done, fail) => {
   const socket = new WebSocket(`ws://${location.host}/ws`);
   socket.onopen = () => socket.send(JSON.stringify(message));
@@ -25,7 +25,7 @@ const forge = (sight, message) => sight.get((message) => new Promise((done, fail
 
 test('a page without the token looks on, and one with it acts', async (t) => {
   const port = await freePort();
-  // With a boat that whoever has rights may steer.
+  // With a boat that any page with rights may drive.
   const run = new Program(t, 'run', scenario('games/person_2v2.toml'), '--view', '--speed', '2x', '--no-record', '--listen', `0.0.0.0:${port}`,
     '--token', 'secret');
   const url = await run.url();

@@ -1,4 +1,4 @@
-// The page as the station of the operators of real boats: emulated ones, with their gateways.
+// The page as the operators' station for real boats: emulated ones with their gateways.
 
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
@@ -14,7 +14,7 @@ after(() => browser.close());
 /** A sentence with its checksum. */
 const sentence = (body) => `$${body}*${[...body].reduce((sum, letter) => sum ^ letter.charCodeAt(0), 0).toString(16).toUpperCase().padStart(2, '0')}`;
 
-/** Asks for something as a page that is not ours does, over a connection of its own, so many times; gives what is refused first. */
+/** Sends a request this many times over its own connection, like a foreign page. Returns the first refusal. */
 const forge = (sight, message, times = 1) => sight.get(([message, times]) => new Promise((done, fail) => {
   const socket = new WebSocket(`ws://${location.host}/ws${location.hash.replace('#', '?')}`);
   socket.onopen = () => { for (let i = 0; i < times; i++) socket.send(JSON.stringify(message)); };
@@ -105,7 +105,7 @@ test('without a token of its own a page may stop real boats, and operates them w
   assert(!(await sight.page.isVisible('#operator-token')));
   assert.equal(new URL(await sight.get(() => location.href)).hash, new URL(address).hash);
   await arm(sight, 'blue_one');
-  // Who lost the token may still stop the boat, and all of them, and release none.
+  // Without the token, a page may still stop one boat or all, but release none.
   const looking = await Sight.open(t, browser, boats.url);
   await looking.press('[data-vehicle=blue_one]');
   await looking.press('#operate-disarm');
@@ -128,7 +128,7 @@ test('a failsafe is seen and heard until it is acknowledged, and no flood keeps 
   await sight.until('alarms can be heard', () => document.getElementById('mute').textContent === 'Alarms on');
   assert.deepEqual(await sight.get(() => [squall.alarms, squall.sounded]), [[], 0], 'nothing is wrong');
 
-  // Without its agents a boat gets no orders.
+  // Without its agents a boat receives no orders.
   await boats.agents.kill();
   for (const name of ['blue_one', 'red_one']) {
     const failed = await badge(sight, name, 'failsafe');
@@ -162,7 +162,7 @@ test('a failsafe is seen and heard until it is acknowledged, and no flood keeps 
   await sight.until('to reset it is to acknowledge it', () => squall.alarms.length === 0);
   assert(!(await sight.page.isVisible('#alarms')));
 
-  // A page floods the server with commands; one press on another stops all boats.
+  // One page floods the server with commands; one press on another stops all boats.
   const flood = forge(theirs, { do: 'operate', vehicle: 'blue_one', command: 'arm' }, 5000);
   await sight.press('#estop');
   const pressed_ms = Date.now();
@@ -172,7 +172,7 @@ test('a failsafe is seen and heard until it is acknowledged, and no flood keeps 
   assert.match((await flood).reason, /has not answered the command before/);
   assert(Date.now() - pressed_ms < 5000);
 
-  // A gateway that is gone says nothing.
+  // A gateway that has ended is silent.
   await boats.gateways.red_one.kill();
   assert.match((await badge(sight, 'red_one', 'silent')).detail, /silent since/);
   await sight.until('that is an alarm', () => squall.alarms.some(({ boat, text }) => boat === 'red_one' && /silent/.test(text)));
@@ -205,7 +205,7 @@ test('a boat holds a heading and goes into other modes at an operator’s wish, 
   await sight.press('#mode-set');
   await sight.press('#operate-confirm');
   await sight.until('it is in that mode', () => squall.badges.find(({ name }) => name === 'blue_one').detail === 'autopilot');
-  // An emulated boat does nothing there.
+  // An emulated boat does nothing in that mode.
   await sight.until('the alarms are over and stay', () => squall.alarms.length === 2 && squall.alarms.every(({ active }) => !active));
   assert(!/Alarm/.test(await sight.text('#gateway')));
   await sight.press('#operate-disarm');

@@ -8,9 +8,9 @@ let browser;
 before(async () => { browser = await openBrowser(); });
 after(() => browser.close());
 
-/** How long the page may be busy with one picture, ms: a screen shows sixty a second. */
+/** Maximum time per picture, ms: a screen shows sixty per second. */
 const PICTURE_MS = 16;
-/** How many pictures are measured. */
+/** Number of pictures measured. */
 const PICTURES = 120;
 
 const FLEETS = ['blue', 'red'].map((team) => `
@@ -20,7 +20,7 @@ count = 100
 spawn = { along_m = [10, 350], across_m = [10, 390], gap_m = 10 }
 `).join('');
 
-/** Measures each callback of a picture. */
+/** Measures each drawing callback. */
 const MEASURE = () => {
   const ask = window.requestAnimationFrame.bind(window);
   window.pictures_ms = [];
