@@ -260,7 +260,7 @@ fn a_full_area_says_which_boat_has_no_start_position() {
             *gap_m = 30.0;
         }
     }
-    let error = World::of_game(&scenario, 1).err().expect("no room for twenty boats 30 m apart");
+    let error = World::of_game(&scenario, 1).err().expect("twenty boats 30 m apart do not fit");
     let sim::NoStart::SpawnError(error) = error else { panic!("{error}") };
     assert!(scenario.vehicles.iter().any(|vehicle| vehicle.name == error.vehicle), "{error}");
     assert!(error.to_string().contains(&error.vehicle) && error.to_string().contains("gap_m"), "{error}");

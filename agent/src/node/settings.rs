@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-/// What an agent node needs to know.
+/// Settings of an agent node.
 pub struct Settings {
     /// The game to join. `None`: the only one available.
     pub game: Option<GameName>,

@@ -39,12 +39,12 @@ test('a shoreline lies where its latitudes and longitudes are, light and dark, i
   for (const url of [await live(t, geojson), `${replay}#t=0`]) {
     for (const colorScheme of ['light', 'dark']) {
       const sight = await Sight.open(t, browser, url, { colorScheme, allows });
-      await sight.until('it is drawn', () => squall.background);
+      await sight.until('the background is drawn', () => squall.background);
       await sight.get(() => new Promise(requestAnimationFrame));
       assert(isNear(await colour(sight, ...within), await land(sight)), `land at ${within}: ${await colour(sight, ...within)} (${colorScheme})`);
       assert.equal((await colour(sight, ...beside))[3], 0, 'water beside it');
       await sight.press('#show-chart');
-      await sight.until('it is switched off', () => document.getElementById('show-chart').getAttribute('aria-pressed') === 'false');
+      await sight.until('the chart is switched off', () => document.getElementById('show-chart').getAttribute('aria-pressed') === 'false');
       await sight.get(() => new Promise(requestAnimationFrame));
       assert.equal((await colour(sight, ...within))[3], 0);
       await sight.close();
@@ -55,7 +55,7 @@ test('a shoreline lies where its latitudes and longitudes are, light and dark, i
 test('an image lies where its world file says', async (t) => {
   const { image, red, green } = site(folder(t));
   const sight = await Sight.open(t, browser, await live(t, image), { colorScheme: 'light', allows });
-  await sight.until('it is drawn', () => squall.background);
+  await sight.until('the background is drawn', () => squall.background);
   await sight.get(() => new Promise(requestAnimationFrame));
   const [at, other] = [await colour(sight, ...red), await colour(sight, ...green)];
   assert(at[0] > 200 && at[1] < 60, `red to the west: ${at}`);
@@ -65,7 +65,7 @@ test('an image lies where its world file says', async (t) => {
 test('a chart of another site is not drawn, and its place is told', async (t) => {
   const { geojson } = site(folder(t), [51.5, -0.1]);
   const sight = await Sight.open(t, browser, await live(t, geojson));
-  await sight.until('it says where it is', () => /is not drawn: it is at 51\.\d+° N .*\skm from the field at 41/.test(document.getElementById('notices').textContent));
+  await sight.until('the notice gives its position', () => /is not drawn: it is at 51\.\d+° N .*\skm from the field at 41/.test(document.getElementById('notices').textContent));
   assert(!(await sight.get(() => squall.background)) && !(await sight.page.isVisible('#show-chart')));
 });
 

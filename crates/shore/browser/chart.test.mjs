@@ -20,7 +20,7 @@ async function paused(t, more = {}) {
   await sight.goesOn();
   await sight.press('#pause');
   await sight.phase('paused');
-  await sight.until('it stands', () => Math.abs(squall.state.now_s - squall.t_s) < 1e-6);
+  await sight.until('the game is paused', () => Math.abs(squall.state.now_s - squall.t_s) < 1e-6);
   return sight;
 }
 
@@ -73,13 +73,13 @@ test('ranges are measured between boats and places, by hand and by keys', async 
   await sight.page.mouse.click(...await at('blue_one'));
   await sight.page.mouse.click(...await at('red_two'));
   same(await sight.until('both ends are chosen', () => squall.measured), want('blue_one', 'red_two'));
-  await sight.until('it is written', (range) => document.getElementById('measured').textContent.startsWith('blue one to red two')
+  await sight.until('the measurement is shown', (range) => document.getElementById('measured').textContent.startsWith('blue one to red two')
     && document.getElementById('measured').textContent.includes(range), want('blue_one', 'red_two').range_m.toFixed(1));
-  assert.equal(await sight.get(() => squall.selected), null, 'to measure selects nobody');
+  assert.equal(await sight.get(() => squall.selected), null, 'measuring selects no boat');
   await sight.page.focus('#sheet');
   await sight.keys('Escape');
   assert.equal(await sight.get(() => squall.measured), null);
-  await sight.until('nothing is measured', () => !document.getElementById('measured').checkVisibility());
+  await sight.until('the measurement is hidden', () => !document.getElementById('measured').checkVisibility());
   // By keys alone.
   await sight.keys('m', ']', 'Enter', ']', ']', 'Enter');
   same(await sight.until('both ends are chosen', () => squall.measured), want('blue_one', 'red_one'));
@@ -92,13 +92,13 @@ test('coordinates of what is pointed at are those of the field', async (t) => {
   await sight.page.mouse.move(box.x + 600, box.y + 200);
   const { view, width, height } = await sight.get(() => ({ view: squall.view, width: document.getElementById('sheet').clientWidth, height: document.getElementById('sheet').clientHeight }));
   const [x, y] = [view.x + (600 - width / 2) / view.scale, view.y - (200 - height / 2) / view.scale];
-  const text = await sight.until('the place is told', () => document.getElementById('place').checkVisibility() && document.getElementById('place').textContent);
+  const text = await sight.until('the position is shown', () => document.getElementById('place').checkVisibility() && document.getElementById('place').textContent);
   const [, east, north, northDeg, eastDeg] = text.match(/x (\S+) y (\S+) m · (\S+)° N (\S+)° W/).map((each) => Number(each.replace('−', '-')));
   assert(Math.abs(east - x) < 0.06 && Math.abs(north - y) < 0.06, `${text}, expected ${x} ${y}`);
   assert(Math.abs((northDeg - lat) * DEGREE_M - y) < WRITTEN_M, text);
   assert(Math.abs((-eastDeg - lon) * DEGREE_M * Math.cos((lat * Math.PI) / 180) - x) < WRITTEN_M, text);
   await sight.page.mouse.move(5, 5);
-  await sight.until('nothing is pointed at', () => !document.getElementById('place').checkVisibility());
+  await sight.until('the position is hidden', () => !document.getElementById('place').checkVisibility());
 });
 
 test('a legend tells what marks are, and the dark is a switch that stays', async (t) => {
@@ -112,10 +112,10 @@ test('a legend tells what marks are, and the dark is a switch that stays', async
   assert(!(await sight.page.isVisible('#chart-legend')));
   await sight.page.focus('#sheet');
   await sight.keys('l');
-  await sight.until('there is a legend', () => document.querySelectorAll('#chart-legend li canvas').length > 8);
+  await sight.until('the legend is shown', () => document.querySelectorAll('#chart-legend li canvas').length > 8);
   assert((await sight.text('#chart-legend')).includes('tagged'));
   await sight.press('#dark');
-  await sight.until('it is dark', (paper) => getComputedStyle(document.documentElement).getPropertyValue('--paper').trim() !== paper, light[0]);
+  await sight.until('the page is dark', (paper) => getComputedStyle(document.documentElement).getPropertyValue('--paper').trim() !== paper, light[0]);
   const dark = await colours();
   assert.deepEqual(dark.slice(1), ['dark', 'true']);
   await sight.until('the chart is dark too', () => {
@@ -123,12 +123,12 @@ test('a legend tells what marks are, and the dark is a switch that stays', async
     return data[3] > 0 && data[0] + data[1] + data[2] < 300;
   });
   await sight.page.reload();
-  await sight.until('it is back', () => squall.drawn > 0);
-  assert.deepEqual(await colours(), dark, 'the page keeps it');
+  await sight.until('the page has reloaded', () => squall.drawn > 0);
+  assert.deepEqual(await colours(), dark, 'the setting survives a reload');
   await sight.press('#dark');
-  await sight.until('it is light', (paper) => getComputedStyle(document.documentElement).getPropertyValue('--paper').trim() === paper, light[0]);
+  await sight.until('the page is light', (paper) => getComputedStyle(document.documentElement).getPropertyValue('--paper').trim() === paper, light[0]);
   assert.deepEqual(await colours(), light);
-  assert.equal(await sight.get(() => localStorage.getItem('squall.theme')), null, 'it follows the system again');
+  assert.equal(await sight.get(() => localStorage.getItem('squall.theme')), null, 'the page follows the system again');
   await sight.until('the chart is light too', () => {
     const { data } = document.getElementById('layer-sea').getContext('2d').getImageData(2, 2, 1, 1);
     return data[0] + data[1] + data[2] > 300;

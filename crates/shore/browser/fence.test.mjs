@@ -53,8 +53,8 @@ test('a geofence is drawn by hand and by keys, and copied as the gateway file ha
   await sight.press('#fence-undo');
   await press(sight, 60, -5);
   await press(sight, 110, 40);
-  await sight.until('it says so', () => /Two sides cross/.test(document.getElementById('fence-editor').textContent));
-  assert.equal(await sight.get(() => squall.selected), null, 'no boat is chosen meanwhile');
+  await sight.until('the page says so', () => /Two sides cross/.test(document.getElementById('fence-editor').textContent));
+  assert.equal(await sight.get(() => squall.selected), null, 'no boat is selected meanwhile');
   await sight.keys('Escape');
   assert(!(await sight.page.isVisible('#fence-editor')));
 });
@@ -71,12 +71,12 @@ test('what is drawn is what gateways then keep to, and show', async (t) => {
   writeFileSync(file, await by.get(async ([datum, polygons]) => (await import('/fence_editor.js')).toml(datum, polygons), [datum, [drawn, inside]]));
   const boats = await realBoats(t, { gateway: ['--config', file] });
   const sight = await Sight.open(t, browser, boats.url);
-  const fence = await sight.until('it is shown', () => squall.fences.length === 1 && squall.fences[0].keepOuts.length === 1 && squall.fences[0]);
+  const fence = await sight.until('the fence is shown', () => squall.fences.length === 1 && squall.fences[0].keepOuts.length === 1 && squall.fences[0]);
   for (const [found, want] of [[fence.outline, drawn], [fence.keepOuts[0], inside]]) {
     assert.equal(found.length, want.length);
     want.forEach(([east, north]) => assert(found.some(([x, y]) => Math.hypot(x - east, y - north) < 0.1), `${east}, ${north} among ${JSON.stringify(found)}`));
   }
-  await sight.until('and how far a boat is from it', () => squall.stops.length === 2 && squall.stops.every(({ clearance_m }) => clearance_m > 1));
+  await sight.until('the boats\' distances from it are shown', () => squall.stops.length === 2 && squall.stops.every(({ clearance_m }) => clearance_m > 1));
 });
 
 /** Replaces geofences and stopping distances in the status of each boat. */
@@ -101,7 +101,7 @@ test('the geofence that gateways tell is drawn with its keep-outs, and who is to
   const boats = await realBoats(t);
   const sight = await Sight.open(t, browser, boats.url, { before: FENCED, allows: /willReadFrequently/, colorScheme: 'light' });
   await badge(sight, 'blue_one', 'disarmed');
-  await sight.until('there is a fence', () => squall.fences.length === 1 && squall.stops.length === 2);
+  await sight.until('a fence is shown', () => squall.fences.length === 1 && squall.stops.length === 2);
   // All of it is on the chart.
   const { x, y, scale } = await sight.get(() => squall.view);
   const { width, height } = await sight.page.locator('#sheet').boundingBox();
@@ -126,7 +126,7 @@ test('the geofence that gateways tell is drawn with its keep-outs, and who is to
   const near = await sight.get(() => squall.frame.boats.find(({ name }) => name === 'red_one'));
   const clear = await sight.get(() => squall.frame.boats.find(({ name }) => name === 'blue_one'));
   assert(await red(near.x, near.y + 14) > 3, 'the circle of the boat that cannot stop in time is red');
-  assert.equal(await red(clear.x, clear.y + 4), 0, 'that of the other is not');
+  assert.equal(await red(clear.x, clear.y + 4), 0, 'the other boat\'s circle is not red');
   await sight.press('[data-vehicle=red_one]');
   assert.match(await sight.text('#gateway'), /Geofence6\.3\sm to its edge, stops in 14\.0\sm/);
   // A drawing can start from it.

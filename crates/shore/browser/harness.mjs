@@ -201,7 +201,7 @@ export class Sight {
 
   async close() {
     await this.context.close();
-    assert.deepEqual(this.errors, [], 'errors in the page');
+    assert.deepEqual(this.errors, [], 'errors on the page\'s console');
   }
 
   /** Waits until `condition`, which runs in the page, returns something true, and returns that. */
@@ -239,8 +239,8 @@ export class Sight {
   async greetedAnew(act) {
     const hello = await this.page.evaluateHandle(() => squall.hello);
     await act();
-    await this.until('the page is greeted anew', (before) => squall.connected && squall.hello !== before, hello);
-    await this.until('it shows a picture', () => squall.frame !== null);
+    await this.until('the page is greeted again', (before) => squall.connected && squall.hello !== before, hello);
+    await this.until('the page shows a picture', () => squall.frame !== null);
   }
 
   /** Waits until the chip beside the game's name shows this. */
@@ -251,7 +251,7 @@ export class Sight {
   /** Waits for a picture later than the current one. */
   async goesOn() {
     // A page that has just been greeted shows no time yet.
-    const { t_s } = await this.until('there is a picture', () => Number.isFinite(squall.t_s) && { t_s: squall.t_s });
+    const { t_s } = await this.until('a picture is shown', () => Number.isFinite(squall.t_s) && { t_s: squall.t_s });
     return this.until(`the clock runs on from ${t_s}`, (before) => squall.t_s > before && squall.t_s, t_s);
   }
 }

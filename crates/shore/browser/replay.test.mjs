@@ -70,7 +70,7 @@ test('a recording shows at every moment what the events say', async (t) => {
   const kinds = new Set();
   for (const event of result.events.filter(({ event }) => ['grabbed', 'captured', 'flag_returned'].includes(event)).slice(0, 8)) {
     await scrub(sight, event.at_s + JUST_AFTER_S);
-    await check('where somebody pressed');
+    await check('at the pressed position');
     kinds.add(event.event);
   }
   assert(kinds.size === 3, `the game has grabs, captures and lost flags, but only ${[...kinds]} were looked at`);
@@ -94,7 +94,7 @@ test('the buttons of a replay: on, back, to events, faster', async (t) => {
   await sight.page.selectOption('#event-kind', { label: 'captures' });
   await sight.press('#event-next');
   await at(first);
-  await sight.until('the capture counts', () => squall.score.some((points) => points > 0));
+  await sight.until('the capture is scored', () => squall.score.some((points) => points > 0));
   await sight.press('#event-next');
   await at(second);
   await sight.press('#event-back');
@@ -104,7 +104,7 @@ test('the buttons of a replay: on, back, to events, faster', async (t) => {
   await at(times('grabbed').find((at_s) => at_s > first + 0.1));
   await sight.keys('Shift+G');
   await at(times('grabbed').findLast((at_s) => at_s < first));
-  await sight.until('the flag is on the boat', () => squall.flags.some((flag) => flag.carrier !== null));
+  await sight.until('the boat carries the flag', () => squall.flags.some((flag) => flag.carrier !== null));
 
   const before = await sight.get(() => ({ t_s: squall.t_s, decision_s: squall.hello.chart.decision_s }));
   await sight.press('#step');
@@ -115,11 +115,11 @@ test('the buttons of a replay: on, back, to events, faster', async (t) => {
   await at(before.t_s - before.decision_s);
 
   await sight.press('#pause');
-  await sight.until('it plays', (from_s) => squall.player.playing && squall.t_s > from_s + 0.5, before.t_s);
+  await sight.until('the replay plays', (from_s) => squall.player.playing && squall.t_s > from_s + 0.5, before.t_s);
   await sight.page.selectOption('#speed', '50');
-  await sight.until('it plays faster', (from_s) => squall.player.speed === 50 && squall.t_s > from_s + 60, before.t_s);
+  await sight.until('the replay plays faster', (from_s) => squall.player.speed === 50 && squall.t_s > from_s + 60, before.t_s);
   await sight.press('#pause');
-  await sight.until('it stands', () => !squall.player.playing && squall.t_s === Math.max(squall.t_s, squall.player.t_s - 0.2));
+  await sight.until('the game is paused', () => !squall.player.playing && squall.t_s === Math.max(squall.t_s, squall.player.t_s - 0.2));
   // The first event is last in the list.
   const [event] = result.events;
   await sight.press('#events li:last-child button');
@@ -177,7 +177,7 @@ test('a game that is over becomes its replay', async (t) => {
   await scrub(sight, grab + JUST_AFTER_S);
   assert(await sight.get(() => squall.flags.some((flag) => flag.carrier !== null)));
   await sight.page.reload();
-  await sight.until('a page that comes later sees it as well', () => squall.mode === 'replay' && squall.frame !== null);
+  await sight.until('a later page sees it too', () => squall.mode === 'replay' && squall.frame !== null);
   await sight.close();
   await run.end();
   const { teams } = readJson(join(place, 'result.json')).score;

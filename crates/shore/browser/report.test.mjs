@@ -85,10 +85,10 @@ test('from a cell of the win matrix to its games, to a replay of one, and back',
   const about = await sight.text('#about');
   assert.match(about, new RegExp(`seed ${want[1].seed}; played again, as in the report$`), about);
   await sight.page.press('#timeline', 'End');
-  await sight.until('it is at its end', () => squall.t_s > 59.9);
+  await sight.until('the replay is at its end', () => squall.t_s > 59.9);
   assert.deepEqual(await sight.get(() => squall.score), want[1].score);
   await sight.press('#back');
-  await sight.until('the report is as it was', () => document.querySelector('.matrix [aria-pressed="true"]') !== null);
+  await sight.until('the report is unchanged', () => document.querySelector('.matrix [aria-pressed="true"]') !== null);
   assert.equal(await sight.get(() => document.querySelectorAll('#games tbody tr').length), want.length);
   await sight.page.selectOption('#games-filter', 'won');
   const won = want.filter((game) => result(game, game.blue === row ? 0 : 1) === 'won').length;
@@ -107,7 +107,7 @@ test('what is wrong with a report or a game is said in words', async (t) => {
   writeFileSync(changed, JSON.stringify(report).replaceAll('"seed":2,', `"seed":${seed},`));
   const url = await view(t, changed);
   const sight = await Sight.load(t, browser, url);
-  await sight.until('the failure is told', () => document.getElementById('remarks').textContent.includes('Could not start'));
+  await sight.until('the failure is shown', () => document.getElementById('remarks').textContent.includes('Could not start'));
   assert.equal(await sight.text('#name'), HOSTILE.replaceAll('_', ' '));
   assert(await isText(sight));
   await sight.page.evaluate(() => { location.hash = '#row=strategy_4&column=pav01'; });
@@ -117,7 +117,7 @@ test('what is wrong with a report or a game is said in words', async (t) => {
   assert.match(await other.text('#about'), /NOT as in the report/);
   for (const [name, why] of [['999', /there is no game "999", expected a number from 0 to 11/], [HOSTILE, /there is no game .*expected a number/]]) {
     const none = await Sight.load(t, browser, `${url}?game=${encodeURIComponent(name)}`);
-    await none.until('it is refused', () => document.getElementById('about').textContent !== '');
+    await none.until('the game is refused', () => document.getElementById('about').textContent !== '');
     assert.match(await none.text('#about'), why);
     assert.equal(await none.text('#phase'), 'no game');
     assert(await isText(none));
@@ -126,7 +126,7 @@ test('what is wrong with a report or a game is said in words', async (t) => {
   delete report.plan;
   writeFileSync(path, JSON.stringify(report));
   const bare = await Sight.load(t, browser, `${await view(t, path)}#row=strategy_4&column=pav01`);
-  await bare.until('it says so', () => /Games cannot be watched/.test(document.getElementById('remarks').textContent));
+  await bare.until('the page says so', () => /Games cannot be watched/.test(document.getElementById('remarks').textContent));
   assert.equal(await bare.get(() => document.querySelectorAll('.watch').length), 0);
 });
 
@@ -163,12 +163,12 @@ test('the worst games of a sweep are watched from its page', async (t) => {
   await sight.page.waitForSelector('#worst-list .watch');
   assert(await isText(sight));
   assert.equal(await sight.text('#about'), HOSTILE);
-  assert.equal(await sight.get(() => getComputedStyle(document.querySelector('.tornado .bar')).position), 'absolute', 'its style is served');
+  assert.equal(await sight.get(() => getComputedStyle(document.querySelector('.tornado .bar')).position), 'absolute', 'the style sheet is served');
   await sight.press('#worst-list .watch');
   await sight.until('the game is shown', () => window.squall?.mode === 'replay' && squall.frame !== null);
   assert.match(await sight.text('#about'), /strategy_4 \(\w+\) at sea.wind.speed_m_s \d+, seed \d+; played again, as in the report/);
   await sight.page.press('#timeline', 'End');
-  await sight.until('it is at its end', () => squall.t_s > 59.9);
+  await sight.until('the replay is at its end', () => squall.t_s > 59.9);
   assert.deepEqual((await sight.get(() => squall.score)).sort(), [...worst.score].sort());
 });
 
@@ -195,7 +195,7 @@ test('from a point of a sweep to all its games, to a replay of one, and back', a
   assert.deepEqual(await listed(), rows(own.filter((game) => result(game) === 'won')));
   await sight.page.selectOption('#games-filter', 'all');
   await sight.press('#legend button >> nth=1');
-  assert.deepEqual(await listed(), rows(own.filter((game) => game.entry === 'strategy_4')), 'an entry that is hidden');
+  assert.deepEqual(await listed(), rows(own.filter((game) => game.entry === 'strategy_4')), 'a hidden entry');
 
   // The last game has another seed and side than the point's command.
   await sight.press('#games-table tbody tr:last-child .watch');
@@ -203,11 +203,11 @@ test('from a point of a sweep to all its games, to a replay of one, and back', a
   const last = own.findLast((game) => game.entry === 'strategy_4');
   assert.equal(await sight.text('#about'), `strategy_4 (${last.side}) at sea.wind.speed_m_s 12, seed ${last.seed}; played again, as in the report`);
   await sight.page.press('#timeline', 'End');
-  await sight.until('it is at its end', () => squall.t_s > 59.9);
+  await sight.until('the replay is at its end', () => squall.t_s > 59.9);
   assert.deepEqual((await sight.get(() => squall.score)).sort(), [last.score, last.opponent_score].map(Number).sort());
   await sight.press('#back');
   await sight.page.waitForSelector('#games-table tbody tr');
-  assert.deepEqual(await listed(), rows(own), 'the list is as it was');
+  assert.deepEqual(await listed(), rows(own), 'the list is unchanged');
 
   for (const none of ['2', '-1', 'x', '']) {
     const answer = await fetch(new URL(`/sweep_games/${none}.json`, url));
@@ -251,13 +251,13 @@ test('a training shows curves that follow its tables, and its recorded episodes'
     return new Set(new Uint32Array(canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.buffer)).size;
   });
   assert(painted > 6, `the curves have only ${painted} colours`);
-  assert.equal(await sight.get(() => document.querySelector('b:not(.legend b)')), null, 'a name is text');
+  assert.equal(await sight.get(() => document.querySelector('b:not(.legend b)')), null, 'names are inserted as text');
   assert.deepEqual(await sight.get(() => [...document.querySelectorAll('section:last-child tbody td')].map((each) => each.textContent)),
     ['Watch', '0.04 M', 'alone', 'pav01', '9007199254740993', '3 : 2', '300']);
   await sight.press('section:last-child .watch');
   await sight.until('the episode is shown', () => window.squall?.mode === 'replay' && squall.frame !== null);
   for (const escape of ['../7_1.mcap', '..%2fupdates.csv', 'none.mcap', '/etc/passwd', 'games/7_1.mcap']) {
     const none = await Sight.load(t, browser, `${url}?game=${encodeURIComponent(escape)}`);
-    await none.until('it is refused', () => /there is no recording/.test(document.getElementById('about').textContent));
+    await none.until('the game is refused', () => /there is no recording/.test(document.getElementById('about').textContent));
   }
 });

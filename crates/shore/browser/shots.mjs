@@ -39,11 +39,11 @@ const replay = (...words) => async (t) => {
   return `${await new Program(t, 'replay', join(into, file), '--listen', '127.0.0.1:0').url()}#t=0`;
 };
 
-const at = (t_s) => (sight) => sight.until('it is time', (t_s) => squall.t_s > t_s, t_s);
+const at = (t_s) => (sight) => sight.until('the time is reached', (t_s) => squall.t_s > t_s, t_s);
 const select = (name) => async (sight) => {
   await sight.page.press('body', '1');
   await sight.press(`[data-vehicle=${name}]`);
-  await sight.until('its helm is known', () => squall.helm?.report?.collective || squall.helm?.reason);
+  await sight.until('the helm is known', () => squall.helm?.report?.collective || squall.helm?.reason);
 };
 const toGrab = async (sight) => {
   await sight.page.selectOption('#event-kind', { label: 'grabs' });
@@ -59,7 +59,7 @@ const plots = async (sight) => {
 const measure = async (sight) => {
   await sight.page.focus('#sheet');
   await sight.keys('[', 'm', 'Enter', '[', 'Enter', 'l');
-  await sight.until('it is measured', () => squall.measured);
+  await sight.until('the range is measured', () => squall.measured);
 };
 
 const entry = (name) => `[[entry]]\nname = "${name}"\nstrategy = "${scenario(`strategies/${name}.toml`)}"\n`;
@@ -133,7 +133,7 @@ const alarm = async (sight) => {
   await badge(sight, 'blue_one', 'delegated');
   await boats.agents.kill();
   await badge(sight, 'red_one', 'failsafe');
-  await sight.until('it is told', () => squall.alarms.length > 0);
+  await sight.until('the alarm is shown', () => squall.alarms.length > 0);
 };
 
 const fast = live(PAV01, ...WAVES, '--speed', '10x');
@@ -197,7 +197,7 @@ for (const [name, [begin, { size, ...device }, colorScheme, ...acts]] of Object.
     await sight.page.focus('#sheet');
     for (const act of acts) await act(sight);
     const drawn = await sight.get(() => squall.drawn);
-    if ((await sight.get(() => squall.mode)) === 'live') await sight.until('it is drawn', (before) => squall.drawn > before + 20, drawn);
+    if ((await sight.get(() => squall.mode)) === 'live') await sight.until('the background is drawn', (before) => squall.drawn > before + 20, drawn);
     await sight.page.screenshot({ path: join(place, `${name}.png`) });
     const wide = await sight.get(() => document.documentElement.scrollWidth > innerWidth);
     const boats = await sight.get(() => squall.frame.boats.map(({ name, x, y, heading_deg }) => `${name} ${x.toFixed(1)} E ${y.toFixed(1)} N ${heading_deg.toFixed(0)}°`));

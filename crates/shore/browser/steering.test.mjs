@@ -38,7 +38,7 @@ const orders = (sight, course_deg, speed_m_s) => sight.until(`${course_deg}° at
 const stands = (sight) => sight.until(`${BOAT} stands`, (name) => squall.frame.boats.find((boat) => boat.name === name).speed_m_s < 0.2, BOAT);
 
 /** Waits until no page drives it, according to the server. */
-const isFree = (sight) => sight.until('nobody steers it', () => squall.driving === null
+const isFree = (sight) => sight.until('no page drives the boat', () => squall.driving === null
   && document.querySelector('#pane-boat .note').hidden);
 
 /** Starts to drive the boat. */
@@ -76,8 +76,8 @@ test('two pages see one game; a boat goes as one of them says, and the other is 
   });
   await theirs.press(`[data-vehicle=${BOAT}]`);
   await take(mine);
-  await mine.until('we steer', () => /You are driving this boat/.test(document.getElementById('pane-boat').textContent));
-  await theirs.until('they are told', () => /Another page is driving/.test(document.getElementById('pane-boat').textContent));
+  await mine.until('this page drives the boat', () => /You are driving this boat/.test(document.getElementById('pane-boat').textContent));
+  await theirs.until('the other page is informed', () => /Another page is driving/.test(document.getElementById('pane-boat').textContent));
   const start = await mine.get((name) => squall.frame.boats.find((boat) => boat.name === name), BOAT);
   const course_deg = 90;
   const begun_deg = await mine.get(() => Number(document.getElementById('steering-text').textContent.match(/\d+/)[0]));
@@ -87,21 +87,21 @@ test('two pages see one game; a boat goes as one of them says, and the other is 
   assert(Math.abs(ordered_deg - course_deg) <= 3 && ordered_m_s === 1, `${ordered_deg}° at ${ordered_m_s} m/s`);
   const went = await goes(mine, ordered_deg, ordered_m_s);
   const { x, y } = await mine.get((name) => squall.frame.boats.find((boat) => boat.name === name), BOAT);
-  await mine.until('it gets on eastward', ([name, x]) => squall.frame.boats.find((boat) => boat.name === name).x > x + 3, [BOAT, x]);
+  await mine.until('the boat moves eastward', ([name, x]) => squall.frame.boats.find((boat) => boat.name === name).x > x + 3, [BOAT, x]);
   t.diagnostic(`from ${start.x.toFixed(1)}, ${start.y.toFixed(1)} to ${x.toFixed(1)}, ${y.toFixed(1)}; ordered ${ordered_deg}° at ${ordered_m_s} m/s, went ${JSON.stringify(went)}`);
   await theirs.press('#drive');
-  await theirs.until('they are refused', () => squall.driving === null
+  await theirs.until('the other page is refused', () => squall.driving === null
     && /Another page/.test(document.getElementById('notices').textContent));
-  assert.equal(await mine.get(() => squall.driving), BOAT, 'and it stays ours');
+  assert.equal(await mine.get(() => squall.driving), BOAT, 'this page still drives the boat');
   await mine.page.focus('#steering');
   await mine.keys(...Array(6).fill('ArrowDown'));
   await stands(mine);
   await mine.keys('Escape');
   assert.equal(await mine.get(() => squall.driving), null);
-  await theirs.until('nobody steers it', () => !/Another page is driving/.test(document.querySelector('.note:not([hidden])')?.textContent ?? ''));
+  await theirs.until('no page drives the boat', () => !/Another page is driving/.test(document.querySelector('.note:not([hidden])')?.textContent ?? ''));
   await theirs.press('#drive');
-  await theirs.until('it is theirs', () => /You are driving this boat/.test(document.getElementById('pane-boat').textContent));
-  await mine.until('and we are told', () => /Another page is driving/.test(document.getElementById('pane-boat').textContent));
+  await theirs.until('the other page drives the boat', () => /You are driving this boat/.test(document.getElementById('pane-boat').textContent));
+  await mine.until('this page is informed', () => /Another page is driving/.test(document.getElementById('pane-boat').textContent));
 });
 
 const person = (t, ...words) => new Program(t, 'run', scenario('games/person_2v2.toml'), '--view', '--no-record', '--listen', '127.0.0.1:0', ...words);
@@ -135,10 +135,10 @@ test('a gamepad steers once its stick was seen at rest; the boat stops when it i
   await take(sight);
   const [start_deg] = await ordered(sight);
   await read(sight);
-  assert.deepEqual(await ordered(sight), [start_deg, 0], 'a stick that was out from the start steers nothing');
+  assert.deepEqual(await ordered(sight), [start_deg, 0], 'a stick deflected from the start has no effect');
   await plug(leans, rests);
   await read(sight);
-  assert.deepEqual(await ordered(sight), [start_deg, 0], 'nor does one at rest, nor what is no gamepad');
+  assert.deepEqual(await ordered(sight), [start_deg, 0], 'neither a stick at rest nor another device has an effect');
   await plug(leans, out);
   await orders(sight, 90, 3);
   await goes(sight, 90, 3);
@@ -148,7 +148,7 @@ test('a gamepad steers once its stick was seen at rest; the boat stops when it i
   await stands(sight);
   await plug(out);
   await read(sight);
-  assert.deepEqual(await ordered(sight), [90, 0], 'one that comes back must be seen at rest again');
+  assert.deepEqual(await ordered(sight), [90, 0], 'a reconnected stick must be at rest first');
   await plug(rests);
   await read(sight);
   await plug([[0, 0.5, 0, 0], 'standard']);
@@ -169,9 +169,9 @@ test('whoever looks elsewhere lets go, and the boat stops', async (t) => {
   };
   for (const [why, go] of Object.entries(away)) {
     await take(sight);
-    await sight.until('it steers', () => /You are driving this boat/.test(document.getElementById('pane-boat').textContent));
+    await sight.until('the page drives the boat', () => /You are driving this boat/.test(document.getElementById('pane-boat').textContent));
     await sight.keys(...Array(8).fill('w'));
-    await sight.until('it goes', (name) => squall.frame.boats.find((boat) => boat.name === name).speed_m_s > 0.8, BOAT);
+    await sight.until('the boat moves', (name) => squall.frame.boats.find((boat) => boat.name === name).speed_m_s > 0.8, BOAT);
     await sight.get(go);
     assert.equal(await sight.get(() => squall.driving), null, why);
     await isFree(sight);
@@ -222,6 +222,6 @@ test('a fast game is steered without gaps, and one as fast as can be is said to 
   assert(seen.some(isSteered), `the page says where to every so many s, and the boat goes: ${JSON.stringify(seen)}`);
   assert(!(await sight.page.isVisible('#steering-note')));
   await sight.page.selectOption('#speed', 'max');
-  await sight.until('the page says that nobody can', () => /Too fast/.test(document.getElementById('steering-note').textContent)
+  await sight.until('the page says that the game is too fast', () => /Too fast/.test(document.getElementById('steering-note').textContent)
     && !document.getElementById('steering-note').hidden);
 });

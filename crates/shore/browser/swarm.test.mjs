@@ -44,7 +44,7 @@ test('two hundred boats are drawn in time', async (t) => {
   assert.equal(await sight.get(() => squall.frame.boats.length), 200);
   await sight.until('the game runs', () => squall.state.phase === 'playing' && squall.t_s > 0);
   const drawn = await sight.get(() => squall.drawn);
-  await sight.until('pictures come', (before) => squall.drawn > before + 20, drawn);
+  await sight.until('pictures are drawn', (before) => squall.drawn > before + 20, drawn);
   const all_ms = await median(sight);
   const said = [`all: ${all_ms.toFixed(1)} ms`];
   await sight.press('[data-vehicle]');

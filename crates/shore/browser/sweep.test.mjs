@@ -44,8 +44,8 @@ async function open(t, address, more = {}) {
   page.on('request', (request) => /^(file|http|ws)/.test(request.url()) && asked.push(request.url()));
   t.after(async () => {
     await context.close();
-    assert.deepEqual(said, [], 'the console of the page');
-    assert.deepEqual(asked.filter((url) => url.split('#')[0] !== address.split('#')[0]), [], 'what the page asks for but itself');
+    assert.deepEqual(said, [], 'output on the page\'s console');
+    assert.deepEqual(asked.filter((url) => url.split('#')[0] !== address.split('#')[0]), [], 'requests other than for the page');
   });
   await page.goto(address);
   return page;
@@ -197,7 +197,7 @@ test('a sweep that is not finished says so, and shows what there is', async (t) 
   assert.match(await page.textContent('#chips'), new RegExp(`not finished: ${report.games / 2} of ${report.games} games`));
   assert.equal(await page.locator('#heat-charts .card >> nth=0 >> td.none').count(), report.points.length - 3);
   assert.equal(await page.locator('#tornado-charts .bar').count(), 0);
-  assert(!/NaN|undefined|null|Infinity/.test(await page.innerText('body')), 'a number that is none');
+  assert(!/NaN|undefined|null|Infinity/.test(await page.innerText('body')), 'an invalid number');
 });
 
 test('the page fits screens from a phone to a desk', async (t) => {
