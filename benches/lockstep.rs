@@ -16,7 +16,6 @@ use zenoh::{Config, Session, Wait};
 
 /// Runs of each case.
 const ROUNDS: usize = 5;
-/// Duration of a run, s.
 const RUN_S: f64 = 2.0;
 
 struct Case {

@@ -189,7 +189,6 @@ fn preview(control: &mut Control, picture: &Picture) {
     }
 }
 
-/// The helm, if any.
 fn helm_of(control: &Control) -> Option<&HelmMind> {
     match control {
         Control::Direct(_) => None,

@@ -53,7 +53,6 @@ impl BoardPolicy {
         BoardPolicy { model, network, observer: None, due: None, chosen: Ok(Chosen::SetPoint(SetPoint::default())) }
     }
 
-    /// Whether a decision is due at this time.
     pub(crate) fn is_due(&self, now: SimTime) -> bool {
         self.due.is_none_or(|due| now >= due)
     }

@@ -55,7 +55,6 @@ mod tests {
     const BATTERY: Battery =
         Battery { capacity_joule: 36_000.0, charge: 0.8, full_power_watt: 720.0, hotel_power_watt: 36.0, sag: 0.15 };
 
-    /// The charge after this many seconds.
     fn charge_after(shares: [f64; 2], seconds: u32) -> f64 {
         let model = BatteryModel::new(&BATTERY, 0.05);
         let mut charge = model.charge;

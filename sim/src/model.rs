@@ -122,7 +122,6 @@ impl Model {
         self.kinds.iter().map(start).collect()
     }
 
-    /// Initial state of the point boats.
     pub(crate) fn points_at_start(&self, boats: &[BoatState]) -> Vec<KinematicState> {
         let is_point = |(i, _): &(usize, &BoatState)| self.points[*i].is_some();
         let points = boats.iter().enumerate().filter(is_point);
@@ -296,7 +295,6 @@ impl Model {
         }
     }
 
-    /// The true state of a boat.
     pub(crate) fn truth(&self, vehicle: usize, boat: &BoatState, rotation: Rotation, sea: &SeaNow<'_>) -> Truth {
         let kind = self.kinds[vehicle];
         let thrust_share = match &self.drives[kind] {

@@ -34,7 +34,6 @@ impl Functions {
     }
 }
 
-/// The output of one behaviour.
 pub(crate) struct BehaviourOutput<'a> {
     functions: &'a mut Functions,
     behaviour: usize,
@@ -43,7 +42,6 @@ pub(crate) struct BehaviourOutput<'a> {
     pub(crate) active: bool,
     /// Whether the behaviour reached a point.
     pub(crate) reached: bool,
-    /// Whether the behaviour has completed.
     pub(crate) complete: bool,
     /// Whether the behaviour requires the boat to stop, whatever others want.
     pub(crate) stop: bool,

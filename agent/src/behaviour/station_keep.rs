@@ -22,7 +22,6 @@ impl StationKeepBehaviour {
         StationKeepBehaviour { task, anchor: Ned::default() }
     }
 
-    /// The speed at this distance from the station, m/s.
     fn speed_m_s(&self, situation: &Situation, distance_m: f64) -> f64 {
         let (inner_m, outer_m) = (self.task.inner_radius_m.value(situation), self.task.outer_radius_m.value(situation));
         if distance_m <= inner_m {

@@ -137,7 +137,6 @@ impl CellSize {
     }
 }
 
-/// The cell in lane `i`.
 #[inline(always)]
 pub(super) fn cell(courses: &CourseSpans, speeds: &SpeedSpans, i: usize) -> Cell {
     Cell {

@@ -258,7 +258,6 @@ impl Ready {
         smaller(smaller(straight, turning), self.least_before).sqrt() * share
     }
 
-    /// The ways of a cell.
     #[inline(always)]
     pub(super) fn ways(&self, fan: &Fan, cell: &Cell) -> Ways {
         let (first, last) = (self.after(&fan.first), self.after(&fan.last));

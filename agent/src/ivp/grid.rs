@@ -137,7 +137,6 @@ impl Grid {
         if 2.0 * ahead > circle { ahead - circle } else { ahead }
     }
 
-    /// One tick, rad.
     pub(super) fn tick_rad(&self) -> f64 {
         TAU / self.circle()
     }

@@ -111,7 +111,6 @@ impl Objective<'_> {
         (weight.share(share), weight.share(1.0 - share))
     }
 
-    /// The course peak, if any.
     pub(super) fn course_peak(&self) -> Option<&Peak> {
         match self {
             Objective::Course(peak) | Objective::Coupled { course: peak, .. } => Some(peak),

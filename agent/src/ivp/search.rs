@@ -55,7 +55,6 @@ impl Bounds {
     }
 }
 
-/// A search.
 pub(super) struct Search<'a> {
     pub(super) grid: &'a Grid,
     pub(super) cells: &'a Cells,

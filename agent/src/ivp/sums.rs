@@ -166,7 +166,6 @@ fn of_limit(weight: Weight, limit: &SpeedLimit, speed_m_s: &Lanes<f64>) -> Lanes
     quanta
 }
 
-/// Adds a table.
 struct AddTable<'a> {
     sums: &'a mut Sums,
     grid: &'a Grid,
@@ -206,7 +205,6 @@ impl Kernel for AddTable<'_> {
     }
 }
 
-/// Adds weighted utilities.
 #[inline(always)]
 fn add_weighted(sum: &mut Lanes<i32>, weight: Weight, utilities: &Lanes<f32>) {
     for i in 0..LANES {

@@ -48,7 +48,6 @@ impl Lag {
         self.reaction_s + 0.5 * ANGLE_OF_CHORD / self.turn_rad_s * chord
     }
 
-    /// Speed ahead, m/s.
     fn ahead_m_s(&self) -> f64 {
         self.velocity.dot(self.heading).max(0.0)
     }

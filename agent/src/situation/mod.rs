@@ -117,7 +117,6 @@ pub(crate) struct Situation {
     enemy_score: f64,
     /// The interception pairs, computed on first use in a decision.
     interception: OnceCell<Vec<Pair>>,
-    /// The previous interception pairs.
     interception_before: Vec<Pair>,
     /// Whether the boat was tagged inside its untagging place and must leave it before it can come
     /// home.
@@ -260,7 +259,6 @@ impl Situation {
         turning_on(MovingPoint { at: self.at, velocity: self.velocity }, self.own.nav.yaw_rate_rad_s)
     }
 
-    /// The enemies.
     pub(crate) fn enemies(&self) -> impl Iterator<Item = &OtherBoat> {
         self.others.iter().filter(|other| other.is_enemy)
     }
@@ -270,7 +268,6 @@ impl Situation {
         self.enemies().filter(|enemy| !enemy.tagged && enemy.intrudes)
     }
 
-    /// The mates.
     fn mates(&self) -> impl Iterator<Item = &OtherBoat> {
         self.others.iter().filter(|other| !other.is_enemy)
     }
@@ -462,7 +459,6 @@ fn between(measure: Measure, from: Option<MovingPoint>, to: Option<MovingPoint>)
     }
 }
 
-/// The closing speed of two points, m/s.
 fn closing_m_s(from: MovingPoint, to: MovingPoint) -> f64 {
     let line = to.at - from.at;
     let distance_m = line.length();

@@ -116,7 +116,6 @@ impl Fields<'_> {
         Ok(())
     }
 
-    /// The end of a field with this length.
     fn end_of(&self, length: u64, end: usize) -> Result<usize, NetworkError> {
         let left = end - self.at;
         match usize::try_from(length) {

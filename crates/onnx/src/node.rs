@@ -20,7 +20,6 @@ pub(super) struct Node<'a> {
 }
 
 impl<'a> Node<'a> {
-    /// An error about this node.
     pub(super) fn wrong(&self, found: impl Into<String>, expected: impl Into<String>) -> NetworkError {
         let (found, expected) = (found.into(), expected.into());
         NetworkError::Node { node: name(self.proto), operator: self.operator, found, expected }

@@ -36,7 +36,6 @@ pub(super) fn softmax(planner: &mut Planner, node: &Node, scale: Scale) -> Resul
     Ok(Value::Computed(output))
 }
 
-/// Plans `ArgMax`.
 pub(super) fn arg_max(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
     let input = planner.row(node, 0)?;
     let axis = node.axis(node.integer("axis", 0)?, input.shape.len())?;

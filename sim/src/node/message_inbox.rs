@@ -100,12 +100,10 @@ impl MessageInbox {
         }
     }
 
-    /// Counts a refused message.
     pub(super) fn refuse(&self, refusal: Refusal) {
         self.gate.visit(|gate| gate.refusals.count(refusal));
     }
 
-    /// The next message, if one arrives within `limit`.
     pub(super) fn next_within(&self, limit: Duration) -> Option<Incoming> {
         self.waiting.wait(limit, |waiting| !waiting.messages.is_empty());
         self.take_now()

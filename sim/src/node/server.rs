@@ -329,7 +329,6 @@ impl<'w> GameServer<'w> {
         self.refusals + self.inbox.refusals() + self.controls.refusals() + dropped
     }
 
-    /// Reports progress if due.
     pub(super) fn report_progress(&mut self, tell: &mut dyn FnMut(ProgressMessage)) -> Result<(), NodeError> {
         let (then, then_sim) = self.last_report;
         let passed = clock::since(then);

@@ -64,7 +64,6 @@ pub(super) struct Inboxes {
 }
 
 impl Inboxes {
-    /// A callback for messages of one kind.
     fn message_callback<M: Message + DeserializeOwned + 'static>(
         &self,
         incoming: fn(M, &[u8]) -> Incoming,
@@ -78,7 +77,6 @@ impl Inboxes {
         }
     }
 
-    /// A callback for questions of one kind.
     fn question_callback(&self, question: fn() -> Question) -> impl Fn(Query) + Send + Sync + use<> {
         let (questions, others) = (self.questions.clone(), Arc::clone(&self.others));
         move |query| {

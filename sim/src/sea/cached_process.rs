@@ -7,7 +7,6 @@ use super::gauss_markov::{GaussMarkov, Pair, Trail};
 /// Maximum number of cached points.
 const HELD_MAX: i64 = 1 << 16;
 
-/// A process with its cache.
 #[derive(Clone, Debug)]
 pub(super) struct CachedProcess {
     process: GaussMarkov,

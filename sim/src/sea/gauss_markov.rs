@@ -102,7 +102,6 @@ impl GaussMarkov {
         process
     }
 
-    /// The correlation of neighbouring points.
     pub(super) fn neighbour_correlation() -> f64 {
         libm::exp(-1.0 / STEPS_PER_LENGTH)
     }

@@ -61,7 +61,6 @@ pub struct SeaModel {
     /// Propeller submergence, by size of hull and position of the propellers.
     submergences: Made<4, Submergence>,
     kinds: Vec<Kind>,
-    /// Half a tick.
     half_tick: SimTime,
     half_s: f64,
 }

@@ -22,7 +22,6 @@ pub struct CompassModel {
     compass: Compass,
     noise: TimedNoise,
     period: SimTime,
-    /// Its fault spans in this game.
     faults: Vec<FaultSpan>,
 }
 

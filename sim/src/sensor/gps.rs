@@ -110,7 +110,6 @@ impl GpsModel {
         self.faults = faults.iter().filter(|span| is_of_gps(span.kind)).copied().collect();
     }
 
-    /// The present fault of this kind, if any.
     fn fault(&self, kind: FaultKind, now: SimTime) -> Option<&FaultSpan> {
         self.faults.iter().find(|span| span.kind == kind && span.is_on(now))
     }

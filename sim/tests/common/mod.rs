@@ -17,7 +17,6 @@ pub(crate) fn scenarios() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios")
 }
 
-/// A shipped game.
 pub(crate) fn shipped(game: &str) -> Scenario {
     scenario::load(&scenarios().join("games").join(game)).unwrap_or_else(|e| panic!("{e}"))
 }
@@ -77,7 +76,6 @@ pub(crate) fn hamper(scenario: &mut Scenario) {
     };
 }
 
-/// Changes the state of a world directly.
 pub(crate) fn set(world: &mut World, change: impl FnOnce(&mut State)) {
     let mut state = world.state().clone();
     change(&mut state);

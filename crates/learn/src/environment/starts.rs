@@ -29,7 +29,6 @@ impl Starts {
         self.watches = None;
     }
 
-    /// The game with this number.
     pub(super) fn game(&self, setup: &Setup, number: u64) -> Result<Game, SetupError> {
         let watch = self.watches.as_ref().and_then(|watches| watches(number));
         // Repeating starts must outnumber the parallel games: with 64 of each, every game always

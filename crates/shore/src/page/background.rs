@@ -95,7 +95,6 @@ fn read(path: &Path, bytes_max: u64) -> Result<Vec<u8>, BackgroundError> {
     input_file::read(path, bytes_max).map_err(|source| BackgroundError::Read { path: path.to_owned(), source })
 }
 
-/// The path and text of the world file beside an image.
 fn world_file(image: &Path) -> Result<(PathBuf, String), BackgroundError> {
     let found = WORLD_FILES.iter().map(|end| image.with_extension(end)).find(|path| path.exists());
     let Some(path) = found else {

@@ -41,7 +41,6 @@ pub(super) struct BoatCurves {
 /// The version of the protocol.
 pub(super) const PROTOCOL: u32 = 1;
 
-/// A message to a page.
 #[derive(Clone, Debug, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub(super) enum PageMessage<'a> {

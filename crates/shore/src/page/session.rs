@@ -104,7 +104,6 @@ impl PageSession {
         Some(self.pings.0)
     }
 
-    /// The last ping made.
     pub(super) fn last_ping(&self) -> u64 {
         self.pings.0
     }

@@ -62,7 +62,6 @@ pub(crate) fn report(vehicle: VehicleId) -> HelmReport {
     }
 }
 
-/// A recording of two minutes.
 pub(crate) fn two_minutes() -> Arc<Recorded> {
     static RECORDED: OnceLock<Arc<Recorded>> = OnceLock::new();
     Arc::clone(RECORDED.get_or_init(|| recorded(1201)))
@@ -74,13 +73,11 @@ pub(crate) fn recorded(frames: u64) -> Arc<Recorded> {
     recorded_in(bytes_of_recording(frames))
 }
 
-/// The recording in these bytes.
 pub(crate) fn recorded_in(bytes: Vec<u8>) -> Arc<Recorded> {
     let recording = Recording::of(bytes).expect("a recording");
     Arc::new(Recorded::new(Arc::new(recording), "made_up.mcap".to_owned()))
 }
 
-/// The bytes of this recording.
 pub(crate) fn bytes_of_recording(frames: u64) -> Vec<u8> {
     let scenario = scenario("pav01_vs_pav01.toml");
     let picture = |team: u8| {

@@ -14,7 +14,6 @@ const METER: Duration = Duration::from_secs(1);
 pub(super) struct FrameBuffer {
     /// The number of frames so far, and the number of the newest, counted from 1.
     pub(super) count: u64,
-    /// The stamp of the newest frame.
     pub(super) stamp: Stamp,
     /// Whether the game is over.
     pub(super) is_over: bool,
@@ -48,7 +47,6 @@ impl FrameBuffer {
         missed
     }
 
-    /// The newest frame, with its leading byte.
     pub(super) fn newest(&self) -> Bytes {
         self.newest.clone()
     }
@@ -59,7 +57,6 @@ impl FrameBuffer {
         before.map(|(_, bytes)| bytes.clone()).collect()
     }
 
-    /// The recent frame rate, Hz.
     pub(super) fn rate_hz(&self, now: Instant) -> f64 {
         let is_late = self.counted.is_none_or(|(since, _)| now.saturating_duration_since(since) > 2 * METER);
         if is_late { 0.0 } else { self.rate_hz }

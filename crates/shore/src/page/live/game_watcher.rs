@@ -95,7 +95,6 @@ impl GameWatcher {
         Ok(GameSession::begin(&self.shared, bus, LiveGame::new(name, info, &water))?)
     }
 
-    /// Serves the game until it has gone.
     fn run_until_gone(&self, mut session: GameSession) {
         let left = Arc::new(Watched::new(false));
         let queries =

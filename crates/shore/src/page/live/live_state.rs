@@ -128,7 +128,6 @@ impl LiveState {
         self.steering.clear();
     }
 
-    /// Stores a frame with its CDR.
     pub(super) fn take_frame(&mut self, frame: &Frame, cdr: &[u8], now: Instant) {
         let Some(game) = self.game.clone() else { return };
         if !is_of(frame, game.scenario()) {

@@ -22,7 +22,6 @@ pub(super) struct PageViewer {
     /// The selected boat, and whether utilities are wanted. Kept for the next game if it has that
     /// boat.
     selection: Option<(String, bool)>,
-    /// Whether the modes of all boats are wanted.
     wants_modes: bool,
     sent: Sent,
 }

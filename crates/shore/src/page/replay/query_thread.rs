@@ -158,7 +158,6 @@ impl Sources {
 }
 
 impl Queue {
-    /// The next query in turn.
     fn next(&mut self) -> Option<Query> {
         let later = (Bound::Excluded(self.last), Bound::Unbounded);
         let after = self.requests.range(later).next().or_else(|| self.requests.iter().next());

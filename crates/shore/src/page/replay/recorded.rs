@@ -90,7 +90,6 @@ impl Recorded {
         Arc::clone(&self.recording)
     }
 
-    /// The recording's header.
     pub(super) fn header(&self) -> &Header {
         self.recording.header()
     }
