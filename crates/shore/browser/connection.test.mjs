@@ -98,7 +98,7 @@ test('a connection that dies in silence is given up; one on which nothing has to
   });
   const { noted, notices } = await sight.get(() => ({ noted: window.noted, notices: document.getElementById('notices').textContent }));
   assert(noted.some((text) => /Connection lost/.test(text)), `the page says so: ${noted}`);
-  assert.match(notices, /may not have heard/);
+  assert.match(notices, /may not have arrived/);
   assert(await sight.get(() => document.getElementById('connection').hidden));
   await sight.phase('paused');
   assert.equal(await sight.get(() => squall.t_s), stands_s, 'the command was lost');

@@ -169,12 +169,12 @@ test('a failsafe is seen and heard until it is acknowledged, and no flood keeps 
   await badge(sight, 'blue_one', 'stopped');
   await badge(sight, 'red_one', 'stopped');
   t.diagnostic(`stopped and seen ${Date.now() - pressed_ms} ms after the press`);
-  assert.match((await flood).reason, /has not answered the command before/);
+  assert.match((await flood).reason, /has not answered the previous command/);
   assert(Date.now() - pressed_ms < 5000);
 
   // A gateway that has ended is silent.
   await boats.gateways.red_one.kill();
-  assert.match((await badge(sight, 'red_one', 'silent')).detail, /silent since/);
+  assert.match((await badge(sight, 'red_one', 'silent')).detail, /no report from its gateway for/);
   await sight.until('the silent gateway raises an alarm', () => squall.alarms.some(({ boat, text }) => boat === 'red_one' && /silent/.test(text)));
 });
 
@@ -194,7 +194,7 @@ test('a boat holds a heading and goes into other modes at an operator’s wish, 
   await sight.until('excessive thrust is refused', () => /refuses: the thrust is 71, expected 0 to 70 %/.test(document.getElementById('operated').textContent));
   await sight.page.fill('#mode-thrust', '20');
   await sight.press('#mode-set');
-  assert.match(await sight.text('#operate-question'), /Let blue one hold heading 0° at 20 % by its own controller/);
+  assert.match(await sight.text('#operate-question'), /Let blue one’s own controller hold heading 0° at 20 %/);
   await sight.press('#operate-confirm');
   assert.equal((await badge(sight, 'blue_one', 'delegated')).detail, 'heading 000 at 20 %');
   // Its thrusters draw more than the file allows.

@@ -144,7 +144,7 @@ test('a gamepad steers once its stick was seen at rest; the boat stops when it i
   await goes(sight, 90, 3);
   await plug(leans);
   await orders(sight, 90, 0);
-  assert.match(await sight.text('#notices'), /gamepad is gone/);
+  assert.match(await sight.text('#notices'), /gamepad is disconnected/);
   await stands(sight);
   await plug(out);
   await read(sight);
