@@ -82,7 +82,7 @@ pub enum SetupError {
     #[error("the game has {0} teams, expected 2")]
     Teams(usize),
     /// Teams of different sizes.
-    #[error("the teams have {0} and {1} boats; expected teams of equal size, because policies play both sides")]
+    #[error("the teams have {0} and {1} boats, expected teams of equal size, because policies play both sides")]
     Uneven(usize, usize),
     /// No opponent can be drawn.
     #[error("no opponent can be drawn, expected at least one with a weight above 0")]
