@@ -17,8 +17,7 @@ pub fn role_of(scenario: &Scenario, vehicle: VehicleId) -> &Program {
 }
 
 /// The role that `strategy` gives a vehicle that has another strategy in the scenario, as if its
-/// whole team followed
-/// `strategy`.
+/// whole team followed `strategy`.
 #[must_use]
 pub fn role_in<'a>(scenario: &Scenario, vehicle: VehicleId, strategy: &'a Strategy) -> &'a Program {
     dealt(scenario, vehicle, strategy, |_| true)

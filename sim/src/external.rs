@@ -14,10 +14,9 @@ use thiserror::Error;
 
 /// How long a boat is dead reckoned with constant motion after its last fix. After that it is
 /// assumed to stay where it is. The error grows with the square of the time: for a boat that slows
-/// down by 1 m/s² it is half a metre after one second and two metres after two. A boat that
-/// reports nothing probably slows down, because it receives nothing either, and its own watchdog
-/// stops its thrusters. And an extrapolated boat must not reach a flag.
-/// reach a flag.
+/// down by 1 m/s² it is half a metre after one second and two metres after two. A boat that reports
+/// nothing probably slows down, because it receives nothing either, and its own watchdog stops its
+/// thrusters. And an extrapolated boat must not reach a flag.
 pub const DEAD_RECKONING_MAX: SimTime = SimTime(1_000_000_000);
 /// A boat whose last fix is older than this is lost. The margin over [`DEAD_RECKONING_MAX`] makes
 /// one fix per second with the usual delays sufficient. It is small, because the boat's mind loses

@@ -262,8 +262,7 @@ impl World {
     }
 
     /// Pairs of near boats, in the order of [`primitives::near::Near`]: all that may touch, and all
-    /// within
-    /// [`WorldPlan::pairs_within_m`].
+    /// within [`WorldPlan::pairs_within_m`].
     #[must_use]
     pub fn pairs(&self) -> &[Pair] {
         &self.work.pairs

@@ -17,8 +17,7 @@ const ROUNDING_M: f32 = 0.01;
 ///
 /// A candidate is worth the share of `save_m` that it keeps: half for the least distance to an edge
 /// on the way, half for the distance at the end of the look-ahead. The worst edge counts. For the
-/// share
-/// `x` it gets `x + bend x (1 - x)` of each half.
+/// share `x` it gets `x + bend x (1 - x)` of each half.
 pub(super) struct Clearance<'a> {
     pub(super) table: &'a mut Table,
     pub(super) grid: &'a Grid,

@@ -172,8 +172,7 @@ impl Region {
         let field = &situation.model.field;
         let (x, y) = field.along_across(situation.at);
         // At most half of the field: in a field narrower than twice the margin the target is its
-        // middle, and
-        // `clamp` panics if its limits cross.
+        // middle, and `clamp` panics if its limits cross.
         let within = |v: f64, extent_m: f64| {
             let in_m = (self.margin_m + WELL_IN_M).min(0.5 * extent_m);
             v.clamp(in_m, extent_m - in_m)

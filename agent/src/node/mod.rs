@@ -40,8 +40,8 @@ pub enum News<'a> {
 
 /// Joins a game and plays until it is over.
 ///
+/// # Errors
 /// [`NodeError`], including the loss of the sim.
-/// [`NodeError`]; the loss of the sim is an error.
 pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), NodeError> {
     let mut search = GameSearch::new(settings.wait, &settings.stop);
     let mut report = |reason: &str| tell(News::Looking { reason });

@@ -74,8 +74,7 @@ fn toward(situation: &Situation, place: Ned, out: &mut Numbers<'_>) {
 }
 
 /// Whether a place is on a team's side of the scrimmage line, on the field or not, as in Pyquaticus
-/// and unlike
-/// `Field::is_own_side`.
+/// and unlike `Field::is_own_side`.
 fn is_own_side(situation: &Situation, at: Ned, team: usize) -> bool {
     let field = &situation.model.field;
     let beyond_m = (at - field.middle()).dot(field.along);

@@ -1,5 +1,5 @@
 //! Handling: how soon, fast and hard a boat turns and brakes, from its file and then from
-//! observation. observation.
+//! observation.
 
 use scenario::boat::{Autopilot, Boat, Drive, Hull, Kinematic, ThrustCurve, Thruster};
 

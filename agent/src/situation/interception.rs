@@ -81,8 +81,7 @@ fn time_to_meet_s(interceptor: &Interceptor, intruder: &Intruder) -> f64 {
 }
 
 /// The earliest time at which a boat going straight at this speed meets a contact at `line` of
-/// constant velocity, s;
-/// `None` if they never meet.
+/// constant velocity, s; `None` if they never meet.
 ///
 /// The time is the smallest positive root of |line + velocity t| = speed t.
 pub(crate) fn meeting_time_s(line: Ned, velocity: Ned, speed_m_s: f64) -> Option<f64> {

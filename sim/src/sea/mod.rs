@@ -114,8 +114,7 @@ pub struct SeaForcing {
 
 impl SeaModel {
     /// This sea over this field, for these kinds of boat and ticks of this length, with the
-    /// randomness of
-    /// `seeds`.
+    /// randomness of `seeds`.
     #[must_use]
     pub fn new(sea: &Sea, boats: &[Boat], field: &Field, tick: SimTime, seeds: &Seeds) -> SeaModel {
         let waves = sea.waves.as_ref().map(|waves| WaveField::new(waves, sea.depth_m, seeds.first()));

@@ -3,8 +3,7 @@
 //! Start with [`SensorModel::read`]. A sensor that a boat's file omits is perfect: it reports the
 //! true values bit for bit. Sensors keep their memory in their state, which is plain numbers and
 //! part of the world's snapshot. Random values are looked up by the number of the fix or reading,
-//! under
-//! `gps/<vehicle>`, `compass/<vehicle>` and `imu/<vehicle>`.
+//! under `gps/<vehicle>`, `compass/<vehicle>` and `imu/<vehicle>`.
 
 pub mod compass;
 pub mod gps;

@@ -95,8 +95,7 @@ impl Perceptron {
     }
 
     /// Computes the output for every row of `input`, rows × values. Keeps the backward pass's data
-    /// in
-    /// `trace`, reusing its memory.
+    /// in `trace`, reusing its memory.
     pub fn forward(&self, input: &[f32], trace: &mut Trace) {
         let rows = input.len() / self.sizes[0];
         debug_assert_eq!(input.len(), rows * self.sizes[0]);
