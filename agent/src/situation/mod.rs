@@ -370,10 +370,6 @@ impl Situation {
     fn carried(&self, flag: FlagId) -> Option<VehicleId> {
         self.carriers.get(flag.index()).copied().flatten()
     }
-
-    fn own_point(&self) -> MovingPoint {
-        MovingPoint { at: self.at, velocity: self.velocity }
-    }
 }
 
 impl Values for Situation {
@@ -418,7 +414,10 @@ impl Values for Situation {
         let point = self.locate(place);
         let truth = |is: bool| f64::from(u8::from(is));
         match measure {
-            Measure::Distance | Measure::Closing => between(measure, Some(self.own_point()), point),
+            Measure::Distance | Measure::Closing => {
+                let own = MovingPoint { at: self.at, velocity: self.velocity };
+                between(measure, Some(own), point)
+            }
             Measure::Speed => point.map_or(0.0, |point| point.velocity.length()),
             Measure::Known => truth(point.is_some()),
             Measure::OnOwnSide => truth(point.is_some_and(|point| self.model.is_own_side(point.at))),
