@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{gap_m, order, written};
+use common::{gap_m, order, started, written};
 use messages::external::ExternalOrder;
 use messages::picture::Nav;
 use messages::{Message, Order};
@@ -25,10 +25,6 @@ fn game(red_at: &str, more: &str) -> Scenario {
          [[vehicle]]\nname = \"blue_one\"\nteam = \"blue\"\nsource = \"external\"\n\
          [[vehicle]]\nname = \"red_one\"\nteam = \"red\"\n{red_at}\n"
     ))
-}
-
-fn afloat(scenario: &Scenario) -> Contest {
-    Contest::new(scenario, 1).expect("the boats fit")
 }
 
 fn nav(x: f64, y: f64, heading_deg: f64, speed_m_s: f64) -> Nav {
@@ -59,7 +55,7 @@ fn events(contest: &Contest) -> Vec<Event> {
 
 #[test]
 fn a_real_boat_that_is_reported_at_the_flag_grabs_it() {
-    let mut contest = afloat(&game("at = [150, 5]", ""));
+    let mut contest = started(&game("at = [150, 5]", ""));
     sail(&mut contest, 50.0, 135.0, 3.0);
     assert!(events(&contest).contains(&Event::Grabbed { vehicle: REAL, flag: FlagId(1) }), "{:?}", events(&contest));
     assert_eq!(contest.frame(&mut EventCursor::default()).vehicles[0].carrying, 1);
@@ -73,7 +69,7 @@ fn a_real_boat_is_tagged_and_its_effective_command_is_what_the_rules_make_of_its
     let slow = |tagged_boat| {
         let mut scenario = game("", "");
         (scenario.rules.tagged_boat, scenario.rules.tagged_speed_factor) = (tagged_boat, 0.5);
-        let mut contest = afloat(&scenario);
+        let mut contest = started(&scenario);
         order(&mut contest, REAL, steer);
         report(&mut contest, nav(50.0, 40.0, 90.0, 0.0));
         assert_eq!(
@@ -106,7 +102,7 @@ fn a_real_boat_is_tagged_and_its_effective_command_is_what_the_rules_make_of_its
 
 #[test]
 fn the_cause_for_which_a_boat_holds_is_known_and_the_first_of_several_counts() {
-    let mut contest = afloat(&game("at = [150, 5]", ""));
+    let mut contest = started(&game("at = [150, 5]", ""));
     let shows = |contest: &Contest, want: [Option<HoldCause>; 2]| {
         assert_eq!([REAL, OTHER].map(|vehicle| contest.hold_cause(vehicle)), want);
         for (vehicle, want) in [REAL, OTHER].into_iter().zip(want) {
@@ -131,7 +127,7 @@ fn the_cause_for_which_a_boat_holds_is_known_and_the_first_of_several_counts() {
 #[test]
 fn a_simulated_boat_that_bumps_into_a_real_one_is_stopped_and_the_real_one_is_not() {
     let scenario = game("at = [62, 40]\nheading_deg = 270", "");
-    let mut contest = afloat(&scenario);
+    let mut contest = started(&scenario);
     let mut least_m = f64::INFINITY;
     for _ in 0..300 {
         report(&mut contest, nav(50.0, 40.0, 0.0, 0.0));
@@ -148,7 +144,7 @@ fn a_simulated_boat_that_bumps_into_a_real_one_is_stopped_and_the_real_one_is_no
 #[test]
 fn a_real_boat_pushes_a_simulated_one_out_of_its_way() {
     let scenario = game("at = [58, 40]\nheading_deg = 0", "");
-    let mut contest = afloat(&scenario);
+    let mut contest = started(&scenario);
     sail(&mut contest, 50.0, 65.0, 1.5);
     let [real, other] = [0, 1].map(|i| contest.world().state().boats[i].pose.at);
     assert!(real.distance(Ned::from_xy(65.0, 40.0)) < 1e-9, "{real:?}");
@@ -163,7 +159,7 @@ fn a_real_boat_pushes_a_simulated_one_out_of_its_way() {
 
 #[test]
 fn between_reports_a_real_boat_goes_on_as_it_did_and_then_it_is_lost() {
-    let mut contest = afloat(&game("", "link = { delay_s = 5 }"));
+    let mut contest = started(&game("", "link = { delay_s = 5 }"));
     advance(&mut contest, 3);
     assert_eq!(events(&contest), [Event::NavLost(REAL)], "lost before the first report");
     assert!(!contest.has_position(REAL) && contest.has_position(OTHER));
@@ -212,7 +208,7 @@ fn between_reports_a_real_boat_goes_on_as_it_did_and_then_it_is_lost() {
 
 #[test]
 fn reports_that_cannot_be_relied_on_change_nothing_and_bad_ones_are_refused() {
-    let mut contest = afloat(&game("", ""));
+    let mut contest = started(&game("", ""));
     report(&mut contest, nav(50.0, 40.0, 90.0, 1.0));
     contest.advance();
     let before = contest.digest();
@@ -236,7 +232,7 @@ fn reports_that_cannot_be_relied_on_change_nothing_and_bad_ones_are_refused() {
 fn a_real_boat_has_no_physics_and_no_sensors_of_ours() {
     let mut scenario = game("at = [62, 40]", "sea = \"../seas/gale.toml\"");
     scenario.rules.flag_keepout_m = 8.0;
-    let mut contest = afloat(&scenario);
+    let mut contest = started(&scenario);
     order(&mut contest, REAL, Order::Thrust { port: 1.0, starboard: 1.0 });
     // In the keep-out circle of its own flag.
     for _ in 0..50 {
@@ -253,7 +249,7 @@ fn a_real_boat_has_no_physics_and_no_sensors_of_ours() {
 #[test]
 fn the_same_reports_make_the_same_game() {
     let play = |speed_m_s: f64| {
-        let mut contest = afloat(&game("at = [100, 40]", "sea = \"../seas/gale.toml\""));
+        let mut contest = started(&game("at = [100, 40]", "sea = \"../seas/gale.toml\""));
         sail(&mut contest, 50.0, 110.0, speed_m_s);
         (contest.digest(), contest.snapshot())
     };

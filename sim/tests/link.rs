@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{alone, order};
+use common::{alone, order, started};
 use messages::Order;
 use primitives::{Ned, Pose, SimTime, VehicleId};
 use scenario::boat::Drive;
@@ -31,10 +31,6 @@ fn over(link: Link) -> Scenario {
     // The expiry of an order without a successor is tested elsewhere.
     scenario.order_ttl_s = 3_600.0;
     scenario
-}
-
-fn started(scenario: &Scenario) -> Contest {
-    Contest::new(scenario, 1).expect("the boats fit")
 }
 
 /// An order that encodes the decision at which it was given. At this speed boats barely move.

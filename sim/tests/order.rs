@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{alone, order};
+use common::{alone, order, started};
 use messages::input::{Input, InputRecord, Inputs};
 use messages::{Message, Order, Stamp};
 use primitives::{Ned, SimTime, VehicleId};
@@ -18,10 +18,6 @@ const EAST: Order = Order::Steer { heading_rad: std::f64::consts::FRAC_PI_2, spe
 /// One boat a side; orders expire after a second.
 fn game() -> Scenario {
     Scenario { order_ttl_s: 1.0, ..alone("surveyor_m1_8", "calm") }
-}
-
-fn started(scenario: &Scenario) -> Contest {
-    Contest::new(scenario, 1).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// Whether the boat follows an order in each of the next `decisions` decisions, starting with the

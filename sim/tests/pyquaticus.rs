@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{order, written};
+use common::{order, started, written};
 use messages::Order;
 use primitives::{Ned, SimTime, VehicleId};
 use rules::event::TagCause;
@@ -27,10 +27,6 @@ fn game(rules: &str, boat: &str, (x, y, heading_deg): (f64, f64, f64)) -> Scenar
     ));
     let rules = Rules { power_play: SimTime::ZERO, ..scenario.rules.clone() };
     Scenario { rules, ..scenario }
-}
-
-fn afloat(scenario: &Scenario) -> Contest {
-    Contest::new(scenario, 1).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// One decision of one tick, in which blue's boat follows an order.
@@ -67,7 +63,7 @@ fn a_boat_that_leaves_at_the_side_comes_back_as_soon_as_in_the_competition() {
         assert_eq!(scenario.rules.tag_look_period.as_s(), 1.0, "the period of the competition");
         scenario.rules.tag_look_period = SimTime::from_s(looks_s);
         scenario.rules.flag_look_period = SimTime::from_s(looks_s);
-        let mut contest = afloat(&scenario);
+        let mut contest = started(&scenario);
         let (mut left_s, mut back_s, mut freed_s) = (0.0, 0.0, 0.0);
         while freed_s == 0.0 && contest.now().as_s() < 120.0 {
             let known = contest.events().len();
@@ -102,7 +98,7 @@ fn a_point_boat_slides_along_the_keepout_circle_as_in_pyquaticus() {
         ("surveyor", (10.0, 36.0, 90.0), 13.7, [16.836142, 36.0, 0.805882, 128.342749], [38.955392, 31.435267]),
     ];
     for (boat, start, at_s, want, end) in cases {
-        let mut contest = afloat(&game("pyquaticus", boat, start));
+        let mut contest = started(&game("pyquaticus", boat, start));
         let speed_m_s = contest.scenario().boat_of(BLUE).speed_max_m_s();
         while contest.now().as_s() < 29.99 {
             step(&mut contest, steer(start.2, speed_m_s));
@@ -121,7 +117,7 @@ fn a_point_boat_slides_along_the_keepout_circle_as_in_pyquaticus() {
 fn a_hull_held_at_the_keepout_circle_does_not_go_on_pushing() {
     let mut scenario = game("pyquaticus", "heron", (20.0, 25.0, 0.0));
     scenario.boats = vec![common::boat("heron")];
-    let mut contest = afloat(&scenario);
+    let mut contest = started(&scenario);
     for _ in 0..300 {
         step(&mut contest, steer(0.0, 2.0));
         let boat = &contest.world().state().boats[0];
@@ -137,7 +133,7 @@ fn boats_pass_through_each_other_where_the_rules_say_so() {
         let mut scenario = game("pyquaticus", "heron", (100.0, 60.0, 90.0));
         // No boat is close enough to be tagged.
         (scenario.rules.contact, scenario.rules.tag_radius_m) = (contact, 0.1);
-        let mut contest = afloat(&scenario);
+        let mut contest = started(&scenario);
         common::set_in(&mut contest, |state| {
             state.boats[1].pose = primitives::Pose { at: Ned::from_xy(120.0, 60.5), psi_rad: -PI / 2.0 };
             state.points[1] = sim::kinematic::KinematicState::at_rest(-PI / 2.0);
@@ -200,7 +196,7 @@ fn half_a_turn_is_an_order_of_its_own_to_either_side() {
     ];
     for (boat, speed_m_s, want) in cases {
         for side in [1.0, -1.0] {
-            let mut contest = afloat(&game("pyquaticus", boat, (50.0, 40.0, 0.0)));
+            let mut contest = started(&game("pyquaticus", boat, (50.0, 40.0, 0.0)));
             for (at_s, [x, y, speed, heading_deg]) in [3.0, 12.0, 30.0].into_iter().zip(want) {
                 while contest.now().as_s() < at_s - 0.05 {
                     step(&mut contest, Order::Turn { by_rad: side * PI, speed_m_s });
@@ -289,7 +285,7 @@ fn whole_games_go_event_for_event_as_in_pyquaticus() {
         // Pyquaticus sets boats back with single-precision headings, and every set-back enlarges
         // the difference.
         scenario.rules.flag_keepout_m = 0.0;
-        let mut contest = afloat(&scenario);
+        let mut contest = started(&scenario);
         let speed_max_m_s = scenario.boat_of(BLUE).speed_max_m_s();
         let (mut got, mut known) = (BTreeMap::<usize, Vec<String>>::new(), 0);
         for (step, actions) in trace.actions.iter().enumerate() {

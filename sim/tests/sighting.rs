@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{alone, order};
+use common::{alone, order, started};
 use messages::Order;
 use messages::picture::Contact;
 use primitives::angle::rad_from_compass_deg;
@@ -34,10 +34,6 @@ fn facing(sharing: Sharing, blue: (f64, f64, f64), red: (f64, f64, f64)) -> Scen
     scenario.vehicles[BLUE.index()].start_position = start_position(blue);
     scenario.vehicles[RED.index()].start_position = start_position(red);
     scenario
-}
-
-fn started(scenario: &Scenario) -> Contest {
-    Contest::new(scenario, 1).expect("the boats fit")
 }
 
 /// Blue's contact of red.

@@ -46,6 +46,11 @@ pub(crate) fn among(boat: &str, obstacles: Vec<Obstacle>) -> Scenario {
     scenario
 }
 
+/// A match with seed 1, at its start.
+pub(crate) fn started(scenario: &Scenario) -> Contest {
+    Contest::new(scenario, 1).unwrap_or_else(|e| panic!("{e}"))
+}
+
 /// The world of a game, with its first boat placed by [`place_boat`].
 pub(crate) fn afloat(scenario: &Scenario, seed: u64, start: (f64, f64, f64), nu: (f64, f64, f64)) -> World {
     let mut world = World::of_game(scenario, seed).expect("the boats fit");
