@@ -36,7 +36,11 @@ fn main() {
     if std::env::var_os(bus::RUNTIME_VARIABLE).is_none() {
         // The bare hub must use the same zenoh threads as the sim.
         let mut again = Command::new(std::env::current_exe().expect("the path of this program"));
-        let status = again.args(&args[1..]).env(bus::RUNTIME_VARIABLE, bus::RUNTIME).status().expect("this program starts again");
+        let status = again
+            .args(&args[1..])
+            .env(bus::RUNTIME_VARIABLE, bus::RUNTIME)
+            .status()
+            .expect("this program starts again");
         std::process::exit(status.code().unwrap_or(1));
     }
     println!("lockstep over zenoh, median of {ROUNDS} runs of {RUN_S} s each");

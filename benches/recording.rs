@@ -52,6 +52,7 @@ fn rate(game: &Path, options: &[&str], dir: &Path) -> f64 {
     command.arg("run").arg(game).args(options).arg("--json").arg(&json);
     assert!(command.output().expect("the program starts").status.success(), "{command:?}");
     let result: serde_json::Value =
-        serde_json::from_str(&std::fs::read_to_string(&json).expect("the result can be read")).expect("the result is JSON");
+        serde_json::from_str(&std::fs::read_to_string(&json).expect("the result can be read"))
+            .expect("the result is JSON");
     result["duration_s"].as_f64().expect("a time") / result["run"]["wall_s"].as_f64().expect("a time")
 }

@@ -267,7 +267,8 @@ fn orbital_motion_and_drift_have_the_magnitudes_computed_elsewhere() {
 
 #[test]
 fn on_a_long_swell_a_boat_floats_with_the_surface() {
-    // A wave a kilometre long, travelling north: 25 s or more, slow against every spring.
+    // A wave a kilometre long, travelling north. Its period is 25 s or more, slow compared with
+    // every spring.
     for (t, psi_deg, depth_m) in
         [(0.0, 0.0, None), (6.0, 90.0, None), (12.0, 180.0, Some(20.0)), (18.0, -90.0, Some(5.0)), (3.0, 45.0, None)]
     {

@@ -188,7 +188,7 @@ fn force(ahead: f64, starboard: f64) -> Planar {
 
 #[test]
 fn the_wind_pushes_a_boat_away_and_its_bow_off() {
-    // A boat at rest that points north; the wind's bearing; signs of surge, sway and yaw.
+    // For a boat at rest heading north: the wind's bearing, and the signs of surge, sway and yaw.
     for (from_deg, want) in [
         (0.0, (-1.0, 0.0, 0.0)),
         (45.0, (-1.0, -1.0, -1.0)),

@@ -62,7 +62,7 @@ impl BehaviourRun {
         }
     }
 
-    /// Completes it. A perpetual behaviour restarts at the next decision.
+    /// Ends a run. A perpetual behaviour restarts at the next decision.
     pub(crate) fn complete(&mut self, perpetual: bool, mut post: impl FnMut(Moment)) {
         if self.state == RunState::Active {
             post(Moment::Inactive);

@@ -17,7 +17,7 @@ pub(super) struct Sums {
     pub(super) courses: Vec<Lanes<i32>>,
     /// The sums of speed-only functions, in quanta by speed; beyond the last speed, [`NOWHERE`].
     pub(super) speeds: Vec<Lanes<i32>>,
-    /// Formulas of both.
+    /// Formulas in both course and speed.
     pub(super) fields: Vec<(Weight, Field)>,
     /// The sum of weighted tables, in quanta: for each group of speeds, a row of speeds per lane of
     /// `courses`. Undefined for groups of courses that no table lowers.

@@ -43,8 +43,8 @@ pub(crate) struct OwnMotion {
     file: Handling,
     reference: SpeedReference,
     speed_max_m_s: f64,
-    /// For a boat that turns by its thrust, with thrust proportional to the ordered speed: it
-    /// brakes at full deceleration when its order is lower by this much, m/s.
+    /// For a boat that steers by differential thrust, with thrust proportional to the ordered
+    /// speed: it brakes at full deceleration when its order is lower by this much, m/s.
     brakes_by_m_s: Option<f64>,
     /// Whether orders compensate for drift and offset.
     compensates: bool,

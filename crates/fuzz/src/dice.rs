@@ -30,7 +30,7 @@ impl Dice {
         &all[self.roll(all.len())]
     }
 
-    /// A random range within `length` of at most `most` elements.
+    /// A random range of at most `most` of `length` elements.
     pub fn range(&mut self, length: usize, most: usize) -> std::ops::Range<usize> {
         let from = self.roll(length + 1);
         from..(from + 1 + self.roll(most)).min(length).max(from)

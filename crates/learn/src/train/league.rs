@@ -5,7 +5,7 @@ use crate::training::{self, Stage};
 use scenario::policy::{PartialSpec, PolicyModel};
 use serde::{Deserialize, Serialize};
 
-/// Draw weight of an opponent that never wins, as a share of an equal part.
+/// Draw weight of an opponent that never wins, as a fraction of an equal share.
 const LEAST: f64 = 0.1;
 /// Decay of a game's weight per later game.
 const MEMORY: f64 = 0.98;
@@ -40,7 +40,7 @@ pub(super) struct League {
 }
 
 impl League {
-    /// Sets the opponents of the next stage. Past policies stay.
+    /// Sets the opponents of the next stage; past policies are kept.
     pub(super) fn begin(&mut self, fixed: usize) {
         self.fixed = fixed;
         self.kept = self.past.len();
