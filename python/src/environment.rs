@@ -338,7 +338,7 @@ fn read_discrete(actions: &Bound<'_, PyAny>, rows: usize, count: usize, into: &m
     for (row, action) in actions.as_array().iter().enumerate() {
         let action = usize::try_from(*action).ok().filter(|action| *action < count);
         let wrong =
-            || refused(format!("the action of row {row} is {}, expected 0 to {}", actions.as_array()[row], count - 1));
+            || refused(format!("the action in row {row} is {}, expected 0 to {}", actions.as_array()[row], count - 1));
         into.push(Action::Discrete(action.ok_or_else(wrong)?));
     }
     Ok(())
@@ -354,7 +354,7 @@ fn read_continuous(actions: &Bound<'_, PyAny>, rows: usize, into: &mut Vec<Actio
     for (row, action) in actions.as_array().outer_iter().enumerate() {
         let action = [action[0], action[1]];
         if !action.iter().all(|number| number.is_finite()) {
-            return Err(refused(format!("the action of row {row} is {action:?}, expected two finite numbers")));
+            return Err(refused(format!("the action in row {row} is {action:?}, expected two finite numbers")));
         }
         into.push(Action::Continuous(action));
     }

@@ -55,8 +55,8 @@ def test_everything_that_is_wrong_with_a_file_is_told(tmp_path: Path) -> None:
     ("actions", "message"),
     [
         (np.zeros(3, dtype=int), r"shape \(3,\), expected one for each of 4 boats"),
-        (np.full(4, 17), "the action of row 0 is 17, expected 0 to 16"),
-        (np.array([0, 0, -1, 0]), "the action of row 2 is -1, expected 0 to 16"),
+        (np.full(4, 17), "the action in row 0 is 17, expected 0 to 16"),
+        (np.array([0, 0, -1, 0]), "the action in row 2 is -1, expected 0 to 16"),
         (np.zeros(4), "have the type float64, expected integers"),
     ],
 )
@@ -72,7 +72,7 @@ def test_actions_are_refused_and_nothing_is_played(actions: np.ndarray, message:
 
 def test_continuous_actions_are_finite() -> None:
     environment = squall.VectorEnv(1, action="continuous")
-    with pytest.raises(ValueError, match=r"the action of row 1 is \[NaN, 1.0\], expected two finite numbers"):
+    with pytest.raises(ValueError, match=r"the action in row 1 is \[NaN, 1.0\], expected two finite numbers"):
         environment.step(np.array([[0, 0], [np.nan, 1]]))
     with pytest.raises(ValueError, match="two numbers for each of 2 boats"):
         environment.step(np.zeros(2))

@@ -152,7 +152,7 @@ pub(crate) struct SeenTurn {
 }
 
 impl SeenTurn {
-    /// Processes the yaw rate after `step_s` with this heading error.
+    /// Takes in the yaw rate measured after `step_s` with this heading error.
     pub(crate) fn observe(&mut self, error_rad: f64, yaw_rate_rad_s: f64, handling: &Handling, step_s: f64) {
         let wanted_rad_s = handling.yaw_rate_rad_s(error_rad);
         self.rate_rad_s += (step_s / (handling.reaction_s + step_s)) * (wanted_rad_s - self.rate_rad_s);

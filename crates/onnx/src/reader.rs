@@ -151,7 +151,8 @@ fn add(planner: &mut Planner, proto: &NodeProto, version: i64) -> Result<(), Net
     node.check_attributes(operator.attributes)?;
     if !operator.inputs.contains(&proto.input.len()) {
         let (least, most) = (operator.inputs.start(), operator.inputs.end());
-        return Err(node.wrong(format!("{} inputs", proto.input.len()), format!("{least} to {most}")));
+        let expected = if least == most { least.to_string() } else { format!("{least} to {most}") };
+        return Err(node.wrong(format!("{} inputs", proto.input.len()), expected));
     }
     let [output] = proto.output.as_slice() else {
         return Err(node.wrong(format!("{} outputs", proto.output.len()), "one"));

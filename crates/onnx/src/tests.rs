@@ -197,7 +197,7 @@ fn nodes_that_cannot_be_evaluated_are_refused_by_name() {
         (|m| graph(m).node[0].input[0] = "y".to_owned(), "node `sums node` (Gemm): found the undefined input `y`"),
         (|m| graph(m).node[0].output[0] = "w".to_owned(), "tensor `w`: found a second definition"),
         (|m| graph(m).node[0].output.push("z".to_owned()), "node `sums node` (Gemm): found 2 outputs, expected one"),
-        (|m| _ = graph(m).node[1].input.pop(), "node `y node` (Relu): found 0 inputs, expected 1 to 1"),
+        (|m| _ = graph(m).node[1].input.pop(), "node `y node` (Relu): found 0 inputs, expected 1"),
         (|m| graph(m).node[1].attribute.push(integer("axis", 1)), "(Relu): found the attribute axis, expected none"),
         (|m| graph(m).node[0].attribute.push(integer("transA", 1)), "(Gemm): found transA = 1, expected transA = 0"),
         (|m| graph(m).node[0].attribute.push(integer("transB", 1)), "found the shape 1 x 2 with 3 x 2 weights"),
