@@ -142,7 +142,7 @@ fn accepted(kind: Kind, path: &Path) {
 /// An accepted game can be sent unchanged, and starts or reports why not. Minds can play it.
 fn playable(scenario: &Scenario) {
     let json = serde_json::to_string(scenario).expect("JSON");
-    assert_eq!(serde_json::from_str::<Scenario>(&json).expect("JSON"), *scenario, "the game changes when written and read");
+    assert_eq!(serde_json::from_str::<Scenario>(&json).expect("JSON"), *scenario, "the game changes in transit");
     assert_eq!(scenario.check_references(), Ok(()));
     if scenario.vehicles.len() > 40 {
         return;
