@@ -16,7 +16,7 @@ pub(super) struct Arrival {
     /// The bearing of the point and its accumulated rotation, rad.
     bearing_rad: Option<f64>,
     turned_rad: f64,
-    /// Points within this distance count as reached, because the boat has circled one at it, m.
+    /// Points within this distance count as reached, because the boat has circled one this far off, m.
     gone_round_m: f64,
 }
 

@@ -34,7 +34,7 @@ pub(crate) struct HeadingOffset {
 }
 
 impl HeadingOffset {
-    /// Processes the heading after `step_s` under a steering order.
+    /// Takes in the heading measured after `step_s` under a steering order.
     pub(crate) fn observe(&mut self, ordered_rad: f64, heading_rad: f64, handling: &Handling, step_s: f64) {
         let model_rad = self.model_rad.get_or_insert(heading_rad);
         let error_rad = wrap_pi(ordered_rad - *model_rad);

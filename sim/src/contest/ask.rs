@@ -4,7 +4,7 @@ use messages::Picture;
 use primitives::{Ned, VehicleId};
 use rules::{Asks, Field, Rules};
 
-/// The requests that a team's boats make by their picture, as with pRangeEvent in the Aquaticus
+/// The requests that a team's boats make from their picture, as with pRangeEvent in the Aquaticus
 /// missions. Any boat that believes it is in reach makes a request, because a refusal costs
 /// nothing.
 pub(super) fn asks_of<'a>(
