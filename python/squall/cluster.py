@@ -19,7 +19,7 @@ from typing import Any, Generic, Protocol, TypeAlias, TypeVar
 Result = TypeVar("Result")
 """The result of a game."""
 Taken = TypeVar("Taken", contravariant=True)
-"""The same, as its receiver needs it."""
+"""A result in the form that its receiver needs."""
 Packed: TypeAlias = tuple[str, list[tuple[Path, bytes]], str]
 """A packed plan, from its `pack`; the last element is its digest."""
 Task: TypeAlias = Callable[[Packed, int, int], list[Result]]

@@ -51,8 +51,8 @@ class Options(TypedDict, total=False):
     """The value of a reward one step later, for the potentials in rewards; 0.99 by default."""
     record: str | os.PathLike[str] | None
     """A folder for recordings of games, named by time, game and seed; `squall replay` shows and replays them. None (default): no
-    recordings. A game without a played step leaves no file. One that is reset, or whose environment is closed, before its end is kept
-    as far as it was played."""
+    recordings. A game without a played step leaves no file. If a game is reset, or its environment closed, before its end, the part
+    that was played is kept."""
     record_every: int
     """Records every n-th game, including the first, counted across the games and then the episodes, like seeds; 1 by default. With the
     number of games in a `VectorEnv`, records the games of its first slot."""

@@ -23,7 +23,7 @@ const SQUALL = resolve(process.env.SQUALL ?? join(ROOT, 'target/release/squall')
 const WEB = process.env.SQUALL_WEB && resolve(process.env.SQUALL_WEB);
 const FLAGS = ['--headless', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
   '--disable-component-update', '--disable-sync',
-  // A browser lets no page from elsewhere talk to this machine, and counts pages from the folder as such.
+  // Browsers keep foreign pages from connecting to this machine, and treat pages from the folder as foreign.
   ...(WEB ? ['--disable-features=LocalNetworkAccessChecks'] : [])];
 
 /** A file in the folder scenarios. */

@@ -97,7 +97,7 @@ test('from a cell of the win matrix to its games, to a replay of one, and back',
 
 test('what is wrong with a report or a game is said in words', async (t) => {
   const { place, path, report } = await tournament(t);
-  // Foreign texts, a game with another result, and a seed with more digits than the page's numbers.
+  // Foreign texts, a game with a different result, and a seed with more digits than a JavaScript number holds.
   const seed = '9007199254740993';
   report.tournament = HOSTILE;
   report.game = HOSTILE;

@@ -25,7 +25,7 @@ const forge = (sight, message) => sight.get((message) => new Promise((done, fail
 
 test('a page without the token looks on, and one with it acts', async (t) => {
   const port = await freePort();
-  // With a boat that any page with rights may drive.
+  // The game has a boat that any page with the token may drive.
   const run = new Program(t, 'run', scenario('games/person_2v2.toml'), '--view', '--speed', '2x', '--no-record', '--listen', `0.0.0.0:${port}`,
     '--token', 'secret');
   const url = await run.url();

@@ -48,8 +48,8 @@ impl AccessControl {
 
     fn is_own(&self, name: &str) -> bool {
         match name.parse::<IpAddr>() {
-            // If the server listens on all addresses, an address is no name that an attacker
-            // controls.
+            // If the server listens on all addresses, any address will do: attackers control only
+            // names.
             Ok(ip) => ip.is_loopback() || ip == self.bound.ip() || self.bound.ip().is_unspecified(),
             Err(_) => name == "localhost",
         }
