@@ -1,11 +1,11 @@
-//! Compares lockstep ticks per second across processes with a bare zenoh ping of the same sizes in
-//! the same run.
+//! Compares lockstep ticks per second across processes with a bare zenoh ping of the same sizes in the
+//! same run.
 //!
 //! The ping measures the cost of transport alone: a hub publishes one message per team to N leaf
-//! processes and waits until each has answered. Topology and message sizes are the same, but there
-//! is no game. The cases alternate, so that both sides see the same machine. The bench prints
-//! medians, the cost of keys (TLS and rules by certificate), and the rate of the same game in one
-//! process. Boats with the strategy *idle* lie still, so that only the game's messages remain.
+//! processes and waits until each has answered. Topology and message sizes are the same, but there is
+//! no game. The cases alternate, so that both see the same machine. The bench prints medians, the cost
+//! of keys (TLS and rules by certificate), and the rate of the same game in one process. Boats with the
+//! strategy *idle* stay still, so that only the game's messages remain.
 #![allow(clippy::print_stdout, clippy::disallowed_methods, reason = "a benchmark reads the clock and prints")]
 
 use std::path::Path;
@@ -16,7 +16,6 @@ use zenoh::{Config, Session, Wait};
 
 /// Runs of each case.
 const ROUNDS: usize = 5;
-/// Duration of a run, s.
 const RUN_S: f64 = 2.0;
 
 struct Case {
@@ -36,8 +35,12 @@ fn main() {
     }
     if std::env::var_os(bus::RUNTIME_VARIABLE).is_none() {
         // The bare hub must use the same zenoh threads as the sim.
-        let mut again = Command::new(std::env::current_exe().expect("this program"));
-        let status = again.args(&args[1..]).env(bus::RUNTIME_VARIABLE, bus::RUNTIME).status().expect("it starts again");
+        let mut again = Command::new(std::env::current_exe().expect("the path of this program"));
+        let status = again
+            .args(&args[1..])
+            .env(bus::RUNTIME_VARIABLE, bus::RUNTIME)
+            .status()
+            .expect("this program starts again");
         std::process::exit(status.code().unwrap_or(1));
     }
     println!("lockstep over zenoh, median of {ROUNDS} runs of {RUN_S} s each");
@@ -123,7 +126,7 @@ fn squall(case: &Case, options: &[&str]) -> f64 {
     }
 }
 
-/// The size of a picture and of one process's orders in such a game, bytes.
+/// The sizes of a picture and of one process's orders in such a game, bytes.
 fn sizes(case: &Case) -> (usize, usize) {
     use messages::{Order, Orders, VehicleOrder};
     use primitives::VehicleId;
@@ -138,7 +141,7 @@ fn sizes(case: &Case) -> (usize, usize) {
         let at = primitives::Ned { north: i as f64 * 8.0, east: 0.0 };
         vehicle.start_position = scenario::StartPosition::At(primitives::Pose { at, psi_rad: 0.0 });
     }
-    let mut contest = sim::Contest::new(&scenario, 1).expect("start_positions were given");
+    let mut contest = sim::Contest::new(&scenario, 1).expect("the start positions are given");
     let picture = encode(&contest.pictures()[0]).len();
     let mine = (0..case.vehicles / case.processes).map(|i| VehicleOrder::new(VehicleId(i as u16), Order::Hold));
     let orders = encode(&Orders { orders: mine.collect(), ..Orders::default() }).len();
@@ -181,8 +184,7 @@ fn echo(endpoint: &str, size: usize, name: &str) {
     }
 }
 
-/// The bare ping's rounds per second. The hub is this process, separate from the others as the sim
-/// is.
+/// Rounds per second of the bare ping. The hub is a separate process, as the sim is.
 fn bare(case: &Case) -> f64 {
     let (out_size, back_size) = sizes(case);
     let port = bus::free_port(false).expect("a port");
@@ -223,7 +225,7 @@ fn bare(case: &Case) -> f64 {
 }
 
 fn start_leaf(endpoint: &str, size: usize, i: usize) -> Child {
-    let mut command = Command::new(std::env::current_exe().expect("this program"));
+    let mut command = Command::new(std::env::current_exe().expect("the path of this program"));
     command.args(["--echo", endpoint, &size.to_string(), &format!("leaf{i}")]);
     command.env(bus::RUNTIME_VARIABLE, bus::RUNTIME).stdout(Stdio::null());
     command.spawn().expect("a leaf starts")

@@ -1,8 +1,8 @@
-//! The cost of recording: the rate of a 20-against-20 lockstep game with a recording, divided by
-//! its rate without.
+//! The cost of recording: the rate of a 20-against-20 lockstep game with a recording, divided by its
+//! rate without.
 //!
-//! Games with and without a recording alternate, so that both see the same machine. The bench
-//! prints medians.
+//! Games with and without a recording alternate, so that both see the same machine. The bench prints
+//! medians.
 #![allow(clippy::print_stdout, clippy::disallowed_methods, reason = "a benchmark reads the clock and prints")]
 
 use std::path::Path;
@@ -18,7 +18,7 @@ fn main() {
     }
     let dir = tempfile::tempdir().expect("a temporary directory");
     let game = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/twenty.toml");
-    println!("20 against 20 for 60 s in lockstep, median of {ROUNDS} games each, taking turns");
+    println!("20 against 20 for 60 s in lockstep, median of {ROUNDS} games each, alternating");
     println!("| agent processes | without, x real time | with a recording | with over without | MB recorded |");
     println!("|---|---|---|---|---|");
     for boats_each in ["1", "10"] {
@@ -30,8 +30,8 @@ fn main() {
             let folder = runs.display().to_string();
             let with = rate(&game, &["--record", &folder, "--agents-per-process", boats_each], dir.path());
             let files = std::fs::read_dir(&runs).expect("recordings").map(|file| file.expect("a file"));
-            bytes = files.map(|file| file.metadata().expect("it is there").len()).sum();
-            std::fs::remove_dir_all(&runs).expect("they can be removed");
+            bytes = files.map(|file| file.metadata().expect("the file exists").len()).sum();
+            std::fs::remove_dir_all(&runs).expect("the folder can be removed");
             rates.push([without, with, with / without]);
         }
         let median = |i: usize| {
@@ -52,6 +52,7 @@ fn rate(game: &Path, options: &[&str], dir: &Path) -> f64 {
     command.arg("run").arg(game).args(options).arg("--json").arg(&json);
     assert!(command.output().expect("the program starts").status.success(), "{command:?}");
     let result: serde_json::Value =
-        serde_json::from_str(&std::fs::read_to_string(&json).expect("a result")).expect("it is JSON");
+        serde_json::from_str(&std::fs::read_to_string(&json).expect("the result can be read"))
+            .expect("the result is JSON");
     result["duration_s"].as_f64().expect("a time") / result["run"]["wall_s"].as_f64().expect("a time")
 }

@@ -1,5 +1,4 @@
-//! The cost of a helm decision including building its functions, compared with evaluating every
-//! point.
+//! The cost of a helm decision, including its functions, compared with evaluating every point.
 
 use agent::ivp::{Approach, Closest, Grid, Objective, Peak, Preference, Problem};
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -8,7 +7,7 @@ use primitives::stream::Stream;
 use std::f64::consts::{PI, TAU};
 use std::hint::black_box;
 
-/// Decisions benchmarked in rotation, so that branch predictors and caches learn none of them.
+/// Decisions evaluated in turn, so that branch predictors and caches cannot learn them.
 const SCENES: usize = 64;
 
 /// A waypoint, and contacts within 80 m, as in real helm decisions.
@@ -76,7 +75,9 @@ fn every_point(criterion: &mut Criterion) {
 }
 
 fn best_of_all(grid: &Grid, functions: &[(f64, Objective)]) -> (f64, usize, usize) {
-    let Objective::Coupled { course, speed, course_share } = functions[0].1 else { panic!("a waypoint comes first") };
+    let Objective::Coupled { course, speed, course_share } = functions[0].1 else {
+        panic!("expected a waypoint first")
+    };
     let speeds: Vec<f64> = (0..grid.speeds()).map(|j| f64::from(speed.of_speed(grid, j))).collect();
     let mut best = (f64::NEG_INFINITY, 0, 0);
     for k in 0..grid.courses() {

@@ -1,9 +1,9 @@
-//! Squall minds: decision-making for boats. One mind per boat; it receives a [`messages::Picture`]
-//! and returns an [`messages::Order`].
+//! Squall minds: the decision-makers of boats. Each boat has one; it receives a
+//! [`messages::Picture`] and returns an [`messages::Order`].
 //!
 //! A mind cannot tell a real sea from a simulated one: this crate never imports `sim`. Open
 //! [`Mind`] first, then [`MindRunner`], which runs minds, then [`HelmMind`], which follows a
-//! strategy, then the behaviours, then [`ivp`], which weighs them.
+//! strategy, then the behaviours, and then [`ivp`], which weighs them.
 
 mod behaviour;
 mod helm;
@@ -33,8 +33,7 @@ use primitives::VehicleId;
 use scenario::Scenario;
 use scenario::strategy::Strategy;
 
-/// The mind that the scenario's strategy assigns to this vehicle in the game of the scenario's
-/// seed.
+/// The mind that the scenario's strategy assigns to this vehicle, for the scenario's seed.
 #[must_use]
 pub fn mind_of(scenario: &Scenario, vehicle: VehicleId) -> Box<dyn Mind> {
     restart::helm_of(scenario, vehicle, roles::role_of(scenario, vehicle))

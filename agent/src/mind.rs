@@ -20,7 +20,7 @@ pub trait Mind: Send {
         false
     }
 
-    /// The accepted source of proposed courses and speeds, if any.
+    /// Who may propose courses and speeds, if anyone.
     fn proposer(&self) -> Option<Proposer> {
         None
     }
@@ -34,11 +34,11 @@ pub trait Mind: Send {
     /// Receives a policy's proposal.
     fn propose(&mut self, _proposal: Proposal) {}
 
-    /// Turns inspection on or off: when on, [`Mind::report`] includes the utilities of all
+    /// Turns inspection on or off. When on, [`Mind::report`] includes the utilities of all
     /// functions from the next decision on.
     fn show(&mut self, _shown: bool) {}
 
-    /// The state of its helm, if it has one.
+    /// The state of the mind's helm, if any.
     fn report(&self) -> Option<HelmReport> {
         None
     }

@@ -1,4 +1,4 @@
-//! A mind controlled from outside by a trainer or a program: it encodes its boat's knowledge as
+//! A mind controlled from outside by a trainer or a program: encodes its boat's knowledge as
 //! numbers and applies the actions it receives.
 
 use crate::helm::HelmMind;
@@ -31,7 +31,7 @@ enum Control {
 /// A strategy that plays in place of the policy that imitates it.
 struct Teacher {
     helm: HelmMind,
-    /// The option that each of its modes corresponds to, by mode index.
+    /// The option that each mode corresponds to, by mode index.
     options: Vec<Option<usize>>,
     /// Its first action since the last observation, if the policy could have chosen that action.
     did: Option<Action>,
@@ -58,13 +58,13 @@ pub struct Pilot {
 }
 
 impl Pilot {
-    /// Actions become orders directly. A tagged boat is steered home regardless, since it can do
+    /// Actions become orders directly. A tagged boat is steered home regardless, because it can do
     /// nothing else.
     #[must_use]
     pub fn direct(scenario: &Scenario, vehicle: VehicleId, spaces: Spaces) -> Pilot {
         let program = role_of(scenario, vehicle);
         let model = GameModel::new(scenario, vehicle, program);
-        // With the drift estimated: it is part of the observation, even where nothing compensates
+        // With the drift estimated, which is part of the observation even if nothing compensates
         // for it.
         let motion = OwnMotion::new(scenario.boat_of(vehicle), model.speed_max_m_s, true);
         let team_messages = TeamMessages::new(program, &model.mates);
@@ -72,13 +72,13 @@ impl Pilot {
         Pilot::new(Control::Direct(situation), spaces)
     }
 
-    /// Actions are proposals to the helm of `program`, which has a behaviour of the kind `policy`.
+    /// Actions are proposals to the helm of `program`, which has a behaviour of kind `policy`.
     #[must_use]
     pub fn helm(scenario: &Scenario, vehicle: VehicleId, program: &Program, spaces: Spaces) -> Pilot {
         Pilot::new(Control::Helm(Box::new(HelmMind::new(scenario, vehicle, program))), spaces)
     }
 
-    /// The strategy's program for this boat plays: [`Pilot::taught`] returns the action that a
+    /// The strategy's program for this boat plays. [`Pilot::taught`] returns the action that a
     /// policy would have had to choose. `options` maps each mode path to its option.
     #[must_use]
     pub fn by_teacher(
@@ -105,7 +105,7 @@ impl Pilot {
         self
     }
 
-    /// Evaluates the model, if there is one and its decision is due.
+    /// Evaluates the model, if any, when its decision is due.
     fn ask_model(&mut self, picture: &Picture) {
         let Some(policy) = self.policy.as_mut().filter(|policy| policy.is_due(picture.stamp.valid_ns)) else { return };
         preview(&mut self.control, picture);
@@ -114,7 +114,7 @@ impl Pilot {
             self.follow(chosen);
         } else {
             // If the model outputs a non-finite value, the boat stops: otherwise the last action
-            // would continue for ever.
+            // would continue forever.
             self.set_point = SetPoint::default();
         }
     }
@@ -127,7 +127,7 @@ impl Pilot {
         }
     }
 
-    /// Takes in the picture for the next decision and returns the observation.
+    /// Takes in the picture for the next decision. Returns the observation.
     pub fn observe(&mut self, picture: &Picture) -> &[f32] {
         preview(&mut self.control, picture);
         if let Control::Taught(teacher) = &mut self.control {
@@ -148,7 +148,7 @@ impl Pilot {
         !situation.own.tagged && situation.fact(Fact::Disabled) == 0.0
     }
 
-    /// The teacher's decision at the last observation, as an action; none without a teacher, or if
+    /// The teacher's decision at the last observation as an action; `None` without a teacher, or if
     /// no action corresponds to it.
     #[must_use]
     pub fn taught(&self) -> Option<Action> {
@@ -189,7 +189,6 @@ fn preview(control: &mut Control, picture: &Picture) {
     }
 }
 
-/// The helm, if there is one.
 fn helm_of(control: &Control) -> Option<&HelmMind> {
     match control {
         Control::Direct(_) => None,

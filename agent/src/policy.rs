@@ -12,8 +12,10 @@ use thiserror::Error;
 /// Why a policy proposes nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub(crate) enum PolicyFault {
-    /// The model was made for a different team size.
-    #[error("the model takes {expected} numbers, and a boat of this game has {found}: it is for teams of another size")]
+    /// The model was trained for another team size.
+    #[error(
+        "the model takes {expected} values, but a boat of this game has {found}: it was trained for another team size"
+    )]
     Size {
         /// Number of inputs of the model.
         expected: usize,
@@ -21,7 +23,7 @@ pub(crate) enum PolicyFault {
         found: usize,
     },
     /// The network output a non-finite value.
-    #[error("the model gave a number that is NaN or infinite")]
+    #[error("the model output a non-finite value")]
     NotFinite,
 }
 
@@ -31,7 +33,7 @@ pub(crate) struct BoardPolicy {
     network: Network,
     /// Created at the first decision.
     observer: Option<Observer>,
-    /// The time of its next decision; none: at once.
+    /// The time of the next decision; `None`: at once.
     due: Option<SimTime>,
     chosen: Result<Chosen, PolicyFault>,
 }
@@ -51,7 +53,6 @@ impl BoardPolicy {
         BoardPolicy { model, network, observer: None, due: None, chosen: Ok(Chosen::SetPoint(SetPoint::default())) }
     }
 
-    /// Whether a decision is due at this time.
     pub(crate) fn is_due(&self, now: SimTime) -> bool {
         self.due.is_none_or(|due| now >= due)
     }
@@ -77,7 +78,7 @@ impl BoardPolicy {
 
     fn choose(&mut self, situation: &Situation) -> Result<Chosen, PolicyFault> {
         let spec = self.model.spec;
-        // Created late: the observation size depends on the teams, which the situation provides.
+        // Created late, because the observation size depends on the teams in the situation.
         let observer = self.observer.get_or_insert_with(|| Observer::new(spec.observation, situation));
         let observation = observer.observe(situation);
         if observation.len() != self.model.input_size() {
@@ -89,7 +90,7 @@ impl BoardPolicy {
         Ok(Chosen::of(spec.action, action, situation))
     }
 
-    /// The policy's probability of each discrete action; empty for continuous actions.
+    /// The policy's probability for each discrete action; empty for continuous actions.
     pub(crate) fn probabilities(&self) -> Vec<f32> {
         let output = self.network.output(self.model.output());
         if self.model.actions() != Some(output.len()) {
@@ -103,7 +104,6 @@ impl BoardPolicy {
         self.observer.as_ref().map_or(&[], Observer::observed)
     }
 
-    /// The model.
     pub(crate) fn model(&self) -> &PolicyModel {
         &self.model
     }

@@ -12,14 +12,14 @@ use scenario::Scenario;
 use scenario::fault::FaultKind;
 use scenario::strategy::{Program, Proposer};
 
-/// The mind of a vehicle that follows `program`; if the scenario has faults that kill its agent, it
-/// loses its memory at each.
+/// The mind of a vehicle that follows `program`. If the scenario has faults that kill its agent,
+/// the mind loses its memory at each.
 pub(crate) fn helm_of(scenario: &Scenario, vehicle: VehicleId, program: &Program) -> Box<dyn Mind> {
     let is_killed =
         |fault: &scenario::fault::Fault| fault.kind == FaultKind::AgentLost && fault.vehicles.contains(&vehicle);
     let helm = HelmMind::new(scenario, vehicle, program);
-    // Only if a fault requires it: a copy of the scenario for each boat would cost a fleet too
-    // much.
+    // Only if a fault requires it: a copy of the scenario for each boat would be too expensive in a
+    // fleet.
     if !scenario.faults.iter().any(is_killed) {
         return Box::new(helm);
     }
@@ -41,7 +41,7 @@ impl Mind for Restarted {
         let is_back =
             |record: &EventRecord| record.logged().is_some_and(|logged| logged.event == Event::AgentBack(self.vehicle));
         if picture.events.iter().any(is_back) {
-            // The arena kills no process, and its result must match that of separate processes: so
+            // The arena kills no process, and its result must match that of separate processes, so
             // the mind forgets what a process would.
             self.helm = (self.begin)();
             self.helm.show(self.shown);

@@ -1,4 +1,4 @@
-//! Role assignment: a strategy's roles dealt to the boats of a team.
+//! Role assignment: deals a strategy's roles to the boats of a team.
 
 use primitives::VehicleId;
 use primitives::stream::Stream;
@@ -7,8 +7,8 @@ use scenario::strategy::{Assignment, Program, Strategy};
 
 /// The role of a vehicle in the game that the scenario's seed chooses.
 ///
-/// The roles are dealt to the team's boats of the same strategy, in the scenario's order, and again
-/// from the first role when they run out. A seeded deal shuffles them with the team's own stream.
+/// The roles are dealt to the team's boats of the same strategy, in the scenario's order, and start
+/// again from the first when they run out. A seeded deal shuffles them with the team's own stream.
 /// Every mind of a team computes the same result on its own.
 #[must_use]
 pub fn role_of(scenario: &Scenario, vehicle: VehicleId) -> &Program {
@@ -16,8 +16,8 @@ pub fn role_of(scenario: &Scenario, vehicle: VehicleId) -> &Program {
     dealt(scenario, vehicle, scenario.strategy_of(vehicle), |i| scenario.vehicles[i].strategy == me.strategy)
 }
 
-/// The role that `strategy` gives a vehicle with another strategy in the scenario, as if its whole
-/// team followed it.
+/// The role that `strategy` gives a vehicle that has another strategy in the scenario, as if its
+/// whole team followed `strategy`.
 #[must_use]
 pub fn role_in<'a>(scenario: &Scenario, vehicle: VehicleId, strategy: &'a Strategy) -> &'a Program {
     dealt(scenario, vehicle, strategy, |_| true)
@@ -38,6 +38,6 @@ fn dealt<'a>(
         // A stream per team name: a second team, or other draws, do not change this deal.
         Stream::new(scenario.seed, &format!("roles/{team}")).shuffle(&mut roles);
     }
-    let place = boats.iter().position(|i| *i == vehicle.index()).expect("a vehicle is one of those that follow");
+    let place = boats.iter().position(|i| *i == vehicle.index()).expect("the vehicle follows the strategy");
     &strategy.roles[roles[place]]
 }

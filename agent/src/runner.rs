@@ -1,5 +1,5 @@
-//! Runs minds, decision by decision: delivers messages of mates, then policy proposals; every mind
-//! decides; then collects its messages to its team.
+//! Runs minds, decision by decision: delivers messages of mates, then policy proposals; lets every
+//! mind decide; then collects its messages to its team.
 //!
 //! No network and no clock. The arena, agent processes, replays and emulated boats all use this
 //! loop, so a game has the same bytes in each of them.
@@ -25,7 +25,7 @@ pub struct MindRunner<M: Mind + ?Sized = dyn Mind> {
 }
 
 impl<M: Mind + ?Sized> MindRunner<M> {
-    /// A runner of these minds, which have not decided yet.
+    /// A runner of these minds before their first decision.
     #[must_use]
     pub fn new(minds: impl IntoIterator<Item = (VehicleId, Box<M>)>) -> MindRunner<M> {
         let boat = |(vehicle, mind)| Boat { vehicle, order: Order::Hold, mind };
@@ -104,11 +104,11 @@ impl<M: Mind + ?Sized> MindRunner<M> {
         &self.sent
     }
 
-    /// The orders of the last decision as a message to the sim that issued this ticket; identical
-    /// on every call. None before the first decision.
+    /// The orders of the last decision as a message to the sim that issued this ticket, identical
+    /// on every call. `None` before the first decision.
     #[must_use]
     pub fn answer(&self, ticket: u64) -> Option<Orders> {
-        // With the picture's own time and number, which identify the answered tick to the sim.
+        // With the picture's own time and number, by which the sim identifies the answered tick.
         let stamp = Stamp { version: Orders::VERSION, ..self.decided? };
         Some(Orders { stamp, ticket, orders: self.orders().map(|(v, order)| VehicleOrder::new(v, order)).collect() })
     }
@@ -173,8 +173,8 @@ mod tests {
         let known_at = runner.mind(VehicleId(4)).and_then(|mind| mind.proposed).map(|proposal| proposal.at);
         assert_eq!(known_at, Some(SimTime(30)), "no proposal is newer than the picture");
         assert_eq!(runner.sent().iter().map(|word| word.value).collect::<Vec<_>>(), [3.0, 4.0]);
-        let answer = runner.answer(7).expect("it has decided");
+        let answer = runner.answer(7).expect("the minds have decided");
         assert_eq!((answer.ticket, answer.stamp.seq, answer.orders.len()), (7, 3, 2));
-        assert_eq!(runner.answer(7), Some(answer), "asked again, it answers the same");
+        assert_eq!(runner.answer(7), Some(answer), "a second call returns the same");
     }
 }

@@ -1,5 +1,4 @@
-//! Warnings about points of a strategy that lie within a boat's turning circle, so that it cannot
-//! reach them.
+//! Warnings about points of a strategy within a boat's turning circle, which the boat cannot reach.
 
 use crate::behaviour::corners_of;
 use crate::own_motion::OwnMotion;
@@ -10,7 +9,7 @@ use scenario::Scenario;
 use scenario::strategy::{Behaviour, Mark, Parameter, Place, Shape, Task};
 use std::collections::BTreeSet;
 
-/// Warnings about a valid game: demands of each boat's role that the boat cannot meet.
+/// Warnings about a valid game: what each boat's role demands that the boat cannot do.
 ///
 /// A boat that has reached a point of a `waypoint` or a corner of a `loiter` turns at once for the
 /// next one. If that lies inside this turning circle by more than the capture radius, the boat
@@ -39,9 +38,9 @@ fn of_boat(scenario: &Scenario, vehicle: VehicleId) -> Vec<String> {
         let missed = beyond_reach(&points, again, circle_m, capture_m.constant()?);
         let first = missed.first()?;
         Some(format!(
-            "{}: behaviour {:?}: {} of {} points lie within the turning circle of a {} that comes from the point before \
-             ({circle_m:.1} m at {speed_m_s:.1} m/s), the first of them point {}: it will pass them by; a larger \
-             `capture_radius_m`, a lower `speed_m_s` or points farther apart avoid this",
+            "{}: behaviour {:?}: {} of {} points lie within the turning circle of a {} coming from the previous point \
+             ({circle_m:.1} m at {speed_m_s:.1} m/s), first point {}: the boat will miss them; use a larger \
+             `capture_radius_m`, a lower `speed_m_s` or points farther apart",
             program.name,
             behaviour.name,
             missed.len(),
@@ -53,7 +52,7 @@ fn of_boat(scenario: &Scenario, vehicle: VehicleId) -> Vec<String> {
     program.behaviours.iter().filter_map(warning).collect()
 }
 
-/// The points of a path, if constant; whether it repeats; its speed and its capture radius.
+/// The points of a path if constant, whether it repeats, its speed and its capture radius.
 fn way<'a>(task: &'a Task, situation: &Situation) -> Option<(Vec<Ned>, bool, &'a Parameter, &'a Parameter)> {
     match task {
         Task::Waypoint(task) => {
@@ -114,8 +113,8 @@ mod tests {
         // North for 20 m, then to a point 8 m abeam: the centre of a circle of radius 8 m.
         let to = |north: f64, east: f64| [Ned { north: -20.0, east: 0.0 }, Ned::default(), Ned { north, east }];
         for (what, points, circle_m, capture_m, want) in [
-            ("its middle", to(0.0, 8.0), 8.0, 3.0, vec![2]),
-            ("its middle, to port", to(0.0, -8.0), 8.0, 3.0, vec![2]),
+            ("at its centre", to(0.0, 8.0), 8.0, 3.0, vec![2]),
+            ("at its centre, to port", to(0.0, -8.0), 8.0, 3.0, vec![2]),
             ("a smaller circle", to(0.0, 8.0), 5.0, 3.0, vec![]),
             ("a wide capture", to(0.0, 8.0), 8.0, 8.1, vec![]),
             ("on the circle", to(8.0, 8.0), 8.0, 0.1, vec![]),

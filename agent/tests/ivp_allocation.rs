@@ -1,7 +1,6 @@
 //! Heap allocations of a helm decision.
 //!
-//! `stats_alloc` does the counting, see `sim/tests/allocation.rs`; a single test, since it counts
-//! the whole process.
+//! `stats_alloc` counts; see `sim/tests/allocation.rs`. There is a single test because it counts the whole process.
 
 use agent::ivp::{Approach, Closest, Grid, Objective, Peak, Preference, Problem, SpeedLimit, Table};
 use primitives::Ned;
@@ -11,7 +10,7 @@ use std::alloc::System;
 #[global_allocator]
 static HEAP: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-/// Decisions until every list has grown and the test harness has finished starting this thread.
+/// Decisions until every list has grown and the test harness has started this thread completely.
 const WARM_UP: usize = 1_500;
 
 #[test]

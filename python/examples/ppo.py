@@ -1,4 +1,4 @@
-"""PPO in one file, one policy for all boats: `python ppo.py --steps 2000000`. Needs torch. In the manner of CleanRL."""
+"""PPO in one file, with one policy for all boats, in the style of CleanRL. Needs torch: `python ppo.py --steps 2000000`."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ DISCOUNT, LAMBDA, CLIP, ENTROPY, VALUE, LEARNING_RATE = 0.995, 0.95, 0.2, 0.01, 
 
 
 class Policy(nn.Module):
-    """Logits of the 17 actions, and the value, from an observation."""
+    """Computes the logits of the 17 actions, and the value, from an observation."""
 
     def __init__(self, numbers: int, actions: int) -> None:
         super().__init__()
@@ -30,7 +30,7 @@ class Policy(nn.Module):
 
 
 def advantages_of(rewards, values, next_values, ends):
-    """Generalised advantages, (steps, rows). `next_values` are of what was shown after a step, the last of an old game included."""
+    """Generalised advantages, (steps, rows). `next_values` are the values after each step, still in the old game."""
     advantages, later = torch.zeros_like(rewards), torch.zeros_like(rewards[0])
     for i in reversed(range(len(rewards))):
         surprise = rewards[i] + DISCOUNT * next_values[i] - values[i]
@@ -40,7 +40,7 @@ def advantages_of(rewards, values, next_values, ends):
 
 
 def played(environment, policy, observations, counts):
-    """What some steps of all games give: tensors (steps, rows, ...), and how the games that ended stood."""
+    """Plays some steps of all games. Returns tensors (steps, rows, ...) and the scores of games that ended."""
     keys = ("observations", "actions", "log_probabilities", "values", "rewards", "next_values", "ends", "counts")
     batch, finished = {key: [] for key in keys}, []
     for _ in range(STEPS):
@@ -54,7 +54,7 @@ def played(environment, policy, observations, counts):
             if "final_obs" in info:
                 ended = np.flatnonzero(info["_final_obs"])
                 last = torch.as_tensor(np.stack(info["final_obs"][ended]))
-                # A game that is over is worth nothing more; one that was cut off would have gone on.
+                # The value after the end of a game is 0, but not after an episode that was cut off.
                 next_values[ended] = policy(last)[1] * torch.as_tensor(~terminated[ended])
                 final = info["final_info"]
                 finished += list(zip(final["score"][ended], final["enemy_score"][ended], strict=True))
@@ -68,7 +68,7 @@ def played(environment, policy, observations, counts):
 
 
 def learn(policy, optimiser, batch):
-    """Some epochs of PPO. The policy learns from actions that counted; what to expect of being tagged is learnt, too."""
+    """Trains for some epochs of PPO. The policy learns only from actions that counted, the critic from all samples."""
     advantages = advantages_of(*(batch[key] for key in ("rewards", "values", "next_values", "ends")))
     flat = {key: value.flatten(0, 1) for key, value in batch.items()}
     flat["advantages"] = advantages.flatten()
@@ -93,7 +93,7 @@ def learn(policy, optimiser, batch):
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--steps", type=int, default=2_000_000, help="agent steps in all")
+    parser.add_argument("--steps", type=int, default=2_000_000, help="total number of agent steps")
     parser.add_argument("--seed", type=int, default=1)
     arguments = parser.parse_args()
     torch.manual_seed(arguments.seed)
@@ -108,9 +108,9 @@ def main() -> None:
         batch, finished, observations, counts = played(environment, policy, observations, counts)
         learn(policy, optimiser, batch)
         steps = update * STEPS * environment.num_envs
-        scores = f"{np.mean(finished, axis=0)} points of own and enemies" if finished else "no game ended"
+        scores = f"{np.mean(finished, axis=0)} points, own and enemies'" if finished else "no game ended"
         rate = steps / (time.perf_counter() - begun)
-        print(f"{steps} steps, {rate:.0f} a second, reward {batch['rewards'].mean():.4f} a step, {scores}", flush=True)
+        print(f"{steps} steps, {rate:.0f} per second, reward {batch['rewards'].mean():.4f} per step, {scores}", flush=True)
     torch.save(policy.state_dict(), "policy.pt")
 
 

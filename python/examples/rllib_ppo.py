@@ -1,6 +1,6 @@
-"""RLlib's PPO, one policy for all boats of a team: `python rllib_ppo.py --iterations 100`.
+"""RLlib's PPO with one policy for all boats of a team: `python rllib_ppo.py --iterations 100`.
 
-Needs `pip install "ray[rllib]==2.60.0" gymnasium==1.2.2 torch pettingzoo`, 6 GB on Linux, where PyPI's torch is the one for CUDA.
+Needs `pip install "ray[rllib]==2.60.0" gymnasium==1.2.2 torch pettingzoo`, 6 GB on Linux, where PyPI's torch includes CUDA.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ GAME = {
 
 
 def config_of(runners: int, seed: int) -> PPOConfig:
-    """PPO as it is trained here: every boat of the team asks the policy "boat"."""
+    """The PPO configuration: every boat of the team uses the policy "boat"."""
     return (
         PPOConfig()
         .environment("squall", env_config=GAME)
@@ -38,8 +38,8 @@ def config_of(runners: int, seed: int) -> PPOConfig:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--iterations", type=int, default=5, help="of 2048 steps each (5)")
-    parser.add_argument("--runners", type=int, default=1, help="processes that play; 0 plays in this one (1)")
+    parser.add_argument("--iterations", type=int, default=5, help="iterations of 2048 steps (5)")
+    parser.add_argument("--runners", type=int, default=1, help="processes that play games; 0: this process (1)")
     parser.add_argument("--seed", type=int, default=1)
     arguments = parser.parse_args()
     register_env("squall", lambda options: ParallelPettingZooEnv(squall.parallel_env(**options)))
@@ -49,7 +49,7 @@ def main() -> None:
         played = result["env_runners"]
         print(
             f"{iteration}: {played['num_env_steps_sampled_lifetime']} steps,"
-            f" reward of a game {played.get('episode_return_mean', float('nan')):.2f}",
+            f" reward per game {played.get('episode_return_mean', float('nan')):.2f}",
             flush=True,
         )
     print(f"saved in {algorithm.save_to_path()}")

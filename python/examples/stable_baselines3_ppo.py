@@ -1,4 +1,4 @@
-"""Stable-Baselines3's PPO for one boat, whose mate a strategy sails: `pip install stable-baselines3`."""
+"""Stable-Baselines3's PPO for one boat, with a strategy for its mate: `pip install stable-baselines3`."""
 
 import argparse
 
@@ -18,7 +18,7 @@ def main() -> None:
     model = PPO("MlpPolicy", environment, n_steps=256, batch_size=512, gamma=0.99, verbose=1, seed=1, device="cpu")
     model.learn(arguments.steps)
     mean, deviation = evaluate_policy(model, environment, n_eval_episodes=8)
-    print(f"reward of an episode: {mean:.2f}, standard deviation {deviation:.2f}")
+    print(f"reward per episode: {mean:.2f}, standard deviation {deviation:.2f}")
     model.save("boat")
 
 

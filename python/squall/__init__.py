@@ -1,7 +1,8 @@
-"""Squall for Python: boats that play capture the flag, as environments for reinforcement learning.
+"""Squall for Python: games of capture the flag between boats, as environments for reinforcement learning.
 
-`VectorEnv` plays many games at a time, `TeamEnv` one game with one team's boats, `BoatEnv` one with a single boat, and
-`parallel_env` one with every boat an agent. All play the games of the program `squall`: the same referee, sea, boats and opponents.
+`VectorEnv` plays many games in parallel, `TeamEnv` one game with the boats of one team, `BoatEnv` one game with a single boat, and
+`parallel_env` one game in which every boat is an agent. They play the games of the program `squall`: the same referee, sea, boats and
+opponents.
 """
 
 from squall._native import __version__
@@ -17,7 +18,7 @@ register()
 
 
 def __getattr__(name: str) -> object:
-    # PettingZoo is optional, so it is imported by whoever asks for what needs it.
+    # PettingZoo is optional, so it is imported only on demand.
     if name == "parallel_env":
         from squall.parallel import parallel_env
 

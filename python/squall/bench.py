@@ -1,7 +1,8 @@
-"""How many steps a second: `python -m squall.bench`.
+"""Measures steps per second: `python -m squall.bench`.
 
-Steps of games with all four boats observed and random actions, at the game's own period of 0.1 s, with the spaces of Pyquaticus. An
-agent step is one boat's. The time is the processor's, so that other programs change little. Pyquaticus is measured beside it where it can be imported (https://github.com/mit-ll-trusted-autonomy/pyquaticus).
+Plays games with all four boats observed and random actions, at the game's own period of 0.1 s, in the spaces of Pyquaticus. An agent
+step is one boat's. Times are processor times, so that other programs matter little. If Pyquaticus can be imported
+(https://github.com/mit-ll-trusted-autonomy/pyquaticus), it is measured too.
 """
 
 from __future__ import annotations
@@ -17,12 +18,12 @@ import numpy as np
 import squall
 
 STATED_STEPS_PER_S = 430.0
-"""Of Pyquaticus, where it cannot be measured: what this program measured of its version of 2025-11 (c0a3691) on Python 3.10, on a core
-of a Xeon on which Squall's games through gymnasium.vector did 230,000."""
+"""Used if Pyquaticus cannot be measured: the result of this program for its version of 2025-11 (c0a3691) on Python 3.10, on a Xeon core
+on which Squall's games reached 230,000 through gymnasium.vector."""
 
 
 def steps_per_s(step: Callable[[], None], seconds: float) -> float:
-    """How often in a second of processor time `step` can be called: the best of three, each a third of `seconds`."""
+    """Calls of `step` per second of processor time: the best of three measurements, each a third of `seconds` long."""
     step()
     best = 0.0
     for _ in range(3):
@@ -35,12 +36,12 @@ def steps_per_s(step: Callable[[], None], seconds: float) -> float:
 
 
 def vector_step(game: str, games: int, *, copy: bool) -> Callable[[], None]:
-    """A step of so many games on one thread through gymnasium.vector."""
+    """A step of this many games on one thread through gymnasium.vector."""
     environment = squall.VectorEnv(
         games, game=game, observation="pyquaticus", decision_s=None, opponents="policy", threads=1, seed=1, copy=copy
     )
     environment.reset()
-    # Drawn before, as a policy's actions would not be drawn by numpy either.
+    # Drawn in advance, because numpy would not draw a policy's actions either.
     actions = np.random.default_rng(1).integers(0, 17, (256, environment.num_envs))
     turn = 0
 
@@ -53,7 +54,7 @@ def vector_step(game: str, games: int, *, copy: bool) -> Callable[[], None]:
 
 
 def parallel_step(environment: Any) -> Callable[[], None]:
-    """A step of a game through PettingZoo's dictionaries, with a reset when it is over."""
+    """A step of a game through PettingZoo's dictionaries, with a reset at the end."""
     environment.reset()
     actions = np.random.default_rng(1).integers(0, 17, (256, 4)).tolist()
     turn = 0
@@ -69,7 +70,7 @@ def parallel_step(environment: Any) -> Callable[[], None]:
 
 
 def pyquaticus_environment() -> Any:
-    """Pyquaticus' own environment of two against two, or None where it is not installed."""
+    """Pyquaticus's own environment with two against two, or None if it is not installed."""
     try:
         from pyquaticus.config import get_std_config
         from pyquaticus.envs.pyquaticus import PyQuaticusEnv
@@ -79,17 +80,17 @@ def pyquaticus_environment() -> Any:
 
 
 def main() -> None:
-    """Prints a table."""
+    """Prints the table."""
     parser = argparse.ArgumentParser(prog="python -m squall.bench", description=__doc__)
     parser.add_argument("--games", type=int, default=64, help="games in a batch (64)")
-    parser.add_argument("--seconds", type=float, default=6.0, help="time for each row, s (6)")
+    parser.add_argument("--seconds", type=float, default=6.0, help="time per row, s (6)")
     arguments = parser.parse_args()
     if hasattr(os, "sched_setaffinity"):
         os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
     other = pyquaticus_environment()
     if other is None:
         print(
-            f"Pyquaticus is not installed: ratios are against {STATED_STEPS_PER_S:.0f} steps a second, a stated figure"
+            f"Pyquaticus is not installed: ratios refer to {STATED_STEPS_PER_S:.0f} steps per second, measured earlier"
         )
         bar = STATED_STEPS_PER_S
     else:

@@ -1,7 +1,7 @@
-"""Games over a cluster of Ray: what `squall.sweep` and `squall.tournament` have in common.
+"""Games on a Ray cluster: the common part of `squall.sweep` and `squall.tournament`.
 
-A task plays a batch of games in a worker's process; this process takes what comes of them, in order. Workers read no files: the plan travels
-with all that it needs. See docs/cluster.md.
+A task plays a batch of games in a worker process; this process receives the results in order. Workers read no files: the plan includes
+everything that they need. See docs/cluster.md.
 """
 
 from __future__ import annotations
@@ -17,32 +17,32 @@ from pathlib import Path
 from typing import Any, Generic, Protocol, TypeAlias, TypeVar
 
 Result = TypeVar("Result")
-"""What comes of a game."""
+"""The result of a game."""
 Taken = TypeVar("Taken", contravariant=True)
-"""The same, as what takes it has it."""
+"""A result in the form that its receiver needs."""
 Packed: TypeAlias = tuple[str, list[tuple[Path, bytes]], str]
-"""A plan as its `pack` gives it: the last is its digest."""
+"""A packed plan, from its `pack`; the last element is its digest."""
 Task: TypeAlias = Callable[[Packed, int, int], list[Result]]
-"""What a worker does: the results of the games from the first place to before the second."""
+"""A worker's task: the results of the games from the first index to before the second."""
 
 PACKED_BYTES_MAX = 256 << 20
-"""The most bytes of files that are sent to workers."""
+"""Maximum size of files sent to workers, bytes."""
 RETRIES = 5
-"""How often a batch is played again whose worker or machine was lost."""
+"""How often a batch is played again after its worker or machine was lost."""
 BATCH = 50
-"""Games in a batch, by default at most, on a cluster of up to 2000 CPUs."""
+"""Default maximum number of games per batch, for clusters of up to 2000 CPUs."""
 IN_FLIGHT = 2
-"""Batches for each CPU that are played or about to be."""
+"""Batches per CPU in progress or queued."""
 AHEAD = 16
-"""Batches for each CPU that may be played before the one that is due: what waits in memory for it."""
+"""Batches per CPU that may be complete before the one that is due, and so wait in memory."""
 WAIT_S = 1.0
-"""How long results are waited for before the cluster is looked at again, s."""
+"""How long to wait for results before checking the cluster again, s."""
 LINE_EVERY_S = 30.0
-"""How often a line is written where there is no terminal, s."""
+"""Interval of progress lines without a terminal, s."""
 
 
 class Plan(Protocol):
-    """Which games are to be played."""
+    """The games to be played."""
 
     @property
     def games(self) -> int: ...
@@ -51,7 +51,7 @@ class Plan(Protocol):
 
 
 class Study(Protocol[Taken]):
-    """What came of the first of them, in order."""
+    """The results of the first games, in order."""
 
     @property
     def done(self) -> int: ...
@@ -61,15 +61,15 @@ class Study(Protocol[Taken]):
 
 @dataclass
 class InOrder(Generic[Result]):
-    """Results that come in any order, and go on in order."""
+    """Puts results that arrive in any order into order."""
 
     due: int
-    """The place of the next one to go on."""
+    """The index of the next result to pass on."""
     waiting: dict[int, list[Result]] = field(default_factory=dict)
-    """Batches that came early, by the place of their first game."""
+    """Batches that arrived early, by the index of their first game."""
 
     def put(self, begin: int, results: list[Result]) -> Iterator[tuple[int, Result]]:
-        """Takes a batch, and gives all games that can go on."""
+        """Takes a batch. Returns all results that can now be passed on."""
         self.waiting[begin] = results
         while (batch := self.waiting.pop(self.due, None)) is not None:
             first, self.due = self.due, self.due + len(batch)
@@ -77,7 +77,7 @@ class InOrder(Generic[Result]):
 
 
 class Progress:
-    """How far it is, on standard error: one line that changes on a terminal, a line now and then elsewhere."""
+    """Progress on standard error: one updated line on a terminal, otherwise a line from time to time."""
 
     def __init__(self, done: int, games: int) -> None:
         self.first, self.games = done, games
@@ -85,7 +85,7 @@ class Progress:
         self.is_terminal = sys.stderr.isatty()
 
     def show(self, done: int, cpus: int) -> None:
-        """So many are kept by now, on so many CPUs."""
+        """Reports the number of games stored, and of CPUs."""
         now = time.monotonic()
         if now - self.told < (WAIT_S if self.is_terminal else LINE_EVERY_S):
             return
@@ -101,7 +101,7 @@ class Progress:
         )
 
     def end(self, done: int) -> None:
-        """Says how fast it was."""
+        """Reports the final speed."""
         wall_s = time.monotonic() - self.begun
         played = done - self.first
         start = "\r\x1b[K" if self.is_terminal else ""
@@ -109,7 +109,7 @@ class Progress:
 
 
 def engine() -> Any:
-    """The package ray; SystemExit where it is not installed."""
+    """Imports ray; raises SystemExit if it is not installed."""
     try:
         import ray
     except ImportError:
@@ -118,13 +118,13 @@ def engine() -> Any:
 
 
 def cpus_of(ray: Any) -> int:
-    """The CPUs of the cluster, at least 1 where none has joined yet."""
+    """The number of CPUs in the cluster; 1 if none has joined yet."""
     return max(1, int(ray.cluster_resources().get("CPU", 0)))
 
 
 def batch_of(left: int, cpus: int) -> int:
-    """How many games make a batch: four batches for each CPU, but none so long that losing it matters, nor so short that tasks are more
-    than one driver can hand out (about 200 a second, where a game takes 0.2 s)."""
+    """The number of games per batch: four batches per CPU, but none so long that losing it matters, nor so short that one driver cannot
+    hand out the tasks (about 200 per second, if a game takes 0.2 s)."""
     return max(1, min(left // (4 * cpus), max(BATCH, cpus // 40)))
 
 
@@ -136,9 +136,9 @@ def play_all(
     batch: int | None = None,
     show: Callable[[int, int], None] = lambda done, cpus: None,
 ) -> None:
-    """Plays all games that a study lacks on the cluster that Ray is connected to.
+    """Plays all games that a study lacks on the connected Ray cluster.
 
-    `show` is told how many games are kept, and how many CPUs there are. Raises what a task raises; what the study has by then is kept.
+    Calls `show` with the numbers of games stored and of CPUs. Raises what a task raises; the study keeps its results so far.
     """
     ray = engine()
     packed = plan.pack()
@@ -147,10 +147,9 @@ def play_all(
         raise ValueError(f"the files of the games have {size} bytes, expected at most {PACKED_BYTES_MAX}")
     cpus, looked = cpus_of(ray), time.monotonic()
     games = batch or batch_of(plan.games - study.done, cpus)
-    # A task's answer is the very lines of the tables, so that the same bytes come out: Arrow between workers
-    # and driver would have to be turned into them again. One driver takes 100,000 games a second; who has more
-    # CPUs cuts the sweep.
-    # What a task itself raises is raised again by every retry.
+    # A task returns the exact lines of the tables, so that the bytes are the same; Arrow data would have to be converted
+    # back to them. One driver receives 100,000 games per second; for more CPUs, split the sweep.
+    # An error that a task raises itself would be raised again by every retry.
     remote = ray.remote(num_cpus=1, max_retries=RETRIES, retry_exceptions=False)(task)
     reference = ray.put(packed)
     order: InOrder[Result] = InOrder(study.done)
@@ -165,7 +164,7 @@ def play_all(
                 end = min(begin + games, plan.games)
                 in_flight[remote.remote(reference, begin, end)] = begin
                 begin = end
-            # Not one by one: waiting takes as long as there are tasks.
+            # Not one by one, because each wait takes time in proportion to the number of tasks.
             some = max(1, len(in_flight) // 16)
             ready, _ = ray.wait(list(in_flight), num_returns=some, timeout=WAIT_S)
             for one, results in zip(ready, ray.get(ready), strict=True):
@@ -186,37 +185,37 @@ def connect(address: str | None) -> None:
 
 
 def parser_of(module: str, description: str | None, kind: str) -> argparse.ArgumentParser:
-    """The command line's arguments that all of them have; `check` looks at what was given."""
+    """Parses the common command-line arguments; `check` validates them."""
     parser = argparse.ArgumentParser(prog=f"python -m {module}", description=description)
     parser.add_argument("file", type=Path, help=f"the {kind} file")
-    parser.add_argument("--games", type=int, metavar="N", help="how many games, as the file's key of that name says")
-    parser.add_argument("--seed", type=int, metavar="N", help="the first seed (as the file says)")
-    parser.add_argument("--batch", type=int, metavar="N", help="games in a task (by the size of the cluster)")
+    parser.add_argument("--games", type=int, metavar="N", help="number of games (default: key `games` of the file)")
+    parser.add_argument("--seed", type=int, metavar="N", help="first seed (default: as in the file)")
+    parser.add_argument("--batch", type=int, metavar="N", help="games per task (default: by the size of the cluster)")
     parser.add_argument(
         "--address",
         metavar="ADDR",
-        help="the cluster's, or local for one of this machine alone (RAY_ADDRESS, or what runs here)",
+        help="address of the cluster, or local for a new one on this machine (default: RAY_ADDRESS, or a cluster running here)",
     )
     return parser
 
 
 def check(parser: argparse.ArgumentParser, arguments: argparse.Namespace) -> None:
-    """Refuses numbers that are none of a tournament or sweep."""
+    """Rejects numbers that are invalid in a tournament or sweep."""
     if arguments.batch is not None and arguments.batch < 1:
         parser.error(f"--batch is {arguments.batch}, expected at least 1")
     for name in ("games", "seed"):
         if (getattr(arguments, name) or 0) < 0:
-            parser.error(f"--{name} is {getattr(arguments, name)}, expected none below 0")
+            parser.error(f"--{name} is {getattr(arguments, name)}, expected 0 or more")
 
 
 def remark(text: str) -> None:
-    """A line on standard error."""
+    """Prints a line to standard error."""
     print(text, file=sys.stderr, flush=True)
 
 
 def run(plan: Plan, study: Study[Result], task: Task[Result], arguments: argparse.Namespace) -> Exception | None:
-    """Plays what is left to play, until Ctrl-C or SIGTERM; returns what failed, if anything did: what was played before is in the study."""
-    # What ends a job asks in this way.
+    """Plays the remaining games until Ctrl-C or SIGTERM. Returns the error, if any; the study keeps all results before it."""
+    # Job schedulers end a job in this way.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     progress, failed = Progress(study.done, plan.games), None
     with contextlib.suppress(KeyboardInterrupt):
@@ -224,7 +223,7 @@ def run(plan: Plan, study: Study[Result], task: Task[Result], arguments: argpars
             if study.done < plan.games:
                 connect(arguments.address)
                 play_all(plan, study, task, batch=arguments.batch, show=progress.show)
-        except Exception as error:  # noqa: BLE001  Whatever a cluster says: what was played is kept.
+        except Exception as error:  # noqa: BLE001  Whatever the cluster raises, results are kept.
             failed = error
     progress.end(study.done)
     return failed

@@ -1,4 +1,4 @@
-"""What a worker of a cluster does: it plays a batch of games, in its own process."""
+"""The task of a worker in a cluster: plays a batch of games in its own process."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from squall.cluster import Packed
 
 Plan = TypeVar("Plan")
 _plans: dict[str, object] = {}
-"""The plan that this process plays, by its digest: it is unpacked once."""
+"""The plan of this process, by its digest: unpacked only once."""
 
 
 def plan_of(packed: Packed, unpack: Callable[[Packed], Plan]) -> Plan:
-    """The plan that was packed.
+    """Restores the packed plan.
 
-    Raises ValueError where this machine's Squall is another version than that which packed it.
+    Raises ValueError if another version of Squall packed it.
     """
     *_, digest = packed
     if digest not in _plans:
         _plans.clear()
         _plans[digest] = unpack(packed)
-    return _plans[digest]  # type: ignore[return-value]  # What a digest stands for is of one kind.
+    return _plans[digest]  # type: ignore[return-value]  # A digest identifies one kind of plan.
 
 
 def play_sweep(packed: Packed, begin: int, end: int) -> list[tuple[str, str]]:
@@ -36,5 +36,5 @@ def play_tournament(packed: Packed, begin: int, end: int) -> list[str]:
 
 
 def nothing(packed: Packed, begin: int, end: int) -> list[tuple[str, str]]:
-    """As `play_sweep`, of games of which none is played: what a task costs by itself."""
+    """Like `play_sweep` without playing any game: the cost of a task itself."""
     return [("", "")] * (end - begin)

@@ -1,4 +1,4 @@
-"""The page on which a browser shows recorded games: the program `squall` serves it."""
+"""The page that shows recorded games in a browser, served by the program `squall`."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from pathlib import Path
 import gymnasium
 
 _START_MAX_S = 30.0
-"""How long the program may take to open a recording."""
+"""Timeout for opening a recording, s."""
 
 
 def program() -> str:
-    """The program `squall`: that which the environment variable SQUALL names, or that on PATH.
+    """The program `squall`: the one named by the environment variable SQUALL, or the one on PATH.
 
-    Raises `gymnasium.error.DependencyNotInstalled` where there is none.
+    Raises `gymnasium.error.DependencyNotInstalled` if there is none.
     """
     named = os.environ.get("SQUALL")
     found = shutil.which(named or "squall")
@@ -37,9 +37,9 @@ def program() -> str:
 
 
 class Page:
-    """A page that shows one recording, the newest, until the interpreter ends.
+    """A page that shows the newest recording until the interpreter ends.
 
-    One that runs in a terminal waits at its end until somebody has seen it, and presses Enter.
+    In a terminal, it waits at the end until the user presses Enter.
     """
 
     def __init__(self) -> None:
@@ -49,16 +49,16 @@ class Page:
         self.url: str | None = None
 
     def folder(self) -> Path:
-        """A folder for recordings that are shown and not kept: it is removed when the interpreter ends."""
+        """A temporary folder for recordings that are shown but not kept; removed when the interpreter ends."""
         if self._folder is None:
             self._folder = tempfile.TemporaryDirectory(prefix="squall-")
             atexit.register(self._end_at_exit)
         return Path(self._folder.name)
 
     def show(self, recording: Path) -> None:
-        """Shows a recording. A browser that shows the one before goes on to it by itself.
+        """Shows a recording. A browser that shows the previous one moves to it automatically.
 
-        Raises RuntimeError where the program cannot show it.
+        Raises RuntimeError if the program cannot show it.
         """
         self.end()
         self.folder()
@@ -70,7 +70,7 @@ class Page:
             webbrowser.open(url)
 
     def end(self) -> None:
-        """Shows nothing any more."""
+        """Stops showing recordings."""
         if self._server is not None:
             self._server.terminate()
             self._server.wait()
@@ -109,7 +109,7 @@ class Page:
             return
         print(f"{self.url} shows the last game until Enter is pressed", file=sys.stderr)
         try:
-            # Ctrl-C ends the program that serves the page as well, so nobody waits longer than it runs.
+            # Ctrl-C also ends the program that serves the page, so this never waits longer than it runs.
             while server.poll() is None and not select.select([sys.stdin], [], [], 0.2)[0]:
                 pass
         except KeyboardInterrupt:
@@ -120,7 +120,7 @@ class Page:
 
 
 def _read(server: subprocess.Popen[str], lines: queue.SimpleQueue[str | None]) -> None:
-    """Reads all that a program says, so that it never waits for a reader; None is its end."""
+    """Reads all output of a program, so that the program never blocks; None marks its end."""
     if server.stdout is not None:
         with server.stdout as said:
             for line in said:

@@ -1,4 +1,4 @@
-"""One game with every boat an agent, as PettingZoo's `ParallelEnv`."""
+"""One game in which every boat is an agent, as PettingZoo's `ParallelEnv`."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ Shown = dict[str, NDArray[np.float32]]
 
 
 class SquallParallelEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ignore[misc]
-    """A game whose agents are boats, under their names in the game.
+    """A game whose agents are boats, with their names in the game.
 
-    With `state=True`, `state()` is the truth about the game, for critics that are to know more than any agent; see the package's README.
+    With `state=True`, `state()` is the truth about the game, for critics that know more than any agent; see the package's README.
     """
 
     metadata: ClassVar[dict[str, Any]] = {
@@ -58,42 +58,42 @@ class SquallParallelEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ig
 
     @property
     def observation_names(self) -> list[str]:
-        """What the numbers of an observation are called, in their order."""
+        """The names of the values of an observation, in order."""
         return self.native.observation_names
 
     @property
     def action_names(self) -> list[str] | None:
-        """What the discrete actions are called, in their order; None where actions are continuous."""
+        """The names of the discrete actions, in order; None if actions are continuous."""
         return self.native.action_names
 
     @property
     def state_names(self) -> list[str]:
-        """What the numbers of the state are called, in their order; none without `state=True`."""
+        """The names of the values of the state, in order; empty without `state=True`."""
         return self.native.state_names
 
     def state(self) -> NDArray[np.float32]:
-        """The truth about the game as its first agent would tell it, after the last step of a game how that ended.
+        """The truth about the game from the view of its first agent; after the last step, at the end of the game.
 
         Raises NotImplementedError without `state=True`.
         """
         if not self.native.state_names:
-            raise NotImplementedError("the truth about a game is told by parallel_env(state=True)")
+            raise NotImplementedError("state() needs parallel_env(state=True)")
         states = self.native.final_states if self._is_over else self.native.states
         first: NDArray[np.float32] = states[0].copy()
         return first
 
     def observation_space(self, agent: str) -> gymnasium.Space[Any]:
-        """What an agent is shown; the same object for all."""
+        """The observation space of an agent; always the same object."""
         return self.observation_spaces[agent]
 
     def action_space(self, agent: str) -> gymnasium.Space[Any]:
-        """What an agent may do."""
+        """The action space of an agent."""
         return self.action_spaces[agent]
 
     def reset(
         self, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Shown, dict[str, dict[str, Any]]]:
-        """Begins the game of this seed, or the next one."""
+        """Starts the game with this seed, or the next one."""
         if seed is not None or not self._is_new:
             self.native.restart(seed)
             self._recordings.show()
@@ -103,13 +103,13 @@ class SquallParallelEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ig
     def step(
         self, actions: dict[str, Any]
     ) -> tuple[Shown, dict[str, float], dict[str, bool], dict[str, bool], dict[str, dict[str, Any]]]:
-        """Plays a step. Raises ValueError, and plays nothing, where an action is missing or is not of the space."""
+        """Plays a step. Raises ValueError, and plays nothing, if an action is missing or outside the space."""
         if not self.agents:
             raise gymnasium.error.ResetNeeded("the game is over: call reset first")
         native, agents = self.native, self.possible_agents
         missing = [agent for agent in agents if agent not in actions]
         if missing:
-            raise ValueError(f"actions has nothing for {missing}")
+            raise ValueError(f"actions has no entries for {missing}")
         kind = np.float32 if native.action_count is None else np.int64
         native.step(np.array([actions[agent] for agent in agents], dtype=kind))
         terminated, truncated = bool(native.terminated[0]), bool(native.truncated[0])
@@ -125,14 +125,14 @@ class SquallParallelEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ig
         return self._by_agent(shown.copy()), rewards, *ends, infos
 
     def render(self) -> NDArray[np.uint8] | None:
-        """The game from above, (height, width, 3), after its last step the next game; None but for "rgb_array".
+        """The game from above, (height, width, 3); after its last step the next game. None except for "rgb_array".
 
-        With "human", games are shown on Squall's page in a browser, each when it has ended: see the package's README.
+        With "human", Squall's page in a browser shows each game when it has ended: see the package's README.
         """
         return draw(self.native.scene(0)) if self.render_mode == "rgb_array" else None
 
     def close(self) -> None:
-        """Completes the recording. With `render_mode="human"` it is shown."""
+        """Completes the recording. With `render_mode="human"`, shows it."""
         self._recordings.end()
 
     def _by_agent(self, observations: NDArray[np.float32]) -> Shown:
@@ -150,18 +150,17 @@ def parallel_env(
 ) -> SquallParallelEnv:
     """One game as PettingZoo's `ParallelEnv`.
 
-    With `team`, the boats of the team of that name are agents, with `opponents` as in the other environments; without, all boats
-    are, and `opponents` may not be given. An agent's `info` says how the game stands for its team, as that of `TeamEnv`, and in
-    `counts` whether it does as it is told: a tagged boat sails home. With `state`, the environment also has `state()` and
-    `state_space`: the truth about the game. Raises ValueError with everything that is wrong with options
-    and scenario files.
+    With `team`, the agents are the boats of that team, and `opponents` are as in the other environments. Without it, all boats are
+    agents, and `opponents` is not allowed. An agent's `info` is its team's state of play, as for `TeamEnv`, and in `counts` whether its
+    actions take effect: a tagged boat drives home. With `state`, the environment also has `state()` and `state_space`: the truth about
+    the game. Raises ValueError with all faults of options and scenario files.
     """
     if options.get("team") is not None:
         needs_no_policy(options, "one team's parallel_env")
         return SquallParallelEnv(seed=seed, render_mode=render_mode, state=state, options=options)
     if "opponents" in options:
-        raise ValueError("opponents is given, but all boats are agents: say which team's are (`team`)")
+        raise ValueError("opponents is given, but all boats are agents: restrict them to one team with `team`")
     options["opponents"] = "policy"
-    # With both sides sailed from here it only makes a difference to the order of the agents.
+    # With agents on both sides, the team only affects the order of the agents.
     options["team"] = native_environment(options, seed=0, games=1, threads=1).team_names[0]
     return SquallParallelEnv(seed=seed, render_mode=render_mode, state=state, options=options)

@@ -1,4 +1,4 @@
-"""A game from above as a picture, drawn by numpy alone."""
+"""Draws a game from above, with numpy alone."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ _ROWS = {
 def draw(scene: Scene, width_px: int = 640) -> NDArray[np.uint8]:
     """The picture of a scene, (height, width, 3).
 
-    The first team's end is to the left. Boats are triangles that point ahead, tagged ones pale, carriers with a ring of the other
-    team's colour; flags are discs at their homes, rings while they are away. The scores stand above, in the teams' colours.
+    The first team's end is on the left. Boats are triangles that point ahead; tagged ones are pale, and carriers have a ring in the other
+    team's colour. Flags are discs at their homes, or rings while they are away. The scores are above, in the teams' colours.
     """
     return _Picture(scene, width_px).pixels
 
@@ -75,7 +75,7 @@ class _Picture:
     def _around(
         self, along_m: float, across_m: float, radius_m: float
     ) -> tuple[NDArray[np.uint8], NDArray[np.float64]]:
-        """The pixels of a square about a place, and where they are from it, m: (2, rows, columns), along and across."""
+        """The pixels of a square around a position, and their offsets from it, m: (2, rows, columns), along and across."""
         column, row = self._pixel(along_m, across_m)
         reach = radius_m * self._px_per_m + 1
         height, width, _ = self.pixels.shape
@@ -94,7 +94,7 @@ class _Picture:
         pixels, (along, across) = self._around(along_m, across_m, size_m)
         ahead = along * np.cos(heading_rad) + across * np.sin(heading_rad)
         aside = across * np.cos(heading_rad) - along * np.sin(heading_rad)
-        # From a beam of one size at the stern to nothing at the bow.
+        # From full width at the stern to a point at the bow.
         pixels[(ahead >= -0.6 * size_m) & (np.abs(aside) <= 0.33 * (0.9 * size_m - ahead))] = colour
 
     def _number(self, number: int, column: int, colour: Colour) -> None:

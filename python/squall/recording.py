@@ -1,4 +1,4 @@
-"""The recordings of an environment: whole files whenever it ends, on the page where it is rendered for people."""
+"""The recordings of an environment: always complete files, shown on the page if rendered for people."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from squall.page import PAGE, program
 
 
 def folder_to_show(render_mode: str | None) -> Path | None:
-    """Where games that people are to see are recorded, if the options say nothing; None where nobody is to see any.
+    """The folder for recordings to show to people, if the options name none; None if nothing is shown.
 
-    Raises `gymnasium.error.DependencyNotInstalled` where they cannot be shown.
+    Raises `gymnasium.error.DependencyNotInstalled` if they cannot be shown.
     """
     if render_mode != "human":
         return None
@@ -24,18 +24,18 @@ class Recordings:
     """The recordings of an environment."""
 
     def __init__(self, owner: object, native: _native.VectorEnvironment, render_mode: str | None = None) -> None:
-        """Of the games of an environment, which may forget to close itself."""
+        """For the games of an environment, which may never be closed."""
         self._is_shown = render_mode == "human"
         self._native = native
-        # Neither an environment that is collected nor an interpreter that ends leaves half a file.
+        # An environment that is collected, or an interpreter that ends, must not leave an incomplete file.
         weakref.finalize(owner, native.end_recordings)
 
     def show(self) -> None:
-        """Shows the newest, where somebody is to see it and it has not been shown."""
+        """Shows the newest recording, unless it has been shown or nothing is shown."""
         if self._is_shown and (newest := self._native.take_recording()) is not None:
             PAGE.show(newest)
 
     def end(self) -> None:
-        """Completes all of them; nothing is recorded from now on."""
+        """Completes all recordings and stops recording."""
         self._native.end_recordings()
         self.show()

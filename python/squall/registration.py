@@ -25,20 +25,20 @@ def register() -> None:
                 entry_point=entry_point,
                 vector_entry_point=vector_entry_point,
                 kwargs=kwargs,
-                # Fewer layers over every step; both checks are in the tests.
+                # Fewer wrappers around each step; the tests perform both checks.
                 disable_env_checker=True,
             )
 
 
 def team_vector(num_envs: int = 1, **options: Any) -> gymnasium.vector.VectorEnv[Any, Any, Any]:
-    """As many `TeamEnv`, side by side."""
+    """This many `TeamEnv` in parallel."""
     from squall.vector import VectorEnv
 
     return VectorEnv(num_envs, row="team", **options)
 
 
 def boat_vector(num_envs: int = 1, **options: Any) -> gymnasium.vector.VectorEnv[Any, Any, Any]:
-    """As many `BoatEnv`, side by side."""
+    """This many `BoatEnv` in parallel."""
     from squall.vector import VectorEnv
 
     return VectorEnv(num_envs, row="boat", **{"mates": "pav01", **options})

@@ -1,4 +1,4 @@
-"""Where scenario files are: games, strategies and rewards come with the package, and are called by their names."""
+"""The scenario files in the package: games, strategies and rewards, selected by name."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ import os
 from pathlib import Path
 
 SCENARIOS = Path(__file__).parent / "scenarios"
-"""The folder of the scenario files that come with the package; its README.md explains them."""
+"""The folder of the scenario files in the package; its README.md explains them."""
 
 
 def path_of(kind: str, name: str | os.PathLike[str]) -> str:
     """The path of a scenario file.
 
-    `name` is a path, which ends with `.toml`, or the name of a file that comes with the package. `kind` is its folder: "games",
-    "strategies" or "rewards". Raises ValueError where the package has no such file.
+    `name` is a path that ends with `.toml`, or the name of a file in the package. `kind` is its folder: "games", "strategies" or
+    "rewards". Raises ValueError if the package has no such file.
     """
     text = os.fspath(name)
     if text.endswith(".toml"):

@@ -1,4 +1,4 @@
-"""What is played in an environment: the options that all of them have, and the native environment made of them."""
+"""The setup of an environment: the common options, and the native environment that they create."""
 
 from __future__ import annotations
 
@@ -14,48 +14,48 @@ from squall import _native
 from squall.scenario import path_of
 
 File = str | os.PathLike[str]
-"""A scenario file: its path, or the name of one that comes with the package."""
+"""A scenario file: its path, or the name of one in the package."""
 
 Opponents = File | Sequence[tuple[float, File]]
-"""A strategy, or several with the weights by which they are drawn. "policy" is the policy itself: self-play."""
+"""A strategy, or several with their weights. "policy" is the policy itself: self-play."""
 
 
 class Options(TypedDict, total=False):
-    """What all environments may be told."""
+    """The options of all environments."""
 
     game: File
-    """The game, "surveyor_2v2" by default. Both teams have as many boats."""
+    """The game, by default "surveyor_2v2". Both teams must have the same number of boats."""
     observation: Literal["squall", "pyquaticus"]
-    """What a boat is shown: "squall" (default) is what sensors and radio tell, "pyquaticus" the numbers of that environment."""
+    """A boat's observation: "squall" (default), the data of its sensors and radio, or "pyquaticus", that environment's values."""
     frames: int
-    """How many decisions "squall" shows together, the newest first: 1 by default."""
+    """Number of decisions in an observation with "squall", newest first; 1 by default."""
     action: Literal["pyquaticus", "continuous", "options"]
-    """What a boat may do: one of 17 (default), turn and speed as two numbers from -1 to 1, or one of the options of `control`: the
-    values of a strategy's variable, such as attack and defend. `action_names` of an environment tells them."""
+    """A boat's action: one of 17 (default), turn and speed as two numbers from -1 to 1, or one of the options of `control`: the values
+    of a strategy's variable, such as attack and defend. The environment's `action_names` lists them."""
     control: File
-    """How that is done: "direct" (default) as orders, or through the helms of a strategy with a behaviour of the kind `policy`,
-    which keep the boat safe: "policy" and "teleop" are some for turns and speeds, "options" is one for options."""
+    """How actions are carried out: "direct" (default) as orders, or through the helms of a strategy with a behaviour of kind `policy`,
+    which keep the boat safe. "policy" and "teleop" are such strategies for turns and speeds, "options" is one for options."""
     decision_s: float | None
-    """How long an action holds, s: a multiple of the game's own period. 0.5 by default; None is the game's own."""
+    """How long an action holds, s: a multiple of the game's own period. 0.5 by default; None: the game's own period."""
     episode_max_s: float | None
-    """An episode is cut off (`truncated`) after so long, s. None (default) plays whole games."""
+    """Time after which an episode is cut off (`truncated`), s. None (default): whole games."""
     starts: int | None
-    """How many different starts come round again, which makes new games cheap. None (default): every game has its own."""
+    """The number of different starts, which repeat, so that new games are cheap. None (default): a new start for every game."""
     team: str | None
-    """The name of the team that learns. None (default): the one and the other by turns, seed by seed."""
+    """The name of the learning team. None (default): alternates with the seed."""
     opponents: Opponents
-    """Who plays the other team: "pav01" by default."""
+    """The other team's players, by default "pav01"."""
     rewards: File | None
-    """What is worth how much: "bold" by default; None is nothing."""
+    """The rewards, by default "bold"; None: all are 0."""
     discount: float
-    """What a reward a step later is worth, for the potentials in rewards: 0.99 by default."""
+    """The value of a reward one step later, for the potentials in rewards; 0.99 by default."""
     record: str | os.PathLike[str] | None
-    """A folder for a recording of every game, named by the time, the game and its seed, which `squall replay` shows and plays again.
-    None (default): nothing is recorded. A game of which no step is played leaves no file; one that is reset, or whose environment is
-    closed, before its end is kept up to there."""
+    """A folder for recordings of games, named by time, game and seed; `squall replay` shows and replays them. None (default): no
+    recordings. A game without a played step leaves no file. If a game is reset, or its environment closed, before its end, the part
+    that was played is kept."""
     record_every: int
-    """Each so manieth game is recorded, the first included, counted game by game and episode by episode as seeds are: 1 by default.
-    With as many as there are games in a `VectorEnv`, those of its first place are recorded."""
+    """Records every n-th game, including the first, counted across the games and then the episodes, like seeds; 1 by default. With the
+    number of games in a `VectorEnv`, records the games of its first slot."""
 
 
 def native_environment(
@@ -68,11 +68,11 @@ def native_environment(
     state: bool = False,
     record: str | os.PathLike[str] | None = None,
 ) -> _native.VectorEnvironment:
-    """Begins the games. `mates` is the strategy that sails all but one boat of a team; None: actions are for all.
-    With `state` the truth is told too.
+    """Starts the games. `mates` is the strategy of all but one boat of a team; None: all boats receive actions. With `state`, the truth is
+    provided too.
 
-    A seed of None is drawn from the system; `standing(game)["seed"]` tells it. `record` is the folder for recordings where the options
-    name none. Raises ValueError with everything that is wrong.
+    A seed of None is drawn from the system; `standing(game)["seed"]` returns it. `record` is the folder for recordings if the options name
+    none. Raises ValueError with all faults.
     """
     unknown = options.keys() - Options.__annotations__.keys()
     if unknown:
@@ -108,19 +108,19 @@ def native_environment(
 
 
 def observation_space(native: _native.VectorEnvironment, options: Options, boats: int | None) -> gymnasium.spaces.Box:
-    """What one boat is shown, or so many in a table."""
+    """The observation space of one boat, or of several as a table."""
     numbers = len(native.observation_names)
     most = 1.0 if options.get("observation") == "pyquaticus" else np.inf
     return gymnasium.spaces.Box(-most, most, (numbers,) if boats is None else (boats, numbers), np.float32)
 
 
 def state_space(native: _native.VectorEnvironment) -> gymnasium.spaces.Box:
-    """What the truth may be, as one boat would tell it."""
+    """The space of the truth from the view of one boat."""
     return gymnasium.spaces.Box(-np.inf, np.inf, (len(native.state_names),), np.float32)
 
 
 def action_space(native: _native.VectorEnvironment, boats: int | None) -> gymnasium.Space[Any]:
-    """What one boat may do, or so many together."""
+    """The action space of one boat, or of several together."""
     count = native.action_count
     if count is None:
         return gymnasium.spaces.Box(-1.0, 1.0, (2,) if boats is None else (boats, 2), np.float32)
@@ -130,7 +130,7 @@ def action_space(native: _native.VectorEnvironment, boats: int | None) -> gymnas
 
 
 def actions_for(native: _native.VectorEnvironment, actions: Any) -> NDArray[Any]:
-    """Actions of any shape as rows. Raises ValueError where they are of the wrong kind or too few."""
+    """Converts actions of any shape to rows. Raises ValueError if they have the wrong type or number."""
     if native.action_count is None:
         rows = np.asarray(actions, dtype=np.float32)
         if rows.size != 2 * native.rows:
@@ -140,21 +140,21 @@ def actions_for(native: _native.VectorEnvironment, actions: Any) -> NDArray[Any]
         return rows.reshape(native.rows, 2)
     rows = np.asarray(actions)
     if not np.issubdtype(rows.dtype, np.integer):
-        raise ValueError(f"actions are of the type {rows.dtype}, expected integers")
+        raise ValueError(f"actions have the type {rows.dtype}, expected integers")
     if rows.size != native.rows:
         raise ValueError(f"actions have the shape {rows.shape}, expected one for each of {native.rows} boats")
     return rows.astype(np.int64, copy=False).reshape(native.rows)
 
 
 def check_render_mode(render_mode: str | None, modes: Sequence[str]) -> None:
-    """Raises ValueError for a mode that there is not."""
+    """Raises ValueError for an unknown mode."""
     if render_mode is not None and render_mode not in modes:
         expected = " or ".join(["None", *(f'"{mode}"' for mode in modes)])
         raise ValueError(f"render_mode is {render_mode!r}, expected {expected}")
 
 
 def needs_no_policy(options: Options, where: str) -> None:
-    """Raises ValueError where an opponent is the policy itself, whose actions nobody would give."""
+    """Raises ValueError if an opponent is the policy itself, which would receive no actions."""
     if any(file is None for _, file in _opponents(options.get("opponents", "pav01"))):
         raise ValueError(
             f'opponents has "policy", but {where} has no actions for enemies: use VectorEnv or parallel_env'

@@ -1,4 +1,4 @@
-"""One game at a time, as gymnasium's `Env`: for a team, and for a single boat."""
+"""One game at a time, as gymnasium's `Env`, for a team or for a single boat."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from squall.setup import (
 
 
 class _GameEnv(gymnasium.Env[NDArray[np.float32], Any]):
-    """What both have in common."""
+    """The common part of both environments."""
 
     metadata: dict[str, Any] = {"render_modes": ["human", "rgb_array"], "render_fps": 10}  # noqa: RUF012 (gymnasium's own)
     observation_space: gymnasium.spaces.Box  # type: ignore[assignment]
@@ -42,23 +42,23 @@ class _GameEnv(gymnasium.Env[NDArray[np.float32], Any]):
         self.observation_space = observation_space(self.native, options, boats)
         self.action_space = action_space(self.native, boats)
         self._is_over = False
-        # A game has begun that nobody has asked for yet.
+        # A game has started that no reset has returned yet.
         self._is_new = True
 
     @property
     def observation_names(self) -> list[str]:
-        """What the numbers of a boat's observation are called, in their order."""
+        """The names of the values of a boat's observation, in order."""
         return self.native.observation_names
 
     @property
     def action_names(self) -> list[str] | None:
-        """What the discrete actions are called, in their order; None where actions are continuous."""
+        """The names of the discrete actions, in order; None if actions are continuous."""
         return self.native.action_names
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
-        """Begins the game of this seed, or the next one."""
+        """Starts the game with this seed, or the next one."""
         super().reset(seed=seed)
         if seed is not None or not self._is_new:
             self.native.restart(seed)
@@ -67,7 +67,7 @@ class _GameEnv(gymnasium.Env[NDArray[np.float32], Any]):
         return self._shown(self.native.observations), self._info(self.native.standing(0))
 
     def step(self, action: Any) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
-        """Plays a step. Raises ValueError, and plays nothing, for an action that is not of the space."""
+        """Plays a step. Raises ValueError, and plays nothing, for an action outside the space."""
         if self._is_over:
             raise gymnasium.error.ResetNeeded("the game is over: call reset first")
         native = self.native
@@ -83,14 +83,14 @@ class _GameEnv(gymnasium.Env[NDArray[np.float32], Any]):
         return self._shown(shown), reward, terminated, truncated, self._info(standing)
 
     def render(self) -> NDArray[np.uint8] | None:
-        """The game from above, (height, width, 3), after its last step the next game; None but for "rgb_array".
+        """The game from above, (height, width, 3); after its last step the next game. None except for "rgb_array".
 
-        With "human", games are shown on Squall's page in a browser, each when it has ended: see the package's README.
+        With "human", Squall's page in a browser shows each game when it has ended: see the package's README.
         """
         return draw(self.native.scene(0)) if self.render_mode == "rgb_array" else None
 
     def close(self) -> None:
-        """Completes the recording. With `render_mode="human"` it is shown."""
+        """Completes the recording. With `render_mode="human"`, shows it."""
         self._recordings.end()
 
     def _shown(self, observations: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -102,24 +102,24 @@ class _GameEnv(gymnasium.Env[NDArray[np.float32], Any]):
 
 
 class TeamEnv(_GameEnv):
-    """One game; an action says what all boats of a team do.
+    """One game, in which an action controls all boats of a team.
 
-    Observations are (boats, numbers), actions have an entry for each boat, the reward is the mean of the boats'. A strategy plays the
-    other team. `info` says how the game stands: `seed`, `team` (0 is the game's first), `steps`, `score`, `grabs`, `captures`,
-    `tags`, `tagged`, `out_of_bounds`, `collisions`, the same with `enemy_` before it, and `counts`: which boats do as they are told.
+    Observations are (boats, values), actions have an entry for each boat, and the reward is the mean over the boats. A strategy plays the
+    other team. `info` is the state of play: `seed`, `team` (0 is the game's first), `steps`, `score`, `grabs`, `captures`, `tags`,
+    `tagged`, `out_of_bounds`, `collisions`, the same with the prefix `enemy_`, and `counts`: the boats whose actions take effect.
     """
 
     def __init__(self, *, seed: int | None = None, render_mode: str | None = None, **options: Unpack[Options]) -> None:
-        """Begins the game of a seed (None: any). Raises ValueError with everything that is wrong with options and files."""
+        """Starts the game with a seed (None: any). Raises ValueError with all faults of options and files."""
         super().__init__(is_team=True, seed=seed, mates=None, render_mode=render_mode, options=options)
 
 
 class BoatEnv(_GameEnv):
-    """One game; an action says what one boat does.
+    """One game, in which an action controls one boat.
 
-    A strategy sails its mates, so that there is one agent and nothing else in its world learns. Which boat of the team it is follows
-    from the seed, each by turns. A policy for all boats of a team is better learned with `VectorEnv`, which has a row for each.
-    `info` is that of `TeamEnv`; there `counts` is one truth.
+    A strategy controls its mates, so that there is one agent and nothing else in its world learns. The seed selects the boat, each in
+    turn. To train a policy for all boats of a team, prefer `VectorEnv`, which has a row for each. `info` is that of `TeamEnv`, with a
+    single truth value in `counts`.
     """
 
     def __init__(
@@ -130,5 +130,5 @@ class BoatEnv(_GameEnv):
         render_mode: str | None = None,
         **options: Unpack[Options],
     ) -> None:
-        """Begins the game of a seed (None: any). Raises ValueError with everything that is wrong with options and files."""
+        """Starts the game with a seed (None: any). Raises ValueError with all faults of options and files."""
         super().__init__(is_team=False, seed=seed, mates=mates, render_mode=render_mode, options=options)

@@ -1,6 +1,6 @@
-"""A sweep over a cluster of Ray: `python -m squall.sweep FILE`.
+"""A sweep on a Ray cluster: `python -m squall.sweep FILE`.
 
-The same games as `squall sweep FILE` plays, and the same bytes in the same files, which this process writes. See docs/cluster.md.
+Plays the same games as `squall sweep FILE`, and writes the same bytes to the same files. See docs/cluster.md.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from squall.cluster_task import play_sweep
 
 @dataclass
 class Kept:
-    """What is kept of a sweep in its folder."""
+    """The stored results of a sweep in its folder."""
 
     study: SweepStudy
 
     @property
     def done(self) -> int:
-        """How many games that is."""
+        """The number of games stored."""
         return self.study.done
 
     def add(self, index: int, result: tuple[str, str]) -> None:
@@ -31,11 +31,11 @@ class Kept:
 
 
 def main(words: list[str] | None = None) -> int:
-    """Runs a sweep; returns 0, 1 where a game could not start or something failed, or 130 where it was stopped."""
+    """Runs a sweep. Returns 0, 1 if a game could not start or something failed, or 130 if stopped."""
     parser = parser_of("squall.sweep", __doc__, "sweep")
-    parser.add_argument("--out", type=Path, metavar="FOLDER", help="for the tables and the report (runs/sweep/NAME)")
+    parser.add_argument("--out", type=Path, metavar="FOLDER", help="folder for the tables and the report (runs/sweep/NAME)")
     parser.add_argument(
-        "--resume", action="store_true", help="go on with the sweep that the folder holds, whoever began it"
+        "--resume", action="store_true", help="resume the sweep in the folder"
     )
     arguments = parser.parse_args(words)
     check(parser, arguments)
@@ -48,17 +48,17 @@ def main(words: list[str] | None = None) -> int:
         return 1
     remark(f"{plan.points} points with {plan.games_per_point} games each; tables and report in {folder}")
     if study.done > 0:
-        remark(f"{study.done} of {plan.games} games were played before")
+        remark(f"{study.done} of {plan.games} games were already played")
     if (arguments.games or 0) % 2:
-        remark(f"{arguments.games} games a point are {arguments.games + 1}: half of them on each side")
+        remark(f"{arguments.games} games per point, rounded up to {arguments.games + 1}: half of them on each side")
     failed = run(plan, Kept(study), play_sweep, arguments)
     if failed is not None:
-        remark(f"Error: {failed}\n{study.done} of {plan.games} games are kept; --resume goes on")
+        remark(f"Error: {failed}\n{study.done} of {plan.games} games are kept; use --resume to continue")
         return 1
     text, failures = study.report()
     print(f"{text}\nwith curves: {folder / 'report.html'}", flush=True)
     if study.done < plan.games:
-        remark("stopped; --resume goes on with it")
+        remark("stopped; use --resume to continue")
         return 130
     return 1 if failures else 0
 

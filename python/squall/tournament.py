@@ -1,6 +1,6 @@
-"""A tournament over a cluster of Ray: `python -m squall.tournament FILE`.
+"""A tournament on a Ray cluster: `python -m squall.tournament FILE`.
 
-The same games as `squall tournament FILE` plays, and the same tables. See docs/cluster.md.
+Plays the same games as `squall tournament FILE`, and prints the same tables. See docs/cluster.md.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from squall.cluster_task import play_tournament
 
 @dataclass
 class Kept:
-    """The games of a tournament that were played."""
+    """The games of a tournament played so far."""
 
     records: list[str] = field(default_factory=list)
 
     @property
     def done(self) -> int:
-        """How many they are."""
+        """The number of games played."""
         return len(self.records)
 
     def add(self, index: int, result: str) -> None:
@@ -32,22 +32,22 @@ class Kept:
 
 
 def main(words: list[str] | None = None) -> int:
-    """Runs a tournament; returns 0, 1 where a game could not start or something failed, or 130 where it was stopped."""
+    """Runs a tournament. Returns 0, 1 if a game could not start or something failed, or 130 if stopped."""
     parser = parser_of("squall.tournament", __doc__, "tournament")
-    parser.add_argument("--json", type=Path, metavar="FILE", help="writes everything to this file, every game with its digest")
-    parser.add_argument("--csv", type=Path, metavar="FILE", help="writes a line for each entry to this file")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write everything to this file, including every game with its digest")
+    parser.add_argument("--csv", type=Path, metavar="FILE", help="write one line per entry to this file")
     arguments = parser.parse_args(words)
     check(parser, arguments)
     files = [path for path in (arguments.json, arguments.csv) if path is not None]
     try:
         plan = TournamentPlan.open(arguments.file, arguments.games, arguments.seed)
-        for path in files:  # Better now than after hours of games.
+        for path in files:  # Fail now rather than after hours of games.
             path.touch()
     except (ValueError, OverflowError, OSError) as error:
         remark(f"Error: {error}")
         return 1
     if (arguments.games or 0) % 2:
-        remark(f"{arguments.games} games a pairing are {arguments.games + 1}: half of them on each side")
+        remark(f"{arguments.games} games per pairing, rounded up to {arguments.games + 1}: half of them on each side")
     study = Kept()
     failed = run(plan, study, play_tournament, arguments)
     text, json, csv, failures = plan.report(study.records)

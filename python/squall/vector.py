@@ -1,4 +1,4 @@
-"""Many games at a time, as gymnasium's `VectorEnv`."""
+"""Many parallel games, as gymnasium's `VectorEnv`."""
 
 from __future__ import annotations
 
@@ -24,27 +24,26 @@ from squall.setup import (
     observation_space,
 )
 
-# gymnasium 1.0 has no such enumeration: its environments reset at the next step, and ours say so in their docstring.
+# gymnasium 1.0 lacks this enumeration: its environments reset at the next step, and ours document their mode.
 _SAME_STEP = getattr(getattr(gymnasium.vector, "AutoresetMode", None), "SAME_STEP", "SameStep")
 
 
 class VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], NDArray[Any]]):
-    """Games side by side, one environment for each row.
+    """Parallel games, with one environment per row.
 
-    A row is a boat (`row="boat"`, the default), as policies that are shared by boats need it, or a team (`row="team"`): then an
-    observation is (boats, numbers), an action has one entry for each boat, and the reward is the mean of the boats'. Rows go game by
-    game, first the boats of the team that learns, then, in self-play, the others: `num_envs` is that many. The rows of a game end
+    A row is a boat (`row="boat"`, the default), for policies shared by boats, or a team (`row="team"`). For a team an observation is
+    (boats, values), an action has one entry for each boat, and the reward is the mean over the boats. Rows are ordered by game; within a
+    game the learning team comes first and then, in self-play, the other team. `num_envs` is the number of rows. The rows of a game end
     together.
 
-    A game begins anew in the step in which it ends (`AutoresetMode.SAME_STEP`): that step returns the first observation of the new
-    one, `info["final_obs"]` has the last of the old one, and `info["final_info"]` how that stood.
+    A game restarts in the step in which it ends (`AutoresetMode.SAME_STEP`): that step returns the first observation of the new game,
+    `info["final_obs"]` has the last one of the old game, and `info["final_info"]` its final state of play.
 
-    `info["counts"]` (num_envs,) says whether a row's next action counts: a tagged boat is sailed home whatever is chosen, and in games
-    against a strategy nobody is asked for the enemies (their rows are 0). A policy learns nothing from samples where it is False;
-    a critic should, or it does not know what being tagged costs.
-    `info["seed"]` (num_envs,) is the seed of the game.
+    `info["counts"]` (num_envs,) is whether a row's next action takes effect: a tagged boat drives home whatever its action, and against a
+    strategy the enemies need no actions (their rows are 0). A policy should ignore samples where it is False; a critic should learn from
+    them, or it misjudges being tagged. `info["seed"]` (num_envs,) is the seed of the game.
 
-    With `record`, every game is recorded, or each `record_every`th: each such game has a file open and a thread that writes it.
+    With `record`, every game or every `record_every`th is recorded. Each has an open file and a thread that writes it.
 
     With `copy=False`, `step` and `reset` return the environment's own arrays, which the next call overwrites.
     """
@@ -55,7 +54,7 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], ND
         "autoreset_mode": _SAME_STEP,
     }
 
-    # gymnasium also closes an environment that could not be made.
+    # gymnasium also closes an environment whose creation failed.
     _recordings: Recordings | None = None
 
     def __init__(
@@ -71,10 +70,10 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], ND
         render_mode: str | None = None,
         **options: Unpack[Options],
     ) -> None:
-        """Begins `games` games on so many threads (None: one for each core), with seeds that count up from `seed` (None: any).
+        """Starts `games` games on this many threads (None: one per core), with seeds that count up from `seed` (None: any).
 
-        `mates` is a strategy for all but one boat of a team, as in `BoatEnv`; None: all boats are rows. Results depend on seed and
-        actions alone, not on threads. With `state`, `states` are told. Raises ValueError with everything that is wrong with options and scenario files.
+        `mates` is a strategy for all but one boat of a team, as in `BoatEnv`; None: all boats are rows. Results depend only on seed and
+        actions, not on threads. With `state`, `states` is available. Raises ValueError with all faults of options and scenario files.
         """
         if row not in ("boat", "team"):
             raise ValueError(f'row is {row!r}, expected "boat" or "team"')
@@ -103,40 +102,39 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], ND
 
     @property
     def observation_names(self) -> list[str]:
-        """What the numbers of a boat's observation are called, in their order."""
+        """The names of the values of a boat's observation, in order."""
         return self.native.observation_names
 
     @property
     def action_names(self) -> list[str] | None:
-        """What the discrete actions are called, in their order; None where actions are continuous."""
+        """The names of the discrete actions, in order; None if actions are continuous."""
         return self.native.action_names
 
     @property
     def states(self) -> NDArray[np.float32]:
-        """The truth as each row's boat would tell it, (rows, numbers): for critics that are to know more than a policy.
+        """The truth from the view of each row's boat, (rows, values), for critics that know more than a policy.
 
-        With `row="team"` there is still one for each boat: (games x boats, numbers). 0 for boats that nobody is asked for. No numbers
-        without `state=True`.
+        With `row="team"` there is still one per boat: (games x boats, values). 0 for boats without actions. Empty without `state=True`.
         """
         return self._shown(self.native.states)
 
     @property
     def final_states(self) -> NDArray[np.float32]:
-        """The same at the end of the games that ended in the last step; other rows are stale."""
+        """The same at the end of games that ended in the last step; other rows are stale."""
         return self._shown(self.native.final_states)
 
     @property
     def state_names(self) -> list[str]:
-        """What the numbers of a state are called, in their order; none without `state=True`."""
+        """The names of the values of a state, in order; empty without `state=True`."""
         return self.native.state_names
 
     def reset(
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
-        """Begins games anew.
+        """Restarts games.
 
-        An int: their seeds count up from it, as when they were made with it. A sequence: a seed for each game, None for its next
-        one. None: the next ones. `options={"reset_mask": mask}`, (num_envs,) bool, begins those games alone of which a row is True.
+        An int: seeds count up from it, as at creation. A sequence: a seed for each game, or None for its next one. None: the next seeds.
+        `options={"reset_mask": mask}`, (num_envs,) bool, restarts only games with a True row.
         """
         mask = (options or {}).get("reset_mask")
         if mask is None and (seed is None or isinstance(seed, (int, np.integer))):
@@ -151,7 +149,7 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], ND
     def step(
         self, actions: NDArray[Any]
     ) -> tuple[NDArray[np.float32], NDArray[Any], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
-        """Plays a step of all games with an action for each row. Raises ValueError, and plays nothing, for other actions."""
+        """Plays a step of all games with one action per row. Raises ValueError, and plays nothing, for invalid actions."""
         native = self.native
         native.step(actions_for(native, actions))
         self._is_begun = False
@@ -166,7 +164,7 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], ND
         return shown(self._observations), shown(rewards), shown(terminated), shown(truncated), info
 
     def render(self) -> tuple[NDArray[np.uint8], ...] | None:
-        """A picture of the game of each row, (height, width, 3); None without `render_mode`."""
+        """A picture of each row's game, (height, width, 3); None without `render_mode`."""
         if self.render_mode is None:
             return None
         pictures = [draw(self.native.scene(game)) for game in range(self.games)]
@@ -211,7 +209,7 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], ND
         }
 
     def _add_final(self, info: dict[str, Any], ended: NDArray[np.bool_]) -> None:
-        """Adds `final_obs` and `final_info` as gymnasium's own vector environments do."""
+        """Adds `final_obs` and `final_info`, as gymnasium's own vector environments do."""
         observations = np.full(self.num_envs, None, dtype=object)
         for env in np.flatnonzero(ended):
             observations[env] = self._final_observations[env].copy()
@@ -230,7 +228,7 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], ND
 
 
 def seen_by_enemy(standing: dict[str, int]) -> dict[str, int]:
-    """How a game stands as the other team sees it."""
+    """A state of play from the other team's view."""
     swapped = dict(standing, team=1 - standing["team"])
     for name, number in standing.items():
         if name.startswith("enemy_"):

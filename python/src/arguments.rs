@@ -1,4 +1,4 @@
-//! What Python says is to be played.
+//! Arguments from Python.
 
 use experiment::Packed;
 use learn::environment::{ActionSpace, CriticInput, RawObservation, RawSetup};
@@ -9,7 +9,7 @@ use std::num::NonZeroUsize;
 use std::ops::Range;
 use std::path::PathBuf;
 
-/// A mapping with a key for each of these: the stub has their meanings.
+/// A mapping with these keys; the stub explains them.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Arguments {
@@ -30,7 +30,7 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    /// The setup that they say.
+    /// Checks the arguments.
     pub(crate) fn setup(self) -> PyResult<RawSetup> {
         let observation = match self.observation.as_str() {
             "pyquaticus" => RawObservation::Pyquaticus,
@@ -64,25 +64,25 @@ impl Arguments {
     }
 }
 
-/// An error of ours as Python's `ValueError`, with its whole text.
+/// One of our errors as Python's `ValueError`, with its full text.
 pub(crate) fn refused(error: impl Display) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
-/// A packed plan as Python has it; the stub explains it.
+/// A packed plan in Python; the stub explains it.
 pub(crate) type PackedParts = (String, Vec<(PathBuf, Vec<u8>)>, String);
 
-/// It for Python.
+/// Converts a packed plan for Python.
 pub(crate) fn parts_of(Packed { spec, files, digest }: Packed) -> PackedParts {
     (spec, files, digest)
 }
 
-/// It from Python.
+/// Converts a packed plan from Python.
 pub(crate) fn packed_of((spec, files, digest): PackedParts) -> Packed {
     Packed { spec, files, digest }
 }
 
-/// How many games and from which seed on, in the place of what a file says.
+/// Checks overrides of the number of games and the first seed.
 pub(crate) fn games_and_seed(games: Option<u32>, seed: Option<u64>) -> PyResult<(Option<u32>, Option<u64>)> {
     if let Some(games) = games.filter(|games| !(2..=1_000_000).contains(games)) {
         return Err(refused(format!("games is {games}, expected 2 to 1000000")));
@@ -93,7 +93,7 @@ pub(crate) fn games_and_seed(games: Option<u32>, seed: Option<u64>) -> PyResult<
     Ok((games, seed))
 }
 
-/// A stretch of so many games, and the threads that play it.
+/// Checks a range of games and the number of threads.
 pub(crate) fn stretch(
     (begin, end): (usize, usize),
     games: usize,

@@ -1,4 +1,4 @@
-//! Many games at a time for Python: a step without the interpreter's lock, into numpy arrays that stay the same.
+//! Parallel games for Python: steps without the interpreter's lock, into numpy arrays that stay the same.
 
 use crate::arguments::{Arguments, refused};
 use crate::recorder;
@@ -12,7 +12,7 @@ use std::ffi::CString;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Many games at a time; the stub explains it.
+/// Parallel games; the stub explains them.
 #[pyclass(module = "squall._native")]
 pub(crate) struct VectorEnvironment {
     games: Mutex<Games>,
@@ -21,7 +21,7 @@ pub(crate) struct VectorEnvironment {
     recordings: Arc<RecordingLog>,
 }
 
-/// What a step writes: rows × numbers, or rows.
+/// The arrays that a step writes: rows × values, or rows.
 struct Arrays {
     observations: Py<PyArray2<f32>>,
     final_observations: Py<PyArray2<f32>>,
@@ -29,7 +29,7 @@ struct Arrays {
     counts: Py<PyArray1<bool>>,
     terminated: Py<PyArray1<bool>>,
     truncated: Py<PyArray1<bool>>,
-    /// The truth, rows × numbers, none of them unless it is asked for.
+    /// The truth, rows × values; empty unless requested.
     states: Py<PyArray2<f32>>,
     final_states: Py<PyArray2<f32>>,
 }
@@ -51,7 +51,7 @@ impl Arrays {
         }
     }
 
-    /// Lets `work` write, without the interpreter's lock.
+    /// Lets `work` write without the interpreter's lock.
     fn write<T: Send>(&self, py: Python<'_>, work: impl FnOnce(Rows<'_>) -> T + Send) -> PyResult<T> {
         let mut observations = self.observations.bind(py).try_readwrite()?;
         let mut final_observations = self.final_observations.bind(py).try_readwrite()?;
@@ -66,7 +66,7 @@ impl Arrays {
         Ok(py.detach(|| work(rows)))
     }
 
-    /// Notes which games ended in the step, and the truth about all of them.
+    /// Notes which games ended in the step, and the truth about all games.
     fn end(&self, py: Python<'_>, games: &Games) -> PyResult<()> {
         self.write_states(py, games)?;
         let mut terminated = self.terminated.bind(py).try_readwrite()?;
@@ -89,7 +89,7 @@ impl Arrays {
         }
         let mut states = self.states.bind(py).try_readwrite()?;
         let mut final_states = self.final_states.bind(py).try_readwrite()?;
-        // Boats that are given no actions are told nothing: theirs are the last rows.
+        // Boats without actions come last in a game's rows; their states stay 0.
         let write = |rows: &mut [f32], truth: &[f32]| {
             rows[..truth.len()].copy_from_slice(truth);
             rows[truth.len()..].fill(0.0);
@@ -304,10 +304,10 @@ impl VectorEnvironment {
         self.games.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Warns of what is wrong with recordings: games go on without.
+    /// Warns about failed recordings; the games continue.
     fn warn(&self, py: Python<'_>) -> PyResult<()> {
         for problem in self.recordings.take_problems() {
-            // A file's name has no byte 0.
+            // A file name contains no byte 0.
             let text = CString::new(problem).unwrap_or_default();
             PyErr::warn(py, &py.get_type::<PyRuntimeWarning>(), &text, 2)?;
         }
@@ -329,32 +329,32 @@ fn check_index(games: &Games, game: usize) -> PyResult<()> {
     Err(PyIndexError::new_err(format!("game is {game}, expected 0 to {}", count - 1)))
 }
 
-/// Reads one index for each row.
+/// Reads one index per row.
 fn read_discrete(actions: &Bound<'_, PyAny>, rows: usize, count: usize, into: &mut Vec<Action>) -> PyResult<()> {
     let actions: PyReadonlyArray1<'_, i64> =
-        actions.extract().map_err(|_| refused(format!("actions are no array of int64 with the shape ({rows},)")))?;
+        actions.extract().map_err(|_| refused(format!("actions must be an int64 array with the shape ({rows},)")))?;
     check_rows(actions.shape(), &[rows])?;
     into.clear();
     for (row, action) in actions.as_array().iter().enumerate() {
         let action = usize::try_from(*action).ok().filter(|action| *action < count);
         let wrong =
-            || refused(format!("the action of row {row} is {}, expected 0 to {}", actions.as_array()[row], count - 1));
+            || refused(format!("the action in row {row} is {}, expected 0 to {}", actions.as_array()[row], count - 1));
         into.push(Action::Discrete(action.ok_or_else(wrong)?));
     }
     Ok(())
 }
 
-/// Reads two numbers for each row.
+/// Reads two numbers per row.
 fn read_continuous(actions: &Bound<'_, PyAny>, rows: usize, into: &mut Vec<Action>) -> PyResult<()> {
     let actions: PyReadonlyArray2<'_, f32> = actions
         .extract()
-        .map_err(|_| refused(format!("actions are no array of float32 with the shape ({rows}, 2)")))?;
+        .map_err(|_| refused(format!("actions must be a float32 array with the shape ({rows}, 2)")))?;
     check_rows(actions.shape(), &[rows, 2])?;
     into.clear();
     for (row, action) in actions.as_array().outer_iter().enumerate() {
         let action = [action[0], action[1]];
         if !action.iter().all(|number| number.is_finite()) {
-            return Err(refused(format!("the action of row {row} is {action:?}, expected two finite numbers")));
+            return Err(refused(format!("the action in row {row} is {action:?}, expected two finite numbers")));
         }
         into.push(Action::Continuous(action));
     }

@@ -1,4 +1,4 @@
-//! The native module of the Python package `squall`: games as environments, whose arrays Python shares; sweeps and tournaments.
+//! The native module of the Python package `squall`: games as environments with shared arrays, sweeps and tournaments.
 
 mod arguments;
 mod environment;
@@ -11,7 +11,7 @@ mod tournament;
 
 use pyo3::prelude::*;
 
-/// `squall._native`: private; `squall` is what to use.
+/// `squall._native`, which is private: use `squall`.
 #[pymodule]
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;

@@ -1,12 +1,12 @@
-//! A game as it looks from above, for pictures: the truth, along and across the field.
+//! A game seen from above, for pictures: the truth along and across the field.
 
 use learn::environment::Games;
 use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// The scene of a game. Positions are metres along the field from the first team's end, and across it to that team's port;
-/// angles are rad anticlockwise from along.
+/// The scene of a game. Positions are metres along the field from the first team's end, and across it to
+/// that team's port. Angles are rad anticlockwise from along.
 pub(crate) fn dict<'py>(py: Python<'py>, games: &Games, game: usize) -> PyResult<Bound<'py, PyDict>> {
     let contest = games.contest(game);
     let scenario = contest.scenario();

@@ -1,10 +1,10 @@
-//! How a game stands, as numbers with names.
+//! A game's state of play as named numbers.
 
 use learn::environment::Standing;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// The numbers of a standing under their names.
+/// The numbers of a state of play by name.
 pub(crate) fn dict<'py>(py: Python<'py>, standing: &Standing) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     dict.set_item("seed", standing.seed)?;

@@ -1,4 +1,4 @@
-//! A sweep for Python: its plan, stretches of its games played in this process, and the folder that keeps what came of them.
+//! A sweep for Python: its plan, ranges of games played in this process, and the folder with the results.
 
 use crate::arguments::{PackedParts, games_and_seed, packed_of, parts_of, refused, stretch};
 use crate::signals;
@@ -13,7 +13,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Which games a sweep consists of; the stub explains it.
+/// The games of a sweep; the stub explains it.
 #[pyclass(frozen, module = "squall._native")]
 pub(crate) struct SweepPlan(Arc<Plan>);
 
@@ -87,7 +87,7 @@ impl SweepPlan {
     }
 }
 
-/// Plays games on other threads than this one, which has Python look after its signals.
+/// Plays games on other threads, while this one lets Python handle signals.
 fn played(plan: &Plan, games: Range<usize>, threads: NonZeroUsize) -> PyResult<Vec<(String, String)>> {
     signals::heeded(|stop| {
         let mut lines = Vec::with_capacity(games.len());
@@ -99,7 +99,7 @@ fn played(plan: &Plan, games: Range<usize>, threads: NonZeroUsize) -> PyResult<V
     })
 }
 
-/// A sweep that is kept in a folder; the stub explains it.
+/// The results of a sweep in a folder; the stub explains it.
 #[pyclass(frozen, module = "squall._native")]
 pub(crate) struct SweepStudy {
     plan: Arc<Plan>,
@@ -116,7 +116,7 @@ impl SweepStudy {
     fn add(&self, index: usize, game_line: &str, boat_lines: &str) -> PyResult<()> {
         let mut study = self.study.lock().unwrap_or_else(PoisonError::into_inner);
         if index != study.done() {
-            return Err(PyIndexError::new_err(format!("game {index}, expected the next one, {}", study.done())));
+            return Err(PyIndexError::new_err(format!("game is {index}, expected the next one, {}", study.done())));
         }
         study.add_lines(index, game_line, boat_lines).map_err(failed)
     }
@@ -130,7 +130,7 @@ impl SweepStudy {
     }
 }
 
-/// A study's error: of the disk, or of what the folder holds.
+/// Converts a study's error, caused by the disk or by the folder's content.
 fn failed(error: StudyError) -> PyErr {
     match error {
         StudyError::Io { .. } | StudyError::Table { .. } => PyOSError::new_err(error.to_string()),

@@ -1,4 +1,4 @@
-//! A tournament for Python: its plan, stretches of its games played in this process, and what came of them.
+//! A tournament for Python: its plan, ranges of games played in this process, and the results.
 
 use crate::arguments::{PackedParts, games_and_seed, packed_of, parts_of, refused, stretch};
 use crate::signals;
@@ -12,7 +12,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Which games a tournament consists of; the stub explains it.
+/// The games of a tournament; the stub explains it.
 #[pyclass(frozen, module = "squall._native")]
 pub(crate) struct TournamentPlan(Arc<Plan>);
 
@@ -68,19 +68,19 @@ impl TournamentPlan {
                 return Err(PyIndexError::new_err("the records are not the tournament's first games, in their order"));
             }
             let report = Report::new(&self.0, &records);
-            let json = serde_json::to_string_pretty(&report).expect("it has names for keys");
+            let json = serde_json::to_string_pretty(&report).expect("the report can be encoded");
             Ok((text(&report, WIDTH), json + "\n", csv(&report), report.failures.len()))
         })
     }
 }
 
-/// Plays games on other threads than this one, which has Python look after its signals.
+/// Plays games on other threads, while this one lets Python handle signals.
 fn played(plan: &Plan, games: Range<usize>, threads: NonZeroUsize) -> PyResult<Vec<String>> {
     let games: Vec<usize> = games.collect();
     signals::heeded(|stop| {
         let mut records = Vec::with_capacity(games.len());
         play(plan, &games, threads, stop, |record| {
-            records.push(serde_json::to_string(&record).expect("it has names for keys"));
+            records.push(serde_json::to_string(&record).expect("the record can be encoded"));
         });
         records
     })

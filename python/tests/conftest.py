@@ -1,4 +1,4 @@
-"""What several tests need: the program `squall`, and one that only seems to be it."""
+"""Shared by several tests: the program `squall`, and a stand-in for it."""
 
 import os
 import shutil
@@ -24,7 +24,7 @@ time.sleep(60)
 
 @pytest.fixture
 def program() -> str:
-    """The program `squall`, which the environment variable SQUALL names, or PATH."""
+    """The program `squall`, from the environment variable SQUALL or from PATH."""
     found = shutil.which(os.environ.get("SQUALL", "squall"))
     if found is None:
         pytest.skip("the program squall is not on PATH, and SQUALL does not name it")
@@ -33,7 +33,7 @@ def program() -> str:
 
 @dataclass
 class Shown:
-    """What was asked of a program that only seems to be `squall`, and of the browser."""
+    """The calls of a stand-in for `squall`, and of the browser."""
 
     log: Path
     browser: list[str] = field(default_factory=list)
@@ -45,7 +45,7 @@ class Shown:
 
 @pytest.fixture
 def browser(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
-    """The addresses that a browser was asked for; none is opened. The page shows nothing before and after."""
+    """The addresses that a browser should open; none is opened. The page shows nothing before and after."""
     opened: list[str] = []
     monkeypatch.setattr("webbrowser.open", opened.append)
     monkeypatch.setattr(PAGE, "url", None)
@@ -55,7 +55,7 @@ def browser(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
 
 @pytest.fixture
 def page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, browser: list[str]) -> Shown:
-    """A program that seems to be `squall` and serves no page."""
+    """A stand-in for `squall` that serves no page."""
     shown = Shown(tmp_path / "calls.txt", browser)
     fake = tmp_path / "squall"
     fake.write_text(FAKE.format(log=str(shown.log)))

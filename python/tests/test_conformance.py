@@ -1,4 +1,4 @@
-"""The environments are what gymnasium, PettingZoo and Stable-Baselines3 expect of them."""
+"""The environments conform to gymnasium, PettingZoo and Stable-Baselines3."""
 
 import gymnasium
 import numpy as np

@@ -1,4 +1,4 @@
-"""Episodes: the same again from the same seeds, on any number of threads, and what is overwritten when."""
+"""Episodes: reproducible from their seeds on any number of threads; and when arrays are overwritten."""
 
 import threading
 
@@ -9,7 +9,7 @@ import squall
 
 
 def played(environment: squall.VectorEnv, steps: int, seed: int | None = None) -> list[np.ndarray]:
-    """Everything that some steps show, with actions that depend on the last observations."""
+    """All results of some steps, with actions that depend on the last observations."""
     observations, info = environment.reset(seed=seed)
     shown = [observations, info["seed"]]
     for _ in range(steps):
@@ -46,22 +46,22 @@ def test_an_episode_can_be_played_again_by_its_seed() -> None:
     alone = squall.VectorEnv(1, game="pyquaticus_2v2", episode_max_s=10)
     _, info = alone.reset(seed=int(seeds[2]))
     assert (info["seed"] == seeds[2]).all()
-    # Two games of 20 steps, and then five steps of this one, with the actions that its observations chose.
+    # Two games of 20 steps, and then five steps of this one, with the actions chosen from its observations.
     again = played(alone, 5, seed=int(seeds[2]))
     assert np.array_equal(shown[-6][2:4], again[-6])
 
 
 def test_the_next_games_come_without_a_seed() -> None:
     environment = squall.VectorEnv(2, seed=1, game="pyquaticus_2v2", row="team")
-    assert environment.reset()[1]["seed"].tolist() == [1, 2], "those that have begun already"
-    assert environment.reset()[1]["seed"].tolist() == [1, 2], "nothing was played of them"
+    assert environment.reset()[1]["seed"].tolist() == [1, 2], "the games that have already started"
+    assert environment.reset()[1]["seed"].tolist() == [1, 2], "no step has been played"
     environment.step(np.zeros((2, 2), dtype=int))
     assert environment.reset()[1]["seed"].tolist() == [3, 4]
     assert environment.reset(seed=[70, None])[1]["seed"].tolist() == [70, 6]
     environment.step(np.zeros((2, 2), dtype=int))
     masked = {"reset_mask": np.array([True, False])}
     assert environment.reset(options=masked)[1]["seed"].tolist() == [72, 6]
-    assert environment.native.standing(1)["steps"] == 1, "the other one goes on"
+    assert environment.native.standing(1)["steps"] == 1, "the other game continues"
 
 
 def test_unseeded_environments_differ() -> None:
@@ -115,4 +115,4 @@ def test_a_step_leaves_the_interpreter_to_others() -> None:
     finally:
         is_over.set()
         thread.join()
-    assert within > 10, "with the interpreter's lock held it would have been one or two"
+    assert within > 10, "with the interpreter's lock held there would be one or two"

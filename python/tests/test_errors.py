@@ -1,4 +1,4 @@
-"""What is wrong is said in full, as a ValueError, and nothing is played."""
+"""Invalid input raises a ValueError with all faults, and nothing is played."""
 
 from pathlib import Path
 
@@ -15,7 +15,7 @@ import squall
         ({"game": "nowhere"}, "games has no 'nowhere': expected a path that ends with .toml, or one of .*surveyor_2v2"),
         ({"game": "/nowhere/game.toml"}, "game.toml"),
         ({"game": "uneven_3v2"}, "the teams have 3 and 2 boats"),
-        ({"decision_s": 0.25}, "decision_s is 0.25, expected a multiple of the 0.1 s"),
+        ({"decision_s": 0.25}, "decision_s is 0.25, expected a multiple of 0.1 s"),
         ({"decision_s": 0}, "decision_s is 0, expected a multiple"),
         ({"decision_s": float("nan")}, "decision_s is NaN"),
         ({"episode_max_s": -1}, "episode_max_s is -1, expected more than 0"),
@@ -24,8 +24,8 @@ import squall
         ({"frames": 300}, "frames is 300, expected an integer from 0 to 255"),
         ({"observation": "truth"}, 'observation is "truth", expected "squall" or "pyquaticus"'),
         ({"action": "jump"}, 'action is "jump", expected "pyquaticus", "continuous" or "options"'),
-        ({"control": "pav01"}, 'has no behaviour of the kind "policy"'),
-        ({"opponents": []}, "no opponent is given"),
+        ({"control": "pav01"}, 'has no behaviour of kind "policy"'),
+        ({"opponents": []}, "no opponent can be drawn"),
         ({"opponents": [(-1.0, "pav01")]}, "an opponent's weight is -1, expected 0 or more"),
         ({"rewards": "gold"}, "rewards has no 'gold'"),
         ({"discount": 2}, "discount is 2, expected 0 to 1"),
@@ -55,9 +55,9 @@ def test_everything_that_is_wrong_with_a_file_is_told(tmp_path: Path) -> None:
     ("actions", "message"),
     [
         (np.zeros(3, dtype=int), r"shape \(3,\), expected one for each of 4 boats"),
-        (np.full(4, 17), "the action of row 0 is 17, expected 0 to 16"),
-        (np.array([0, 0, -1, 0]), "the action of row 2 is -1, expected 0 to 16"),
-        (np.zeros(4), "of the type float64, expected integers"),
+        (np.full(4, 17), "the action in row 0 is 17, expected 0 to 16"),
+        (np.array([0, 0, -1, 0]), "the action in row 2 is -1, expected 0 to 16"),
+        (np.zeros(4), "have the type float64, expected integers"),
     ],
 )
 def test_actions_are_refused_and_nothing_is_played(actions: np.ndarray, message: str) -> None:
@@ -72,7 +72,7 @@ def test_actions_are_refused_and_nothing_is_played(actions: np.ndarray, message:
 
 def test_continuous_actions_are_finite() -> None:
     environment = squall.VectorEnv(1, action="continuous")
-    with pytest.raises(ValueError, match=r"the action of row 1 is \[NaN, 1.0\], expected two finite numbers"):
+    with pytest.raises(ValueError, match=r"the action in row 1 is \[NaN, 1.0\], expected two finite numbers"):
         environment.step(np.array([[0, 0], [np.nan, 1]]))
     with pytest.raises(ValueError, match="two numbers for each of 2 boats"):
         environment.step(np.zeros(2))
@@ -102,7 +102,7 @@ def test_a_game_that_is_over_has_to_be_reset() -> None:
         environment.step([0, 0])
     agents = squall.parallel_env(episode_max_s=0.5)
     agents.reset()
-    with pytest.raises(ValueError, match=r"actions has nothing for \['blue_2', 'red_1', 'red_2'\]"):
+    with pytest.raises(ValueError, match=r"actions has no entries for \['blue_2', 'red_1', 'red_2'\]"):
         agents.step({"blue_1": 0})
     agents.step(dict.fromkeys(agents.agents, 0))
     assert agents.agents == []

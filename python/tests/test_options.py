@@ -1,4 +1,4 @@
-"""Options: what a policy chooses is what a boat is at, and a strategy says how that is done."""
+"""Options: a policy chooses what a boat does, and a strategy defines how."""
 
 import gymnasium
 import numpy as np
@@ -23,7 +23,7 @@ def test_there_is_an_action_for_each_option() -> None:
     assert squall.TeamEnv(**OPTIONS).action_space.nvec.tolist() == [len(PLANS)] * 2
     environment = squall.VectorEnv(2, **OPTIONS)
     assert environment.single_action_space.n == len(PLANS) and environment.action_names == PLANS
-    with pytest.raises(ValueError, match="the action of row 1 is 10, expected 0 to 9"):
+    with pytest.raises(ValueError, match="the action in row 1 is 10, expected 0 to 9"):
         environment.step(np.array([9, 10, 0, 0]))
 
 
@@ -35,7 +35,7 @@ def test_agents_choose_among_options() -> None:
 
 
 def along_after(plan: str) -> float:
-    """How far from the own end a boat is after half a minute, m."""
+    """A boat's distance from its own end after half a minute, m."""
     environment = squall.BoatEnv(game="pyquaticus_2v2", seed=4, team="blue", **OPTIONS)
     environment.reset()
     for _ in range(60):
@@ -59,9 +59,9 @@ def test_actions_have_names() -> None:
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"action": "options"}, "action is options, expected another action, or a helm whose strategy has the options"),
-        ({"action": "options", "control": "policy"}, 'no behaviour of the kind "policy" with `sets`'),
-        ({"control": "options"}, 'no behaviour of the kind "policy" for course and speed'),
+        ({"action": "options"}, "action is options, expected another action space, or a helm whose strategy declares options"),
+        ({"action": "options", "control": "policy"}, 'no behaviour of kind "policy" with `sets`'),
+        ({"control": "options"}, 'no behaviour of kind "policy" for course and speed'),
     ],
 )
 def test_options_without_a_strategy_that_has_them_are_refused(options: dict, message: str) -> None:

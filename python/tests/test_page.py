@@ -1,4 +1,4 @@
-"""Games for people: they are shown on Squall's page, one after the other, by the program `squall`."""
+"""Rendering for people: the program `squall` shows the games one by one on its page."""
 
 import urllib.request
 from pathlib import Path
@@ -25,8 +25,8 @@ def test_a_game_is_shown_when_it_ends_and_the_next_on_the_same_page(page: Shown,
     environment.reset()
     first, second = page.commands()
     assert first.startswith("replay ") and first.endswith("_surveyor_2v2_1.mcap --listen 127.0.0.1:0")
-    assert second.endswith("_surveyor_2v2_2.mcap --listen 127.0.0.1:8088"), "one that is given up is shown, too"
-    assert page.browser == ["http://127.0.0.1:8088/"], "it goes on to the next game by itself"
+    assert second.endswith("_surveyor_2v2_2.mcap --listen 127.0.0.1:8088"), "an abandoned game is shown too"
+    assert page.browser == ["http://127.0.0.1:8088/"], "the page moves to the next game by itself"
     environment.step(0)
     environment.close()
     assert len(page.commands()) == 3

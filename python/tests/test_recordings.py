@@ -1,4 +1,4 @@
-"""Recordings: whole files of the very games that were played, whatever becomes of the environment."""
+"""Recordings: complete files of the games played, however the environment ends."""
 
 import subprocess
 import sys
@@ -14,7 +14,7 @@ SHORT = {"game": "surveyor_2v2", "episode_max_s": 5.0, "seed": 1}
 
 
 def files(folder: Path) -> list[Path]:
-    """The recordings of a folder by seed; each is a whole MCAP file, and there is nothing else."""
+    """The recordings in a folder by seed; each is a complete MCAP file, and there are no other files."""
     found = sorted(folder.iterdir(), key=seed_of)
     for file in found:
         content = file.read_bytes()
@@ -32,7 +32,7 @@ def play(environment: squall.TeamEnv, steps: int) -> None:
 
 
 def checked(program: str, file: Path) -> str:
-    """What `squall replay --check` says."""
+    """The output of `squall replay --check`."""
     done = subprocess.run(
         [program, "replay", str(file), "--check"], check=False, capture_output=True, text=True, timeout=60
     )
@@ -53,7 +53,7 @@ def test_every_game_is_recorded_under_its_name_and_seed(tmp_path: Path) -> None:
     found = files(tmp_path / "runs" / "here")
     assert [file.name.split("_", 1)[1] for file in found] == [f"surveyor_2v2_{seed}.mcap" for seed in (70, 71, 80)]
     results = [b"digest" in file.read_bytes() for file in found]
-    assert results == [True, False, False], "a game that is given up has no result"
+    assert results == [True, False, False], "an abandoned game has no result"
 
 
 def test_the_program_plays_recorded_games_again_to_the_last_bit(tmp_path: Path, program: str) -> None:
@@ -82,7 +82,7 @@ def test_games_side_by_side_are_recorded_on_any_thread(tmp_path: Path, program: 
         environment.step(np.arange(environment.num_envs) % 3 + step % 5)
     environment.close()
     found = files(tmp_path)
-    assert len(found) == 6, "of each of three places one game that ended, and one that had begun"
+    assert len(found) == 6, "for each of three slots, one game that ended and one that had started"
     said = [checked(program, file) for file in found]
     assert sum("the same: 31 frames" in text and "digest" in text for text in said) == 3
     assert sum("the same: 16 frames" in text for text in said) == 3
@@ -93,7 +93,7 @@ def test_each_nth_game_is_recorded(tmp_path: Path) -> None:
     for _ in range(5):
         environment.step(np.zeros((3, 2), dtype=int))
     environment.close()
-    assert [seed_of(file) for file in files(tmp_path)] == [1, 4, 7], "the first place of three"
+    assert [seed_of(file) for file in files(tmp_path)] == [1, 4, 7], "the first of three slots"
 
 
 def test_games_of_agents_are_recorded(tmp_path: Path) -> None:
@@ -144,7 +144,7 @@ def test_games_go_on_where_they_cannot_be_recorded_any_more(tmp_path: Path) -> N
     environment = squall.TeamEnv(record=folder, **SHORT)
     folder.rmdir()
     environment.reset()
-    with pytest.warns(RuntimeWarning, match="the game of seed 1 is not recorded in .*runs: .*No such file"):
+    with pytest.warns(RuntimeWarning, match="cannot record the game with seed 1 in .*runs: .*No such file"):
         play(environment, 1)
     play(environment, 9)
     environment.close()

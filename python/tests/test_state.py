@@ -1,4 +1,4 @@
-"""The truth about a game for critics: known numbers at the start, the very places later on, and PettingZoo's `state`."""
+"""The truth about a game for critics: known values at the start, exact positions later, and PettingZoo's `state`."""
 
 import numpy as np
 import pytest
@@ -40,7 +40,7 @@ def test_every_boat_tells_it_from_its_own_end() -> None:
     states = environment.states
     assert states.shape == (8, len(environment.state_names))
     np.testing.assert_allclose(
-        states[0], states[2], atol=1e-6, err_msg="the first boats of both teams, of a mirrored start"
+        states[0], states[2], atol=1e-6, err_msg="the first boats of both teams, with mirrored starts"
     )
     np.testing.assert_allclose(states[1], states[3], atol=1e-6)
     assert not np.allclose(states[0], states[1], atol=0.1)
@@ -61,7 +61,7 @@ def test_the_places_are_those_of_the_boats_and_not_of_their_sensors() -> None:
             assert state[f"{name}_position_port"] == pytest.approx(port[boat], abs=1e-5)
         place = environment.observation_names.index("position_ahead")
         off_m = max(off_m, abs(float(shown["blue_1"][place]) - ahead[0]) * 0.5 * scene["width_m"])
-    assert off_m > 0.05, "a satellite fix that is off by nothing is the truth"
+    assert off_m > 0.05, "satellite fixes must have errors"
 
 
 def test_a_game_that_has_ended_is_told_as_it_ended() -> None:

@@ -1,4 +1,4 @@
-"""Sweeps: the program's bytes, in whatever order and wherever the games are played, and after any cut."""
+"""Sweeps: the same bytes as the program's, in any order, on any machine, and after any interruption."""
 
 import subprocess
 import sys
@@ -55,7 +55,7 @@ def sweep(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def here(sweep: Path, tmp_path: Path) -> Path:
-    """A folder with what the sweep comes to in this process alone."""
+    """A folder with the results of the sweep in this process alone."""
     plan = SweepPlan.open(sweep)
     study = plan.begin(tmp_path / "here")
     for index, (game, boats) in enumerate(plan.lines(0, plan.games)):
@@ -166,7 +166,7 @@ def test_what_is_wrong_is_told(sweep: Path, tmp_path: Path) -> None:
 
 def test_ctrl_c_ends_a_long_stretch(sweep: Path) -> None:
     code = (
-        # What was started in the background ignores the signal, and so does what it starts.
+        # Programs started in the background ignore the signal, and so do their child processes.
         "import _thread, signal, threading; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         "from squall._native import SweepPlan\n"
         f"plan = SweepPlan.open({str(sweep)!r}, games=100000)\n"
@@ -194,7 +194,7 @@ def test_batches_feed_every_cpu_and_are_no_more_than_one_driver_hands_out(left: 
 
 @pytest.fixture
 def cluster() -> Iterator[Any]:
-    """Ray's, of three nodes with a CPU each, all on this machine."""
+    """A Ray cluster of three nodes with one CPU each, all on this machine."""
     ray = pytest.importorskip("ray")
     from ray.cluster_utils import Cluster
 
@@ -225,7 +225,7 @@ def test_a_cluster_that_loses_a_machine_writes_the_same_bytes(
 
     play_all(plan, Kept(study), play_sweep, batch=2, show=show)
     study.report()
-    assert lost and lost[0] < plan.games, "the machine was lost in the midst"
+    assert lost and lost[0] < plan.games, "the machine was lost during the games"
     same(here, tmp_path / "ray")
 
 
@@ -242,8 +242,8 @@ def test_ctrl_c_leaves_a_folder_that_is_gone_on_with(
     with monkeypatch.context() as patch:
         patch.setattr("squall.cluster.Progress.show", stopped)
         assert main(words) == 130
-    assert "--resume goes on" in capsys.readouterr().err
-    assert main(words) == 1, "there is one already"
+    assert "use --resume to continue" in capsys.readouterr().err
+    assert main(words) == 1, "the folder already has a sweep"
     assert main([*words, "--resume"]) == 0
     same(here, tmp_path / "ray")
 
@@ -251,7 +251,7 @@ def test_ctrl_c_leaves_a_folder_that_is_gone_on_with(
 @pytest.mark.cluster
 def test_a_worker_of_another_version_ends_the_sweep_and_keeps_it(cluster: Any, sweep: Path, tmp_path: Path) -> None:
     class Other:
-        """A plan that is packed as another version would."""
+        """A plan as packed by another version."""
 
         def __init__(self, plan: SweepPlan) -> None:
             self.games = plan.games

@@ -1,4 +1,4 @@
-"""Tournaments: the program's tables, wherever the games are played."""
+"""Tournaments: the same tables as the program's, wherever the games are played."""
 
 import json
 import subprocess
@@ -34,14 +34,14 @@ def tournament(tmp_path: Path) -> Path:
 
 
 def by_program(program: str, tournament: Path, folder: Path) -> tuple[str, dict[str, object], str]:
-    """What the program prints, its JSON file and its CSV file."""
+    """The program's output, its JSON file and its CSV file."""
     words = ["tournament", tournament, "--json", folder / "there.json", "--csv", folder / "there.csv"]
     done = subprocess.run([program, *words], check=True, capture_output=True, text=True, timeout=120)
     return done.stdout, json.loads((folder / "there.json").read_text()), (folder / "there.csv").read_text()
 
 
 def same(one: dict[str, object], other: dict[str, object]) -> None:
-    """Both reports have the same games, whoever played them, and how fast."""
+    """Compares the games of both reports, whatever played them and at any speed."""
     for report in (one, other):
         del report["rate"], report["commit"]
     assert one == other

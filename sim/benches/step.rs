@@ -1,4 +1,4 @@
-//! `World::step` in calm water: two, twenty and five hundred boats a side. Then in a rough sea,
+//! `World::step` in calm water with two, twenty and five hundred boats per side, and in a rough sea
 //! with all effects of sea and sensors.
 #![allow(clippy::print_stdout, clippy::disallowed_methods, reason = "a benchmark reads the clock and prints")]
 
@@ -13,7 +13,7 @@ fn shipped(game: &str) -> Scenario {
     scenario::load(&path).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// All boats circle at speed, each in its own way: every part of the step has work.
+/// All boats circle at speed, each differently, so that every part of the step has work.
 fn circling(world: &World, tick: u64) -> Vec<Order> {
     let count = world.state().boats.len();
     let heading_rad = |i: usize| (tick as f64 * 0.02 + i as f64) % 6.0 - 3.0;
@@ -23,10 +23,10 @@ fn circling(world: &World, tick: u64) -> Vec<Order> {
 /// Ticks between two readings of the sensors, as in games.
 const SENSOR_PERIOD: u64 = 2;
 
-/// After this many ticks (two minutes) boats restart: later they would have left the field.
+/// Boats restart after this many ticks (two minutes), before they leave the field.
 const VOYAGE: u64 = 2_400;
 
-/// One step of a run that started from this state.
+/// One step of a run from this state.
 fn sail(world: &mut World, start: &State, orders: &mut Vec<Order>) -> usize {
     if world.state().tick == VOYAGE {
         world.set_state(start.clone());
@@ -54,8 +54,8 @@ fn step(c: &mut Criterion) {
     group.finish();
 }
 
-/// In a fresh breeze with 64 wave components, gusts and a current, and with all sensors; then also
-/// with flawed thrusters and a battery.
+/// In a fresh breeze with 64 wave components, gusts, a current and all sensors; then with flawed
+/// thrusters and a battery as well.
 fn rough(c: &mut Criterion) {
     let afloat = shipped("pav01_afloat.toml").of_seed(1).unwrap_or_else(|e| panic!("{e}"));
     let mut group = c.benchmark_group("world_step_rough");
@@ -93,7 +93,7 @@ fn rough(c: &mut Criterion) {
         }
         let per_tick_s = spent.as_secs_f64() / ticks as f64;
         let boat_seconds = boats as f64 * 0.05 / per_tick_s;
-        println!("{name}: {boat_seconds:.0} boat-seconds a CPU-second, {:.0} times real time", 0.05 / per_tick_s);
+        println!("{name}: {boat_seconds:.0} boat-seconds per CPU-second, {:.0} times real time", 0.05 / per_tick_s);
     }
     group.finish();
 }

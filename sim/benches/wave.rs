@@ -1,5 +1,5 @@
-//! The waves at one boat, by number of components: horizontal plane, attitude, and bare surface.
-//! Then the first two by instruction set.
+//! The waves at one boat, by number of components: horizontal plane, attitude, bare surface. The
+//! first two also by instruction set.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use primitives::frame::{Ned, Pose};
@@ -14,7 +14,7 @@ fn waves(components: u32) -> Waves {
     Waves { hs_m: 0.5, tp_s: 3.0, gamma: 3.3, from_rad: 0.6, spreading, components, drift_factor: 1.0 }
 }
 
-/// Poses all over a field, on all headings, like those of a fleet in turn.
+/// Poses all over a field, on all headings, as of a fleet.
 fn poses() -> Vec<Pose> {
     let pose = |i: u32| Pose {
         at: Ned { north: f64::from(i * 37 % 160), east: f64::from(i * 53 % 80) },

@@ -1,8 +1,8 @@
-//! A game without a referee's consequences, for `squall sim --afloat`: some of its boats afloat in
-//! its sea.
+//! A game without consequences by the referee, for `squall sim --afloat`: some of its boats afloat
+//! in its sea.
 //!
-//! Emulated boats float here, while their game treats them as real. Sea, boats and sensors are
-//! those of the game. Tags, flags, limits of sharing and radio have no effect.
+//! Emulated boats float here while their game treats them as real. Sea, boats and sensors are those
+//! of the game. Tags, flags, limits on sharing and radio have no effect.
 
 use crate::spawn::{self, NoStart};
 use primitives::SimTime;
@@ -10,7 +10,7 @@ use rules::{Rules, Sharing, TaggedBoat};
 use scenario::{Scenario, Source, StartPosition, UnknownVehicle};
 use thiserror::Error;
 
-/// The longest game that a scenario file permits.
+/// The longest duration that a scenario file allows.
 const DAY_S: f64 = 86_400.0;
 
 /// Why the boats cannot be set afloat.
@@ -24,17 +24,16 @@ pub enum NotAfloat {
     NoStart(#[from] NoStart),
 }
 
-/// The sea of the game of `scenario` with this seed, with the named boats at their starting
-/// positions.
+/// The sea of this game and seed, with the named boats at their starting positions.
 ///
 /// # Errors
-/// [`NotAfloat`] for a boat that is not in the game, or if the game cannot start.
+/// [`NotAfloat`] if a boat is not in the game, or the game cannot start.
 pub fn afloat(scenario: &Scenario, seed: u64, names: &[String]) -> Result<Scenario, NotAfloat> {
     let scenario = scenario.of_seed(seed).map_err(NoStart::from)?;
     for name in names {
         scenario.vehicle_named(name)?;
     }
-    // With all boats of the game, so that those afloat start at the positions the game expects.
+    // With all boats of the game, so that those afloat start where the game expects them.
     let poses = spawn::start_positions(&scenario, seed).map_err(NoStart::from)?;
     let mut water = scenario.clone();
     for (vehicle, pose) in water.vehicles.iter_mut().zip(poses) {
@@ -42,15 +41,14 @@ pub fn afloat(scenario: &Scenario, seed: u64, names: &[String]) -> Result<Scenar
     }
     water.vehicles.retain(|vehicle| names.contains(&vehicle.name));
     water.name = format!("{}_afloat", scenario.name);
-    // The game's own link already delays the agents' messages; delaying them twice would be wrong.
+    // The game's own link already delays the agents' messages; they must not be delayed twice.
     water.link = None;
     water.rules = without_consequences(&scenario.rules);
-    // Its values are already drawn: it must not be built again from the files.
+    // The values are already drawn, so it must not be built again from the files.
     water.recipe = None;
     Ok(water)
 }
 
-/// Rules without consequences for boats, whatever the referee observes.
 fn without_consequences(rules: &Rules) -> Rules {
     Rules {
         boundary_tags: false,
@@ -87,16 +85,16 @@ mod tests {
         let mut all = Contest::new(&Scenario { link: None, ..whole.of_seed(7).unwrap_or_else(|e| panic!("{e}")) }, 7)
             .unwrap_or_else(|e| panic!("{e}"));
         for contest in [&mut alone, &mut all] {
-            let blue = contest.scenario().vehicle_by_name("blue_one").expect("it plays");
+            let blue = contest.scenario().vehicle_by_name("blue_one").expect("the boat is in the game");
             for _ in 0..100 {
                 let east = Order::Steer { heading_rad: 1.0, speed_m_s: 1.5 };
-                contest.order(blue, east, contest.now()).expect("sound numbers");
+                contest.order(blue, east, contest.now()).expect("the order is valid");
                 contest.advance();
             }
         }
         for name in &names {
             let pose = |contest: &Contest| {
-                let vehicle = contest.scenario().vehicle_by_name(name).expect("it plays");
+                let vehicle = contest.scenario().vehicle_by_name(name).expect("the boat is in the game");
                 contest.world().state().boats[vehicle.index()].pose
             };
             assert_eq!(pose(&alone), pose(&all), "{name}");
@@ -105,7 +103,7 @@ mod tests {
 
     #[test]
     fn a_boat_that_is_not_in_the_game_is_refused() {
-        let error = afloat(&game("mixed_2v2"), 1, &["green_one".to_owned()]).expect_err("there is none");
+        let error = afloat(&game("mixed_2v2"), 1, &["green_one".to_owned()]).expect_err("the boat is not in the game");
         assert!(error.to_string().contains("\"green_one\"; there are blue_one, blue_two, red_one, red_two"), "{error}");
     }
 }

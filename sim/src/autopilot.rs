@@ -1,9 +1,8 @@
-//! The front seat: turns an order into settings for the two thrusters.
+//! The front seat: converts an order to settings for the two thrusters.
 //!
-//! Heading is controlled by a proportional-derivative loop, whose gains follow from the desired
-//! natural frequency and the hull's own inertia and damping. Speed is controlled by the calibrated
-//! resistance plus a proportional-integral correction. Both are limited by the available thrust,
-//! yaw first.
+//! A proportional-derivative loop controls the heading; its gains follow from the desired natural
+//! frequency and the hull's inertia and damping. The calibrated resistance plus a
+//! proportional-integral correction control the speed. The available thrust limits both, yaw first.
 
 use crate::hull::{HullModel, Planar};
 use crate::thruster::ThrusterModel;
@@ -12,25 +11,25 @@ use scenario::boat::Autopilot;
 /// The control loops for one kind of boat.
 #[derive(Clone, Debug)]
 pub struct AutopilotModel {
-    /// The highest accepted speed, m/s.
+    /// Maximum speed, m/s; higher orders are limited to it.
     pub speed_max_m_s: f64,
     yaw_per_rad: f64,
     yaw_per_rad_s: f64,
     surge_per_m_s: f64,
-    /// Gain of the integral per tick, N per m/s.
+    /// Integral gain per tick, N per m/s.
     surge_integral: f64,
 }
 
-/// The integral time is this many times the proportional time constant.
+/// Ratio of the integral time to the proportional time constant.
 const INTEGRAL_SLOWNESS: f64 = 4.0;
 
 impl AutopilotModel {
-    /// The loops for this hull at ticks of `dt_s`.
+    /// The loops for this hull with ticks of `dt_s`.
     #[must_use]
     pub fn new(autopilot: &Autopilot, hull: &HullModel, dt_s: f64) -> AutopilotModel {
         let (inertia, omega) = (hull.m_yaw, autopilot.heading_bandwidth_rad_s);
-        // Pole placement for a second-order system: the thrusters need not add the hull's own
-        // damping.
+        // Pole placement for a second-order system: the hull's own damping need not be repeated by
+        // the thrusters.
         let wanted_damping = 2.0 * autopilot.heading_damping * omega * inertia;
         let surge_per_m_s = hull.m_surge / autopilot.speed_time_s;
         AutopilotModel {
@@ -42,8 +41,8 @@ impl AutopilotModel {
         }
     }
 
-    /// Settings for the port and starboard thrusters that turn the boat by `turn_rad`, clockwise,
-    /// and drive it at `speed_m_s`.
+    /// Settings for the port and starboard thrusters that turn the boat by `turn_rad` clockwise and
+    /// drive it at `speed_m_s`.
     ///
     /// `integral_newton` is the state of the speed loop.
     #[inline]
@@ -57,12 +56,12 @@ impl AutopilotModel {
         let (hull, thruster) = boat;
         let wanted_m_s = speed_m_s.min(self.speed_max_m_s);
         let error_m_s = wanted_m_s - nu.surge;
-        // Feed-forward first: the loop only corrects errors of the calibrated resistance, so a step
-        // of the order does not wait for the integral.
+        // Feed-forward first: the loop only corrects errors in the calibrated resistance, so a new
+        // order need not wait for the integral.
         let surge = hull.surge_resistance_newton(wanted_m_s) + self.surge_per_m_s * error_m_s + *integral_newton;
         let yaw = self.yaw_per_rad * turn_rad - self.yaw_per_rad_s * nu.yaw;
 
-        // Yaw first: surge gets the rest of the range.
+        // Yaw first; surge gets the rest of the range.
         let reach = 0.5 * (thruster.newton_max - thruster.newton_min);
         let difference = (0.5 * yaw / thruster.arm_m).clamp(-reach, reach);
         let (least, most) = (thruster.newton_min + difference.abs(), thruster.newton_max - difference.abs());

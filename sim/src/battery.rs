@@ -1,17 +1,16 @@
-//! A battery: its state of charge under the load of the thrusters, and the loss of thrust as it
-//! discharges.
+//! A battery: its charge under the thrusters' load, and the thrust lost as it discharges.
 //!
-//! At advance number 0, a propeller takes a torque of k_q n |n| and gives a thrust of k_t n |n|, so
-//! the power 2 pi n Q is proportional to |n|³, that is, to |T|^1.5 (Fossen 2021, ch. 9). Two
-//! thrusters at the shares s of full thrust then draw P = P_hotel + P_full (s_port^1.5 +
+//! At advance number 0, a propeller takes a torque of k_q n |n| and produces a thrust of k_t n |n|.
+//! Its power 2 pi n Q is therefore proportional to |n|³, that is, to |T|^1.5 (Fossen 2021, ch. 9).
+//! Two thrusters at the shares s of full thrust draw P = P_hotel + P_full (s_port^1.5 +
 //! s_starboard^1.5) / 2.
 
 use scenario::boat::Battery;
 
-/// A battery with constants computed for one tick length.
+/// A battery with constants for one tick length.
 #[derive(Clone, Copy, Debug)]
 pub struct BatteryModel {
-    /// Initial charge, as a share of a full battery.
+    /// Initial charge as a share of a full battery.
     pub(crate) charge: f64,
     sag: f64,
     /// Charge used per tick by the hotel load, and by the thrusters at full thrust.
@@ -38,13 +37,13 @@ impl BatteryModel {
         1.0 - self.sag * (1.0 - charge)
     }
 
-    /// Subtracts one tick's energy, with the thrusters at these shares (0 to 1) of full thrust.
+    /// Subtracts one tick's energy, for thrusters at these shares (0 to 1) of full thrust.
     #[inline]
     pub fn draw(&self, charge: &mut f64, shares: [f64; 2]) {
         // Not `powf`, whose last bit differs between platforms.
         let [port, starboard] = shares.map(|share| share * share.sqrt());
         let spent = self.hotel_per_tick + self.full_per_tick * 0.5 * (port + starboard);
-        // An empty battery continues: the loss shows as reduced thrust, by the sag.
+        // An empty battery continues to supply: the loss shows as reduced thrust.
         *charge = (*charge - spent).max(0.0);
     }
 }
@@ -56,7 +55,6 @@ mod tests {
     const BATTERY: Battery =
         Battery { capacity_joule: 36_000.0, charge: 0.8, full_power_watt: 720.0, hotel_power_watt: 36.0, sag: 0.15 };
 
-    /// The charge after this many seconds.
     fn charge_after(shares: [f64; 2], seconds: u32) -> f64 {
         let model = BatteryModel::new(&BATTERY, 0.05);
         let mut charge = model.charge;

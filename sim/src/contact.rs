@@ -2,10 +2,10 @@
 //!
 //! We integrate surge, sway and yaw ourselves, because a rigid-body engine has one mass for all
 //! directions and a hull with added mass has three. Where hulls may touch, rapier receives the
-//! tick's motion, resolves the contacts and moves the poses; its changes of velocity are copied
+//! tick's motion, resolves the contacts and moves the poses. Its changes of velocity are copied
 //! back.
 //!
-//! The engine is rebuilt from the boats concerned, in vehicle order, at every use. It therefore has
+//! The engine is rebuilt at every use from the boats concerned, in vehicle order. It therefore has
 //! no memory: a snapshot needs none of its state, and boats without contact keep the same bytes
 //! whether or not the engine ran for others.
 
@@ -21,13 +21,13 @@ use rapier2d_f64::prelude::{
 };
 use rules::field::{Field, Obstacle, Walls};
 
-/// Highest closing speed of two hulls, m/s. The distance they close in a tick is rapier's
-/// look-ahead for contacts: hulls farther apart cannot touch before the next tick.
+/// Maximum closing speed of two hulls, m/s. The distance closed in a tick is rapier's look-ahead
+/// for contacts: hulls farther apart cannot touch before the next tick.
 const CLOSING_MAX_M_S: f64 = 8.0;
-/// Extra distance beyond rapier's look-ahead within which hulls are passed to rapier, m.
+/// Distance beyond rapier's look-ahead within which hulls are passed to rapier, m.
 const SPARE_M: f64 = 0.05;
 /// Thickness of a wall, and its extension beyond the corners, m.
-// Thick, so that no boat is pushed out on the far side in one tick.
+// Thick, so that no boat is pushed out on the far side within one tick.
 const WALL_M: f64 = 10.0;
 /// Restitution and friction between hulls: fendered fibreglass, wet.
 const RESTITUTION: f64 = 0.1;
@@ -66,12 +66,12 @@ struct Fixed {
     bounds: Bounds,
 }
 
-/// Bounds that a boat must approach before the exact shape is checked.
+/// Bounds that a boat must reach before the exact shape is checked.
 #[derive(Clone)]
 enum Bounds {
     /// A circle: centre and radius.
     Circle(Ned, f64),
-    /// The half-plane behind the line through a point; the unit vector points in front of it.
+    /// The half-plane behind the line through a point. The unit vector points to its front.
     Behind(Ned, Ned),
 }
 
@@ -88,7 +88,7 @@ pub struct Displacement {
     pub rotation: Rotation,
     /// Rotation of the heading at the end.
     pub rotation_to: Rotation,
-    /// Its role in contact.
+    /// Role in contact.
     pub role: ContactRole,
     /// Velocity change by contact, in body axes.
     pub velocity_change: Planar,
@@ -99,10 +99,9 @@ pub struct Displacement {
 pub enum ContactRole {
     /// It is pushed.
     Dynamic,
-    /// It stays at rest, whatever hits it.
+    /// It stays at rest whatever hits it.
     Fixed,
-    /// It keeps its own motion, whatever it hits: a real boat, which does not feel a simulated
-    /// contact.
+    /// It keeps its own motion whatever it hits: a real boat does not feel a simulated contact.
     Kinematic,
 }
 
@@ -133,8 +132,8 @@ impl ContactModel {
         dt_s: f64,
     ) -> ContactModel {
         let hull = |(length_m, beam_m): (f64, f64)| {
-            // A capsule: rapier resolves it at about half the cost of a box, and a bow is more
-            // round than square.
+            // A capsule, because rapier resolves it at about half the cost of a box, and a bow is
+            // more round than square.
             let radius = 0.5 * beam_m.min(length_m);
             let capsule = SharedShape::capsule_x(0.5 * length_m - radius, radius);
             HullShape { capsule, half_length_m: 0.5 * length_m }
@@ -153,21 +152,21 @@ impl ContactModel {
         ContactModel { hulls, fixed, hulls_are_solid, dt_s, look_ahead_m, close_m }
     }
 
-    /// Passes hulls closer than `close_m` to rapier, which may be more than necessary. The results
-    /// must not change.
+    /// Passes hulls closer than `close_m` to rapier, possibly more than necessary. The results must
+    /// not change.
     #[doc(hidden)]
     pub fn widen(&mut self, close_m: f64) {
         self.close_m = self.close_m.max(close_m);
     }
 
-    /// The largest distance at which two boats may be about to touch, m.
+    /// The largest distance at which two boats may touch in the next tick, m.
     #[must_use]
     pub fn reach_m(&self) -> f64 {
         2.0 * self.hulls.iter().map(|hull| hull.half_length_m).fold(0.0, f64::max) + self.close_m
     }
 
-    /// Resolves all contacts of a tick; `near` are the pairs within [`ContactModel::reach_m`] at
-    /// its start.
+    /// Resolves all contacts of a tick. `near` are the pairs that were within
+    /// [`ContactModel::reach_m`] at its start.
     pub fn resolve(&self, models: &[HullModel], displacements: &mut [Displacement], near: &[Pair]) {
         let mut touches = self.touches(displacements, near);
         if touches.is_empty() {
@@ -228,8 +227,7 @@ impl ContactModel {
     }
 
     fn hand_to_rapier(&self, models: &[HullModel], displacements: &mut [Displacement], touches: &[Touch]) {
-        // Rebuilding the world loses warm starting, which boats that bump instead of piling up do
-        // not need.
+        // Rebuilding the world loses warm starting, which only boats that pile up would need.
         let mut world = PhysicsWorld::new();
         world.gravity = Vector::ZERO;
         world.integration_parameters.dt = self.dt_s;
@@ -250,7 +248,7 @@ impl ContactModel {
         }
     }
 
-    /// The collision groups of hulls: fixed shapes, and other hulls if solid.
+    /// The collision groups of hulls: fixed shapes and, if solid, other hulls.
     fn met_by_hulls(&self) -> InteractionGroups {
         let met = if self.hulls_are_solid { Group::ALL } else { Group::ALL - HULLS };
         InteractionGroups::new(HULLS, met, InteractionTestMode::And)
@@ -275,16 +273,15 @@ impl ContactModel {
         let body = match displacement.role {
             ContactRole::Dynamic => RigidBodyBuilder::dynamic(),
             ContactRole::Fixed => RigidBodyBuilder::fixed(),
-            // A real boat pushes others but is not pushed: its position comes only from its
-            // reports.
+            // A real boat pushes others but is not pushed: only its reports move it.
             ContactRole::Kinematic => RigidBodyBuilder::kinematic_velocity_based(),
         };
         let body = body
             .pose(displacement.start())
             .linvel(velocity)
             .angvel(spin_rad_s)
-            // A body at rest for some steps would be put to sleep; here each world exists for one
-            // step only.
+            // Rapier would put a body to sleep after some steps at rest; each world here exists for
+            // one step.
             .can_sleep(false)
             .additional_mass_properties(MassProperties::new(Vector::ZERO, mass_kg, model.m_yaw));
         let collider = ColliderBuilder::new(self.hulls[displacement.kind].capsule.clone())
@@ -329,7 +326,7 @@ fn fixed_obstacle(obstacle: &Obstacle) -> Fixed {
             bounds: Bounds::Circle(*centre, *radius_m),
         },
         Obstacle::Polygon { corners } => {
-            // A closed polyline, so that any polygon keeps its exact shape, bays included.
+            // A closed polyline keeps the exact shape of any polygon, with its bays.
             let first = corners[0];
             let count = corners.len() as u32;
             let sides = (0..count).map(|i| [i, (i + 1) % count]).collect();
@@ -343,7 +340,7 @@ fn fixed_obstacle(obstacle: &Obstacle) -> Fixed {
     }
 }
 
-/// A wall from one corner to the next. It is a thick plank: boats have passed through rapier's
+/// A wall from one corner to the next, as a thick plank: boats have passed through rapier's
 /// half-plane, whose bounding box is infinite.
 fn wall(from: Ned, to: Ned, inward: Ned) -> Fixed {
     let half_thickness_m = 0.5 * WALL_M;
@@ -355,11 +352,11 @@ fn wall(from: Ned, to: Ned, inward: Ned) -> Fixed {
     }
 }
 
-/// Reads a boat back from rapier's world; without an active contact its own motion stands.
+/// Reads a boat back from rapier's world. Without an active contact it keeps our motion.
 ///
-/// Uses rapier's impulse, not its change of velocity: a push on the bow quarter moves a hull with
-/// more mass across than along in a direction other than the push, and a change of velocity along
-/// the push would add energy.
+/// Uses rapier's impulse rather than its change of velocity: a push on the bow quarter moves a hull
+/// with more mass across than along in a direction other than the push. Taking the change of
+/// velocity along the push would add energy.
 fn leave(world: &PhysicsWorld, entry: &Entry, model: &HullModel, displacement: &mut Displacement) {
     let body = &world.bodies[entry.body];
     let mut colliders = body.colliders().iter();
@@ -372,7 +369,7 @@ fn leave(world: &PhysicsWorld, entry: &Entry, model: &HullModel, displacement: &
     let (at, rotation) = (body.translation(), body.rotation());
     displacement.to.at = Ned { north: at.x, east: at.y };
     displacement.to.psi_rad = math::atan2(rotation.im, rotation.re);
-    // Not rapier's own sine and cosine: a snapshot contains only the angle.
+    // Not rapier's sine and cosine, because a snapshot contains only the angle.
     displacement.rotation_to = displacement.to.rotation();
     let impulse = (body.linvel() - entry.velocity) * entry.mass_kg;
     let impulse = frame::body_from_ned(displacement.rotation, Ned { north: impulse.x, east: impulse.y });

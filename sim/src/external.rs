@@ -1,7 +1,7 @@
 //! Real boats in a game: their estimated position between reports.
 //!
-//! A real boat has no physics here. Its gateway reports position and motion; the boat is
-//! extrapolated with that motion, tick by tick, until the next report corrects it.
+//! A real boat has no physics here. Its gateway reports position and motion; until the next report,
+//! the boat is extrapolated with that motion, tick by tick.
 
 use crate::hull::Planar;
 use messages::picture::{Nav, OwnBoat};
@@ -12,45 +12,42 @@ use rules::Event;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// Time after its last fix for which a boat is dead reckoned, assuming constant motion. After that
-/// it is assumed to stay at the position reached. The extrapolation error grows with the square of
-/// the time: for a boat that slows down by 1 m/s² it is half a metre after one second, and two
-/// metres after another. A boat that reports nothing is likely to slow down, because it receives
-/// nothing either, and its own watchdog stops its thrusters. And an extrapolated boat must not
-/// reach a flag.
+/// How long a boat is dead reckoned with constant motion after its last fix. After that it is
+/// assumed to stay where it is. The error grows with the square of the time: for a boat that slows
+/// down by 1 m/s² it is half a metre after one second and two metres after two. A boat that reports
+/// nothing probably slows down, because it receives nothing either, and its own watchdog stops its
+/// thrusters. And an extrapolated boat must not reach a flag.
 pub const DEAD_RECKONING_MAX: SimTime = SimTime(1_000_000_000);
-/// A boat whose last fix is older than this is lost. It exceeds [`DEAD_RECKONING_MAX`] so that one
-/// fix per second with the usual delays is enough, but only slightly, because its mind loses track
-/// of the position.
+/// A boat whose last fix is older than this is lost. The margin over [`DEAD_RECKONING_MAX`] makes
+/// one fix per second with the usual delays sufficient. It is small, because the boat's mind loses
+/// track of the position.
 pub const NAV_TTL: SimTime = SimTime(1_500_000_000);
 
-/// Limit of the distance from the datum, m: the limit of scenario files.
+/// Maximum distance from the datum, m: the limit of scenario files.
 const ABSURD_M: f64 = 1e6;
-/// Limit of the speed over the ground, m/s: above that of any boat in these games.
+/// Maximum speed over the ground, m/s: above that of any boat in these games.
 const ABSURD_M_S: f64 = 30.0;
-/// Limit of the yaw rate, rad/s: one turn per second.
+/// Maximum yaw rate, rad/s: one turn per second.
 const ABSURD_RAD_S: f64 = std::f64::consts::TAU;
 
-/// Why a report of a boat is rejected.
+/// Why a boat's report is rejected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum BadReport {
-    /// The boat is a simulated one.
-    #[error("the vehicle is not external: it is simulated")]
+    /// The boat is simulated.
+    #[error("the vehicle is simulated: only real boats report")]
     Simulated,
     /// A number is outside its plausible range.
-    #[error("a number is not finite, or absurd (position 1000 km, speed 30 m/s, yaw rate 2π rad/s at most)")]
+    #[error("a number is non-finite or implausible (limits: position 1000 km, speed 30 m/s, yaw rate 2π rad/s)")]
     BadNumber,
 }
 
-/// The track of a real boat.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Track {
     fix: Option<Fix>,
-    /// Whether the last event about it reported it as lost.
+    /// Whether its last event reported it as lost.
     reported_lost: bool,
 }
 
-/// A boat's navigation at one time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Fix {
     nav: Nav,
@@ -58,7 +55,6 @@ struct Fix {
 }
 
 impl Track {
-    /// Updates the boat's navigation at a time.
     pub(crate) fn update(&mut self, nav: Nav, at: SimTime) {
         self.fix = Some(Fix { nav, at });
     }
@@ -73,19 +69,19 @@ impl Track {
         self.fix.is_none_or(|fix| now > fix.at + NAV_TTL)
     }
 
-    /// Its estimated position and motion over the ground, extrapolated from the last fix.
+    /// Position and motion over the ground, extrapolated from the last fix.
     pub(crate) fn estimate(&self, now: SimTime) -> Option<(Pose, Planar)> {
         let Fix { nav, at } = self.fix?;
         let since = now - at;
         let nu = Planar { surge: nav.surge_m_s, sway: nav.sway_m_s, yaw: nav.yaw_rate_rad_s };
-        // A fix may be later than the world's tick, which means extrapolating back a little. After
-        // a second the boat is assumed to rest at the position reached.
+        // A fix may be later than the world's tick; this extrapolates back a little. After a second
+        // the boat is assumed to rest where it is.
         let span = since.clamp(SimTime::ZERO - DEAD_RECKONING_MAX, DEAD_RECKONING_MAX);
         let pose = dead_reckoned(nav.pose(), nu, span.as_s());
         Some((pose, if since < DEAD_RECKONING_MAX { nu } else { Planar::default() }))
     }
 
-    /// The event that it is lost or back, once each.
+    /// The event that the boat is lost or back, once each.
     pub(crate) fn event(&mut self, vehicle: VehicleId, now: SimTime) -> Option<Event> {
         let is_lost = self.is_lost(now);
         let was_lost = std::mem::replace(&mut self.reported_lost, is_lost);
@@ -101,8 +97,8 @@ impl Track {
     }
 }
 
-/// The pose after `span_s` at the present velocity over the ground and yaw rate, both constant in
-/// body axes: motion along an arc.
+/// The pose after `span_s` with constant velocity over the ground (in body axes) and yaw rate:
+/// motion along an arc.
 pub(crate) fn dead_reckoned(from: Pose, nu: Planar, span_s: f64) -> Pose {
     let half_turn_rad = 0.5 * nu.yaw * span_s;
     // The chord of the arc points half-way between both headings, and is shorter than the arc by a
@@ -121,7 +117,8 @@ pub(crate) fn sound(nav: Nav) -> Result<Nav, BadReport> {
     // A NaN fails every comparison.
     let is_sound = nav.north_m.abs() <= ABSURD_M
         && nav.east_m.abs() <= ABSURD_M
-        // Not wrapped yet, and limited in turns: reducing a huge angle would lose all its digits.
+        // Before wrapping, the number of turns is limited: reducing a huge angle would lose all
+        // digits.
         && nav.psi_rad.abs() <= 1e3
         && nav.speed_m_s() <= ABSURD_M_S
         && nav.yaw_rate_rad_s.abs() <= ABSURD_RAD_S;

@@ -1,6 +1,6 @@
-//! Thruster flaws: command latency, gain and saturation, ventilation, a sagging battery.
+//! Thruster flaws: command latency, gain and saturation, ventilation, and a sagging battery.
 //!
-//! The front seat does not know about them: it assumes the nominal thrusters.
+//! The front seat does not know them: it assumes the nominal thrusters.
 
 use crate::battery::BatteryModel;
 use scenario::boat::{Flaws, Ventilation};
@@ -10,7 +10,7 @@ use std::collections::VecDeque;
 /// The flaws of a pair of thrusters, for one tick length.
 #[derive(Clone, Debug)]
 pub(crate) struct FlawModel {
-    /// Largest effective setting, as a share of full ahead or astern.
+    /// Maximum effective setting, as a share of full ahead or astern.
     pub(crate) saturation: f64,
     /// Factors on thrust ahead and astern, for port and starboard.
     gain: [(f64, f64); 2],
@@ -21,19 +21,18 @@ pub(crate) struct FlawModel {
     pub(crate) ventilation: Option<Ventilation>,
 }
 
-/// The changing state of flawed thrusters, without their shafts. The default is that of perfect
+/// The changing state of flawed thrusters without their shafts. The default belongs to perfect
 /// ones.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FlawState {
-    /// Settings in transit to the thrusters, oldest first: as many as the latency has ticks.
+    /// Settings in transit to the thrusters, oldest first; as many as the latency has ticks.
     under_way: VecDeque<[f64; 2]>,
-    /// Charge of the thrusters' battery as a share of full, 0 to 1; 0 without effect if they have
-    /// none.
+    /// Charge of the thrusters' battery, 0 to 1; 0 without effect if they have none.
     pub charge: f64,
 }
 
 impl FlawModel {
-    /// The model of `flaws` for ticks of `dt_s`; none without flaws.
+    /// The model of `flaws` for ticks of `dt_s`; `None` if there are none.
     pub(crate) fn new(flaws: &Flaws, dt_s: f64) -> Option<FlawModel> {
         // The watchdog is not part of the thrusters: it acts where orders arrive.
         if (Flaws { watchdog_s: None, ..flaws.clone() }) == Flaws::default() {
@@ -65,8 +64,8 @@ impl FlawModel {
         if newton < 0.0 { astern } else { ahead }
     }
 
-    /// Factor on the thrust of each thruster over this tick, from the battery and the water above
-    /// the propellers.
+    /// Factors on the thrust of each thruster over this tick, from the battery and from the water
+    /// above the propellers.
     #[inline]
     pub(crate) fn thrust_factors(&self, state: &FlawState, water_above_m: [f64; 2]) -> [f64; 2] {
         let battery = self.battery.map_or(1.0, |battery| battery.thrust_factor(state.charge));
@@ -81,10 +80,10 @@ impl FlawState {
         self.under_way.iter_mut().for_each(|settings| settings[side] = setting);
     }
 
-    /// Sends `settings` off; returns those that arrive.
+    /// Sends `settings`. Returns those that arrive.
     #[inline]
     pub(crate) fn pass(&mut self, settings: [f64; 2]) -> [f64; 2] {
-        // A queue as long as the latency: with a push and a pop per tick, it never grows.
+        // As long as the latency: with a push and a pop per tick, it never grows.
         self.under_way.push_back(settings);
         self.under_way.pop_front().unwrap_or(settings)
     }
@@ -92,7 +91,7 @@ impl FlawState {
 
 /// Thrust factor of a propeller with this much water above it: 1 from half the still-water depth
 /// on, decreasing linearly to 0 at the surface. The measured loss is a curve over depth and
-/// propeller radius (Minsaas, Faltinsen and Persson 1983); none is published for so small a
+/// propeller radius (Minsaas, Faltinsen and Persson 1983), which is not published for so small a
 /// propeller.
 #[inline]
 #[must_use]

@@ -10,8 +10,8 @@
 //!     | 0       m xg+A26  Iz+A66   |
 //! ```
 //!
-//! Added mass is part of `M`: as a force on the right-hand side, computed from the last
-//! acceleration, it diverges once it reaches the mass, as it does in sway.
+//! Added mass is part of `M`. As a force on the right-hand side, computed from the last
+//! acceleration, it would diverge once it reaches the mass, as it does in sway.
 
 use primitives::frame::{Body, Ned, Rotation, ned_from_body};
 use scenario::boat::Hull;
@@ -47,7 +47,7 @@ impl Planar {
     }
 }
 
-/// A hull with precomputed constants of the equation and the inverse of `M`.
+/// A hull with precomputed constants and the inverse of `M`.
 #[derive(Clone, Debug)]
 pub struct HullModel {
     pub(crate) hull: Hull,
@@ -81,7 +81,7 @@ impl HullModel {
         let m_sway = hull.mass_kg + hull.added_sway_kg;
         let m_yaw = hull.yaw_inertia_kg_m2 + hull.added_yaw_kg_m2;
         let m_cross = hull.mass_kg * hull.x_g_m + hull.added_sway_yaw_kg_m;
-        // The mass matrix is one number and a symmetric 2 x 2 block: its inverse takes three
+        // The mass matrix is one number and a symmetric 2 x 2 block, so its inverse takes three
         // numbers, computed once. A matrix library would be slower to read and to build.
         let determinant = m_sway * m_yaw - m_cross * m_cross;
         HullModel {
@@ -89,9 +89,9 @@ impl HullModel {
             m_sway,
             m_yaw,
             m_cross,
-            // The full Munk moment is that of a bare hull in ideal flow; with it the model of an
-            // Otter spins on its own from 1.2 m/s on. Scaling the moment alone would create energy.
-            // The factor therefore modifies A22 everywhere in the Coriolis terms, which stay
+            // The full Munk moment is that of a bare hull in ideal flow; with it, the Otter's model
+            // spins on its own from 1.2 m/s on. Scaling the moment alone would create energy. The
+            // factor therefore modifies A22 everywhere in the Coriolis terms, which stay
             // skew-symmetric.
             munk_sway: hull.added_surge_kg + hull.munk_factor * (hull.added_sway_kg - hull.added_surge_kg),
             inverse_surge: 1.0 / m_surge,
@@ -103,7 +103,7 @@ impl HullModel {
         }
     }
 
-    /// The velocity change by an impulse (N s, N s, N m s).
+    /// The velocity change from an impulse (N s, N s, N m s).
     #[inline]
     #[must_use]
     pub fn velocity_change(&self, impulse: Planar) -> Planar {
@@ -132,7 +132,7 @@ impl HullModel {
         0.5 * (self.m_surge * u * u + self.m_sway * v * v + self.m_yaw * r * r) + self.m_cross * v * r
     }
 
-    /// The effective mass for a push along the body-axes unit vector (`ahead`, `starboard`), kg.
+    /// The effective mass for a push along a unit vector in body axes (`ahead`, `starboard`), kg.
     #[must_use]
     pub fn mass_along_kg(&self, ahead: f64, starboard: f64) -> f64 {
         1.0 / (ahead * ahead / self.m_surge + starboard * starboard / self.m_sway)

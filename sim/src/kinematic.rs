@@ -1,8 +1,8 @@
 //! The point boat of MOOS: a throttle, a rudder and two PID loops, without mass.
 //!
-//! The model is that of uSimMarine with pMarinePID (moos-ivp, `SimEngine::propagate…` and
-//! `PIDEngine`) as implemented in Pyquaticus, quirks included, because others train on it and their
-//! numbers must be reproduced here. For one step of `dt`:
+//! The model is uSimMarine with pMarinePID (moos-ivp, `SimEngine::propagate…` and `PIDEngine`) as
+//! implemented in Pyquaticus. Its quirks are kept, because others train on it and their numbers
+//! must be reproduced here. For one step of `dt`:
 //!
 //! ```text
 //! thrust  += PID_speed(v_wanted - v), or v_wanted * speed_factor;   below 0.01 it is 0
@@ -22,10 +22,9 @@ use primitives::{Ned, Rotation, math};
 use scenario::boat::{Kinematic, Pid};
 use serde::{Deserialize, Serialize};
 
-/// Smaller thrust, in per cent, counts as 0.
+/// Thrust below this counts as 0, per cent.
 const THRUST_MIN: f64 = 0.01;
-/// Maximum of thrust and rudder, per cent: uSimMarine accepts no more, whatever the limits of the
-/// loops.
+/// Maximum thrust and rudder in uSimMarine, whatever the limits of the loops, per cent.
 const FULL: f64 = 100.0;
 
 /// A point boat with precomputed constants.
@@ -34,17 +33,17 @@ pub struct KinematicModel {
     boat: Kinematic,
     /// Speed, m/s, as a function of thrust, per cent.
     speed_of_thrust: PiecewiseLinear,
-    /// Largest rudder that the heading loop sets, per cent.
+    /// Maximum rudder that the heading loop sets, per cent.
     rudder_max: f64,
     rotate_deg_s: f64,
 }
 
-/// The changing state of a point boat, without its position.
+/// The changing state of a point boat without its position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct KinematicState {
     /// Speed through the water, m/s.
     pub speed_m_s: f64,
-    /// Heading, degrees clockwise from north, −180 to 180: the reference uses degrees.
+    /// Heading, degrees clockwise from north, −180 to 180, as in the reference.
     pub heading_deg: f64,
     /// Thrust, per cent.
     pub thrust: f64,
@@ -54,7 +53,7 @@ pub struct KinematicState {
     heading_loop: Loop,
 }
 
-/// Motion of a point boat in a step.
+/// A point boat's motion in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct KinematicMotion {
     /// Distance travelled, including drift, m.
@@ -63,10 +62,10 @@ pub struct KinematicMotion {
     pub turn_rad: f64,
 }
 
-/// State of a PID loop.
+/// The state of a PID loop.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Loop {
-    /// The last error; none before the first call, which has no derivative.
+    /// The last error; `None` before the first call, which has no derivative.
     error: Option<f64>,
     integral: f64,
 }
@@ -74,7 +73,7 @@ struct Loop {
 impl Loop {
     /// The output for `error`, within ±`limit`.
     fn answer(&mut self, gains: Pid, error: f64, limit: f64, dt_s: f64) -> f64 {
-        // No derivative kick in the first step, as in PIDEngine.
+        // As in PIDEngine, the first step has no derivative kick.
         let rate = self.error.map_or(0.0, |before| (error - before) / dt_s);
         self.error = Some(error);
         self.integral = (self.integral + gains.i * error * dt_s).clamp(-gains.i_limit, gains.i_limit);
@@ -89,8 +88,8 @@ impl KinematicState {
         KinematicState { heading_deg: wrap_180(psi_rad.to_degrees()), ..KinematicState::default() }
     }
 
-    /// A boat in steady state on a course: with this heading, speed (m/s) and thrust (per cent),
-    /// and loops without remaining error.
+    /// A boat in steady state with this heading, speed (m/s) and thrust (per cent), without
+    /// remaining errors of its loops.
     #[must_use]
     pub fn under_way(psi_rad: f64, speed_m_s: f64, thrust: f64) -> KinematicState {
         let settled = Loop { error: Some(0.0), integral: 0.0 };
@@ -110,7 +109,7 @@ impl KinematicState {
     }
 
     /// Removes the velocity along the unit vector `out`, in both directions, and turns to the
-    /// remaining velocity. A head-on boat has none left; it turns to starboard of its way in.
+    /// remaining velocity. A head-on boat has none left; it turns to starboard.
     pub fn slide_across(&mut self, out: Ned) {
         let along = Ned { north: -out.east, east: out.north };
         let way_m_s = Rotation::from_heading(self.psi_rad()).ahead().scaled(self.speed_m_s).dot(along);
@@ -118,7 +117,7 @@ impl KinematicState {
         self.divert(math::atan2(ahead.east, ahead.north), way_m_s.abs());
     }
 
-    /// Applies an external heading and speed, for example from contact. The loops keep their state.
+    /// Sets heading and speed, for example after contact. The loops keep their state.
     pub fn divert(&mut self, psi_rad: f64, speed_m_s: f64) {
         self.heading_deg = wrap_180(psi_rad.to_degrees());
         self.speed_m_s = speed_m_s.max(0.0);
@@ -137,14 +136,14 @@ impl KinematicModel {
         }
     }
 
-    /// The thrust for this speed straight ahead, per cent: the inverse of the thrust map. Speeds
-    /// beyond its ends are clamped.
+    /// The thrust for this speed straight ahead, per cent: the inverse of the thrust map, clamped
+    /// at its ends.
     #[must_use]
     pub fn thrust_for_speed(&self, speed_m_s: f64) -> f64 {
         math::interpolate(self.boat.thrust_map.iter().map(|(thrust, speed_m_s)| (*speed_m_s, *thrust)), speed_m_s)
     }
 
-    /// Advances a boat by `dt_s`. The current `drift_m_s` carries it along.
+    /// Advances a boat by `dt_s`, with the current `drift_m_s`.
     ///
     /// The loops steer a course. For an order of two thrusts (shares of full), thrust and rudder
     /// are half their sum and half their difference, and the loops rest. Hold means speed 0 on the
@@ -178,7 +177,7 @@ impl KinematicModel {
             Order::Turn { by_rad, speed_m_s } => (speed_m_s.min(boat.speed_max_m_s), by_rad.to_degrees()),
             Order::Hold => (0.0, 0.0),
         };
-        // pMarinePID supports both: a map from speed to thrust, or a loop that changes the previous
+        // pMarinePID has both: a map from speed to thrust, and a loop that changes the previous
         // thrust.
         let thrust = if boat.speed_factor > 0.0 {
             wanted_m_s * boat.speed_factor
@@ -186,8 +185,7 @@ impl KinematicModel {
             let error_m_s = wanted_m_s - state.speed_m_s;
             state.thrust + state.speed_loop.answer(boat.speed_pid, error_m_s, boat.thrust_max, dt_s)
         };
-        // Never astern: the reference clips at zero, so a point boat only brakes by its
-        // deceleration.
+        // The reference clips at zero, so a point boat never goes astern to brake.
         state.thrust = if thrust < THRUST_MIN { 0.0 } else { thrust.min(boat.thrust_max) };
         // Without thrust the heading loop does not run and keeps its state.
         state.rudder = if state.thrust > 0.0 {
@@ -204,7 +202,7 @@ impl KinematicModel {
         let limit = |rate_m_s2: f64| if rate_m_s2 > 0.0 { rate_m_s2 * dt_s } else { f64::INFINITY };
         let least = state.speed_m_s - limit(boat.deceleration_max_m_s2);
         let most = state.speed_m_s + limit(boat.acceleration_max_m_s2);
-        // Not `clamp`, which panics on NaN; the check of the state handles NaN later.
+        // Not `clamp`, which panics on NaN; a later check handles NaN.
         raw_m_s.min(most).max(least)
     }
 
@@ -218,8 +216,8 @@ impl KinematicModel {
     }
 }
 
-/// Wraps an angle in degrees to −180 to 180 by whole turns. Both ends are included, because the
-/// reference distinguishes them.
+/// Wraps degrees to −180 to 180 by whole turns. Both ends are included, because the reference
+/// distinguishes them.
 fn wrap_180(angle_deg: f64) -> f64 {
     if angle_deg > 180.0 {
         angle_deg - 360.0 * ((angle_deg - 180.0) / 360.0).ceil()
@@ -241,7 +239,7 @@ fn circular_mean(a_deg: f64, b_deg: f64) -> Ned {
 mod tests {
     use super::*;
 
-    /// A boat with simple numbers: thrust in per cent is speed in cm/s, no limits, no loss.
+    /// A boat with simple numbers: thrust in per cent is speed in cm/s, without limits or losses.
     fn plain() -> Kinematic {
         let none = Pid { p: 0.0, i: 0.0, d: 0.0, i_limit: 0.0 };
         Kinematic {

@@ -1,25 +1,25 @@
 //! Numbers side by side, as in wide registers.
 //!
 //! Every operation is a plain loop over all lanes, which compiles to one instruction, or to several
-//! on narrower registers. The results are bit-identical: each lane is computed separately, rounded
-//! by IEEE 754, and never fused.
+//! on narrower registers. The results have the same bits, because each lane is computed separately,
+//! rounded by IEEE 754 and never fused.
 
 use std::ops::{Add, AddAssign, Div, Mul, Sub};
 
-/// As many single-precision numbers as the widest registers hold: wave components side by side.
-// Crates such as `wide` choose the registers at compile time; plain arrays leave the choice to the
-// machine at run time.
+/// The number of single-precision numbers in the widest registers: wave components side by side.
+// Crates such as `wide` choose the registers at compile time; plain arrays let the machine choose
+// at run time.
 pub(crate) const LANES: usize = 16;
 
-/// Components of a row. Sums over the components are kept per position in the row, so that they do
-/// not wait for each other.
+/// Components of a row. Sums over components are kept by position in the row, so that they do not
+/// wait for each other.
 pub(crate) const ROW: usize = 4;
 
-/// Rows side by side, or numbers for each component of one row.
+/// Rows side by side, or numbers for each component of a row.
 pub(crate) const FOLD: usize = LANES / ROW;
 
 /// Numbers side by side. Sixteen lanes hold one number for each of sixteen components, or four
-/// numbers for each component of a row, ordered by number first.
+/// numbers for each component of a row, ordered by number.
 #[derive(Clone, Copy, Debug)]
 // Aligned to a cache line, the width of the widest registers: loads never straddle two lines.
 #[repr(align(64))]
@@ -60,7 +60,7 @@ impl<T: Copy, const N: usize> Lanes<T, N> {
 }
 
 impl<const N: usize> Lanes<f64, N> {
-    /// Rounded to single precision.
+    /// Rounds to single precision.
     #[inline(always)]
     pub(crate) fn single(self) -> Lanes<f32, N> {
         let mut single = Lanes::splat(0.0);
@@ -79,7 +79,7 @@ impl<const N: usize> Lanes<f64, N> {
         self
     }
 
-    /// These non-negative numbers with the signs of others.
+    /// These non-negative numbers with the signs of `signs`.
     #[inline(always)]
     pub(crate) fn with_signs_of(mut self, others: Lanes<f64, N>) -> Lanes<f64, N> {
         for i in 0..N {
@@ -126,8 +126,7 @@ impl Lanes<f32> {
     #[inline(always)]
     pub(crate) fn sum(&self, number: usize) -> f64 {
         let at = |place: usize| f64::from(self.0[ROW * number + place]);
-        // In this order on every machine: a sum of four parts, whatever the processor's register
-        // width.
+        // This order on every machine: a sum of four parts, whatever the register width.
         (at(0) + at(1)) + (at(2) + at(3))
     }
 }

@@ -1,7 +1,7 @@
-//! The Squall simulation: boats in water, and the game they play.
+//! The Squall simulation: boats in water, and the game that they play.
 //!
-//! Start with [`World::step`]: physics alone. [`Contest`] plays a whole game with it; `node` serves
-//! it on the network.
+//! Start with [`World::step`], the physics. [`Contest`] plays a whole game with it, and `node`
+//! serves the game on the network.
 
 pub mod afloat;
 pub mod autopilot;

@@ -28,25 +28,25 @@ pub(crate) struct Model {
     /// Hull models, by kind of boat.
     pub(crate) hulls: Vec<HullModel>,
     drives: Vec<Drive>,
-    /// Kind of each vehicle, by vehicle index.
+    /// By vehicle index: its kind.
     pub(crate) kinds: Vec<usize>,
-    /// Whether each vehicle is a real boat, by vehicle index.
+    /// By vehicle index: whether it is a real boat.
     external: Vec<bool>,
-    /// Index of each vehicle among the point boats, if it is one.
+    /// By vehicle index: index among the point boats, if it is one.
     points: Vec<Option<usize>>,
-    /// The sensors of each vehicle that has any, with its index among those.
+    /// The sensors of each vehicle that has any, with an index among those.
     pub(crate) sensed: Vec<Option<(usize, SensorModel)>>,
-    /// The hulls again, by vehicle index.
+    /// The hulls, by vehicle index.
     pub(crate) fleet: Fleet,
     pub(crate) sea: SeaModel,
     pub(crate) contact: ContactModel,
-    /// Pairs of boats within this distance are searched, m.
+    /// Distance within which pairs of boats are searched, m.
     pub(crate) pairs_within_m: f64,
-    /// Fault spans of the thrusters, by vehicle index.
+    /// By vehicle index: fault spans of the thrusters.
     thruster_faults: Vec<Vec<FaultSpan>>,
 }
 
-/// The failure of a thruster.
+/// A thruster failure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Failing {
     /// It stops.
@@ -82,11 +82,11 @@ impl Model {
         let shapes = plan.kinds.iter().map(|boat| (boat.length_m, boat.beam_m));
         let drives: Vec<Drive> =
             plan.kinds.iter().zip(&hulls).map(|(boat, hull)| Drive::new(boat, hull, dt_s)).collect();
-        // A real boat has no state of a point boat, whatever its file says: its gateway reports its
+        // A real boat has no point-boat state, whatever its file says: its gateway reports its
         // position.
         let points = plan.vehicles.iter().map(|v| !v.is_external && matches!(drives[v.kind], Drive::Point(_)));
         let sensors = |kind: usize| &plan.kinds[kind].sensors;
-        // Boats without sensors keep no readings: large fleets of perfect boats would carry them
+        // Boats without sensors keep no readings, which large fleets of perfect boats would carry
         // for nothing.
         let is_sensed = plan.vehicles.iter().map(|v| !v.is_external && *sensors(v.kind) != Sensors::default());
         let sensed = numbered(is_sensed).into_iter().zip(&plan.vehicles).map(|(place, vehicle)| {
@@ -122,7 +122,6 @@ impl Model {
         self.kinds.iter().map(start).collect()
     }
 
-    /// Initial state of the point boats.
     pub(crate) fn points_at_start(&self, boats: &[BoatState]) -> Vec<KinematicState> {
         let is_point = |(i, _): &(usize, &BoatState)| self.points[*i].is_some();
         let points = boats.iter().enumerate().filter(is_point);
@@ -173,7 +172,7 @@ impl Model {
     }
 
     /// The forces on a boat in this tick, and the current around it. Thrusters follow the command
-    /// by the compass heading, and the sea adds its forces.
+    /// by the compass heading.
     #[inline]
     pub(crate) fn forcing(
         &self,
@@ -188,19 +187,18 @@ impl Model {
         let Drive::Thrusters(thruster, autopilot) = &self.drives[kind] else {
             return (Forcing::default(), Ned::default());
         };
-        // A quarantined boat stays where it is, so that one bug does not end the game for all
-        // others.
+        // A quarantined boat stays in place, so that one bug does not end the game for all others.
         if boat.quarantined || self.external[vehicle] {
             return (Forcing::default(), Ned::default());
         }
         let hull = &self.hulls[kind];
         let mut settings = settings(boat, heading_error_rad, (hull, thruster, autopilot), command);
         for (side, shaft) in [&boat.port, &boat.starboard].into_iter().enumerate() {
-            // The front seat does not know about the fault and steers as if both thrusters worked:
-            // that is the purpose of the fault.
+            // The front seat does not know the fault and steers as if both thrusters worked: that
+            // is the purpose of the fault.
             let Some(failing) = failing[side] else { continue };
             settings[side] = if failing == Failing::Lost { 0.0 } else { shaft.command };
-            // Settings in transit to it are replaced as well.
+            // Settings in transit are replaced as well.
             flaws.replace_under_way(side, settings[side]);
         }
         let from_sea = sea.forcing(kind, hull, boat.pose, rotation, boat.nu);
@@ -216,8 +214,8 @@ impl Model {
         (forcing, from_sea.current_m_s)
     }
 
-    /// A boat's displacement over a tick without contact, and its velocity over the ground after
-    /// it.
+    /// A boat's displacement over a tick without contact, and its velocity over the ground
+    /// afterwards.
     #[inline]
     pub(crate) fn displacement(
         &self,
@@ -233,7 +231,7 @@ impl Model {
         if boat.quarantined {
             return (still, Planar::default());
         }
-        // Wrapped at each tick: an angle that accumulated turns would lose digits in a long game.
+        // Wrapped every tick: an angle that accumulated turns would lose digits in a long game.
         let psi_rad = wrap_pi(from.psi_rad + motion.turn_rad);
         let rotation_half = rotation.turned(small_rotation(motion.turn_half_rad));
         let rotation_to = Rotation::from_heading(psi_rad);
@@ -247,7 +245,7 @@ impl Model {
         (Displacement { to, rotation_to, ..still }, through_water(motion.nu_r, rotation_to, current_m_s, 1.0))
     }
 
-    /// A point boat's displacement over a tick, and its velocity over the ground after it.
+    /// A point boat's displacement over a tick, and its velocity over the ground afterwards.
     pub(crate) fn point_displacement(
         &self,
         vehicle: usize,
@@ -264,8 +262,7 @@ impl Model {
         (Displacement { to, rotation_to, ..still }, through_water(nu, rotation_to, drift_m_s, 1.0))
     }
 
-    /// A real boat's estimated displacement over a tick, and its velocity over the ground: dead
-    /// reckoned.
+    /// A real boat's dead-reckoned displacement over a tick, and its velocity over the ground.
     pub(crate) fn dead_reckoned_displacement(
         &self,
         vehicle: usize,
@@ -288,7 +285,7 @@ impl Model {
         Displacement { kind, from, to: from, rotation, rotation_to: rotation, role, velocity_change: Planar::default() }
     }
 
-    /// A boat's attitude in the waves; zero for a point boat, and for a real boat, whose attitude
+    /// A boat's attitude in the waves. Zero for a point boat, and for a real boat, whose attitude
     /// is unknown.
     pub(crate) fn attitude(&self, vehicle: usize, boat: &BoatState, rotation: Rotation, sea: &SeaNow<'_>) -> Attitude {
         let kind = self.kinds[vehicle];
@@ -298,7 +295,6 @@ impl Model {
         }
     }
 
-    /// The true state of a boat.
     pub(crate) fn truth(&self, vehicle: usize, boat: &BoatState, rotation: Rotation, sea: &SeaNow<'_>) -> Truth {
         let kind = self.kinds[vehicle];
         let thrust_share = match &self.drives[kind] {
@@ -317,7 +313,7 @@ impl Model {
     }
 }
 
-/// The index of each selected item among the selected ones.
+/// Numbers the selected items.
 fn numbered(counts: impl Iterator<Item = bool>) -> Vec<Option<usize>> {
     let mut before = 0;
     let place = |counts: bool| {
@@ -328,7 +324,6 @@ fn numbered(counts: impl Iterator<Item = bool>) -> Vec<Option<usize>> {
     counts.map(place).collect()
 }
 
-/// The spans of thruster faults.
 #[inline]
 fn thruster_faults(faults: &[FaultSpan]) -> Vec<FaultSpan> {
     let is_of_thrusters = |kind: FaultKind| {
@@ -338,7 +333,7 @@ fn thruster_faults(faults: &[FaultSpan]) -> Vec<FaultSpan> {
     faults.iter().filter(|span| is_of_thrusters(span.kind)).copied().collect()
 }
 
-/// The settings of the port and starboard thrusters for a command.
+/// The settings for a command of the port and starboard thrusters.
 fn settings(
     boat: &mut BoatState,
     heading_error_rad: f64,
@@ -358,7 +353,7 @@ fn settings(
     }
 }
 
-/// The rotation by the small angle of half a tick: the series is exact to the last digits and takes
+/// The rotation by the small angle of half a tick. The series is exact to the last digits and takes
 /// a fraction of the time.
 #[inline]
 fn small_rotation(by_rad: f64) -> Rotation {
@@ -372,8 +367,8 @@ fn small_rotation(by_rad: f64) -> Rotation {
     }
 }
 
-/// `nu` plus `sign` times the current in body axes: −1 converts velocity over the ground to
-/// velocity through the water, 1 converts back.
+/// `nu` plus `sign` times the current in body axes: −1 converts velocity over the ground to velocity
+/// through the water, 1 converts back.
 #[inline]
 fn through_water(nu: Planar, rotation: Rotation, current_m_s: Ned, sign: f64) -> Planar {
     let current = frame::body_from_ned(rotation, current_m_s);

@@ -1,17 +1,16 @@
 //! One step of motion, for several boats side by side.
 //!
-//! A boat's step is one long chain of dependent operations, in which a processor mostly waits.
-//! Boats are independent of each other, so eight advance together, each in its lane. A lane
-//! performs the same IEEE operations whatever the other lanes and the processor: results do not
-//! depend on how boats are grouped.
+//! A boat's step is a long chain of dependent operations, in which a processor mostly waits. Boats
+//! are independent, so eight advance together, one per lane. A lane performs the same IEEE
+//! operations whatever the other lanes and the processor, so results do not depend on the grouping.
 
 use crate::hull::{HullModel, Planar};
 use crate::lanes::{Lanes, where_at_most};
 use primitives::instructions::{Instructions, Kernel};
 
-/// Boats per full row, and per last row.
-// A boat's four stages are one chain of dependent operations: eight chains side by side take less
-// than half the time per tick.
+/// Boats per full row, and in the last row.
+// The four stages of a boat form one chain of dependent operations; eight chains side by side take
+// less than half the time per tick.
 const MANY: usize = 8;
 const FEW: usize = 4;
 
@@ -20,7 +19,7 @@ const FEW: usize = 4;
 pub struct Forcing {
     /// Velocity through the water at the start.
     pub nu_r: Planar,
-    /// Force on the hull, without the hull's own reaction, at the start, half-way and at the end.
+    /// Force on the hull without its own reaction, at the start, half-way and at the end.
     pub tau: [Planar; 3],
     /// The water's own motion half-way (waves and eddies), which resistance feels in addition to
     /// the boat's.
@@ -63,7 +62,7 @@ impl Fleet {
         Fleet { count: hulls.len(), rows, last, instructions: Instructions::best() }
     }
 
-    /// Computes with these instructions. The choice affects only the speed.
+    /// Uses these instructions. The choice affects only the speed.
     pub(crate) fn set_instructions(&mut self, instructions: Instructions) {
         self.instructions = instructions;
     }
@@ -73,13 +72,12 @@ impl Fleet {
     ///
     /// The equation in `nu_r` does not depend on the heading, so no sine or cosine is needed.
     ///
-    /// `is_uniform` skips the water's own motion if it is the same everywhere; the results are
-    /// equal.
+    /// `is_uniform` skips the water's own motion if it is the same everywhere, with equal results.
     ///
     /// # Panics
     /// If the number of forcings differs from the number of boats.
     pub fn advance(&self, forcings: &[Forcing], dt_s: f64, is_uniform: bool, motions: &mut Vec<Motion>) {
-        assert_eq!(forcings.len(), self.count, "one forcing a boat");
+        assert_eq!(forcings.len(), self.count, "one forcing per boat");
         motions.clear();
         motions.resize(self.count, Motion::default());
         let places = forcings.chunks(MANY).zip(motions.chunks_mut(MANY));
@@ -101,8 +99,7 @@ impl Fleet {
         motions: &mut [Motion],
     ) {
         let forcings = Forcings::gather(forcings);
-        // Two compiled versions, because a branch inside would keep the loop from using vector
-        // registers.
+        // Two compiled versions: a branch inside would keep the loop from using vector registers.
         let moved = if is_uniform {
             self.instructions.run(Advance::<N, true> { row, forcings: &forcings, dt_s })
         } else {
@@ -114,9 +111,9 @@ impl Fleet {
     }
 }
 
-/// Advances boats side by side. Packing and unpacking happen outside: inside, they would keep the
-/// numbers out of wide registers.
-// A sum is never a fused multiply-add: rustc does not contract, and we use no intrinsic for it.
+/// Advances boats side by side. Packing and unpacking happen outside, because inside they would
+/// keep the numbers out of wide registers.
+// Sums are never fused multiply-adds: rustc does not contract, and we use no intrinsic for it.
 struct Advance<'a, const N: usize, const UNIFORM: bool> {
     row: &'a Row<N>,
     forcings: &'a Forcings<N>,
@@ -244,7 +241,7 @@ struct Row<const N: usize> {
 }
 
 impl<const N: usize> Row<N> {
-    /// `hulls` has one to `N` entries; the remaining lanes are filled.
+    /// Packs one to `N` hulls; fills the remaining lanes.
     fn new(hulls: &[&HullModel]) -> Row<N> {
         let each = |f: fn(&HullModel) -> f64| Lanes(std::array::from_fn(|i| f(hulls[i.min(hulls.len() - 1)])));
         Row {
@@ -268,16 +265,16 @@ impl<const N: usize> Row<N> {
         }
     }
 
-    /// The acceleration under `tau` at the velocity `nu_r` through the water. Resistance acts on
-    /// the velocity relative to the oscillating water, `nu_r - water`.
+    /// The acceleration under `tau` at the velocity `nu_r`. Resistance acts on the velocity
+    /// relative to the oscillating water, `nu_r - water`.
     #[inline(always)]
     fn acceleration<const UNIFORM: bool>(&self, nu_r: Planars<N>, tau: Planars<N>, water: Planars<N>) -> Planars<N> {
-        // M nu_r' + C(nu_r) nu_r + D(nu_r) nu_r = tau (Fossen 2021, ch. 6), row by row. Relative to
-        // the water, a current constant in time and space has no term here; it only changes the
+        // M nu_r' + C(nu_r) nu_r + D(nu_r) nu_r = tau (Fossen 2021, ch. 6), row by row. A current
+        // constant in time and space has no term relative to the water; it only changes the
         // position.
         let Planars { surge: u, sway: v, yaw: r } = nu_r;
-        // Waves move the water past the hull. Their velocity enters resistance here, and their
-        // acceleration is in `tau`. A force by the surface slope as well would count them twice.
+        // Waves move the water past the hull: their velocity is in the resistance here, their
+        // acceleration in `tau`. A force from the surface slope as well would count them twice.
         let past = if UNIFORM { nu_r } else { Planars::zip([nu_r, water], |[boat, water]| boat - water) };
         let (y_cross, n_cross) = self.crossflow(past.sway, past.yaw);
         let speed = past.surge.abs();

@@ -1,13 +1,13 @@
 //! A piecewise linear function with an index, so that look-ups need no search.
 
-/// Limit of cells in the index.
+/// Maximum number of cells in the index.
 const CELLS_MAX: usize = 256;
 
 /// Linear interpolation through measured points; constant beyond the ends.
 #[derive(Clone, Debug)]
 pub(crate) struct PiecewiseLinear {
     pieces: Vec<Piece>,
-    /// For each of equally wide cells, the piece at its start.
+    /// For each of the equally wide cells, the piece at its start.
     index: Vec<u16>,
     per_x: f64,
     first: (f64, f64),
@@ -23,12 +23,12 @@ struct Piece {
 }
 
 impl PiecewiseLinear {
-    /// The interpolation through `points`, whose first numbers increase strictly.
+    /// The interpolation through `points`, sorted strictly by their first numbers.
     ///
     /// # Panics
     /// If there are fewer than two points.
     pub(crate) fn new(points: &[(f64, f64)]) -> PiecewiseLinear {
-        assert!(points.len() >= 2, "a line has two ends");
+        assert!(points.len() >= 2, "expected at least two points");
         let piece = |ends: &[(f64, f64)]| {
             let (a, b) = (ends[0], ends[1]);
             Piece { at: a, slope: (b.1 - a.1) / (b.0 - a.0), end: b.0 }
@@ -55,7 +55,7 @@ impl PiecewiseLinear {
         }
         let cell = ((x - self.first.0) * self.per_x) as usize;
         let mut i = usize::from(self.index[cell.min(self.index.len() - 1)]);
-        // A cell contains at most one border, unless the pieces are very uneven. Unlike a branch,
+        // A cell contains at most one border unless the pieces are very uneven. Unlike a branch,
         // the sum is never mispredicted.
         i += usize::from(x >= self.pieces[i].end);
         while x >= self.pieces[i].end {

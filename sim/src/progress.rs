@@ -12,25 +12,25 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", tag = "kind")]
 pub enum ProgressMessage {
-    /// The hub listens: nodes can join.
+    /// The hub is open: nodes can join.
     Open {
         /// The game's name on the network.
         game: String,
-        /// Endpoint for nodes on this machine.
+        /// The endpoint for nodes on this machine.
         endpoint: String,
     },
     /// Some nodes are missing.
     Waiting {
         /// The vehicles without an agent, by name.
         agents: Vec<String>,
-        /// The real boats that no gateway has reported yet, by name.
+        /// The real boats not yet reported by a gateway, by name.
         gateways: Vec<String>,
     },
     /// The game starts.
     Started,
     /// An event of the game.
     Event(EventOutcome),
-    /// Regular progress, about ten times a second.
+    /// Regular progress, about ten times per second.
     Progress(Progress),
     /// The final report.
     Done(Box<Report>),
@@ -58,11 +58,10 @@ pub struct Reporter {
 }
 
 impl Reporter {
-    /// Reports the events since the last call, then the progress.
+    /// Reports the events since the last call, then progress.
     pub fn progress(&mut self, contest: &Contest, (rate, refused): (f64, u64), tell: &mut dyn FnMut(ProgressMessage)) {
         let scenario = contest.scenario();
-        // Events before the progress: the line that reports a score appears before the score
-        // changes.
+        // Events first: the line that reports a score appears before the score changes.
         let news = self.reported.read(contest.events()).iter();
         news.for_each(|logged| tell(ProgressMessage::Event(EventOutcome::new(scenario, logged))));
         let teams = scenario.teams.iter().map(|team| team.name.clone());

@@ -1,9 +1,8 @@
-//! The radio link between the minds ashore and their boats: delays and losses of reports and
-//! orders.
+//! The radio link between minds ashore and their boats: delays and losses of reports and orders.
 //!
-//! All random values derive from the game's seed, by vehicle, direction and decision: losses are
-//! the same in one process and over a network, whatever else is sent. The real network's delays and
-//! losses add to them.
+//! All random values derive from the seed, by vehicle, direction and decision. Losses are therefore
+//! the same in one process and over a network, whatever else is sent. Delays and losses of the real
+//! network come on top.
 
 use crate::two_state::TwoStateChain;
 use messages::Order;
@@ -17,32 +16,30 @@ use std::collections::VecDeque;
 
 /// Upper bound of [`primitives::stream::Noise::exponential`]: 53 ln 2, rounded up.
 const MOST_JITTERS: f64 = 37.0;
-/// Uniform numbers per decision: the link's change of state, and loss and jitter in each direction.
+/// Uniform numbers per decision: the link's change of state, and loss and jitter in both
+/// directions.
 const DRAWS: u64 = 5;
 
-/// The links of a game.
 #[derive(Clone)]
 pub(crate) struct Radio {
     model: RadioModel,
     state: RadioState,
 }
 
-/// The constants of the links.
 #[derive(Clone)]
 struct RadioModel {
     link: Link,
-    /// The changes between good and bad state of a link.
+    /// Changes between a link's good and bad state.
     bursts: TwoStateChain,
     /// Noises, by vehicle index.
     noises: Vec<TimedNoise>,
     /// The time between two decisions.
     decision: SimTime,
-    /// Limit of messages in transit per direction: one for each decision within the longest transit
-    /// time.
+    /// Maximum number of messages in transit per direction: one per decision within the longest
+    /// transit time.
     most: usize,
 }
 
-/// The changing state of the links.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct RadioState {
     /// The open decision.
@@ -51,11 +48,11 @@ pub(crate) struct RadioState {
     lines: Vec<Line>,
 }
 
-/// The link of one boat.
+/// One boat's link.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Line {
     is_bad: bool,
-    /// Messages in transit in each direction, by ascending arrival. Overtaken messages are dropped.
+    /// Messages in transit by direction and ascending arrival. Overtaken messages are dropped.
     orders: VecDeque<Sent<Order>>,
     reports: VecDeque<Sent<OwnBoat>>,
 }
@@ -69,7 +66,7 @@ struct Sent<T> {
     message: T,
 }
 
-/// The direction of a message; its value is the index of the first draw in a decision.
+/// A message's direction; its value is the index of its first draw in a decision.
 #[derive(Clone, Copy)]
 enum Direction {
     Out = 1,
@@ -77,14 +74,14 @@ enum Direction {
 }
 
 fn send<T>(under_way: &mut VecDeque<Sent<T>>, sent: Sent<T>, most: usize) {
-    // This message overtakes those that would arrive after it, as with a sender that keeps only its
+    // This message overtakes those that would arrive later, as with a sender that keeps only its
     // newest message: an older one that arrives later would be worthless.
     while under_way.pop_back_if(|earlier| earlier.arrival >= sent.arrival).is_some() {}
-    assert!(under_way.len() < most, "one message a decision, and none takes longer than the longest");
+    assert!(under_way.len() < most, "one message per decision, within the longest transit time");
     under_way.push_back(sent);
 }
 
-/// The newest message that has arrived by `now`, if any; calls `each` with the decision of every
+/// The newest message that has arrived by `now`, if any. Calls `each` with the decision of every
 /// arrived message.
 fn receive<T>(under_way: &mut VecDeque<Sent<T>>, now: SimTime, mut each: impl FnMut(u64)) -> Option<T> {
     let mut newest = None;
@@ -96,7 +93,7 @@ fn receive<T>(under_way: &mut VecDeque<Sent<T>>, now: SimTime, mut each: impl Fn
 }
 
 impl Radio {
-    /// The links of this scenario with its seed, if it defines any.
+    /// The links of this scenario with its seed, if any.
     pub(crate) fn new(scenario: &Scenario) -> Option<Radio> {
         let link = scenario.link.clone()?;
         let seeds = scenario.seeds();
@@ -119,7 +116,6 @@ impl Radio {
         Radio { model: RadioModel { bursts: bursts(&link, decision), noises, decision, most, link }, state }
     }
 
-    /// The changing state.
     pub(crate) fn state(&self) -> &RadioState {
         &self.state
     }
@@ -135,13 +131,13 @@ impl Radio {
         state.decision += 1;
         let now = model.decision * state.decision as i64;
         for (line, noise) in state.lines.iter_mut().zip(&model.noises) {
-            // The Gilbert-Elliott model: radio losses come in bursts, which independent losses do
-            // not prepare agents for.
+            // The Gilbert-Elliott model: radio losses come in bursts, for which independent losses
+            // do not prepare agents.
             line.is_bad = model.bursts.next(line.is_bad, noise.at(now).unit(DRAWS * state.decision));
         }
     }
 
-    /// Sends an order to a boat at `at`. Of several orders in one decision the last one counts.
+    /// Sends an order to a boat at `at`. Of several orders in one decision, the last one counts.
     pub(crate) fn send_order(&mut self, vehicle: usize, order: Order, at: Ned, now: SimTime) {
         if let Some(sent) = self.sent(vehicle, Direction::Out, order, at, now) {
             send(&mut self.state.lines[vehicle].orders, sent, self.model.most);
@@ -165,27 +161,27 @@ impl Radio {
         }
     }
 
-    /// A boat's newest report that has arrived by `now`, if any; calls `each` with the decision at
-    /// which each arrived report was sent.
+    /// A boat's newest report that has arrived by `now`, if any. Calls `each` with the decision of
+    /// every arrived report.
     pub(crate) fn report(&mut self, vehicle: usize, now: SimTime, each: impl FnMut(u64)) -> Option<OwnBoat> {
         receive(&mut self.state.lines[vehicle].reports, now, each)
     }
 
-    /// The decision of the oldest report in transit, or else the open one.
+    /// The decision of the oldest report in transit, or the open decision.
     pub(crate) fn oldest_report(&self) -> u64 {
         let oldest = |line: &Line| line.reports.front().map(|sent| sent.decision);
         self.state.lines.iter().filter_map(oldest).min().unwrap_or(self.state.decision)
     }
 
-    /// Sends a message of the open decision, unless it is lost.
+    /// Sends a message of the open decision unless it is lost.
     fn sent<T>(&self, vehicle: usize, way: Direction, message: T, at: Ned, now: SimTime) -> Option<Sent<T>> {
         let decision = self.state.decision;
         let (link, noise) = (&self.model.link, self.model.noises[vehicle].at(now));
         let draw = DRAWS * decision + way as u64;
         let share = if self.state.lines[vehicle].is_bad { link.loss.bad } else { link.loss.good };
         let is_out_of_range = link.range_m.is_some_and(|range_m| at.distance(link.station) > range_m);
-        // Looked up by vehicle and decision instead of drawn in sequence: other boats' messages, or
-        // lost ones, shift no numbers.
+        // Looked up by vehicle and decision instead of drawn in sequence, so that other boats'
+        // messages shift no numbers.
         if is_out_of_range || noise.unit(draw) < share {
             return None;
         }
@@ -194,7 +190,7 @@ impl Radio {
     }
 }
 
-/// The changes between good and bad state, from one decision to the next.
+/// The changes between good and bad state from one decision to the next.
 fn bursts(link: &Link, decision: SimTime) -> TwoStateChain {
     let loss = &link.loss;
     if loss.good_time_s <= 0.0 {

@@ -1,4 +1,4 @@
-//! Records a running game from its first decision on, on the network or in this process.
+//! Records a running game from its first decision, on the network or in this process.
 
 use crate::contest::Contest;
 use crate::report::Report;
@@ -9,29 +9,28 @@ use recording::{Decision, Ending, Entry, Header, NewFile, RecordError, Recorder,
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// The stage of a recording.
 enum Stage {
-    /// Before the first decision: only the file exists.
+    /// Before the first decision, when only the file exists.
     Waiting(NewFile),
     Recording(Recorder),
-    /// Recording failed for this reason.
+    /// The recording failed for this reason.
     Failed(String),
 }
 
-/// The recorder of a game. The game never waits for it.
+/// The recorder of a game, for which the game never waits.
 pub struct GameRecorder {
     path: PathBuf,
     game: String,
     pace: String,
     commit: String,
     stage: Stage,
-    /// Whether pictures are recorded as the messages sent over the network.
+    /// Whether pictures are recorded as messages sent over the network.
     pictures_are_sent: bool,
 }
 
 impl GameRecorder {
-    /// A recorder into a new file, for a networked game with this name and pace, played by a
-    /// program of this commit.
+    /// A recorder to a new file, for a networked game with this name and pace, played by a program
+    /// of this commit.
     ///
     /// # Errors
     /// [`RecordError`] if the file cannot be created.
@@ -41,7 +40,7 @@ impl GameRecorder {
         Ok(GameRecorder { path, game, pace, commit, stage, pictures_are_sent: true })
     }
 
-    /// A recorder into a new file, for a game in this process.
+    /// A recorder to a new file, for a game in this process.
     ///
     /// # Errors
     /// [`RecordError`] if the file cannot be created.
@@ -56,11 +55,11 @@ impl GameRecorder {
         self.begin(contest);
         let inputs = contest.take_inputs();
         let Stage::Recording(recorder) = &self.stage else { return };
-        // Over the network pictures are recorded as the bytes that were sent; in one process they
-        // are never encoded.
+        // Over the network pictures are recorded as sent; in one process they are never encoded.
         let shows = !self.pictures_are_sent && inputs.contains(&Input::Pictured);
         let pictures = if shows { contest.last_pictures().to_vec() } else { vec![] };
-        // Passed on unencoded: another thread encodes and writes, and the disk never delays a game.
+        // Passed on unencoded: another thread encodes and writes, so that the disk never delays a
+        // game.
         recorder.record(Entry::Decision(Box::new(Decision { frame, pictures, inputs })));
     }
 
@@ -83,7 +82,7 @@ impl GameRecorder {
         }
     }
 
-    /// Completes the recording with its result and returns the final state.
+    /// Completes the recording with its result. Returns the final state.
     #[must_use]
     pub fn end(self, report: &Report) -> RecordingState {
         let state = self.state();

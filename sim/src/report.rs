@@ -1,4 +1,4 @@
-//! The report of a game: its outcome, and how it was run.
+//! The report of a game: its outcome and how it was run.
 
 use messages::refusal::Refusals;
 use scenario::Outcome;
@@ -7,26 +7,26 @@ use serde::{Deserialize, Serialize};
 /// The report of a game.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Report {
-    /// How the game ended.
+    /// The result of the game.
     pub outcome: Outcome,
     /// How the game was run.
     pub run: Run,
 }
 
-/// Facts that depend on the machines and the network, not on the game.
+/// What depends on the machines and the network rather than on the game.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Run {
     /// The pace of the game.
     pub pace: String,
     /// Wall-clock duration, s.
     pub wall_s: f64,
-    /// Refused messages of agents and gateways.
+    /// Refused messages from agents and gateways.
     pub refused: Refusals,
     /// Decisions that began late (real time only).
     pub overruns: u64,
     /// Whether it was stopped early.
     pub cut_short: bool,
-    /// The problem with the recording, in words, if any.
+    /// What is wrong with the recording, if anything.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub recording_problem: Option<String>,
 }

@@ -1,9 +1,9 @@
-//! A team's sightings of other boats: by its own boats within range and view, delayed and noisy.
+//! A team's sightings of other boats, by its own boats within range and view, delayed and noisy.
 //!
 //! Only for games whose rules limit sharing; otherwise everything is shown at once. A boat reports
-//! its sightings: with a radio link, a late or lost report takes its sightings with it. The error
-//! of a sighting, and whether it is lost, is drawn once per decision for each team and sighted
-//! boat, whichever boat of the team sees it.
+//! its sightings, so that with a radio link they are late or lost with the report. The error of a
+//! sighting, and whether it is lost, is drawn once per decision for each team and sighted boat,
+//! whichever boat of the team sees it.
 
 use messages::picture::Contact;
 use primitives::SimTime;
@@ -16,7 +16,6 @@ use scenario::Scenario;
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
-/// The sightings of all teams in a game.
 #[derive(Clone)]
 pub(crate) struct Sightings {
     sharing: Sharing,
@@ -27,11 +26,10 @@ pub(crate) struct Sightings {
     /// The time between two decisions.
     decision: SimTime,
     state: SightingState,
-    /// Buffers for reuse.
+    /// Reused buffers.
     spare: Vec<Vec<Contact>>,
 }
 
-/// The changing state of the sightings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct SightingState {
     /// The true states at the decisions whose sightings may still be reported, oldest first.
@@ -69,7 +67,6 @@ impl Sightings {
         })
     }
 
-    /// The changing state.
     pub(crate) fn state(&self) -> &SightingState {
         &self.state
     }
@@ -79,22 +76,21 @@ impl Sightings {
         self.state = state;
     }
 
-    /// Records the true state of every boat at one decision. Reports of decisions before `oldest`
-    /// can no longer arrive.
+    /// Records every boat's true state at a decision. Reports of decisions before `oldest` can no
+    /// longer arrive.
     pub(crate) fn record_truth(&mut self, decision: u64, oldest: u64, boats: impl Iterator<Item = Contact>) {
         let oldest = oldest.saturating_sub(self.late);
         while let Some(past) = self.state.past.pop_front_if(|past| past.decision < oldest) {
             self.spare.push(past.boats);
         }
-        // Reused: a tick allocates nothing.
+        // Reused, so that a tick allocates nothing.
         let mut now = self.spare.pop().unwrap_or_default();
         now.clear();
         now.extend(boats);
         self.state.past.push_back(Truths { decision, boats: now });
     }
 
-    /// Processes the arrival of the report that `seer` sent at `decision`: its team learns what it
-    /// had seen.
+    /// Applies the report that `seer` sent at `decision`: its team learns what `seer` had seen.
     pub(crate) fn show_sightings(&mut self, seer: usize, decision: u64) {
         let Sightings { sharing, late, noises, decision: length, state: SightingState { past, known }, .. } = self;
         let seen_at = decision.checked_sub(*late);
@@ -107,7 +103,7 @@ impl Sightings {
         // By team, not by seer: two boats that see the same one do not average out its noise.
         let draw = 4 * (decision * teams + own.team.index() as u64);
         for (seen, known) in boats.iter().zip(known).filter(|(seen, _)| seen.team != own.team) {
-            // Another boat may have reported the same or a later sighting already.
+            // Another boat may already have reported the same or a later sighting.
             let is_news = known.is_none_or(|known| known.seen_ns < seen.seen_ns);
             let noise = noises[seen.vehicle.index()].at(*length * decision as i64);
             if is_news && sees(sharing, own, seen) && noise.unit(draw) >= sharing.loss {
@@ -133,7 +129,7 @@ fn sees(sharing: &Sharing, own: &Contact, other: &Contact) -> bool {
 }
 
 fn blurred(sharing: &Sharing, seen: Contact, noise: Noise, draw: u64) -> Contact {
-    // Counts chosen to be distinct from the units': a pair uses the units of twice its count.
+    // Counts chosen to differ from the units': a pair uses the units of twice its count.
     let (north, east) = noise.normal_pair(draw / 2 + (1 << 60));
     let (velocity_north, velocity_east) = noise.normal_pair(draw / 2 + 1 + (1 << 60));
     Contact {

@@ -1,4 +1,4 @@
-//! Starting positions: placed by the scenario, or drawn from the game's `spawn` stream.
+//! Starting positions: given by the scenario, or drawn from the game's `spawn` stream.
 
 use primitives::TeamId;
 use primitives::angle::wrap_pi;
@@ -8,14 +8,14 @@ use rules::Field;
 use scenario::{Problems, RealBoats, Scenario, StartPosition};
 use thiserror::Error;
 
-/// Number of draws of a starting position before the field counts as full.
+/// Number of draws after which the field counts as full.
 const TRIES: u32 = 10_000;
 
-/// A spawn area has no room.
+/// A spawn area is full.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("no free start position for {vehicle} after {TRIES} tries: enlarge its spawn area or lower gap_m")]
 pub struct SpawnError {
-    /// The vehicle without room.
+    /// The vehicle that does not fit.
     pub vehicle: String,
 }
 
@@ -25,15 +25,15 @@ pub enum NoStart {
     /// The boats do not fit into their spawn area.
     #[error(transparent)]
     SpawnError(#[from] SpawnError),
-    /// The values drawn for this seed are each allowed but inconsistent.
-    #[error("what was drawn for this seed does not go together\n{0}")]
+    /// The values drawn for this seed are each allowed, but inconsistent.
+    #[error("the randomised values for this seed are inconsistent\n{0}")]
     Draw(#[from] Problems),
-    /// The game has real boats, but runs without a clock.
+    /// The game has real boats but runs without a clock.
     #[error(transparent)]
     RealBoats(#[from] RealBoats),
 }
 
-/// The starting pose of every vehicle. Placed boats come first, then the others in order.
+/// The starting pose of every vehicle.
 ///
 /// # Errors
 /// [`SpawnError`] if a spawn area is full.
@@ -41,7 +41,7 @@ pub fn start_positions(scenario: &Scenario, seed: u64) -> Result<Vec<Pose>, Spaw
     let mut stream = Stream::new(seed, "spawn");
     let mut taken: Vec<(usize, Pose)> = Vec::new();
     for (i, vehicle) in scenario.vehicles.iter().enumerate() {
-        // Placed boats first: drawn ones must keep clear of them wherever they are in the file.
+        // Placed boats first: drawn ones must keep clear of them, wherever they are in the file.
         if let StartPosition::At(pose) = vehicle.start_position {
             taken.push((i, pose));
         }
@@ -65,7 +65,7 @@ pub fn start_positions(scenario: &Scenario, seed: u64) -> Result<Vec<Pose>, Spaw
     Ok(taken.into_iter().map(|(_, pose)| pose).collect())
 }
 
-/// A random place in a rectangle relative to the team's own end, port side first.
+/// A random place in a rectangle as seen from the team's own end, port side first.
 fn seen_from(field: &Field, team: TeamId, area: ((f64, f64), (f64, f64)), stream: &mut Stream) -> Ned {
     let ((near_m, far_m), (port_m, starboard_m)) = area;
     let along_m = stream.between(near_m, far_m);

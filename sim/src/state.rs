@@ -8,9 +8,9 @@ use crate::thruster::Shaft;
 use primitives::{Pose, SimTime};
 use serde::{Deserialize, Serialize};
 
-/// The complete changing state of a world: a step depends only on this and the commands. The
-/// additional state of a game (standing, orders in force, messages in transit, sightings) belongs
-/// to [`Contest`](crate::Contest), whose snapshot contains both.
+/// The complete changing state of a world: a step depends only on this and the commands. The state
+/// of a game (standing, orders in force, messages in transit, sightings) belongs to
+/// [`Contest`](crate::Contest), whose snapshot contains both.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// Physics ticks since the start.
@@ -21,9 +21,9 @@ pub struct State {
     pub boats: Vec<BoatState>,
     /// Flaw state of the thrusters, by vehicle index.
     pub flaws: Vec<FlawState>,
-    /// The point boats among the vehicles, in vehicle order.
+    /// State of the point boats, in vehicle order.
     pub points: Vec<KinematicState>,
-    /// State and reading of the sensors, for vehicles with sensors, in vehicle order.
+    /// State and reading of the sensors, in the order of vehicles with sensors.
     pub senses: Vec<(SensorState, Reading)>,
 }
 
@@ -42,6 +42,6 @@ pub struct BoatState {
     pub starboard: Shaft,
     /// State of the front seat's speed loop, N.
     pub speed_integral_newton: f64,
-    /// Whether its state became non-finite: it stays at rest and plays no more.
+    /// Whether its state became non-finite; the boat then stays at rest and out of play.
     pub quarantined: bool,
 }

@@ -7,7 +7,7 @@ use primitives::math;
 use scenario::boat::{Propeller, ThrustCurve, Thruster, Ventilation};
 use serde::{Deserialize, Serialize};
 
-/// A thruster with constants computed for one tick length.
+/// A thruster with constants for one tick length.
 ///
 /// A *setting* is a shaft speed in rad/s for a propeller, or a share of full ahead for a table.
 #[derive(Clone, Debug)]
@@ -22,7 +22,7 @@ pub struct ThrusterModel {
     pub newton_max: f64,
     /// Thrust at full astern (negative), N.
     pub newton_min: f64,
-    /// Largest change of the commanded setting per tick.
+    /// Maximum change of the commanded setting per tick.
     slew: f64,
     /// Smaller commands have no effect.
     deadband: f64,
@@ -96,7 +96,7 @@ impl ThrusterModel {
         self.flaws.as_ref().map(|flaws| flaws.start()).unwrap_or_default()
     }
 
-    /// The ventilation of the thrusters, if they have any.
+    /// The thrusters' ventilation, if any.
     #[inline]
     #[must_use]
     pub fn ventilation(&self) -> Option<Ventilation> {
@@ -115,7 +115,7 @@ impl ThrusterModel {
         }
     }
 
-    /// The setting for this thrust, within the limits of the thruster without flaws.
+    /// The setting for this thrust within the thruster's limits, without flaws.
     #[inline]
     #[must_use]
     pub fn setting(&self, newton: f64) -> f64 {
@@ -134,11 +134,11 @@ impl ThrusterModel {
         share * if share > 0.0 { self.ahead } else { self.astern }
     }
 
-    /// Advances both thrusters, port and starboard, by one tick towards `settings`; returns the
-    /// force on the hull at the start, half-way and at the end.
+    /// Advances both thrusters by one tick towards `settings` (port, starboard). Returns the force
+    /// on the hull at the start, half-way and at the end.
     ///
-    /// The initial `state` is [`ThrusterModel::start`]; `water_above_m` is the depth of each
-    /// propeller below the surface, used only with [`ThrusterModel::ventilation`].
+    /// The initial `state` is [`ThrusterModel::start`]. `water_above_m` is the depth of each
+    /// propeller below the surface; only [`ThrusterModel::ventilation`] uses it.
     #[inline]
     pub fn drive(
         &self,
@@ -205,7 +205,7 @@ impl ThrusterModel {
         newton / if newton < 0.0 { self.newton_min } else { self.newton_max }
     }
 
-    /// Advances a shaft by one tick towards `wanted`, without flaws; returns the thrust at the
+    /// Advances a shaft by one tick towards `wanted`, without flaws. Returns the thrust at the
     /// start, half-way and at the end, N.
     #[inline]
     pub fn respond(&self, shaft: &mut Shaft, wanted: f64) -> [f64; 3] {
@@ -286,7 +286,7 @@ mod tests {
         assert_eq!(shaft.newton, 0.0);
     }
 
-    /// Runs both thrusters through 400 ticks of changing settings. Returns a hash of the bits of
+    /// Runs both thrusters through 400 ticks of changing settings. Returns a hash over the bits of
     /// every force and moment, and the last surge and yaw.
     fn voyage(thruster: &Thruster) -> (u64, f64, f64) {
         let model = ThrusterModel::new(thruster, 0.05);
@@ -362,12 +362,12 @@ mod tests {
             ("bias of one", Flaws { bias_newton_m: 3.0, ..perfect() }, [0.5, 0.0], pair(20.0, 0.0, 0.5)),
             ("bias spinning", Flaws { bias_newton_m: 3.0, ..perfect() }, [1.0, -1.0], pair(60.0, -30.0, 3.0)),
             (
-                "ventilation of the port one",
+                "ventilation of port",
                 Flaws { ventilation: Some(Ventilation { depth_m: 0.2 }), ..perfect() },
                 [1.0, 1.0],
                 pair(30.0, 60.0, 0.0),
             ),
-            ("latency, in the end", Flaws { latency_s: 0.15, ..perfect() }, [1.0, 0.5], pair(60.0, 20.0, 0.0)),
+            ("latency, after arrival", Flaws { latency_s: 0.15, ..perfect() }, [1.0, 0.5], pair(60.0, 20.0, 0.0)),
         ] {
             let got = settled(flaws, shares);
             let off = (got.surge - want.surge).abs() + (got.yaw - want.yaw).abs();

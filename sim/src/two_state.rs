@@ -1,13 +1,13 @@
-//! A two-state Markov chain in continuous time, sampled at equal intervals: receiver outages,
-//! bursts of radio loss.
+//! A two-state Markov chain in continuous time, sampled at equal intervals, for receiver outages
+//! and bursts of radio loss.
 //!
 //! With turn-on rate λ and turn-off rate μ, a chain that is off is on after a period p with
-//! probability λ / (λ + μ) (1 − e^−(λ+μ)p). Durations are therefore exponential, and the share of
-//! time on is exactly λ / (λ + μ).
+//! probability λ / (λ + μ) (1 − e^−(λ+μ)p). Durations are exponential, and the share of time on is
+//! exactly λ / (λ + μ).
 
 use primitives::SimTime;
 
-/// The probabilities of a change between consecutive samples.
+/// Probabilities of a change between consecutive samples.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TwoStateChain {
     turns_on: f64,
@@ -20,8 +20,8 @@ impl TwoStateChain {
 
     /// A chain with these rates, 1/s, sampled every `period`.
     pub(crate) fn new(on_per_s: f64, off_per_s: f64, period: SimTime) -> TwoStateChain {
-        // In continuous time, so that a receiver's period changes only the sampling, not the rate
-        // of failures.
+        // In continuous time, so that a receiver's period changes only the sampling, not the
+        // failure rate.
         let either = -libm::expm1(-(on_per_s + off_per_s) * period.as_s()) / (on_per_s + off_per_s);
         TwoStateChain { turns_on: on_per_s * either, turns_off: off_per_s * either }
     }

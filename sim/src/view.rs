@@ -10,7 +10,7 @@ use rules::Standing;
 use rules::event::{Event, Logged};
 use scenario::Scenario;
 
-/// All data of one decision that views draw on.
+/// The data of one decision from which views are made.
 #[derive(Clone, Copy)]
 pub(crate) struct Scene<'a> {
     pub(crate) scenario: &'a Scenario,
@@ -96,7 +96,7 @@ impl Scene<'_> {
     ) {
         let team = TeamId(picture.team);
         picture.stamp = self.stamp::<Picture>();
-        // Refilled instead of rebuilt: a decision of many teams allocates nothing.
+        // Refilled instead of rebuilt, so that a decision of many teams allocates nothing.
         picture.own.clear();
         picture.contacts.clear();
         for (i, vehicle) in self.scenario.vehicles.iter().enumerate() {
@@ -123,8 +123,8 @@ impl Scene<'_> {
     pub(crate) fn own_boat(&self, i: usize) -> OwnBoat {
         let (vehicle, standing) = (VehicleId::at(i), &self.standing.vehicles[i]);
         let (nav, fix_ns, imu) = match self.world.reading(vehicle) {
-            // Sensor readings, even for the boat's own team: agents never see the true state,
-            // unless the boat's file omits sensors.
+            // Sensor readings, even for the boat's own team: agents never see the true state unless
+            // the boat's file omits sensors.
             Some(reading) => (reading.nav, reading.fix_at, reading.imu),
             None => (self.nav(i), self.world.state().now, ImuReading::of(&self.world.truth(vehicle))),
         };
@@ -171,7 +171,7 @@ impl Scene<'_> {
 /// Whether an event involves one of the team's boats or its flag, or ends the game.
 fn concerns(scenario: &Scenario, team: TeamId, event: Event) -> bool {
     let ours = |vehicle: VehicleId| scenario.vehicles[vehicle.index()].team == team;
-    // On real water, a team would not learn of events that involve neither its boats nor its flag.
+    // On real water, a team would not learn of events without its boats or its flag.
     let is_own_flag = event.flag().is_some_and(|flag| scenario.field.flags[flag.index()].team == team);
     let is_own_boat = [event.vehicle(), event.other()].into_iter().flatten().any(ours);
     is_own_flag || is_own_boat || matches!(event, Event::Ended { .. })

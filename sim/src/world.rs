@@ -1,4 +1,4 @@
-//! The world: boats in water and their contacts, one tick at a time. It is independent of the game.
+//! The world: boats in water and their contacts, tick by tick, independent of the game.
 
 use crate::contact::Displacement;
 use crate::hull::Planar;
@@ -19,7 +19,7 @@ use scenario::fault::{FaultSpan, fault_spans};
 use scenario::sea::Sea;
 use scenario::{Boat, Scenario, Source};
 
-/// Limit of the speed over the ground, m/s; a faster boat has an invalid state.
+/// Maximum speed over the ground, m/s; a faster boat has an invalid state.
 // Far above any boat, and far below the overflow of squares.
 const ABSURD_M_S: f64 = 1_000.0;
 
@@ -34,14 +34,14 @@ pub struct World {
     work: Work,
 }
 
-/// The specification of a world.
+/// What a world is created from.
 #[derive(Clone, Debug)]
 pub struct WorldPlan<'a> {
     /// The length of a tick.
     pub tick: SimTime,
     /// Wind, waves and current.
     pub sea: &'a Sea,
-    /// Defines walls and obstacles, and the area of eddies.
+    /// Provides walls and obstacles, and the area of eddies.
     pub field: &'a Field,
     /// The kinds of boat.
     pub kinds: &'a [Boat],
@@ -49,8 +49,7 @@ pub struct WorldPlan<'a> {
     pub vehicles: Vec<VehiclePlan<'a>>,
     /// The time between two readings of the sensors.
     pub sensor_period: SimTime,
-    /// Whether boats collide with each other; otherwise they pass through each other and collide
-    /// only with walls and obstacles.
+    /// Whether boats collide with each other rather than only with walls and obstacles.
     pub boats_are_solid: bool,
     /// [`World::pairs`] lists at least all pairs of boats closer than this, m.
     pub pairs_within_m: f64,
@@ -113,10 +112,10 @@ impl World {
         world
     }
 
-    /// The boats, the sea and the field of the game with this seed, at its start.
+    /// The world of a game with this seed, before its first tick.
     ///
     /// # Errors
-    /// [`NoStart`] if the boats do not fit into their spawn area or the randomised values are
+    /// [`NoStart`] if the boats do not fit into their spawn area, or the randomised values are
     /// inconsistent.
     pub fn of_game(scenario: &Scenario, seed: u64) -> Result<World, NoStart> {
         // The seed first: a file may draw values, and everything below depends on the drawn game.
@@ -146,21 +145,21 @@ impl World {
         }))
     }
 
-    /// Advances the world by one tick. `commands` are the boats' commands, by vehicle index, with
-    /// valid numbers. Returns the boats whose state became non-finite; they stay at rest from now
+    /// Advances the world by one tick. `commands` are the boats' commands with valid numbers, by
+    /// vehicle index. Returns the boats whose state became non-finite; they stay at rest from now
     /// on.
     ///
     /// # Panics
     /// If the number of commands differs from the number of vehicles.
     pub fn step(&mut self, commands: &[Order]) -> &[VehicleId] {
-        assert_eq!(commands.len(), self.state.boats.len(), "one command a vehicle");
+        assert_eq!(commands.len(), self.state.boats.len(), "one command per vehicle");
         self.work.quarantined.clear();
-        // Wind and current are processes in time: their values for this tick are computed once, for
+        // Wind and current are processes in time: their values for this tick are computed once for
         // all boats.
         self.model.sea.prepare(self.state.now);
         self.drive(commands);
-        // All boats move first without contact, and then those that touch are corrected: list order
-        // gives no advantage.
+        // All boats move first without contact, and then those that touch are corrected, so that
+        // the order of the list gives no advantage.
         self.model.contact.resolve(&self.model.hulls, &mut self.work.displacements, &self.work.pairs);
         self.settle();
         self.state.tick += 1;
@@ -184,9 +183,9 @@ impl World {
         }
     }
 
-    /// Sets boats back onto the circle (centre, radius in m) that a vehicle at its position must
-    /// stay out of, if any. A hull loses its inward velocity. A point boat behaves as in
-    /// Pyquaticus: it returns to its point of entry and continues along the circle with the
+    /// Sets boats back to the edge of the circle (centre, radius in m) that a vehicle at its
+    /// position must stay out of, if any. A hull loses its inward velocity. A point boat behaves as
+    /// in Pyquaticus: it returns to its point of entry and continues along the circle with the
     /// remaining velocity. A real boat is not moved.
     pub fn set_back(&mut self, circle: impl Fn(VehicleId, Ned) -> Option<(Ned, f64)>) {
         let World { model, state, work } = self;
@@ -195,7 +194,7 @@ impl World {
             let Some((centre, radius_m)) = circle(VehicleId::at(i), boat.pose.at) else { continue };
             let from_centre = boat.pose.at - centre;
             let distance_m = from_centre.length();
-            // At the very centre there is no direction for the set-back.
+            // At the exact centre there is no direction for the set-back.
             if distance_m >= radius_m || distance_m == 0.0 {
                 continue;
             }
@@ -238,13 +237,13 @@ impl World {
     /// # Panics
     /// If the number of boats differs.
     pub fn set_state(&mut self, state: State) {
-        assert_eq!(state.boats.len(), self.state.boats.len(), "a state of this world");
+        assert_eq!(state.boats.len(), self.state.boats.len(), "the state has another number of boats");
         self.state = state;
         self.refresh();
     }
 
-    /// Places a boat with this velocity over the ground (body axes); its thrusters keep their
-    /// state. For external control.
+    /// Places a boat with this velocity over the ground (body axes), for external control. Its
+    /// thrusters keep their state.
     ///
     /// # Panics
     /// If the vehicle does not exist.
@@ -296,15 +295,15 @@ impl World {
         self.model.attitude(i, &self.state.boats[i], self.work.rotations[i], &self.sea())
     }
 
-    /// Passes boats to rapier that are within `close_m` of anything. Slower, with the same bytes.
+    /// Passes boats within `close_m` of anything to rapier. Slower, with the same bytes.
     #[doc(hidden)]
     pub fn widen_contact(&mut self, close_m: f64) {
         self.model.contact.widen(close_m);
         self.find_pairs();
     }
 
-    /// Computes sea and motion with these instructions instead of the machine's fastest. The bytes
-    /// are the same.
+    /// Computes sea and motion with these instructions instead of the machine's fastest, with the
+    /// same bytes.
     #[doc(hidden)]
     pub fn set_instructions(&mut self, instructions: Instructions) {
         self.model.sea.set_instructions(instructions);
@@ -319,8 +318,8 @@ impl World {
     }
 
     fn find_pairs(&mut self) {
-        // One search for both, with the larger of the two reaches: with many boats the search
-        // dominates the cost.
+        // One search for both, with the larger reach: with many boats the search dominates the
+        // cost.
         let reach_m = self.model.contact.reach_m().max(self.model.pairs_within_m);
         // At the end of a tick, for the next tick and for the referee: both need near pairs at the
         // same positions.
@@ -368,8 +367,7 @@ impl World {
         }
     }
 
-    /// Applies the motion, with its changes by contact, to the boats. Non-finite states are
-    /// contained here.
+    /// Applies the motion with its changes by contact. Contains non-finite states.
     fn settle(&mut self) {
         let World { model, state, work } = self;
         let sea = model.sea.at_time(state.now);
@@ -393,8 +391,8 @@ impl World {
     }
 }
 
-/// The point where a boat inside a circle entered it, by tracing back its straight path; straight
-/// outward if it has not moved.
+/// The point where a boat inside a circle entered it, by tracing back its straight path. For a boat
+/// that has not moved, straight outward.
 fn way_back((from, to): (Ned, Ned), centre: Ned, radius_m: f64) -> Ned {
     let back = if from == to { to - centre } else { from - to };
     let back = back.scaled(1.0 / back.length());

@@ -9,7 +9,7 @@ use primitives::{Ned, Pose, SimTime};
 use scenario::sea::{Gusts, Sea, Wind};
 use sim::hull::{HullModel, Planar};
 
-/// The Otter's pose after 20 s on this sea under imposed thrust, for this tick length.
+/// The Otter's pose after 20 s on this sea under imposed thrust, with this tick length.
 fn pose_after(tick_s: f64, change: impl Fn(&mut Sea)) -> Pose {
     let mut scenario = alone("otter", "calm_salt");
     change(&mut scenario.sea);
@@ -21,8 +21,8 @@ fn pose_after(tick_s: f64, change: impl Fn(&mut Sea)) -> Pose {
     world.state().boats[0].pose
 }
 
-/// The reduction of the error with each halving of the tick, from 100 ms to 12.5 ms: of position
-/// and heading.
+/// The reduction of the error with each halving of the tick from 100 ms to 12.5 ms, in position and
+/// heading.
 fn gains(change: impl Fn(&mut Sea)) -> Vec<[f64; 2]> {
     let truth = pose_after(0.001_25, &change);
     let errors = [0.1, 0.05, 0.025, 0.0125].map(|tick_s| {
@@ -41,10 +41,11 @@ fn in_calm_the_error_falls_with_the_fourth_power_of_the_tick() {
 
 #[test]
 fn in_waves_it_falls_with_the_square_and_in_wind_in_proportion() {
-    // Waves are evaluated half-way through the tick, wind at its start; both are held for the tick.
+    // Waves are evaluated half-way through the tick, wind at its start; both are held over the
+    // tick.
     let in_waves = gains(|sea| sea.waves = Some(waves(0.3, 2.5, 0.5)));
     assert!(in_waves.iter().flatten().all(|gain| *gain > 3.5), "{in_waves:?}");
-    assert!(in_waves[2].iter().all(|gain| *gain < 4.5), "the longest ticks have more than that: {in_waves:?}");
+    assert!(in_waves[2].iter().all(|gain| *gain < 4.5), "the gain exceeds that of the longest ticks: {in_waves:?}");
     let in_wind = gains(|sea| {
         sea.wind = Some(Wind { speed_10m_m_s: 8.0, from_rad: 1.0, profile_exponent: 0.0, gusts: Gusts::None });
     });
@@ -53,7 +54,7 @@ fn in_waves_it_falls_with_the_square_and_in_wind_in_proportion() {
 
 #[test]
 fn whatever_water_a_hull_carries_along_it_stays_stable_in_a_gale() {
-    // Three times its own mass, or moment of inertia, in each direction and in all. Added mass
+    // Three times its own mass or moment of inertia, in each direction and in all. Added mass
     // applied as a force from the last acceleration diverges at one. Waves may carry a boat along,
     // but no faster than the crests of a gale.
     for (surge, sway, yaw) in [(3.0, 1.0, 1.0), (0.1, 3.0, 1.0), (0.1, 1.0, 3.0), (3.0, 3.0, 3.0)] {

@@ -1,7 +1,7 @@
-//! Heap allocations of a step: none unless hulls are close, and none that persist if they are.
+//! Heap allocations of a step: none unless hulls are close, and then none that persist.
 //!
-//! `stats_alloc` counts: it is a hundred lines, safe to use, and avoids the `unsafe` of our own
-//! allocator. It counts the whole process, so this file has one test.
+//! `stats_alloc` counts: it has a hundred lines, is safe to use, and avoids an `unsafe` allocator of
+//! our own. It counts the whole process, so this file has one test.
 
 mod common;
 
@@ -15,10 +15,10 @@ use std::alloc::System;
 #[global_allocator]
 static HEAP: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-/// Ticks until all boats have met once: the lists of near boats and of events have grown.
+/// Ticks until all boats have met once, so that the lists of near boats and events have grown.
 const WARM_UP: u32 = 1_300;
 
-/// All boats head for the middle, then away again, for half a minute each.
+/// All boats head for the centre, then away again, for half a minute each.
 fn orders(world: &World, middle: Ned, orders: &mut [Order]) {
     let away_rad = if (world.state().tick / 600).is_multiple_of(2) { 0.0 } else { std::f64::consts::PI };
     for (order, boat) in orders.iter_mut().zip(&world.state().boats) {
@@ -26,7 +26,7 @@ fn orders(world: &World, middle: Ned, orders: &mut [Order]) {
     }
 }
 
-/// Whether any two boats are so close that their hulls may be about to touch.
+/// Whether any two boats are so close that their hulls may touch in the next tick.
 fn crowded(world: &World, reach_m: f64) -> bool {
     let boats = &world.state().boats;
     let near = |i: usize| boats[..i].iter().any(|other| other.pose.at.distance(boats[i].pose.at) < reach_m);

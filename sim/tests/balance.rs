@@ -28,8 +28,8 @@ fn beam_drift_m_s(scenario: &Scenario, wind_m_s: f64) -> f64 {
     common::root((0.0, wind_m_s), |v| water * v * v + hull.sway_linear_kg_s * v - air * (wind_m_s - v) * (wind_m_s - v))
 }
 
-/// A boat of this kind after `minutes` in this wind from the north, without thrust, starting at
-/// rest on a heading.
+/// A boat of this kind after `minutes` in this wind from the north, without thrust, from rest on a
+/// heading.
 fn left_to_the_wind(kind: &str, wind_m_s: f64, heading_deg: f64, minutes: u32) -> (f64, Planar) {
     let mut scenario = alone(kind, "calm");
     scenario.sea.wind = Some(blowing(wind_m_s));
@@ -44,8 +44,8 @@ fn left_to_the_wind(kind: &str, wind_m_s: f64, heading_deg: f64, minutes: u32) -
 #[test]
 fn a_free_boat_comes_to_lie_beam_to_the_wind_and_drifts_as_the_balance_says() {
     // Equilibria of the moment: wind ahead, abeam, astern. The wind pushes the bow away, and as the
-    // boat drifts obliquely the water's Munk moment also turns it across its path: abeam is stable,
-    // ahead and astern are not.
+    // boat drifts obliquely, the water's Munk moment turns it across its path. Abeam is therefore
+    // stable; ahead and astern are not.
     for kind in ["surveyor_m1_8", "otter", "heron"] {
         for wind_m_s in [5.0, 10.0] {
             let drift_m_s = beam_drift_m_s(&alone(kind, "calm"), wind_m_s);
@@ -74,7 +74,7 @@ fn wind_right_ahead_or_astern_holds_a_boat_only_until_something_turns_it() {
     }
 }
 
-/// A boat under imposed thrust, with the data for its energy balance.
+/// A boat under imposed thrust, with its energy balance.
 struct Accounts {
     scenario: Scenario,
     world: World,
@@ -105,11 +105,11 @@ impl Accounts {
         common::hulls(&self.scenario)[0].energy_joule(self.through_water())
     }
 
-    /// Power from the thrusters, and power lost to resistance, strip by strip, W.
+    /// Power from the thrusters, and power lost to resistance strip by strip, W.
     fn powers_watt(&self) -> (f64, f64) {
         let (boat, kind) = (self.world.state().boats[0], &self.scenario.boats[0]);
         let (Planar { surge: u, sway: v, yaw: r }, hull) = (self.through_water(), &kind.hull);
-        let scenario::boat::Drive::Thrusters { thruster, .. } = &kind.drive else { panic!("it has thrusters") };
+        let scenario::boat::Drive::Thrusters { thruster, .. } = &kind.drive else { panic!("expected thrusters") };
         let (port, starboard) = (boat.port.newton, boat.starboard.newton);
         let given = (port + starboard) * u + thruster.arm_m * (port - starboard) * r;
         let plain = (hull.surge_linear_kg_s + hull.surge_quadratic_kg_m * u.abs()) * u * u
@@ -134,9 +134,9 @@ const ORDERS: [Order; 3] = [
 
 #[test]
 fn the_energy_changes_by_what_thrust_puts_in_and_resistance_takes_out() {
-    // From rest, and on through another order, in water at rest and in a current, where motion
-    // through the water counts. Integrals by Simpson's rule over pairs of ticks, short ones because
-    // shafts are quick. The Munk factor of the Surveyor is not 1.
+    // From rest, and on through another order, in still water and in a current, where motion
+    // through the water counts. Integrals by Simpson's rule over pairs of ticks, which are short
+    // because shafts are quick. The Surveyor's Munk factor is not 1.
     const TICK_S: f64 = 0.005;
     let stream = Ned { north: 0.3, east: -0.4 };
     for (kind, current) in [("otter", Ned::default()), ("otter", stream), ("surveyor_m1_8", stream), ("heron", stream)]

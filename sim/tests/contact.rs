@@ -11,7 +11,7 @@ use scenario::Scenario;
 use sim::World;
 
 const BOATS: [&str; 3] = ["heron", "otter", "surveyor_m1_8"];
-/// Largest allowed penetration of hulls, m: about a hundredth of a boat's beam.
+/// Maximum penetration of hulls, m: about a hundredth of a boat's beam.
 const DEEPEST_M: f64 = 0.02;
 const AHEAD: Order = Order::Thrust { port: 1.0, starboard: 1.0 };
 
@@ -34,7 +34,7 @@ fn boats_that_meet_head_on_stop_each_other() {
         let least_m = sail(&mut world, &scenario, [AHEAD; 2], 200);
         assert!((-DEEPEST_M..0.05).contains(&least_m), "{boat}: hulls come as near as {least_m} m");
         let [first, second] = [0, 1].map(|i| world.state().boats[i].pose.at.east);
-        assert!(first < second, "{boat}: they have passed through each other: {first} {second}");
+        assert!(first < second, "{boat}: the boats passed through each other: {first} {second}");
     }
 }
 
@@ -47,8 +47,8 @@ fn a_boat_that_rams_anothers_side_pushes_it_away() {
         let least_m = sail(&mut world, &scenario, [AHEAD, Order::Hold], 120);
         assert!((-DEEPEST_M..0.05).contains(&least_m), "{boat}: hulls come as near as {least_m} m");
         let rammed = world.state().boats[1].pose.at;
-        assert!(rammed.east > 106.2, "{boat}: it is still at {}", rammed.east);
-        assert!(world.state().boats[0].pose.at.east < rammed.east, "{boat}: it went through");
+        assert!(rammed.east > 106.2, "{boat}: not pushed away, at {}", rammed.east);
+        assert!(world.state().boats[0].pose.at.east < rammed.east, "{boat}: passed through the other boat");
     }
 }
 
@@ -95,7 +95,7 @@ fn no_collision_makes_energy() {
     }
 }
 
-/// Drives the boat for half a minute; returns its capsule's deepest penetration of the obstacle's
+/// Drives the boat for half a minute. Returns its capsule's deepest penetration of the obstacle's
 /// outline, m, and its position.
 fn run_into(obstacle: &Obstacle, start: (f64, f64, f64)) -> (f64, Ned) {
     let scenario = among("surveyor_m1_8", vec![obstacle.clone()]);
@@ -127,7 +127,7 @@ fn a_boat_stops_at_a_dolphin() {
     let dolphin = Obstacle::Circle { centre: Ned::from_xy(100.0, 100.0), radius_m: 1.5 };
     let (least_m, at) = run_into(&dolphin, (80.0, 100.0, 90.0));
     assert!((-DEEPEST_M..0.05).contains(&least_m), "{least_m} m");
-    assert!(at.east < 98.0, "it is at {at:?}");
+    assert!(at.east < 98.0, "at {at:?}");
 }
 
 #[test]
@@ -147,7 +147,7 @@ fn a_boat_stops_in_the_bay_of_a_mole() {
         let (least_m, at) = run_into(&mole, start);
         assert!((-DEEPEST_M..0.05).contains(&least_m), "from {start:?}: {least_m} m");
         let inside = (east_m.0..east_m.1).contains(&at.east) && (north_m.0..north_m.1).contains(&at.north);
-        assert!(inside, "from {start:?} it came to {at:?}");
+        assert!(inside, "from {start:?} to {at:?}");
     }
 }
 
@@ -203,7 +203,7 @@ fn asking_rapier_only_about_close_hulls_changes_no_byte() {
             world.step(&orders);
             all.step(&orders);
             collisions += came_together(&world, &scenario, &mut touching);
-            assert!(digest(&world) == digest(&all), "{game}: they differ from tick {tick} on");
+            assert!(digest(&world) == digest(&all), "{game}: different from tick {tick} on");
         }
         assert!(collisions > 3, "{game}: only {collisions} boats came together");
     }

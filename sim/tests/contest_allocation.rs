@@ -1,7 +1,7 @@
-//! Heap allocations of a decision with radio links and limits of sharing: none, once queues have
+//! Heap allocations of a decision with radio links and limits on sharing: none once queues have
 //! grown.
 //!
-//! `stats_alloc` counts, see `allocation.rs`; this file has one test, because it counts the whole
+//! `stats_alloc` counts; see `allocation.rs`. This file has one test because it counts the whole
 //! process.
 
 mod common;
@@ -41,7 +41,7 @@ fn a_decision_over_the_air_takes_nothing_from_the_heap_unless_hulls_are_close_or
         }
         contest.advance();
         let used = heap.change();
-        // The event log grows, now and then.
+        // The event log grows from time to time.
         if crowded || contest.events().len() > events || decision < WARM_UP {
             busy += 1;
         } else {

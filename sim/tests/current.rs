@@ -1,4 +1,4 @@
-//! The current against closed forms: tide, shear, eddies, and a bounded wander.
+//! The current compared with closed forms: tide, shear, eddies and a bounded wander.
 
 mod common;
 
@@ -41,12 +41,12 @@ fn a_tide_is_a_sine_of_time_on_top_of_the_mean() {
         for time_s in [0.0, 600.0, 0.25 * PERIOD_S, 0.5 * PERIOD_S, 0.75 * PERIOD_S, 7.1 * PERIOD_S] {
             let want = mean_m_s + flood_m_s.scaled(math::sin_cos(TAU * (time_s / PERIOD_S + phase)).0);
             let got = at(&model, Ned::from_xy(5.0, 6.0), time_s);
-            assert!(got.distance(want) < 1e-12, "phase {phase}, {time_s} s: {got:?}, not {want:?}");
+            assert!(got.distance(want) < 1e-12, "phase {phase}, {time_s} s: {got:?}, want {want:?}");
         }
     }
     let tide = Some(Tide { flood_m_s, period_s: PERIOD_S, phase: 0.0 });
     let flood = at(&model(&Current { tide, ..Current::default() }, 1), Ned::default(), 0.25 * PERIOD_S);
-    assert!(flood.distance(flood_m_s) < 1e-12, "a quarter of a period after slack water it floods: {flood:?}");
+    assert!(flood.distance(flood_m_s) < 1e-12, "flood a quarter of a period after slack water: {flood:?}");
 }
 
 fn shear() -> Shear {
@@ -66,8 +66,8 @@ fn a_shear_grows_across_and_turns_a_hull_that_lies_across() {
         let got = at(&model, Ned::from_xy(123.0, y), 0.0);
         assert!(got.distance(Ned::from_xy(want_m_s, 0.0)) < 1e-15, "y = {y}: {got:?}");
     }
-    // Seen from above, the water south of a place flows east faster: a hull that points north is
-    // turned anticlockwise by the whole shear, one that points east not at all.
+    // Seen from above, the water south of a place flows east faster. A hull that points north is
+    // turned anticlockwise by the whole shear; one that points east is not turned.
     let now = model.at_time(SimTime::ZERO);
     for (heading_deg, want_rad_s) in [(0.0, -0.004), (180.0, -0.004), (90.0, 0.0), (45.0, -0.002)] {
         let place = Ned::from_xy(5.0, -40.0);
@@ -119,7 +119,7 @@ fn an_eddy_has_its_circulation_no_divergence_and_the_vorticity_of_a_gaussian() {
         };
         let got: f64 = (0..720).map(step).sum();
         let want = gamma * (1.0 - math::exp(-(radius_m / CORE_M) * (radius_m / CORE_M)));
-        assert!((got / want - 1.0).abs() < 1e-5, "radius {radius_m}: {got}, not {want} m²/s");
+        assert!((got / want - 1.0).abs() < 1e-5, "radius {radius_m}: {got}, want {want} m²/s");
     }
     const STEP_M: f64 = 1e-3;
     for (x, y) in [(41.0, -9.0), (60.0, 0.0), (10.0, -30.0), (120.0, 80.0)] {
@@ -224,7 +224,10 @@ fn a_wander_is_clipped_to_its_bounds_and_untouched_between() {
         assert!((bound - free.clamp(0.05, 0.3)).abs() < 1e-15, "{free} became {bound}");
         clipped += u32::from(free != bound);
     }
-    assert!((3_000..7_000).contains(&clipped), "a fifth to a third are beyond: {clipped} of 20 000");
+    assert!(
+        (3_000..7_000).contains(&clipped),
+        "{clipped} of 20 000 are beyond the bounds, expected a fifth to a third"
+    );
 }
 
 #[test]

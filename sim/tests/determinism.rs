@@ -1,4 +1,4 @@
-//! Equal seeds and orders give equal bytes; invalid bytes and numbers are handled.
+//! Equal seeds and orders give equal bytes; invalid bytes and numbers are rejected.
 
 mod common;
 
@@ -11,7 +11,7 @@ use rules::event::{EventCursor, Logged};
 use scenario::{Scenario, StartPosition};
 use sim::{Contest, RestoreError, World};
 
-/// Gives orders that make a lively game, depending only on time and vehicle, and plays a decision.
+/// Gives orders for a lively game, which depend only on time and vehicle, and plays a decision.
 fn play(contest: &mut Contest) {
     contest.pictures();
     let middle = contest.scenario().field.middle();
@@ -29,7 +29,7 @@ fn play(contest: &mut Contest) {
     contest.advance();
 }
 
-/// Plays several decisions; returns how often boats came together.
+/// Plays several decisions. Returns how often boats came together.
 fn sail(contest: &mut Contest, decisions: u32) -> usize {
     let mut cursor = EventCursor::default();
     cursor.read(contest.events());
@@ -42,7 +42,7 @@ fn started(scenario: &Scenario, seed: u64) -> Contest {
     Contest::new(scenario, seed).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Waves, wind, sensors and flawed thrusters, with radio links and limits of sharing.
+/// Waves, wind, sensors and flawed thrusters, with radio links and limits on sharing.
 fn hampered() -> Scenario {
     let mut scenario = shipped("pav01_afloat.toml");
     common::hamper(&mut scenario);
@@ -54,12 +54,12 @@ fn the_same_seed_makes_the_same_bytes_and_another_seed_other_ones() {
     let scenario = shipped("swarm_20v20.toml");
     let run = |seed: u64| {
         let mut contest = started(&scenario, seed);
-        assert!(sail(&mut contest, 750) > 0, "seed {seed}: nobody met anybody");
+        assert!(sail(&mut contest, 750) > 0, "seed {seed}: no boats met");
         (contest.snapshot(), contest.digest())
     };
     let (first, again, other) = (run(1), run(1), run(2));
-    assert!(first == again, "one seed, two games");
-    assert!(first.0 != other.0 && first.1 != other.1, "two seeds, one game");
+    assert!(first == again, "one seed gave two games");
+    assert!(first.0 != other.0 && first.1 != other.1, "two seeds gave one game");
 }
 
 #[test]
@@ -82,7 +82,7 @@ fn a_game_goes_on_from_a_snapshot_as_if_it_had_never_stopped() {
             let mut other = started(scenario, 3);
             sail(&mut other, leg + 25);
             other.restore(&bytes).unwrap();
-            assert!(other.snapshot() == bytes, "{name}, leg {leg}: not what was put in");
+            assert!(other.snapshot() == bytes, "{name}, leg {leg}: not the restored state");
             assert_eq!(other.last_pictures(), contest.last_pictures(), "{name}, leg {leg}");
             for vehicle in (0..scenario.vehicles.len()).map(VehicleId::at) {
                 assert_eq!(other.world().truth(vehicle), contest.world().truth(vehicle), "{name}, leg {leg}");
@@ -90,10 +90,10 @@ fn a_game_goes_on_from_a_snapshot_as_if_it_had_never_stopped() {
             collisions += sail(&mut contest, 49);
             sail(&mut other, 49);
             assert_eq!(other.pictures(), contest.pictures(), "{name}, leg {leg}");
-            assert!(contest.snapshot() == other.snapshot(), "{name}, leg {leg}: they differ");
+            assert!(contest.snapshot() == other.snapshot(), "{name}, leg {leg}: different snapshots");
             assert_eq!(contest.outcome(), other.outcome(), "{name}, leg {leg}");
         }
-        assert!(!meet || collisions > 0, "{name}: nobody met anybody");
+        assert!(!meet || collisions > 0, "{name}: no boats met");
     }
 }
 
@@ -142,10 +142,10 @@ fn bytes_that_are_no_snapshot_of_this_game_change_nothing() {
         };
         refuse(&bytes, &[want], &format!("byte {at} changed"));
     }
-    refuse(&[good.clone(), vec![0]].concat(), &[Damaged], "a byte too many");
-    refuse(&started(&scenario, 2).snapshot(), &[OtherScenario], "of another seed");
+    refuse(&[good.clone(), vec![0]].concat(), &[Damaged], "one byte too many");
+    refuse(&started(&scenario, 2).snapshot(), &[OtherScenario], "from another seed");
     let other = Scenario { order_ttl_s: 7.0, ..scenario };
-    refuse(&started(&other, 1).snapshot(), &[OtherScenario], "of another scenario");
+    refuse(&started(&other, 1).snapshot(), &[OtherScenario], "from another scenario");
 }
 
 #[test]
@@ -207,7 +207,7 @@ fn a_boat_whose_numbers_go_bad_is_taken_out_and_the_others_sail_on() {
     assert!(boat.quarantined && boat.nu == sim::hull::Planar::default() && boat.pose.at.is_finite(), "{boat:?}");
     for i in [0, 2, 3] {
         let [one, other] = [&contest, &healthy].map(|contest| contest.world().state().boats[i]);
-        assert_eq!(one, other, "boat {i} sails on as if nothing had happened");
+        assert_eq!(one, other, "boat {i} is not affected");
     }
 }
 
@@ -249,7 +249,7 @@ fn boats_start_inside_of_their_areas_and_apart() {
     }
     seen.sort();
     seen.dedup();
-    assert_eq!(seen.len(), 20, "every seed is another start");
+    assert_eq!(seen.len(), 20, "every seed gives another start");
 }
 
 #[test]
@@ -260,7 +260,7 @@ fn a_full_area_says_which_boat_has_no_start_position() {
             *gap_m = 30.0;
         }
     }
-    let error = World::of_game(&scenario, 1).err().expect("no room for twenty boats 30 m apart");
+    let error = World::of_game(&scenario, 1).err().expect("twenty boats 30 m apart do not fit");
     let sim::NoStart::SpawnError(error) = error else { panic!("{error}") };
     assert!(scenario.vehicles.iter().any(|vehicle| vehicle.name == error.vehicle), "{error}");
     assert!(error.to_string().contains(&error.vehicle) && error.to_string().contains("gap_m"), "{error}");

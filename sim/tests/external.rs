@@ -1,8 +1,8 @@
-//! Real boats in a game: reported, judged, collided with, lost and found.
+//! Real boats in a game: reports, rules, collisions, loss and return.
 
 mod common;
 
-use common::{gap_m, order, written};
+use common::{gap_m, order, started, written};
 use messages::external::ExternalOrder;
 use messages::picture::Nav;
 use messages::{Message, Order};
@@ -27,17 +27,13 @@ fn game(red_at: &str, more: &str) -> Scenario {
     ))
 }
 
-fn afloat(scenario: &Scenario) -> Contest {
-    Contest::new(scenario, 1).expect("there is room")
-}
-
 fn nav(x: f64, y: f64, heading_deg: f64, speed_m_s: f64) -> Nav {
     let psi_rad = rad_from_compass_deg(heading_deg);
     Nav { north_m: y, east_m: x, psi_rad, surge_m_s: speed_m_s, ..Nav::default() }
 }
 
 fn report(contest: &mut Contest, nav: Nav) {
-    contest.report(REAL, nav, contest.now(), true).expect("a sound report");
+    contest.report(REAL, nav, contest.now(), true).expect("the report is valid");
 }
 
 /// Drives the real boat along y = 40 from one place to another, with a report at every decision.
@@ -59,7 +55,7 @@ fn events(contest: &Contest) -> Vec<Event> {
 
 #[test]
 fn a_real_boat_that_is_reported_at_the_flag_grabs_it() {
-    let mut contest = afloat(&game("at = [150, 5]", ""));
+    let mut contest = started(&game("at = [150, 5]", ""));
     sail(&mut contest, 50.0, 135.0, 3.0);
     assert!(events(&contest).contains(&Event::Grabbed { vehicle: REAL, flag: FlagId(1) }), "{:?}", events(&contest));
     assert_eq!(contest.frame(&mut EventCursor::default()).vehicles[0].carrying, 1);
@@ -73,10 +69,14 @@ fn a_real_boat_is_tagged_and_its_effective_command_is_what_the_rules_make_of_its
     let slow = |tagged_boat| {
         let mut scenario = game("", "");
         (scenario.rules.tagged_boat, scenario.rules.tagged_speed_factor) = (tagged_boat, 0.5);
-        let mut contest = afloat(&scenario);
+        let mut contest = started(&scenario);
         order(&mut contest, REAL, steer);
         report(&mut contest, nav(50.0, 40.0, 90.0, 0.0));
-        assert_eq!(contest.effective_command(REAL), Order::Steer { heading_rad: 1.0, speed_m_s: 3.0 }, "its top speed");
+        assert_eq!(
+            contest.effective_command(REAL),
+            Order::Steer { heading_rad: 1.0, speed_m_s: 3.0 },
+            "limited to its top speed"
+        );
         sail(&mut contest, 60.0, 103.0, 3.0);
         let tagged = Event::Tagged { vehicle: REAL, cause: TagCause::Opponent(OTHER) };
         assert!(events(&contest).contains(&tagged), "{:?}", events(&contest));
@@ -88,11 +88,13 @@ fn a_real_boat_is_tagged_and_its_effective_command_is_what_the_rules_make_of_its
     assert_eq!(contest.effective_command(REAL), Order::Thrust { port: 0.5, starboard: -0.25 });
 
     let mut contest = slow(TaggedBoat::IsDriven);
-    let Order::Steer { heading_rad, speed_m_s } = contest.effective_command(REAL) else { panic!("it is driven home") };
+    let Order::Steer { heading_rad, speed_m_s } = contest.effective_command(REAL) else {
+        panic!("expected a steer order")
+    };
     assert!(wrap_pi(heading_rad - rad_from_compass_deg(270.0)).abs() < 1e-9 && speed_m_s == 1.5);
     // The command to the boat is valid.
     let sent = messages::VehicleOrder::new(REAL, contest.effective_command(REAL));
-    assert!(sent.order().expect("a known kind").check().is_ok() && ExternalOrder::VERSION == 2);
+    assert!(sent.order().expect("the kind is known").check().is_ok() && ExternalOrder::VERSION == 2);
     // A boat without an agent holds.
     contest.lose_agent(REAL);
     assert_eq!(contest.effective_command(REAL), Order::Hold);
@@ -100,14 +102,14 @@ fn a_real_boat_is_tagged_and_its_effective_command_is_what_the_rules_make_of_its
 
 #[test]
 fn the_cause_for_which_a_boat_holds_is_known_and_the_first_of_several_counts() {
-    let mut contest = afloat(&game("at = [150, 5]", ""));
+    let mut contest = started(&game("at = [150, 5]", ""));
     let shows = |contest: &Contest, want: [Option<HoldCause>; 2]| {
         assert_eq!([REAL, OTHER].map(|vehicle| contest.hold_cause(vehicle)), want);
         for (vehicle, want) in [REAL, OTHER].into_iter().zip(want) {
             assert_eq!(contest.effective_command(vehicle) == Order::Hold, want.is_some(), "{want:?}");
         }
     };
-    // The real boat has had no report, the other no order.
+    // The real boat has had no report, and the other no order.
     shows(&contest, [Some(HoldCause::NavLost), Some(HoldCause::Ordered)]);
     report(&mut contest, nav(50.0, 40.0, 90.0, 0.0));
     for vehicle in [REAL, OTHER] {
@@ -125,7 +127,7 @@ fn the_cause_for_which_a_boat_holds_is_known_and_the_first_of_several_counts() {
 #[test]
 fn a_simulated_boat_that_bumps_into_a_real_one_is_stopped_and_the_real_one_is_not() {
     let scenario = game("at = [62, 40]\nheading_deg = 270", "");
-    let mut contest = afloat(&scenario);
+    let mut contest = started(&scenario);
     let mut least_m = f64::INFINITY;
     for _ in 0..300 {
         report(&mut contest, nav(50.0, 40.0, 0.0, 0.0));
@@ -142,13 +144,13 @@ fn a_simulated_boat_that_bumps_into_a_real_one_is_stopped_and_the_real_one_is_no
 #[test]
 fn a_real_boat_pushes_a_simulated_one_out_of_its_way() {
     let scenario = game("at = [58, 40]\nheading_deg = 0", "");
-    let mut contest = afloat(&scenario);
+    let mut contest = started(&scenario);
     sail(&mut contest, 50.0, 65.0, 1.5);
     let [real, other] = [0, 1].map(|i| contest.world().state().boats[i].pose.at);
     assert!(real.distance(Ned::from_xy(65.0, 40.0)) < 1e-9, "{real:?}");
     assert!(other.distance(Ned::from_xy(58.0, 40.0)) > 1.0, "{other:?}");
     assert!(gap_m(contest.world(), &scenario, 0, 1) > -0.05);
-    // A real boat suddenly reported on top of a simulated one does not throw it out of the sea.
+    // A real boat suddenly reported on top of a simulated one must not throw it out of the sea.
     report(&mut contest, nav(other.east, other.north, 45.0, 0.0));
     advance(&mut contest, 10);
     let thrown_m = contest.world().state().boats[1].pose.at.distance(other);
@@ -157,16 +159,16 @@ fn a_real_boat_pushes_a_simulated_one_out_of_its_way() {
 
 #[test]
 fn between_reports_a_real_boat_goes_on_as_it_did_and_then_it_is_lost() {
-    let mut contest = afloat(&game("", "link = { delay_s = 5 }"));
+    let mut contest = started(&game("", "link = { delay_s = 5 }"));
     advance(&mut contest, 3);
-    assert_eq!(events(&contest), [Event::NavLost(REAL)], "it was never reported");
+    assert_eq!(events(&contest), [Event::NavLost(REAL)], "lost before the first report");
     assert!(!contest.has_position(REAL) && contest.has_position(OTHER));
     let start_position = contest.world().state().boats[0].pose;
-    let unknown = *contest.pictures()[0].own(REAL).expect("its own boat");
+    let unknown = *contest.pictures()[0].own(REAL).expect("the picture has the boat");
     assert_eq!(
         (unknown.nav.pose(), unknown.fix_ns),
         (start_position, SimTime::LONG_AGO),
-        "it lies at its start_position"
+        "at rest at its start position"
     );
 
     let (u, r) = (2.0, 0.25);
@@ -174,7 +176,7 @@ fn between_reports_a_real_boat_goes_on_as_it_did_and_then_it_is_lost() {
     contest.advance();
     // Taken 0.1 s ago and delayed since.
     let fix_at = contest.now() - SimTime::from_s(0.1);
-    contest.report(REAL, fix, fix_at, true).expect("a sound report");
+    contest.report(REAL, fix, fix_at, true).expect("the report is valid");
     // No simulated radio between it and its mind.
     order(&mut contest, REAL, Order::Thrust { port: 1.0, starboard: 1.0 });
     for decisions in 0..30 {
@@ -183,15 +185,18 @@ fn between_reports_a_real_boat_goes_on_as_it_did_and_then_it_is_lost() {
         let want = Ned::from_xy(50.0 + u / r * (1.0 - turn.1), 40.0 + u / r * turn.0);
         assert!(boat.pose.at.distance(want) < 1e-9, "after {since_s} s: {:?} is not {want:?}", boat.pose.at);
         assert!(since_s > 0.999 || boat.nu.surge == u);
-        let own = *contest.pictures()[0].own(REAL).expect("its own boat");
-        assert_eq!((own.nav, own.fix_ns), (fix, fix_at), "its own people know what it said");
+        let own = *contest.pictures()[0].own(REAL).expect("the picture has the boat");
+        assert_eq!((own.nav, own.fix_ns), (fix, fix_at), "its own team knows the reported fix");
         let seen = contest.pictures()[1].contacts[0];
-        assert!(Ned { north: seen.north_m, east: seen.east_m }.distance(want) < 1e-9, "others see where it is by now");
+        assert!(
+            Ned { north: seen.north_m, east: seen.east_m }.distance(want) < 1e-9,
+            "others see the extrapolated position"
+        );
         let is_lost = since_s > 1.5;
         assert_eq!(contest.effective_command(REAL) == Order::Hold, is_lost, "after {since_s} s, {decisions} decisions");
         contest.advance();
     }
-    assert_eq!(contest.world().state().boats[0].nu, sim::hull::Planar::default(), "it lies where it was");
+    assert_eq!(contest.world().state().boats[0].nu, sim::hull::Planar::default(), "at rest where it was");
     let lost = Event::NavLost(REAL);
     let back = Event::NavBack(REAL);
     assert_eq!(events(&contest), [lost, back, lost]);
@@ -203,7 +208,7 @@ fn between_reports_a_real_boat_goes_on_as_it_did_and_then_it_is_lost() {
 
 #[test]
 fn reports_that_cannot_be_relied_on_change_nothing_and_bad_ones_are_refused() {
-    let mut contest = afloat(&game("", ""));
+    let mut contest = started(&game("", ""));
     report(&mut contest, nav(50.0, 40.0, 90.0, 1.0));
     contest.advance();
     let before = contest.digest();
@@ -215,7 +220,7 @@ fn reports_that_cannot_be_relied_on_change_nothing_and_bad_ones_are_refused() {
     }
     assert_eq!(contest.report(OTHER, Nav::default(), now, true), Err(BadReport::Simulated));
     assert_eq!(contest.digest(), before);
-    // A future fix is treated as one of the next decision at most.
+    // A fix in the future counts as at most one decision ahead.
     assert_eq!(contest.report(REAL, nav(50.0, 40.0, 0.0, 1.0), SimTime::NEVER, true), Ok(()));
     assert!(contest.world().state().boats[0].pose.at.distance(Ned::from_xy(50.0, 39.9)) < 1e-9);
     advance(&mut contest, 40);
@@ -227,7 +232,7 @@ fn reports_that_cannot_be_relied_on_change_nothing_and_bad_ones_are_refused() {
 fn a_real_boat_has_no_physics_and_no_sensors_of_ours() {
     let mut scenario = game("at = [62, 40]", "sea = \"../seas/gale.toml\"");
     scenario.rules.flag_keepout_m = 8.0;
-    let mut contest = afloat(&scenario);
+    let mut contest = started(&scenario);
     order(&mut contest, REAL, Order::Thrust { port: 1.0, starboard: 1.0 });
     // In the keep-out circle of its own flag.
     for _ in 0..50 {
@@ -235,16 +240,16 @@ fn a_real_boat_has_no_physics_and_no_sensors_of_ours() {
         contest.advance();
     }
     let truth = contest.frame(&mut EventCursor::default()).vehicles[0];
-    assert_eq!((truth.nav.east_m, truth.nav.north_m), (22.0, 40.0), "nobody sets it back, and no wind drives it");
+    assert_eq!((truth.nav.east_m, truth.nav.north_m), (22.0, 40.0), "neither set back nor driven by the wind");
     let unknown = [truth.heave_m, truth.roll_rad, truth.pitch_rad, truth.port_newton, truth.starboard_newton];
     assert_eq!(unknown, [0.0; 5]);
-    assert!(events(&contest).contains(&Event::EnteredKeepout(REAL)), "the referee has seen it");
+    assert!(events(&contest).contains(&Event::EnteredKeepout(REAL)), "the referee noticed the entry");
 }
 
 #[test]
 fn the_same_reports_make_the_same_game() {
     let play = |speed_m_s: f64| {
-        let mut contest = afloat(&game("at = [100, 40]", "sea = \"../seas/gale.toml\""));
+        let mut contest = started(&game("at = [100, 40]", "sea = \"../seas/gale.toml\""));
         sail(&mut contest, 50.0, 110.0, speed_m_s);
         (contest.digest(), contest.snapshot())
     };

@@ -1,4 +1,4 @@
-//! Faults during a game: they occur at the right time on the right boat, and end again.
+//! Faults during a game: they affect the right boat at the right time, and end.
 
 use messages::Order;
 use primitives::{SimTime, VehicleId};
@@ -13,9 +13,10 @@ const SPARED: VehicleId = VehicleId(1);
 /// Two against two; the first boat has a fault from 20 s to 40 s.
 fn scenario(kind: &str, more: &str) -> Scenario {
     let fault = format!("fault.tried={{ kind = \"{kind}\", boats = [\"blue_1\"], at_s = 20, for_s = 20{more} }}");
-    let overrides = Overrides { settings: vec![Setting::parse(&fault).expect("it can be")], ..Overrides::default() };
+    let overrides =
+        Overrides { settings: vec![Setting::parse(&fault).expect("the fault is valid")], ..Overrides::default() };
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/surveyor_2v2.toml");
-    load_with(&file, &overrides).unwrap_or_else(|problems| panic!("{problems}")).of_seed(3).expect("it can be")
+    load_with(&file, &overrides).unwrap_or_else(|problems| panic!("{problems}")).of_seed(3).expect("the fault is valid")
 }
 
 /// Plays until a time; all boats steer a slow circle.
@@ -24,7 +25,7 @@ fn play_to(contest: &mut Contest, until_s: f64) {
         let at = contest.pictures()[0].stamp.valid_ns;
         for i in 0..4 {
             let heading_rad = 0.05 * at.as_s();
-            contest.order(VehicleId(i), Order::Steer { heading_rad, speed_m_s: 2.0 }, at).expect("it can be");
+            contest.order(VehicleId(i), Order::Steer { heading_rad, speed_m_s: 2.0 }, at).expect("the fault is valid");
         }
         contest.advance();
     }
@@ -34,10 +35,10 @@ fn speed_m_s(contest: &Contest, vehicle: VehicleId) -> f64 {
     contest.world().state().boats[vehicle.index()].nu.surge
 }
 
-/// Errors of the position that a boat's receiver reports, m, and of its compass heading, rad.
+/// Errors of a boat's reported position, m, and of its compass heading, rad.
 fn errors(contest: &Contest, vehicle: VehicleId) -> (f64, f64) {
     let pose = contest.world().state().boats[vehicle.index()].pose;
-    let nav = contest.world().reading(vehicle).expect("it can be").nav;
+    let nav = contest.world().reading(vehicle).expect("the fault is valid").nav;
     (nav.at().distance(pose.at), primitives::angle::wrap_pi(nav.psi_rad - pose.psi_rad))
 }
 
@@ -57,7 +58,7 @@ fn an_agent_that_is_lost_leaves_its_boat_holding_until_it_is_back() {
         .filter_map(|logged| match logged.event {
             Event::AgentLost(HIT) => Some((logged.at.as_s(), true)),
             Event::AgentBack(HIT) => Some((logged.at.as_s(), false)),
-            Event::AgentLost(other) | Event::AgentBack(other) => panic!("{other:?} was not hit"),
+            Event::AgentLost(other) | Event::AgentBack(other) => panic!("{other:?} has no fault"),
             _ => None,
         })
         .collect();
@@ -74,7 +75,7 @@ fn without_its_link_a_boat_is_neither_heard_nor_ordered() {
     play_to(&mut contest, 39.0);
     assert_eq!(known(&mut contest, 0), before[0]);
     assert_ne!(known(&mut contest, 1), before[1]);
-    // Its last order has expired, and it holds.
+    // Its last order has expired, so it holds.
     assert!(speed_m_s(&contest, HIT) < 0.5 && speed_m_s(&contest, SPARED) > 1.0);
     play_to(&mut contest, 50.0);
     assert_ne!(known(&mut contest, 0), before[0]);
@@ -109,7 +110,7 @@ fn a_compass_is_off_by_what_is_said_at_its_time() {
     for contest in [&mut with, &mut without] {
         play_to(contest, 20.1);
     }
-    // The boats have barely separated: the readings differ by the fault.
+    // The boats have barely separated, so the readings differ by the fault.
     let off = |contest: &Contest| errors(contest, HIT).1;
     assert!((off(&with) - off(&without) - 30_f64.to_radians()).abs() < 0.05, "{} {}", off(&with), off(&without));
     play_to(&mut with, 41.0);

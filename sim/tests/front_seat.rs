@@ -1,4 +1,4 @@
-//! The front seat: how well the shipped boats follow steer orders.
+//! The front seat: how well the shipped boats follow orders for course and speed.
 
 mod common;
 
@@ -30,12 +30,12 @@ fn a_right_turn_at_speed_settles_without_much_overshoot() {
         let mut farthest_rad = 0.0_f64;
         steer(&mut world, 90.0, speed_m_s, 60, |boat| farthest_rad = farthest_rad.max(boat.pose.psi_rad));
         let over_deg = farthest_rad.to_degrees() - 90.0;
-        assert!(over_deg < 0.15 * 90.0, "{boat} turns {over_deg} degrees too far");
+        assert!(over_deg < 0.15 * 90.0, "{boat} overshoots by {over_deg} degrees");
         let mut off_rad = 0.0_f64;
         steer(&mut world, 90.0, speed_m_s, 20, |boat| {
             off_rad = off_rad.max(wrap_pi(boat.pose.psi_rad - 90_f64.to_radians()).abs());
         });
-        assert!(off_rad.to_degrees() < 3.0, "{boat} stays {} degrees off", off_rad.to_degrees());
+        assert!(off_rad.to_degrees() < 3.0, "{boat} keeps an error of {} degrees", off_rad.to_degrees());
     }
 }
 
@@ -51,7 +51,7 @@ fn a_change_of_speed_settles_at_the_speed_ordered() {
             });
             assert!(
                 least > 0.98 * wanted_m_s && most < 1.02 * wanted_m_s,
-                "{boat}: {wanted_m_s} m/s is {least} to {most}"
+                "{boat}: {least} to {most} m/s, want {wanted_m_s} m/s"
             );
         }
     }

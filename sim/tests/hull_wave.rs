@@ -1,4 +1,4 @@
-//! Wave effects on a hull, against linear theory integrated by brute force and published
+//! Wave effects on a hull, compared with linear theory integrated by brute force and with published
 //! magnitudes.
 
 mod common;
@@ -22,7 +22,7 @@ fn surveyor() -> Boat {
     boat(1.8, 0.9, 0.14)
 }
 
-/// A boat so small that it feels the waves at a point of the surface.
+/// A boat so small that it feels the waves at a single point.
 fn cork() -> Boat {
     boat(1e-4, 1e-4, 1e-6)
 }
@@ -41,7 +41,7 @@ fn pose(north: f64, east: f64, psi_rad: f64) -> Pose {
     Pose { at: Ned { north, east }, psi_rad }
 }
 
-/// Mean square of one component of the velocity over places and times, on this heading.
+/// Mean square of a component of the velocity over places and times, on this heading.
 fn mean_square(hull: &HullWaves, psi_rad: f64, part: impl Fn(Planar) -> f64) -> f64 {
     let at = |i: usize| hull.at(pose((i % 100) as f64 * 7.3, 0.0, psi_rad), 0.37 * i as f64).velocity;
     mean_of(20_000, |i| square(part(at(i))))
@@ -77,7 +77,7 @@ fn the_acceleration_at_the_surface_is_minus_g_times_its_gradient() {
             let got = hull.at(at, t).acceleration;
             let got = got.in_ned(at.rotation());
             let off = got + field.surface(at.at, t).slope.scaled(GRAVITY_M_S2);
-            assert!(off.length() < 1e-4, "{depth_m:?}, {t} s: off by {off:?} m/s2");
+            assert!(off.length() < 1e-4, "{depth_m:?}, {t} s: error {off:?} m/s²");
         }
     }
 }
@@ -88,7 +88,7 @@ fn a_hull_feels_the_mean_and_the_first_moment_over_its_length_and_beam() {
     let field = sea(0.3, 1.8, Spreading::CosineSquared);
     let (hull, point) = (HullWaves::new(&field, &boat, DENSITY_KG_M3), HullWaves::new(&field, &cork(), DENSITY_KG_M3));
     let (n_x, n_y) = (60, 30);
-    // Headings with an entry in the tables: the entry itself is tested.
+    // Headings with an entry in the tables, so that the entry itself is tested.
     for (psi_deg, t) in [(0.0, 1.0), (35.0, 2.0), (90.0, 5.0), (-145.0, 8.0)] {
         let psi_rad = f64::to_radians(psi_deg);
         let rotation = Rotation::from_heading(psi_rad);
@@ -122,14 +122,14 @@ fn a_hull_does_not_feel_waves_that_fit_into_it() {
     };
     for whole in [1.0, 2.0, 3.0] {
         let left = head_on(boat.length_m / whole);
-        assert!(left < 1e-12, "{whole} waves under the hull leave {left} of the surge");
+        assert!(left < 1e-12, "with {whole} waves under the hull, {left} of the surge remains");
     }
     assert!(head_on(boat.length_m / 3.5) < 0.06, "short waves are filtered");
     assert!(head_on(100.0 * boat.length_m) > 0.99, "long waves are not");
 }
 
-/// Interpolation errors of surge, sway and yaw velocity and drift force between the headings of the
-/// table: root mean square over headings and times, relative to their own.
+/// Interpolation errors between the headings of the table, in surge, sway and yaw velocity and
+/// drift force: root mean squares over headings and times, relative to the values.
 fn off_between_headings(field: &WaveField, boat: &Boat) -> [f64; 4] {
     let (steps, bin_rad) = (10, TAU / 72.0);
     let hull = HullWaves::new(field, boat, DENSITY_KG_M3);
@@ -159,7 +159,7 @@ fn off_between_headings(field: &WaveField, boat: &Boat) -> [f64; 4] {
 #[test]
 fn between_the_headings_of_the_table_the_error_is_a_small_part_of_the_motion() {
     // For the shipped boats at most 0.4 %, in yaw. The response of a long hull to waves several
-    // times shorter varies faster with heading than the table, and is small.
+    // times shorter varies faster with heading than the table, but is small.
     let heron = (boat(1.35, 1.0, 0.1), 0.005);
     let (surveyor, otter) = ((surveyor(), 0.005), (boat(2.0, 1.08, 0.195), 0.005));
     for (hs_m, tp_s, ten_metres) in [(0.1, 1.5, 0.03), (0.3, 2.0, 0.012), (0.5, 3.0, 0.006), (1.0, 5.0, 0.005)] {
@@ -167,7 +167,7 @@ fn between_the_headings_of_the_table_the_error_is_a_small_part_of_the_motion() {
             for (boat, within) in [&heron, &surveyor, &otter, &(boat(10.0, 3.0, 0.6), ten_metres)] {
                 let off = off_between_headings(&sea(hs_m, tp_s, spreading), boat);
                 let what = format!("{} m in {hs_m} m, {tp_s} s, {spreading:?}", boat.length_m);
-                assert!(off.iter().all(|off| off < within), "{what}: off by {off:?}, within {within}");
+                assert!(off.iter().all(|off| off < within), "{what}: errors {off:?}, limit {within}");
             }
         }
     }
@@ -208,7 +208,7 @@ fn the_drift_force_of_a_regular_wave_is_steady_and_points_where_it_goes() {
             // Error of linear interpolation between the headings of the table: (5°)² / 4.
             let within = 2e-3 * boat.length_m * per_metre;
             let off = ((got.surge - want.0).abs(), (got.sway - want.1).abs());
-            assert!(off.0 < within && off.1 < within, "{off_bow_deg} deg, {depth_m:?}: {got:?}, not {want:?}");
+            assert!(off.0 < within && off.1 < within, "{off_bow_deg} deg, {depth_m:?}: {got:?}, want {want:?}");
         }
     }
 }
@@ -236,8 +236,8 @@ fn the_drift_force_comes_in_groups_about_the_closed_mean() {
 fn orbital_motion_and_drift_have_the_magnitudes_computed_elsewhere() {
     // Hs and Tp; rms orbital velocity at a point and over the hull; rms slope; Stokes drift at the
     // surface; mean drift force beam-on and head-on, for 1.8 m by 0.9 m by 0.14 m. From a separate
-    // calculation, long-crested, for the band from 0.6 to 3.5 peak frequencies. Here the band
-    // extends to 5, and quantities that weight high frequencies are larger by up to a sixth.
+    // calculation for long-crested waves from 0.6 to 3.5 peak frequencies. The band here extends to
+    // 5, so quantities that weight high frequencies are larger by up to a sixth.
     let rows = [
         (0.2, 2.0, 0.19, 0.13, 5.7, 0.036, 5.7, 2.8),
         (0.3, 2.5, 0.23, 0.18, 5.4, 0.041, 6.8, 3.4),
@@ -253,21 +253,22 @@ fn orbital_motion_and_drift_have_the_magnitudes_computed_elsewhere() {
         let drift = |psi_rad| field.mean_drift_newton(&boat, DENSITY_KG_M3, psi_rad);
         let got = [
             ("orbital velocity", field.orbital_rms_m_s(), orbital),
-            ("that on the hull", mean_square(&hull, toward_rad, |v| v.surge).sqrt(), on_hull),
+            ("orbital velocity on the hull", mean_square(&hull, toward_rad, |v| v.surge).sqrt(), on_hull),
             ("slope", field.slope_rms_rad().to_degrees(), slope_deg),
             ("Stokes drift", field.stokes_drift_m_s(1e-6).length(), stokes),
             ("drift beam-on", drift(toward_rad - FRAC_PI_2).sway, beam_on),
             ("drift head-on", -drift(toward_rad + PI).surge, head_on),
         ];
         for (what, got, want) in got {
-            assert!((got / want - 1.0).abs() < 0.2, "{hs_m} m, {tp_s} s: {what} {got}, elsewhere {want}");
+            assert!((got / want - 1.0).abs() < 0.2, "{hs_m} m, {tp_s} s: {what} {got}, reference {want}");
         }
     }
 }
 
 #[test]
 fn on_a_long_swell_a_boat_floats_with_the_surface() {
-    // A wave a kilometre long, travelling north: 25 s or more, slow against every spring.
+    // A wave a kilometre long, travelling north. Its period is 25 s or more, slow compared with
+    // every spring.
     for (t, psi_deg, depth_m) in
         [(0.0, 0.0, None), (6.0, 90.0, None), (12.0, 180.0, Some(20.0)), (18.0, -90.0, Some(5.0)), (3.0, 45.0, None)]
     {

@@ -1,4 +1,4 @@
-//! The sea has the same bits with every instruction set of the machine.
+//! The sea has the same bits with every instruction set of this machine.
 
 mod common;
 
@@ -12,7 +12,8 @@ use scenario::sea::{Spreading, Waves};
 use sim::World;
 use sim::sea::{Attitude, HullWaves, Submergence, Surface, WaveField, WaveResponse, WaveSample};
 
-/// Effects of waves with this many components on a boat, everywhere and on all headings, as bits.
+/// Effects of waves with this many components on a boat, at many places and on all headings, as
+/// bits.
 fn bits_of_waves(components: u32, instructions: Instructions) -> Vec<u64> {
     let boat = boat("surveyor_m1_8");
     let sea = Waves { spreading: Spreading::CosineSquared, components, ..waves(0.7, 2.5, 0.4) };
@@ -28,7 +29,7 @@ fn bits_of_waves(components: u32, instructions: Instructions) -> Vec<u64> {
         let (time_s, turn_rad_s) = (stream.between(0.0, 90_000.0), stream.between(-1.0, 1.0));
         let velocity_m_s = Ned { north: stream.between(-3.0, 3.0), east: stream.between(-3.0, 3.0) };
         let (sample, depths_m) = hull.at_with(&submergence, pose, time_s);
-        assert_eq!(sample, hull.at(pose, time_s), "{components}: with the propellers and without");
+        assert_eq!(sample, hull.at(pose, time_s), "{components}: with and without propellers");
         let WaveSample { velocity, acceleration, drift_newton } = sample;
         let Attitude { heave_up_m, roll_rad, pitch_rad, heave_up_m_s, roll_rad_s, pitch_rad_s, heave_up_m_s2 } =
             response.at(pose, velocity_m_s, turn_rad_s, time_s);
@@ -46,14 +47,14 @@ fn waves_of_any_number_of_components_have_the_same_bits_with_all_instructions() 
     let sets = Instructions::of_this_machine();
     for components in [1, 3, 4, 5, 15, 16, 17, 32, 33, 64, 100] {
         let want = bits_of_waves(components, sets[0]);
-        assert!(want.iter().any(|bits| f64::from_bits(*bits) > 0.01), "{components}: no sea");
+        assert!(want.iter().any(|bits| f64::from_bits(*bits) > 0.01), "{components}: the sea has no effect");
         for set in &sets[1..] {
             assert!(bits_of_waves(components, *set) == want, "{components} components, {set:?}");
         }
     }
 }
 
-/// The digest of a world after a minute under way, with these instructions.
+/// The digest of a world after a minute of driving, with these instructions.
 fn voyage(scenario: &Scenario, instructions: Instructions) -> u128 {
     let mut world = World::of_game(scenario, 1).unwrap_or_else(|e| panic!("{e}"));
     world.set_instructions(instructions);

@@ -1,4 +1,4 @@
-//! The point boat against reference trajectories and numbers of its published model.
+//! The point boat compared with reference trajectories and published numbers.
 
 mod common;
 
@@ -11,10 +11,10 @@ const DT_S: f64 = 0.1;
 /// Duration of the run-up before a manoeuvre, s.
 const RUN_UP_S: f64 = 60.0;
 
-/// The shipped point boat with this name: that of Pyquaticus (main, 2025-11).
+/// The shipped point boat with this name, from Pyquaticus (main, 2025-11).
 fn shipped(name: &str) -> Kinematic {
     let boat = common::boat(&format!("{name}_kinematic"));
-    let scenario::boat::Drive::Kinematic(kinematic) = boat.drive else { panic!("{name} is a point boat") };
+    let scenario::boat::Drive::Kinematic(kinematic) = boat.drive else { panic!("{name} is not a point boat") };
     kinematic
 }
 
@@ -127,16 +127,16 @@ fn it_takes_thrust_and_rudder_from_outside_as_the_reference_does() {
 
 const BOATS: [&str; 3] = ["heron", "surveyor", "large_usv"];
 
-/// Compares to the printed precision of the reference: half of the last digit either way.
+/// Compares to the printed precision of the reference: half of the last digit.
 fn compare(name: &str, what: &str, got: &[f64]) {
     let begin = format!("{name},{what},");
     let line = include_str!("kinematic/manoeuvres.csv").lines().find_map(|line| line.strip_prefix(&begin));
-    let references: Vec<&str> = line.unwrap_or_else(|| panic!("no {begin}")).split(',').collect();
+    let references: Vec<&str> = line.unwrap_or_else(|| panic!("no line starts with {begin}")).split(',').collect();
     assert_eq!(references.len(), got.len(), "{begin}");
     for (reference, got) in references.into_iter().zip(got) {
         let want: f64 = reference.parse().unwrap_or_else(|e| panic!("{begin}{reference}: {e}"));
         let half_place = [0.5, 0.05, 0.005][reference.split_once('.').map_or(0, |(_, places)| places.len())];
-        // The binary neighbours of a decimal half are on both sides of it.
+        // The binary neighbours of a decimal half lie on both sides of it.
         let agrees = (got - want).abs() <= half_place + 1e-9 || got.is_nan() && want.is_nan();
         assert!(agrees, "{name}, {what}: {got}, reference {reference}");
     }

@@ -1,8 +1,8 @@
-//! The radio link in a game: when orders are in force, losses, and a boat without orders.
+//! The radio link in a game: when orders are in force, losses, and boats without orders.
 
 mod common;
 
-use common::{alone, order};
+use common::{alone, order, started};
 use messages::Order;
 use primitives::{Ned, Pose, SimTime, VehicleId};
 use scenario::boat::Drive;
@@ -28,13 +28,9 @@ fn over(link: Link) -> Scenario {
     scenario.vehicles[BLUE.index()].start_position =
         StartPosition::At(Pose { at: Ned::from_xy(150.0, 200.0), psi_rad });
     scenario.link = Some(link);
-    // The expiry of an order without a successor is not tested here.
+    // The expiry of an order without a successor is tested elsewhere.
     scenario.order_ttl_s = 3_600.0;
     scenario
-}
-
-fn started(scenario: &Scenario) -> Contest {
-    Contest::new(scenario, 1).expect("the boats fit")
 }
 
 /// An order that encodes the decision at which it was given. At this speed boats barely move.
@@ -56,7 +52,7 @@ fn an_order_is_in_force_once_the_delay_has_passed() {
     let mut contest = started(&over(Link { delay_s: 0.25, ..link() }));
     for k in 0..100_u64 {
         play(&mut contest);
-        // The last tick of decision k begins at (k + 1/2) tenths of a second, just when order k - 2
+        // The last tick of decision k begins at (k + 1/2) tenths of a second, just as order k - 2
         // arrives.
         let want = k.checked_sub(2).map_or(Order::Hold, labelled);
         assert_eq!(contest.order_in_force(BLUE), want, "decision {k}");
@@ -177,10 +173,10 @@ fn holding_stops_what_is_under_way() {
             contest.advance();
             assert_eq!(contest.order_in_force(BLUE), Order::Hold, "{name}");
         }
-        assert_eq!(contest.order_in_force(RED), labelled(29), "{name}: red's go on");
+        assert_eq!(contest.order_in_force(RED), labelled(29), "{name}: red's orders continue");
         contest.regain_agent(BLUE);
         (0..20).for_each(|_| play(&mut contest));
-        assert_ne!(contest.order_in_force(BLUE), Order::Hold, "{name}: the next order counts again");
+        assert_ne!(contest.order_in_force(BLUE), Order::Hold, "{name}: the next order is in force");
     }
 }
 
@@ -189,7 +185,7 @@ fn a_watchdog_stops_the_thrusters_when_the_link_is_silent_and_the_next_order_sta
     let loss = Loss { good: 0.0, bad: 1.0, good_time_s: 3.0, bad_time_s: 3.0 };
     let mut scenario = over(Link { loss, ..link() });
     for boat in &mut scenario.boats {
-        let Drive::Thrusters { thruster, .. } = &mut boat.drive else { panic!("a Surveyor has thrusters") };
+        let Drive::Thrusters { thruster, .. } = &mut boat.drive else { panic!("expected thrusters") };
         thruster.flaws.watchdog_s = Some(1.0);
     }
     let mut contest = started(&scenario);
@@ -204,8 +200,8 @@ fn a_watchdog_stops_the_thrusters_when_the_link_is_silent_and_the_next_order_sta
             started_again += u32::from(k - last > 10);
             last = k;
         }
-        // The decision's last tick starts half a decision after the arrival, actual or missed, of
-        // its order.
+        // The decision's last tick starts half a decision after its order arrives or should have
+        // arrived.
         let is_silent = k - last >= 10;
         assert_eq!(got, if is_silent { Order::Hold } else { thrust(last) }, "decision {k}, heard at {last}");
         running = if got == Order::Hold { 0 } else { running + 1 };
@@ -234,7 +230,7 @@ fn a_digest_tells_games_apart_that_differ_in_what_is_under_way() {
         (contest.world().state().clone(), contest.digest())
     };
     let (first, second) = (digest(labelled(1)), digest(labelled(2)));
-    assert_eq!(first.0, second.0, "the world does not know yet");
+    assert_eq!(first.0, second.0, "the worlds are still equal");
     assert_ne!(first.1, second.1);
     assert_eq!(first, digest(labelled(1)));
 }

@@ -1,9 +1,9 @@
-//! Orders in a contest: their time in force, and that a recording contains everything it depends
-//! on.
+//! Orders in a contest: how long they are in force, and that a recording contains everything on
+//! which that depends.
 
 mod common;
 
-use common::{alone, order};
+use common::{alone, order, started};
 use messages::input::{Input, InputRecord, Inputs};
 use messages::{Message, Order, Stamp};
 use primitives::{Ned, SimTime, VehicleId};
@@ -20,12 +20,8 @@ fn game() -> Scenario {
     Scenario { order_ttl_s: 1.0, ..alone("surveyor_m1_8", "calm") }
 }
 
-fn started(scenario: &Scenario) -> Contest {
-    Contest::new(scenario, 1).unwrap_or_else(|e| panic!("{e}"))
-}
-
-/// Whether the boat follows an order in each of the next `decisions` decisions, from the open one
-/// on.
+/// Whether the boat follows an order in each of the next `decisions` decisions, starting with the
+/// open one.
 fn follows(contest: &mut Contest, decisions: u32) -> Vec<bool> {
     let decision = |_| {
         contest.advance();
@@ -39,11 +35,11 @@ fn an_order_expires_by_the_age_of_the_picture_that_it_answers() {
     for (given_s, decisions) in [(3.0, 11), (2.9, 10), (2.1, 2), (2.0, 1), (1.9, 0), (7.0, 11)] {
         let mut contest = started(&game());
         (0..30).for_each(|_| contest.advance());
-        contest.order(BLUE, EAST, SimTime::from_s(given_s)).expect("sound numbers");
+        contest.order(BLUE, EAST, SimTime::from_s(given_s)).expect("the order is valid");
         let want: Vec<bool> = (0..20).map(|i| i < decisions).collect();
         assert_eq!(follows(&mut contest, 20), want, "given at {given_s} s, at 3 s");
         order(&mut contest, BLUE, EAST);
-        assert!(follows(&mut contest, 1)[0], "the next order counts again");
+        assert!(follows(&mut contest, 1)[0], "the next order is in force");
     }
 }
 
@@ -53,11 +49,11 @@ fn an_order_that_expires_under_way_does_not_arrive() {
     let link = Link { delay_s: 0.5, jitter_s: 0.0, loss, range_m: None, station: Ned::default() };
     let mut contest = started(&Scenario { link: Some(link), ..game() });
     (0..30).for_each(|_| contest.advance());
-    contest.order(BLUE, EAST, SimTime::from_s(2.3)).expect("sound numbers");
+    contest.order(BLUE, EAST, SimTime::from_s(2.3)).expect("the order is valid");
     assert_eq!(follows(&mut contest, 20), [false; 20]);
     order(&mut contest, BLUE, EAST);
     let want: Vec<bool> = (0..20).map(|i| (5..11).contains(&i)).collect();
-    assert_eq!(follows(&mut contest, 20), want, "under way for half a second, and in force for as long");
+    assert_eq!(follows(&mut contest, 20), want, "in transit for half a second, and in force for as long");
 }
 
 #[test]
@@ -67,7 +63,7 @@ fn a_game_with_silent_agents_is_played_again_from_its_recording() {
             contest.pictures();
             if decision % 30 < 10 {
                 let late = SimTime::from_s(0.1 * f64::from((decision + 1) % 3));
-                contest.order(BLUE, EAST, contest.now() - late).expect("sound numbers");
+                contest.order(BLUE, EAST, contest.now() - late).expect("the order is valid");
             }
             contest.advance();
         }
@@ -87,7 +83,7 @@ fn a_game_with_silent_agents_is_played_again_from_its_recording() {
     };
     assert!(again(&recorded).snapshot() == contest.snapshot());
 
-    // Before orders had a time, they were in force from their arrival until they were recorded as
+    // Before orders carried a time, they were in force from arrival until they were recorded as
     // held.
     let old = Inputs { stamp: Stamp { version: 1, ..stamp }, ..recorded };
     let old = Inputs {
@@ -97,7 +93,7 @@ fn a_game_with_silent_agents_is_played_again_from_its_recording() {
     let old = again(&old);
     assert!(
         old.world().state().boats[0].pose.at.east > contest.world().state().boats[0].pose.at.east,
-        "a late order is in force for longer"
+        "a late order was in force for longer"
     );
 }
 
@@ -112,8 +108,8 @@ fn a_boat_that_keeps_its_station_stays_where_it_began_to_hold_until_people_stop_
         (0..1200).for_each(|_| contest.advance());
         contest.world().state().boats[0].pose.at.distance(start)
     };
-    assert!(drift_m(Hold::Drifts, false) > 30.0, "a gale drifts a boat that lies still");
+    assert!(drift_m(Hold::Drifts, false) > 30.0, "a gale drifts a boat without thrust");
     let kept_m = drift_m(Hold::KeepsStation, false);
-    assert!(kept_m < 8.0, "{kept_m} m off its station");
-    assert!(drift_m(Hold::KeepsStation, true) > 30.0, "stopped by people it lies still");
+    assert!(kept_m < 8.0, "{kept_m} m from its station");
+    assert!(drift_m(Hold::KeepsStation, true) > 30.0, "a stopped boat does not keep its station");
 }

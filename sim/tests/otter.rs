@@ -1,4 +1,4 @@
-//! The Otter against reference trajectories from its published equations.
+//! The Otter compared with reference trajectories from its published equations.
 
 mod common;
 
@@ -38,7 +38,7 @@ fn thrust(n_rad_s: [f64; 2]) -> Order {
 
 /// The boat's motion at the times of the reference: position from the start, psi, u, v, r.
 fn sail(rows: &[Row], sea: &str, mut order_at: impl FnMut(f64, f64, &Row) -> Order) -> Vec<(Ned, f64, [f64; 3])> {
-    let mut world = World::of_game(&common::alone("otter", sea), 1).expect("an empty sea has room");
+    let mut world = World::of_game(&common::alone("otter", sea), 1).expect("the boats fit");
     let start = world.state().boats[0].pose.at;
     let mut track = Vec::new();
     for row in rows {
@@ -59,7 +59,7 @@ fn position_error(rows: &[Row], track: &[(Ned, f64, [f64; 3])]) -> f64 {
     let mut worst = 0.0_f64;
     for (i, row) in rows.iter().enumerate() {
         sailed_m += if i > 0 { row.at.distance(rows[i - 1].at) } else { 0.0 };
-        // Below a metre a relative error is meaningless.
+        // Below a metre a relative error has no meaning.
         worst = worst.max(track[i].0.distance(row.at) / sailed_m.max(1.0));
     }
     worst
@@ -72,13 +72,13 @@ fn it_accelerates_to_the_speed_of_the_closed_form() {
     let (u, want) = (track.last().unwrap().2[0], 2.0 * 0.01108 * 80.0 * 80.0 / 77.5544);
     assert!((u - want).abs() < 1e-3 * want, "steady surge {u}, closed form {want}");
     let error = position_error(&rows, &track);
-    assert!(error < 0.005, "position is off by {:.3} %", error * 100.0);
+    assert!(error < 0.005, "position error {:.3} %", error * 100.0);
 }
 
 /// Its velocity at every tick for this many seconds under these shaft speeds, from rest, and the
 /// final world.
 fn from_rest(n_rad_s: [f64; 2], seconds: u32) -> (Vec<[f64; 3]>, World) {
-    let mut world = World::of_game(&common::alone("otter", "calm_salt"), 1).expect("an empty sea has room");
+    let mut world = World::of_game(&common::alone("otter", "calm_salt"), 1).expect("the boats fit");
     let step = |_| {
         world.step(&[thrust(n_rad_s), Order::Hold]);
         let nu = world.state().boats[0].nu;
@@ -162,7 +162,7 @@ fn it_turns_as_tight_and_as_fast() {
         assert!((got - want).abs() < 0.01 * want, "{what} {got}, reference {want}");
     }
     let error = position_error(&rows, &track);
-    assert!(error < 0.01, "position is off by {:.3} % of the way", error * 100.0);
+    assert!(error < 0.01, "position error {:.3} % of the distance", error * 100.0);
 }
 
 #[test]

@@ -1,10 +1,9 @@
-//! Games of point boats by Pyquaticus' rules, compared with Pyquaticus: numbers from runs of its
-//! own environment (main, November 2025, and the branch of the 2026 competition; power play off, a
-//! step of 0.1 s).
+//! Games of point boats under Pyquaticus' rules, compared with runs of its own environment (main,
+//! November 2025, and the branch of the 2026 competition; power play off, steps of 0.1 s).
 
 mod common;
 
-use common::{order, written};
+use common::{order, started, written};
 use messages::Order;
 use primitives::{Ned, SimTime, VehicleId};
 use rules::event::TagCause;
@@ -17,8 +16,8 @@ use std::f64::consts::PI;
 const BLUE: VehicleId = VehicleId(0);
 const RED: VehicleId = VehicleId(1);
 
-/// One boat per side with a step of 0.1 s: blue's at a place (x, y) with a heading in degrees,
-/// red's out of the way.
+/// One boat per side with steps of 0.1 s: blue at (x, y) with a heading in degrees, red out of the
+/// way.
 fn game(rules: &str, boat: &str, (x, y, heading_deg): (f64, f64, f64)) -> Scenario {
     let scenario = written(&format!(
         "base = \"../games/pav01_kinematic.toml\"\nrules = \"../rules/{rules}.toml\"\n\
@@ -28,10 +27,6 @@ fn game(rules: &str, boat: &str, (x, y, heading_deg): (f64, f64, f64)) -> Scenar
     ));
     let rules = Rules { power_play: SimTime::ZERO, ..scenario.rules.clone() };
     Scenario { rules, ..scenario }
-}
-
-fn afloat(scenario: &Scenario) -> Contest {
-    Contest::new(scenario, 1).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// One decision of one tick, in which blue's boat follows an order.
@@ -51,13 +46,13 @@ fn state(contest: &Contest, vehicle: VehicleId) -> [f64; 4] {
 }
 
 fn assert_near(what: &str, got: [f64; 4], want: [f64; 4], within: f64) {
-    assert!(got.iter().zip(want).all(|(got, want)| (got - want).abs() < within), "{what}: {got:?}, not {want:?}");
+    assert!(got.iter().zip(want).all(|(got, want)| (got - want).abs() < within), "{what}: {got:?}, want {want:?}");
 }
 
 #[test]
 fn a_boat_that_leaves_at_the_side_comes_back_as_soon_as_in_the_competition() {
-    // Full ahead from (40, 70) to the north: when it leaves, how long it is outside, and when it is
-    // freed, with looks at every step of 0.1 s and, as in the competition, at every tenth.
+    // Full ahead from (40, 70) to the north: when it leaves, how long it stays outside, and when it
+    // is freed, with looks at every step of 0.1 s and, as in the competition, at every tenth.
     for (boat, speed_m_s, looks_s, want_s) in [
         ("heron", 2.0, 0.0, [8.9, 8.8, 28.6]),
         ("heron", 2.0, 1.0, [9.0, 9.0, 29.0]),
@@ -65,10 +60,10 @@ fn a_boat_that_leaves_at_the_side_comes_back_as_soon_as_in_the_competition() {
         ("surveyor", 3.0, 1.0, [17.0, 18.0, 35.0]),
     ] {
         let mut scenario = game("mctf_2026", boat, (40.0, 70.0, 0.0));
-        assert_eq!(scenario.rules.tag_look_period.as_s(), 1.0, "the competition's");
+        assert_eq!(scenario.rules.tag_look_period.as_s(), 1.0, "the period of the competition");
         scenario.rules.tag_look_period = SimTime::from_s(looks_s);
         scenario.rules.flag_look_period = SimTime::from_s(looks_s);
-        let mut contest = afloat(&scenario);
+        let mut contest = started(&scenario);
         let (mut left_s, mut back_s, mut freed_s) = (0.0, 0.0, 0.0);
         while freed_s == 0.0 && contest.now().as_s() < 120.0 {
             let known = contest.events().len();
@@ -103,7 +98,7 @@ fn a_point_boat_slides_along_the_keepout_circle_as_in_pyquaticus() {
         ("surveyor", (10.0, 36.0, 90.0), 13.7, [16.836142, 36.0, 0.805882, 128.342749], [38.955392, 31.435267]),
     ];
     for (boat, start, at_s, want, end) in cases {
-        let mut contest = afloat(&game("pyquaticus", boat, start));
+        let mut contest = started(&game("pyquaticus", boat, start));
         let speed_m_s = contest.scenario().boat_of(BLUE).speed_max_m_s();
         while contest.now().as_s() < 29.99 {
             step(&mut contest, steer(start.2, speed_m_s));
@@ -112,7 +107,7 @@ fn a_point_boat_slides_along_the_keepout_circle_as_in_pyquaticus() {
             }
         }
         let [x, y, ..] = state(&contest, BLUE);
-        // Pyquaticus has headings and speeds in single precision, and every set-back enlarges the
+        // Pyquaticus has single-precision headings and speeds, and every set-back enlarges the
         // difference.
         assert!((x - end[0]).abs() < 0.01 && (y - end[1]).abs() < 0.01, "{boat} {start:?}: ({x}, {y}), not {end:?}");
     }
@@ -122,7 +117,7 @@ fn a_point_boat_slides_along_the_keepout_circle_as_in_pyquaticus() {
 fn a_hull_held_at_the_keepout_circle_does_not_go_on_pushing() {
     let mut scenario = game("pyquaticus", "heron", (20.0, 25.0, 0.0));
     scenario.boats = vec![common::boat("heron")];
-    let mut contest = afloat(&scenario);
+    let mut contest = started(&scenario);
     for _ in 0..300 {
         step(&mut contest, steer(0.0, 2.0));
         let boat = &contest.world().state().boats[0];
@@ -138,7 +133,7 @@ fn boats_pass_through_each_other_where_the_rules_say_so() {
         let mut scenario = game("pyquaticus", "heron", (100.0, 60.0, 90.0));
         // No boat is close enough to be tagged.
         (scenario.rules.contact, scenario.rules.tag_radius_m) = (contact, 0.1);
-        let mut contest = afloat(&scenario);
+        let mut contest = started(&scenario);
         common::set_in(&mut contest, |state| {
             state.boats[1].pose = primitives::Pose { at: Ned::from_xy(120.0, 60.5), psi_rad: -PI / 2.0 };
             state.points[1] = sim::kinematic::KinematicState::at_rest(-PI / 2.0);
@@ -149,7 +144,7 @@ fn boats_pass_through_each_other_where_the_rules_say_so() {
             step(&mut contest, steer(90.0, 2.0));
             gap_m = gap_m.min(common::gap_m(contest.world(), &scenario, 0, 1));
         }
-        // Their keels pass at half a metre, and the hulls are a metre wide.
+        // Their keels pass half a metre apart, and the hulls are a metre wide.
         let want_m = if contact == Contact::Ghost { -0.5..-0.45 } else { -0.02..0.05 };
         assert!(want_m.contains(&gap_m), "{contact:?}: {gap_m} m");
         let collided = |logged: &rules::event::Logged| matches!(logged.event, Event::Collided { .. });
@@ -201,7 +196,7 @@ fn half_a_turn_is_an_order_of_its_own_to_either_side() {
     ];
     for (boat, speed_m_s, want) in cases {
         for side in [1.0, -1.0] {
-            let mut contest = afloat(&game("pyquaticus", boat, (50.0, 40.0, 0.0)));
+            let mut contest = started(&game("pyquaticus", boat, (50.0, 40.0, 0.0)));
             for (at_s, [x, y, speed, heading_deg]) in [3.0, 12.0, 30.0].into_iter().zip(want) {
                 while contest.now().as_s() < at_s - 0.05 {
                     step(&mut contest, Order::Turn { by_rad: side * PI, speed_m_s });
@@ -247,8 +242,8 @@ impl Trace {
     }
 }
 
-/// The order for an action of Pyquaticus: half a turn to an eighth of a turn to port, at full and
-/// at half speed.
+/// The order for a Pyquaticus action: half a turn to an eighth of a turn to port, at full and half
+/// speed.
 fn order_of(action: usize, speed_max_m_s: f64) -> Order {
     let by_rad = (180.0 - 45.0 * (action % 8) as f64).to_radians();
     match action {
@@ -287,10 +282,10 @@ fn whole_games_go_event_for_event_as_in_pyquaticus() {
              boat = \"../boats/{boat}_kinematic.toml\"\ndecision_s = 0.1\n{}",
             vehicles.collect::<String>()
         ));
-        // Pyquaticus sets boats back with headings in single precision, and every set-back enlarges
+        // Pyquaticus sets boats back with single-precision headings, and every set-back enlarges
         // the difference.
         scenario.rules.flag_keepout_m = 0.0;
-        let mut contest = afloat(&scenario);
+        let mut contest = started(&scenario);
         let speed_max_m_s = scenario.boat_of(BLUE).speed_max_m_s();
         let (mut got, mut known) = (BTreeMap::<usize, Vec<String>>::new(), 0);
         for (step, actions) in trace.actions.iter().enumerate() {
@@ -310,11 +305,11 @@ fn whole_games_go_event_for_event_as_in_pyquaticus() {
             events.sort_unstable();
             events
         };
-        assert!(trace.events.len() > 30, "{boat}: something happens");
+        assert!(trace.events.len() > 30, "{boat}: too few events");
         assert_eq!(sorted(got), sorted(trace.events), "{boat}");
         for (i, [x, y]) in trace.ends.iter().enumerate() {
             let apart_m = contest.world().state().boats[i].pose.at.distance(Ned::from_xy(*x, *y));
-            assert!(apart_m < 1e-6, "{boat}: boat {i} ends {apart_m} m from where it does there");
+            assert!(apart_m < 1e-6, "{boat}: boat {i} ends {apart_m} m from its place in Pyquaticus");
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The sea and the boats together: invariants of every world, against closed forms and symmetry.
+//! The sea and the boats together: invariants, closed forms and symmetry.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -78,13 +78,13 @@ fn a_drifter_in_waves_goes_to_and_fro_and_only_second_order_takes_it_anywhere() 
     // The published scale: 0.18 m/s of orbital velocity averaged over the hull in a sea of 0.3 m.
     // Stokes drift is 0.04 m/s.
     let (mean, rms) = adrift(0.3, 4);
-    assert!((0.08..0.3).contains(&rms), "{rms} m/s to and fro");
-    assert!(mean.length() < 0.08, "{mean:?} m/s on the whole");
+    assert!((0.08..0.3).contains(&rms), "oscillates at {rms} m/s");
+    assert!(mean.length() < 0.08, "mean velocity {mean:?} m/s");
     // First-order motion is proportional to the height and has no mean: in waves a tenth as high a
-    // boat oscillates a tenth as fast, and of the rest a hundredth remains.
+    // boat oscillates a tenth as fast, and a hundredth of the rest remains.
     let (small_mean, small_rms) = adrift(0.03, 4);
-    assert!((small_rms / rms - 0.1).abs() < 0.01, "{small_rms} m/s of {rms} to and fro");
-    assert!(small_mean.length() < 0.03 * small_rms, "{small_mean:?} m/s on the whole, {small_rms} to and fro");
+    assert!((small_rms / rms - 0.1).abs() < 0.01, "oscillates at {small_rms} m/s, compared with {rms}");
+    assert!(small_mean.length() < 0.03 * small_rms, "mean velocity {small_mean:?} m/s, oscillation {small_rms} m/s");
 }
 
 #[test]
@@ -118,7 +118,7 @@ fn boats_in_waves_heave_at_the_frequency_of_encounter() {
         let what = format!("from {from_deg}°, {speed_m_s} m/s: {peak}, not {want} at {along_m_s} m/s");
         assert!((peak as f64 - want).abs() <= 1.0, "{what}");
         let still = wave.omega_rad_s / resolution;
-        assert!(from_deg == 90.0 || (still - want).abs() > 4.0, "{what}: that differs from {still} at a fixed place");
+        assert!(from_deg == 90.0 || (still - want).abs() > 4.0, "{what}: too close to {still} at a fixed place");
     }
 }
 
@@ -174,7 +174,7 @@ fn point_boats_collide_in_a_current_as_they_do_in_still_water() {
         [0, 1].map(|i| world.state().boats[i].pose.at - mean_m_s.scaled(30.0))
     };
     let (still, drifting) = (after(Ned::default()), after(current));
-    assert!((still[0].north - 200.0).abs() > 1.0, "red was in the way: {still:?}");
+    assert!((still[0].north - 200.0).abs() > 1.0, "blue did not hit red: {still:?}");
     for (still, drifting) in still.into_iter().zip(drifting) {
         assert!(still.distance(drifting) < 1e-3, "{still:?}, in a current {drifting:?}");
     }

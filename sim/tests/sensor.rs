@@ -1,5 +1,5 @@
-//! Sensors against their specification: statistics, times, curves, and the true state for perfect
-//! ones.
+//! Sensors compared with their specification: statistics, times, curves, and true values from
+//! perfect sensors.
 
 mod common;
 
@@ -125,7 +125,7 @@ fn perfect_sensors_tell_the_truth_bit_for_bit() {
             assert_eq!(got.to_bits(), want.to_bits());
         }
         assert_eq!((fix_at, imu), (now, ImuReading::of(&truth)));
-        assert_eq!(state, SensorState::default(), "perfect sensors remember nothing");
+        assert_eq!(state, SensorState::default(), "perfect sensors have no state");
     }
 }
 
@@ -147,7 +147,7 @@ fn a_fix_says_where_the_boat_was_and_comes_out_after_its_latency() {
 
 #[test]
 fn the_longest_latency_that_a_file_may_state_comes_out_as_stated_whatever_the_periods() {
-    // The limits of `scenario`: latency_s up to 2 and up to 12 periods, period_s from 0.02.
+    // The limits in `scenario`: latency_s up to 2 and up to 12 periods, period_s from 0.02.
     for decision_ms in [10, 20, 50, 100, 250, 1_000] {
         let decision = SimTime(decision_ms * 1_000_000);
         for period_s in [0.02, 0.029, 0.05, 0.074, 0.1, 0.13, 0.149, 0.149_999, 0.15, 0.2, 1.0, 1.49, 10.0] {
@@ -226,7 +226,7 @@ fn velocity_is_noisy_over_the_ground_and_turned_with_the_heading_that_is_read() 
     let want = body_from_ned(Rotation::from_heading(truth.pose.psi_rad - TURN_RAD), truth.velocity_m_s());
     assert!((reading.nav.surge_m_s - want.ahead).abs() < 1e-12);
     assert!((reading.nav.sway_m_s - want.starboard).abs() < 1e-12);
-    assert!((reading.nav.sway_m_s - 0.5).abs() > 0.5, "a wrong heading makes way ahead look like leeway");
+    assert!((reading.nav.sway_m_s - 0.5).abs() > 0.5, "a wrong heading must show way ahead as leeway");
 
     let noisy = gps_record(Gps { velocity_noise_m_s: 0.08, ..exact_gps() }, 1, 100_000, sailing);
     let error: Vec<f64> = noisy.iter().map(|(_, reading)| reading.nav.surge_m_s - 2.0).collect();
@@ -246,7 +246,7 @@ fn drop_outs_take_their_share_and_last_as_stated_and_the_last_fix_is_kept() {
     let want = RATE_PER_S * MEAN_S / (1.0 + RATE_PER_S * MEAN_S);
     // 15 000 drop-outs: a standard error of about 1 % of the share.
     assert!((share / want - 1.0).abs() < 0.05, "share {share}, not {want}");
-    // Sampled every 0.2 s, an exponential duration is geometric. Of the chain, one that is on stays on with:
+    // Sampled every 0.2 s, an exponential duration is geometric. A chain that is on stays on with:
     let ended = dropped.windows(2).filter(|pair| pair[0] && !pair[1]).count();
     let on = dropped.iter().filter(|on| **on).count();
     let both = 1.0 / MEAN_S + RATE_PER_S;
@@ -265,14 +265,14 @@ fn a_frozen_receiver_repeats_itself_with_new_times() {
     let mut frozen = 0;
     for pair in fixes.windows(2) {
         let [before, (now, reading)] = pair else { unreachable!("windows of two") };
-        assert_eq!(reading.fix_at, *now, "fixes go on");
+        assert_eq!(reading.fix_at, *now, "fixes continue");
         if reading.nav.at() == before.1.nav.at() {
             frozen += 1;
         } else {
-            assert_eq!(reading.nav.at(), sailing(*now).pose.at, "the first of a freeze, and all others, are true");
+            assert_eq!(reading.nav.at(), sailing(*now).pose.at, "the first fix of a freeze and all others are true");
         }
     }
-    // The first fix of each freeze is true: 10 000 s / (10 + 3) s of them less.
+    // The first fix of each of the 10 000 s / (10 + 3) s freezes is true and does not count.
     let (share, want) = (f64::from(frozen) / fixes.len() as f64, 3.0 / 13.0 - 0.2 / 13.0);
     assert!((share / want - 1.0).abs() < 0.12, "share {share}, not {want}");
 }
@@ -361,7 +361,7 @@ fn at_rest_a_gyro_reads_its_bias_and_noise_and_an_accelerometer_the_water_s_push
             let white = if lag == 0 { noise * noise } else { 0.0 };
             let want = white + bias * bias * math::exp(-(lag as f64) * 0.05 / 5.0);
             let off = (got - want).abs() / (bias * bias);
-            assert!(off < within, "axis {axis}, lag {lag}: {got}, not {want}");
+            assert!(off < within, "axis {axis}, lag {lag}: {got}, want {want}");
         }
         assert!(mean_of(TICKS, |i| x[i]).abs() / bias < within, "axis {axis}: mean");
         for (other, _, other_bias) in &columns[..axis] {
@@ -394,7 +394,7 @@ fn a_true_reading_follows_the_boat_s_motion() {
     ] {
         let got = ImuReading::of(&truth).accelerometer_m_s2;
         for axis in 0..3 {
-            assert!((got[axis] - want[axis]).abs() < 1e-12, "{what}: {got:?}, not {want:?}");
+            assert!((got[axis] - want[axis]).abs() < 1e-12, "{what}: {got:?}, want {want:?}");
         }
     }
     let falling = Attitude { heave_up_m_s2: -GRAVITY_M_S2, roll_rad: 0.4, pitch_rad: -0.3, ..Attitude::default() };
@@ -403,7 +403,8 @@ fn a_true_reading_follows_the_boat_s_motion() {
 
 #[test]
 fn a_gyro_feels_the_turning_of_its_attitude() {
-    // Against the rotation matrix itself: R' = R S(ω), by finite differences of R = Rz(ψ) Ry(θ) Rx(φ).
+    // Compared with the rotation matrix: R' = R S(ω), by finite differences of R = Rz(ψ) Ry(θ)
+    // Rx(φ).
     type Matrix = [[f64; 3]; 3];
     let times = |a: Matrix, b: Matrix| -> Matrix {
         std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| a[i][k] * b[k][j]).sum()))
@@ -435,7 +436,7 @@ fn a_gyro_feels_the_turning_of_its_attitude() {
     let spin = times(transposed, rate);
     let got = ImuReading::of(&truth);
     for (got, want) in got.gyro_rad_s.into_iter().zip([spin[2][1], spin[0][2], spin[1][0]]) {
-        assert!((got - want).abs() < 1e-9, "{got}, not {want}");
+        assert!((got - want).abs() < 1e-9, "{got}, want {want}");
     }
     for (axis, got) in got.accelerometer_m_s2.into_iter().enumerate() {
         // Rᵀ (0, 0, −g) is the third row of R.
@@ -468,7 +469,7 @@ fn sensors_go_on_from_a_snapshot_to_the_bit() {
             let bytes = postcard::to_stdvec(&state).unwrap();
             let back: SensorState = postcard::from_bytes(&bytes).unwrap();
             assert_eq!(back, state, "tick {i}");
-            assert!(bytes.len() < 500, "only fixes under way are kept: {} bytes", bytes.len());
+            assert!(bytes.len() < 500, "only fixes in transit are stored: {} bytes", bytes.len());
             // A state restored from bytes continues like the original.
             let (mut one, mut other) = (state.clone(), back);
             for j in i..i + 30 {
@@ -495,6 +496,6 @@ fn the_front_seat_steers_by_the_heading_that_the_compass_shows() {
     // A compass needle 0.2 rad too far east reads 0.2 rad too low.
     let (psi_rad, reading) =
         (world.state().boats[0].pose.psi_rad, world.reading(VehicleId::at(0)).unwrap().nav.psi_rad);
-    assert!((reading - 1.0).abs() < 0.01, "it reads {reading}");
-    assert!((psi_rad - 1.2).abs() < 0.01, "it goes {psi_rad}");
+    assert!((reading - 1.0).abs() < 0.01, "the compass reads {reading}");
+    assert!((psi_rad - 1.2).abs() < 0.01, "the heading is {psi_rad}");
 }

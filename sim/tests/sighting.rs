@@ -1,9 +1,9 @@
-//! Sightings against the scenario's settings: range, view, delay, noise, loss and memory; and
-//! sightings share the fate of the report that carries them.
+//! Sightings compared with the scenario's settings: range, view, delay, noise, loss and memory;
+//! they share the fate of the report that carries them.
 
 mod common;
 
-use common::{alone, order};
+use common::{alone, order, started};
 use messages::Order;
 use messages::picture::Contact;
 use primitives::angle::rad_from_compass_deg;
@@ -34,10 +34,6 @@ fn facing(sharing: Sharing, blue: (f64, f64, f64), red: (f64, f64, f64)) -> Scen
     scenario.vehicles[BLUE.index()].start_position = start_position(blue);
     scenario.vehicles[RED.index()].start_position = start_position(red);
     scenario
-}
-
-fn started(scenario: &Scenario) -> Contest {
-    Contest::new(scenario, 1).expect("the boats fit")
 }
 
 /// Blue's contact of red.
@@ -98,7 +94,7 @@ fn a_report_tells_the_truth_of_as_long_ago_as_stated() {
         order(&mut contest, RED, Order::Steer { heading_rad: 1.0, speed_m_s: 2.0 });
         contest.advance();
     }
-    assert!(past[0].1.distance(past[199].1) > 20.0, "red stayed where it was");
+    assert!(past[0].1.distance(past[199].1) > 20.0, "red did not move");
 }
 
 #[test]
@@ -113,7 +109,7 @@ fn reports_err_by_the_stated_noise_and_anew_each_time() {
         let off = at(&shown(&mut contest).unwrap()) - place(&contest, RED);
         let contact = shown(&mut contest).unwrap();
         let velocity = (contact.velocity_north_m_s, contact.velocity_east_m_s);
-        assert_eq!(contest.world().state().boats[RED.index()].nu, sim::hull::Planar::default(), "red lies still");
+        assert_eq!(contest.world().state().boats[RED.index()].nu, sim::hull::Planar::default(), "red is at rest");
         errors[0].push(off.north / noise_m);
         errors[1].push(off.east / noise_m);
         errors[2].push(velocity.0 / velocity_noise_m_s);
@@ -127,8 +123,8 @@ fn reports_err_by_the_stated_noise_and_anew_each_time() {
         let next = &errors[(axis + 1) % 4];
         assert!(mean(&|i| error[i]).abs() < within, "axis {axis}");
         assert!((mean(&|i| error[i] * error[i]) - 1.0).abs() < within * 2.0_f64.sqrt(), "axis {axis}");
-        assert!(mean(&|i| error[i] * error[i + 1]).abs() < within, "axis {axis}: not anew");
-        assert!(mean(&|i| error[i] * next[i]).abs() < within, "axis {axis}: with its neighbour");
+        assert!(mean(&|i| error[i] * error[i + 1]).abs() < within, "axis {axis}: correlated over time");
+        assert!(mean(&|i| error[i] * next[i]).abs() < within, "axis {axis}: correlated with the other axis");
     }
 }
 

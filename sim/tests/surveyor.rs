@@ -1,4 +1,4 @@
-//! The Surveyor's model against measurements of the boat and predictions from its parameters.
+//! The Surveyor's model compared with measurements of the boat and predictions from its parameters.
 
 mod common;
 
@@ -25,8 +25,8 @@ fn sail(world: &mut World, order: Order, seconds: u32) -> BoatState {
 /// The share of full ahead or astern at which one thruster gives this thrust.
 fn share(newton: f64) -> f64 {
     let scenario = alone("surveyor_m1_8", "calm");
-    let Drive::Thrusters { thruster, .. } = &scenario.boats[0].drive else { panic!("it has thrusters") };
-    let ThrustCurve::Table { points } = &thruster.curve else { panic!("it has a table") };
+    let Drive::Thrusters { thruster, .. } = &scenario.boats[0].drive else { panic!("expected thrusters") };
+    let ThrustCurve::Table { points } = &thruster.curve else { panic!("expected a thrust table") };
     primitives::math::interpolate(points.iter().map(|(share, newton)| (*newton, *share)), newton)
 }
 
@@ -82,5 +82,5 @@ fn it_coasts_as_the_closed_form_says() {
     within("time, s", f64::from(ticks) * 0.05, 9.57, 0.01);
     within("way, m", boat.pose.at.distance(start), 5.87, 0.01);
     let boat = sail(&mut world, Order::Hold, 200);
-    within("way to rest, m", boat.pose.at.distance(start), 7.48, 0.01);
+    within("distance to rest, m", boat.pose.at.distance(start), 7.48, 0.01);
 }

@@ -1,5 +1,5 @@
-//! Invariances: orientation of north, port and starboard, uniform motion of the water, and a
-//! disturbance of size zero.
+//! Invariances: orientation of north, port and starboard, uniform motion of the water, and
+//! disturbances of size zero.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
@@ -59,7 +59,7 @@ fn everything(sea: &mut Sea) {
 }
 
 /// A boat's position, heading and velocity after each tick, from north 200 and east 300 on a
-/// heading of 20°, in a world rotated by `by_rad`; rotated back.
+/// heading of 20°, in a world rotated by `by_rad` and rotated back.
 fn track(scenario: &Scenario, order_of: impl Fn(f64) -> Order, by_rad: f64) -> Vec<[f64; 6]> {
     let start = turned(Ned { north: 200.0, east: 300.0 }, by_rad);
     let start = (start.east, start.north, 20.0 + by_rad.to_degrees());
@@ -77,7 +77,7 @@ fn track(scenario: &Scenario, order_of: impl Fn(f64) -> Order, by_rad: f64) -> V
 #[test]
 fn it_does_not_matter_where_north_is() {
     // The heading table has an entry every 5°. Rotated by a multiple of that, a boat finds the same
-    // numbers, to single precision; otherwise it finds others between the entries, which are off by
+    // numbers in single precision; otherwise it finds others between the entries, with an error of
     // a fraction of a per cent.
     let scenario = surveyor_on(everything);
     let steer = |by_rad: f64| Order::Steer { heading_rad: primitives::angle::wrap_pi(0.6 + by_rad), speed_m_s: 1.5 };
@@ -98,15 +98,15 @@ fn it_does_not_matter_where_north_is() {
             farthest_m = farthest_m.max(here[1199][0] - 200.0);
         }
     }
-    assert!(farthest_m > 30.0, "they go somewhere: {farthest_m} m");
+    assert!(farthest_m > 30.0, "the boats move only {farthest_m} m");
 }
 
 #[test]
 fn it_does_not_matter_which_side_is_port() {
     // Mirrored at the meridian of the datum: east, heading, sway and yaw change sign. Exact without
-    // waves; with them to single precision, because a heading and its mirror image lie between
-    // different entries of the table. Waves of one direction: with spreading, the directions are
-    // drawn and not mirrored.
+    // waves; with them in single precision, because a heading and its mirror image lie between
+    // different entries of the table. Waves of one direction, because spread directions are drawn
+    // and not mirrored.
     let sail = |side: f64, has_waves: bool| {
         let mut scenario = surveyor_on(|sea| {
             sea.current.mean_m_s = Ned { north: 0.2, east: side * 0.3 };
@@ -144,13 +144,13 @@ fn it_does_not_matter_which_side_is_port() {
 
 #[test]
 fn a_uniform_current_carries_everything_along_and_changes_nothing_else() {
-    // With imposed thrust. The front seat steers by motion over the ground, which a current
+    // With imposed thrust: the front seat steers by motion over the ground, which a current
     // changes.
     let current = Ned { north: 0.35, east: -0.2 };
     let orders = [Order::Thrust { port: 0.8, starboard: 0.5 }, Order::Hold];
     let (at_rest, streaming) = (surveyor_on(|_| ()), surveyor_on(|sea| sea.current.mean_m_s = current));
-    // The same velocity through the water: over the ground the current is added, seen from the boat
-    // at 0°.
+    // The same velocity through the water; over the ground the current is added, as seen from the
+    // boat at 0°.
     let mut carried = afloat(&streaming, 1, (200.0, 200.0, 0.0), (1.0 + current.north, current.east, 0.1));
     let mut still = afloat(&at_rest, 1, (200.0, 200.0, 0.0), (1.0, 0.0, 0.1));
     for tick in 1..=12_000 {
@@ -160,7 +160,7 @@ fn a_uniform_current_carries_everything_along_and_changes_nothing_else() {
         let off_m = (b.at - current.scaled(f64::from(tick) * 0.05)).distance(a.at);
         let off_rad = primitives::angle::wrap_pi(a.psi_rad - b.psi_rad).abs();
         // The state stores the velocity over the ground, so every tick adds and subtracts the
-        // current. That rounds: headings agree to rounding, not to the last bit.
+        // current, which rounds: headings agree to rounding, not to the last bit.
         assert!(off_m < 1e-10 && off_rad < 1e-12, "tick {tick}: {off_m} m, {off_rad} rad");
     }
 }
@@ -169,25 +169,25 @@ fn a_uniform_current_carries_everything_along_and_changes_nothing_else() {
 type Change = (&'static str, fn(&mut Sea));
 
 const NOTHINGS: [Change; 9] = [
-    ("waves of no height", |sea| sea.waves = Some(waves(0.0))),
-    ("waves of no height, one of them", |sea| sea.waves = Some(Waves { components: 1, ..waves(0.0) })),
-    ("wind of no speed", |sea| sea.wind = Some(Wind { gusts: Gusts::None, ..wind(0.0) })),
-    ("gusts of no wind", |sea| sea.wind = Some(wind(0.0))),
-    ("a tide of no strength", |sea| {
+    ("waves of zero height", |sea| sea.waves = Some(waves(0.0))),
+    ("one wave of zero height", |sea| sea.waves = Some(Waves { components: 1, ..waves(0.0) })),
+    ("wind of zero speed", |sea| sea.wind = Some(Wind { gusts: Gusts::None, ..wind(0.0) })),
+    ("gusts of zero wind", |sea| sea.wind = Some(wind(0.0))),
+    ("a tide of zero strength", |sea| {
         sea.current.tide = Some(Tide { flood_m_s: Ned::default(), period_s: 300.0, phase: 0.3 });
     }),
-    ("a shear of no strength", |sea| {
+    ("a shear of zero strength", |sea| {
         let (toward, across) = (Ned::toward_deg(30.0), Ned::toward_deg(120.0));
         sea.current.shear = Some(Shear { toward, across, per_s: 0.0, origin: Ned { north: 10.0, east: 20.0 } });
     }),
-    ("a wander of no size", |sea| {
+    ("a wander of zero size", |sea| {
         let toward = Ned::toward_deg(30.0);
         sea.current.wander = Some(Wander { toward, sigma_m_s: 0.0, time_s: 100.0, speed_m_s: (-1.0, 1.0) });
     }),
-    ("an eddy of no strength", |sea| {
+    ("an eddy of zero strength", |sea| {
         sea.current.eddies = vec![Eddy { centre: Ned { north: 210.0, east: 190.0 }, radius_m: 20.0, peak_m_s: 0.0 }];
     }),
-    ("random eddies of no strength", |sea| {
+    ("random eddies of zero strength", |sea| {
         sea.current.random_eddies = Some(RandomEddies { count: 5, radius_m: (10.0, 40.0), peak_m_s: (0.0, 0.0) });
     }),
 ];
@@ -208,13 +208,13 @@ fn a_disturbance_of_no_size_is_none_to_the_last_bit() {
     let calm = digests(|_| ());
     let differ = |change: &Change| digests(change.1) != calm;
     let differing: Vec<&str> = NOTHINGS.iter().filter(|c| differ(c)).map(|c| c.0).collect();
-    assert!(differing.is_empty(), "not as in calm: {differing:?}");
-    assert_ne!(digests(|sea| sea.wind = Some(wind(0.001))), calm, "some wind is some");
+    assert!(differing.is_empty(), "different from calm: {differing:?}");
+    assert_ne!(digests(|sea| sea.wind = Some(wind(0.001))), calm, "a light wind must change the digest");
 }
 
 #[test]
 fn a_disturbance_of_no_size_changes_nothing_in_a_rough_sea_either() {
-    // Zero wind instead of still air, which would resist a boat under way.
+    // Zero wind rather than still air, which would resist a moving boat.
     let rough = |sea: &mut Sea| {
         sea.waves = Some(waves(0.3));
         sea.current.mean_m_s = Ned { north: 0.2, east: 0.1 };
@@ -229,5 +229,5 @@ fn a_disturbance_of_no_size_changes_nothing_in_a_rough_sea_either() {
         got != want
     };
     let differing: Vec<&str> = changes.filter(|c| differ(c.1)).map(|c| c.0).collect();
-    assert!(differing.is_empty(), "not as without: {differing:?}");
+    assert!(differing.is_empty(), "different from the sea without it: {differing:?}");
 }

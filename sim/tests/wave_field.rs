@@ -1,4 +1,4 @@
-//! The sum of waves against the spectrum it represents, and against linear wave theory.
+//! The sum of waves compared with the spectrum that it represents, and with linear wave theory.
 
 mod common;
 
@@ -22,7 +22,7 @@ fn power(x: f64, n: usize) -> f64 {
 }
 
 /// The moments of order 0, 1 and 2 of the components, and those of the spectrum up to 60 peak
-/// frequencies, beyond which 0.0004 of the second moment is left.
+/// frequencies, beyond which 0.0004 of the second moment remains.
 fn moments(field: &WaveField) -> [f64; 3] {
     let of = |n| field.components().map(|c| 0.5 * square(c.amplitude_m) * power(c.omega_rad_s, n)).sum();
     [of(0), of(1), of(2)]
@@ -131,7 +131,7 @@ fn variance_between(series: &[f64], dt_s: f64, from_rad_s: f64, to_rad_s: f64) -
     (first..=last).map(variance).sum()
 }
 
-/// Energy-weighted mean vector of the components' travel, relative to the expected direction.
+/// Energy-weighted mean vector of the components' directions, relative to the expected direction.
 fn mean_vector(components: &[Component], from_rad: f64) -> (f64, f64) {
     let energy: f64 = components.iter().map(|c| square(c.amplitude_m)).sum();
     let sum = |f: fn(f64) -> f64| -> f64 {
@@ -235,9 +235,9 @@ fn dispersion_holds_from_very_shallow_to_very_deep() {
 
 #[test]
 fn who_moves_meets_every_wave_at_its_frequency_of_encounter() {
-    // Nine waves of one sea, encountered head-on, across, following and obliquely: each is a peak
-    // of the spectrum, of its own height, at ω − k V cos, within the resolution of fourteen
-    // minutes. None of this is put in: the surface is evaluated along the track.
+    // Nine waves of one sea, met head-on, across, following and obliquely. Each is a peak of the
+    // spectrum of its own height at ω − k V cos, within the resolution of fourteen minutes. None of
+    // this is put in: the surface is evaluated along the track.
     let (samples, dt_s) = (8192, 0.1);
     let field = WaveField::new(&Waves { gamma: 1.0, ..sea(9) }, None, 2);
     let resolution = TAU / (f64::from(samples) * dt_s);
@@ -253,7 +253,7 @@ fn who_moves_meets_every_wave_at_its_frequency_of_encounter() {
             for (i, c) in field.components().enumerate() {
                 let others = met_at.iter().enumerate().filter(|(j, _)| *j != i);
                 let room = others.map(|(_, at)| (at - met_at[i]).abs()).fold(met_at[i], f64::min);
-                // Two waves with nearly the same frequency of encounter are one peak.
+                // Two waves with nearly the same frequency of encounter form one peak.
                 if room < 6.0 {
                     continue;
                 }
@@ -265,7 +265,7 @@ fn who_moves_meets_every_wave_at_its_frequency_of_encounter() {
                 assert!((0.8..1.1).contains(&(spectrum[peak] / c.amplitude_m)), "{what}: {} m", spectrum[peak]);
             }
 
-            assert!(apart >= 3, "{apart} waves can be told apart");
+            assert!(apart >= 3, "only {apart} waves are distinguishable");
         }
     }
 }

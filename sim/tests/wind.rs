@@ -1,4 +1,4 @@
-//! The wind against its formulas, and its force against Fossen's and the drift in closed form.
+//! The wind compared with its formulas, and its force with Fossen's and the closed-form drift.
 
 mod common;
 
@@ -32,7 +32,7 @@ fn ornstein_uhlenbeck() -> Gusts {
 }
 
 /// Wind from the west at one place, every `step_s`: (east over the mean − 1, south over the mean),
-/// both over the intensity along the wind.
+/// both relative to the intensity along the wind.
 fn record(gusts: Gusts, seed: u64, count: i64, step_s: f64) -> Vec<(f64, f64)> {
     let mut field = WindField::new(&wind(270.0, gusts), HEIGHT_M, &field(), &seed.into());
     let mean_m_s = field.mean_m_s(HEIGHT_M);
@@ -104,7 +104,7 @@ fn the_spectrum_of_ornstein_uhlenbeck_gusts_bends_at_the_length_scale() {
     for bin in [5, 10, 20, 40] {
         let (got, want) = (power(bin) / low, density(bin) / density(2));
         // Two periodograms of 1.8 % each, and a little from sampling 16 times in τ.
-        assert!((got / want - 1.0).abs() < 0.12, "ω τ = {}: {got}, not {want}", omega_tau(bin));
+        assert!((got / want - 1.0).abs() < 0.12, "ω τ = {}: {got}, want {want}", omega_tau(bin));
     }
 }
 
@@ -131,7 +131,7 @@ fn a_gust_comes_to_a_boat_downwind_as_it_was() {
             assert!(ratio.distance(air_m_s.scaled(2.0)) < WITHIN_M_S, "in proportion to the mean");
             differ += u32::from(air_m_s.distance(field.at(upwind + downwind.scaled(way_m), mean_m_s, now)) > 0.1);
         }
-        assert!(differ > 100, "gusts vary along the wind: {differ} of 200");
+        assert!(differ > 100, "gusts differ along the wind at only {differ} of 200 times");
     }
 }
 
@@ -188,7 +188,7 @@ fn force(ahead: f64, starboard: f64) -> Planar {
 
 #[test]
 fn the_wind_pushes_a_boat_away_and_its_bow_off() {
-    // A boat that points north at rest; the wind from a bearing; signs of surge, sway and yaw.
+    // For a boat at rest heading north: the wind's bearing, and the signs of surge, sway and yaw.
     for (from_deg, want) in [
         (0.0, (-1.0, 0.0, 0.0)),
         (45.0, (-1.0, -1.0, -1.0)),
@@ -231,7 +231,7 @@ fn the_force_is_fossen_s_at_every_angle() {
         };
         let got = force(-u_rw, -v_rw);
         for (got, want) in [(got.surge, want.surge), (got.sway, want.sway), (got.yaw, want.yaw)] {
-            assert!((got - want).abs() < 1e-12 * pressure, "γ = {gamma}: {got}, not {want}");
+            assert!((got - want).abs() < 1e-12 * pressure, "γ = {gamma}: {got}, want {want}");
         }
     }
 }

@@ -1,23 +1,22 @@
-//! The condition for a point to count as reached.
+//! When a point counts as reached.
 
 use primitives::Ned;
 use primitives::angle::wrap_pi;
 use std::f64::consts::TAU;
 
-/// A point recedes once it is this much farther away than at its closest, m; less may be position
-/// noise.
+/// A point recedes once it is this much farther away than at its closest, m; less may be noise.
 const AWAY_M: f64 = 0.5;
 
 /// A point that the boat approaches. It is reached within the capture radius, or within the slip
-/// radius once it recedes. A boat that has circled the point cannot turn tightly enough for it: the
-/// point then counts as reached, as does every later point that comes as near as this one did.
+/// radius once it recedes. A boat that has circled the point cannot turn tightly enough for it. The
+/// point then counts as reached, as does every later one that comes as near.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Arrival {
     nearest_m: f64,
     /// The bearing of the point and its accumulated rotation, rad.
     bearing_rad: Option<f64>,
     turned_rad: f64,
-    /// Points within this distance count as reached because the boat has circled one at it, m.
+    /// Points within this distance count as reached, because the boat has circled one this far off, m.
     gone_round_m: f64,
 }
 
@@ -31,7 +30,7 @@ impl Arrival {
         Arrival { gone_round_m: self.gone_round_m, ..Arrival::new() }
     }
 
-    /// Whether the point at `line` from the boat is reached.
+    /// Whether the point is reached; `line` is its position relative to the boat.
     pub(super) fn reaches(&mut self, line: Ned, capture_radius_m: f64, slip_radius_m: f64) -> bool {
         let (distance_m, bearing_rad) = (line.length(), Ned::default().bearing_rad(line));
         let before_rad = self.bearing_rad.replace(bearing_rad).unwrap_or(bearing_rad);
@@ -51,7 +50,6 @@ mod tests {
     use primitives::{Ned, math};
     use std::f64::consts::TAU;
 
-    /// The line to a point at this distance and bearing.
     fn line(distance_m: f64, bearing_rad: f64) -> Ned {
         let (sin, cos) = math::sin_cos(bearing_rad);
         Ned { north: distance_m * cos, east: distance_m * sin }
@@ -62,9 +60,9 @@ mod tests {
         for (what, distances_m, want) in [
             ("not yet", &[20.0, 10.0, 6.0][..], false),
             ("captured", &[20.0, 10.0, 2.9], true),
-            ("slipped by", &[20.0, 10.0, 6.0, 6.6], true),
+            ("receding within the slip radius", &[20.0, 10.0, 6.0, 6.6], true),
             ("noise", &[20.0, 10.0, 6.0, 6.3], false),
-            ("drawing away too far off", &[20.0, 16.0, 18.0], false),
+            ("receding too far away", &[20.0, 16.0, 18.0], false),
         ] {
             let mut arrival = Arrival::new();
             let got =
@@ -75,7 +73,7 @@ mod tests {
 
     #[test]
     fn a_point_that_was_gone_round_is_reached_and_so_are_those_as_near_after_it() {
-        // A 5 m circle round the point at 10 degrees per decision, either way: never within the
+        // A 5 m circle around the point at 10 degrees per decision, either way: never within the
         // capture radius, never receding.
         for side in [1.0, -1.0] {
             let mut arrival = Arrival::new();
@@ -83,8 +81,8 @@ mod tests {
             let first = (0..100).find(|decision| arrival.reaches(line(5.0, bearing_rad(*decision)), 3.0, 15.0));
             assert!(first.is_some_and(|decision| (36..=37).contains(&decision)), "{first:?}");
             arrival = arrival.next();
-            assert!(arrival.reaches(line(4.9, 0.0), 3.0, 15.0), "as near as the one before");
-            assert!(!arrival.next().reaches(line(5.2, 0.0), 3.0, 15.0), "farther off");
+            assert!(arrival.reaches(line(4.9, 0.0), 3.0, 15.0), "as near as the previous point");
+            assert!(!arrival.next().reaches(line(5.2, 0.0), 3.0, 15.0), "farther away");
         }
         // A weaving course does not circle the point.
         let mut arrival = Arrival::new();

@@ -1,4 +1,4 @@
-//! Attractor: draws the boat to a place, more strongly the nearer the place is.
+//! Attractor: draws the boat to a place, more strongly the nearer it is.
 
 use super::logic::BehaviourLogic;
 use super::nearest::nearness;
@@ -9,8 +9,8 @@ use scenario::strategy::Attractor;
 
 impl BehaviourLogic for Attractor {
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
-        // With the place unknown, such as a boat out of sight, this behaviour adds no function and
-        // the other behaviours decide.
+        // If the place is unknown, such as that of a boat out of sight, this behaviour adds no
+        // function and the others decide.
         let Some(point) = situation.locate(&self.to) else { return };
         let share =
             nearness(situation.at.distance(point.at), self.inner_m.value(situation), self.outer_m.value(situation));

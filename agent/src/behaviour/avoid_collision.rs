@@ -9,8 +9,8 @@ use crate::ivp::Side;
 use crate::situation::{MovingPoint, Situation};
 use scenario::strategy::{AvoidCollision, Grade};
 
-/// Boats that would pass each other to starboard within this distance pass port to port instead, m.
-/// This makes both choose the same side where either would do.
+/// Boats that would pass to starboard within this distance pass port to port instead, m, so that
+/// both choose the same side where either would do.
 const PORT_TO_PORT_M: f64 = 2.0;
 /// Below this relative speed no passing side is assigned, m/s.
 const PASSING_MIN_M_S: f64 = 0.3;
@@ -20,15 +20,15 @@ impl BehaviourLogic for AvoidCollision {
         let (inner_m, outer_m) = (self.inner_m.value(situation), self.outer_m.value(situation));
         let (min_m, max_m) = (self.cpa_min_m.value(situation), self.cpa_max_m.value(situation));
         let horizon_s = self.time_on_leg_s.value(situation);
-        // Cheap rejection without a square root: in a large fleet nearly all boats are far off. The
-        // exact test follows below.
+        // Cheap rejection without a square root: in a large fleet nearly all boats are far away.
+        // The exact test follows.
         let far_m2 = outer_m * outer_m * (1.0 + 1e-9);
         let near = situation.others.iter().enumerate();
         let near = near.filter(|(_, other)| situation.at.distance_squared(other.at) <= far_m2);
         let near = near.map(|(i, other)| (situation.at.distance(other.at), i));
         let meant = |i: usize| is_meant(self.contacts, situation, &situation.others[i]);
-        // Both boats are assumed to keep turning. Two boats that each assume the other goes
-        // straight can turn to the same side again and again until they touch. Hull contacts per
+        // Both boats are assumed to keep turning. If each assumes that the other goes straight,
+        // both can turn to the same side again and again until they touch. Hull contacts per
         // boat-hour: 0.44 without this, 0.35 with it, 0.03 with an agreed side as well (random
         // strategies in calm water, `crates/arena/examples/safety.rs`).
         let own = situation.turning_on();
@@ -36,9 +36,9 @@ impl BehaviourLogic for AvoidCollision {
             let other = &situation.others[i];
             let contact = other.turning_on();
             // The idea of reciprocal velocity obstacles (van den Berg, Lin and Manocha, ICRA 2008),
-            // for boats that turn along arcs. Both give way: the COLREGs roles of stand-on and
-            // give-way would need each boat to know the other's present state, and observations may
-            // be old.
+            // for boats that turn along arcs. Both give way: for the COLREGs roles of stand-on and
+            // give-way, each boat would need the other's present state, and observations may be
+            // old.
             let leave_to = side(own, contact);
             let function = keep_clear(situation, contact, 0.0, (min_m, max_m), horizon_s, leave_to);
             let share = graded(self.grade, nearness(distance_m, inner_m, outer_m));
@@ -47,27 +47,25 @@ impl BehaviourLogic for AvoidCollision {
     }
 }
 
-/// The side on which two approaching boats leave each other: the side on which they already pass.
-/// Both boats compute the same side, so neither turns into the other.
+/// The side on which two approaching boats leave each other: the one on which they already pass.
+/// Both compute the same side, so neither turns into the other.
 fn side(own: MovingPoint, contact: MovingPoint) -> Option<Side> {
     let (line, past) = (contact.at - own.at, contact.velocity - own.velocity);
     let past_m_s = past.length();
     if past_m_s < PASSING_MIN_M_S || line.dot(past) >= 0.0 {
         return None;
     }
-    // The sign of the line of sight's rotation: both boats compute the same value from opposite
-    // ends, so they agree without communication.
+    // The sign of the line of sight's rotation is the same from both ends, so the boats agree
+    // without communication.
     let to_starboard_m = (line.north * past.east - line.east * past.north) / past_m_s;
     Some(if to_starboard_m < PORT_TO_PORT_M { Side::Port } else { Side::Starboard })
 }
 
-/// The share of the weight that applies: the full weight at the inner distance and nearer, never
-/// more.
+/// The share of the weight that applies; 1 at the inner distance and nearer.
 fn graded(grade: Grade, nearness: f64) -> f64 {
     match grade {
         Grade::Linear => nearness,
-        // The three shapes of MOOS-IvP's AvoidCollision for the weight between its outer and inner
-        // distance.
+        // The three shapes of MOOS-IvP's AvoidCollision between its outer and inner distance.
         Grade::Quasi => nearness * nearness.sqrt(),
         Grade::Quadratic => nearness * nearness,
     }

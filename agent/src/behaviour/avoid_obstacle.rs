@@ -14,8 +14,7 @@ use scenario::strategy::AvoidObstacle;
 
 pub(super) struct AvoidObstacleBehaviour {
     task: AvoidObstacle,
-    /// Precomputed outlines of the polygonal obstacles, by obstacle; empty before the first
-    /// decision.
+    /// Precomputed outlines of polygonal obstacles, by obstacle; empty before the first decision.
     outlines: Vec<Outline>,
     /// Utilities of all courses and speeds, for obstacles without a closed form.
     table: Table,
@@ -36,7 +35,7 @@ impl BehaviourLogic for AvoidObstacleBehaviour {
         let max_m = self.task.cpa_max_m.value(situation).max(min_m);
         let horizon_s = self.task.time_on_leg_s.value(situation);
         let obstacles = &situation.model.field.plan.obstacles;
-        // Once only: obstacles do not move, and the half planes around a polygon are expensive.
+        // Only once: obstacles do not move, and the half planes around a polygon are expensive.
         if self.outlines.is_empty() {
             let corners = |obstacle: &Obstacle| match obstacle {
                 Obstacle::Circle { .. } => Outline::new(&[]),
@@ -51,7 +50,7 @@ impl BehaviourLogic for AvoidObstacleBehaviour {
                 Obstacle::Circle { centre, radius_m } => {
                     let disc = MovingPoint { at: *centre, velocity: Ned::default() };
                     // A circle is a stationary contact that touches at its radius, so the closed
-                    // form applies; a polygon has no closed form and needs a table.
+                    // form applies. A polygon has no closed form and needs a table.
                     let function = keep_clear(situation, disc, *radius_m, (min_m, max_m), horizon_s, None);
                     output.add_share(share, None, &function);
                 }

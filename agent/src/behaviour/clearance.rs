@@ -1,4 +1,4 @@
-//! Clearance: how far the boat stays inside the edges of a region on each course, at each speed.
+//! Clearance: how far the boat stays inside the edges of a region, for each course and speed.
 //!
 //! After a decision the boat keeps its motion for its reaction time, turns the shorter way at its
 //! turn rate, then goes straight.
@@ -16,12 +16,12 @@ const ROUNDING_M: f32 = 0.01;
 /// Lowers the utilities of a table to the clearance that each candidate keeps from the edges.
 ///
 /// A candidate is worth the share of `save_m` that it keeps: half for the least distance to an edge
-/// on the way, half for the distance at the end of the look-ahead. The worst edge counts. If the
-/// candidate keeps the share `x`, it is worth `x + bend x (1 - x)` of each half.
+/// on the way, half for the distance at the end of the look-ahead. The worst edge counts. For the
+/// share `x` it gets `x + bend x (1 - x)` of each half.
 pub(super) struct Clearance<'a> {
     pub(super) table: &'a mut Table,
     pub(super) grid: &'a Grid,
-    /// By edge: outward unit normal, and the boat's distance inside the edge, m.
+    /// For each edge: its outward unit normal, and the boat's distance inside it, m.
     pub(super) edges: &'a [(Ned, f64)],
     /// Edges beyond this distance are ignored, m.
     pub(super) reach_m: f64,
@@ -33,8 +33,8 @@ pub(super) struct Clearance<'a> {
     pub(super) handling: Handling,
     pub(super) lookahead_s: f64,
     pub(super) save_m: f64,
-    /// How much more the first metres from the edge are worth than the last ones: 0 weighs all
-    /// metres of `save_m` alike, 1 weighs the first ones double and the last ones zero.
+    /// Extra value of the first metres from the edge: 0 weighs all metres of `save_m` equally, 1
+    /// gives the first ones double weight and the last ones none.
     pub(super) bend: f64,
 }
 
@@ -61,10 +61,9 @@ impl Kernel for Clearance<'_> {
 }
 
 impl Clearance<'_> {
-    /// An edge in coordinates relative to the boat.
     fn seen(&self, (normal, inside_m): (Ned, f64)) -> Edge {
-        // Everything below is relative to the edge's outward normal: one formula then serves all
-        // four edges, and the outward direction is a cosine.
+        // Relative to the edge's outward normal, one formula serves all four edges, and the outward
+        // direction is a cosine.
         let from_rad = wrap_pi(self.heading_rad - math::atan2(normal.east, normal.north));
         let (sin_from, cos_from) = math::sin_cos(from_rad);
         let start_m = (inside_m - self.handling.reaction_s * self.surge_m_s * cos_from) as f32;
@@ -72,13 +71,12 @@ impl Clearance<'_> {
         Edge { normal, from_rad, sin_from, start_m, drift_m }
     }
 
-    /// Whether any of the courses may come near the edge; cheap for courses that lead away from it.
+    /// Whether any of the courses may come near the edge; cheap for courses that lead away.
     #[inline(always)]
     fn may_be_low(&self, courses: &Courses, turns: &Turns, edge: &Edge) -> bool {
         let least_m = self.save_m + f64::from(edge.drift_m).max(0.0) + f64::from(ROUNDING_M);
-        // At the larger of the old and the top speed.
-        // Courses that lead away from an edge, or cannot reach it, are skipped 16 at a time: most
-        // are, even near an edge.
+        // At the larger of the old speed and the top speed. Courses that lead away from an edge, or
+        // cannot reach it, are skipped 16 at a time: most are, even near an edge.
         let out_s = (f64::from(edge.start_m) - least_m) / self.surge_m_s.max(self.grid.speed_max_m_s());
         let mut may_be_low = false;
         for i in 0..LANES {
@@ -96,7 +94,7 @@ impl Clearance<'_> {
     fn lower(&mut self, first: usize, ways: &Ways) {
         let (worth, old_m_s) = (((50.0 / self.save_m) as f32, self.bend as f32), self.surge_m_s as f32);
         let most_m_s = larger(old_m_s, self.grid.speed_max_m_s() as f32);
-        // A bit mask finds the courses that need work without a branch for each.
+        // A bit mask finds the courses that need work, without a branch for each.
         let mut low = ways.low(most_m_s, self.save_m as f32);
         while low != 0 {
             let i = low.trailing_zeros() as usize;
@@ -146,13 +144,14 @@ impl Turn {
     }
 }
 
-/// Turns to a group of courses, and the edge-independent part of the straight runs after them.
+/// Turns to a group of courses, and the part of the straight runs after them that does not depend
+/// on the edge.
 struct Turns {
     by_rad: Lanes<f64>,
     turn_rad_s: Lanes<f64>,
     duration_s: Lanes<f64>,
     straight_s: Lanes<f64>,
-    /// The least and the greatest mean speed on the straight run, m/s.
+    /// Minimum and maximum mean speed on the straight run, m/s.
     slowest_m_s: Lanes<f32>,
     fastest_m_s: Lanes<f32>,
 }
@@ -193,7 +192,7 @@ impl Turns {
     }
 }
 
-/// The least and the greatest speed after this time, m/s, within the boat's acceleration.
+/// Minimum and maximum speed after this time, m/s, within the boat's acceleration.
 #[inline(always)]
 fn reached(old_m_s: f64, after_s: f64, handling: &Handling) -> (f32, f32) {
     let slowest_m_s = old_m_s - handling.deceleration_m_s2 * after_s;
@@ -212,13 +211,13 @@ struct Outward {
 }
 
 impl Outward {
-    /// From an angle to the edge's outward normal (and its sine) to another (its sine).
+    /// From one angle to the edge's outward normal (and its sine) to another (and its sine).
     ///
     /// The outward distance is the integral of the cosine: the sine divided by the turn rate, with
     /// extremes at right angles to the normal.
     #[inline(always)]
     fn new(turn: &Turn, (from_rad, sin_from): (f64, f64), sin_to: f64) -> Outward {
-        // Mirrored, so that one formula serves turns to either side and a mirrored scene gives the
+        // Mirrored, so that one formula serves turns to both sides and a mirrored scene gives the
         // same bits.
         let side = if turn.by_rad < 0.0 { -1.0 } else { 1.0 };
         let end_s = side * (sin_to - sin_from) / turn.turn_rad_s;
@@ -231,8 +230,8 @@ impl Outward {
         let ends_out = end_s > 0.0;
         let (end_out_s, end_after_s) =
             (if ends_out { end_s } else { 0.0 }, if ends_out { turn.duration_s } else { 0.0 });
-        // The farthest point is where the boat is parallel to the edge, if the turn passes that
-        // heading; otherwise it is the beginning or the end.
+        // The farthest point is where the boat is parallel to the edge if the turn passes that
+        // heading; otherwise it is at the start or the end.
         let is_parallel = (to_parallel_rad < turn.by_rad.abs()) & (parallel_s > end_s);
         Outward {
             farthest_s: if is_parallel { parallel_s } else { end_out_s },
@@ -242,9 +241,9 @@ impl Outward {
     }
 }
 
-/// A way on a course relative to an edge, as a function of the new speed: out to the farthest point
-/// of the turn, back to its end, and straight on. The speed changes from old to new within the
-/// boat's acceleration, but no faster than evenly on the way out.
+/// A path on a course relative to an edge, as a function of the new speed: out to the farthest
+/// point of the turn, back to its end, and straight on. The speed changes from old to new within
+/// the boat's acceleration, but no faster than evenly on the way out.
 #[derive(Clone, Copy)]
 struct Way {
     /// Distance inside the edge at the start of the turn, m.
@@ -257,12 +256,12 @@ struct Way {
     back_s: f32,
     /// Outward distance on the straight run, s (times the speed).
     straight_s: f32,
-    /// The least and the greatest mean speed on each part of the way, m/s.
+    /// Minimum and maximum mean speed on each part of the path, m/s.
     within: [(f32, f32); 3],
 }
 
 impl Way {
-    /// The utility of the least distance to the edge and of the final one.
+    /// The utility of the least distance to the edge and of the final distance.
     #[inline(always)]
     fn utility(&self, old_m_s: f32, new_m_s: f32, (per_m, bend): (f32, f32)) -> f32 {
         let [out, back, straight] = self.within;
@@ -273,19 +272,19 @@ impl Way {
             farthest_m - self.drift_m + self.back_s * held(new_m_s, back) - self.straight_s * held(new_m_s, straight);
         let least_m = smaller(farthest_m, end_m);
         // The nearest point and the end count half each: of two courses that come equally near, the
-        // one that then leads away is better, also for a boat that is already outside.
+        // one that then leads away is better, even for a boat that is already outside.
         kept(least_m * per_m, bend) + kept(end_m * per_m, bend)
     }
 }
 
-/// Ways on a group of courses.
+/// Paths on a group of courses.
 struct Ways {
     start_m: f32,
     drift_m: f32,
     out_s: Lanes<f32>,
     back_s: Lanes<f32>,
     straight_s: Lanes<f32>,
-    /// The least and the greatest mean speeds, m/s.
+    /// Minimum and maximum mean speeds, m/s.
     slowest_m_s: [Lanes<f32>; 3],
     fastest_m_s: [Lanes<f32>; 3],
 }
@@ -319,7 +318,7 @@ impl Ways {
         ways
     }
 
-    /// The way on one of the courses.
+    /// The path on one of the courses.
     #[inline(always)]
     fn at(&self, i: usize) -> Way {
         let within = |part: usize| (self.slowest_m_s[part].0[i], self.fastest_m_s[part].0[i]);
@@ -333,14 +332,14 @@ impl Ways {
         }
     }
 
-    /// A bit mask of the ways that may come within `save_m` of the edge at some speed; `most_m_s`
+    /// A bit mask of the paths that may come within `save_m` of the edge at some speed; `most_m_s`
     /// and the old speed are the largest.
     #[inline(always)]
     fn low(&self, most_m_s: f32, save_m: f32) -> u32 {
         let begins_m = self.start_m - larger(self.drift_m, 0.0) - ROUNDING_M;
         let mut bits = 0;
         for i in 0..LANES {
-            // Mean speeds are non-negative and at most the larger of the old and the new one.
+            // Mean speeds are non-negative and at most the larger of old and new speed.
             let least_m = begins_m - (self.out_s.0[i] + larger(self.straight_s.0[i], 0.0)) * most_m_s;
             bits |= u32::from(least_m < save_m) << i;
         }
@@ -369,7 +368,7 @@ mod tests {
     /// A boat that makes every turn at the same yaw rate.
     const HANDLING: Handling = Handling::evenly(0.35);
 
-    /// The farthest and the last outward distance of a boat that turns at 1 m/s, in small steps, m.
+    /// The farthest and the last outward distance in small steps, for a turn at 1 m/s, m.
     fn stepped(from_rad: f64, by_rad: f64) -> (f64, f64) {
         let steps = 100_000;
         let dt_s = by_rad.abs() / HANDLING.turn_rad_s / f64::from(steps);
@@ -461,6 +460,6 @@ mod tests {
                 assert_eq!(utility, 100.0, "seed {seed}, speed {j}");
             }
         }
-        assert!(left_out > 2_000, "{left_out} left out");
+        assert!(left_out > 2_000, "only {left_out} courses left out");
     }
 }

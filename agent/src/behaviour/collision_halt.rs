@@ -1,5 +1,5 @@
-//! The collision halt: a boat that has come too near to another stops, whatever other behaviours
-//! want, until it is released. As at the games of 2023, where people then separated the boats.
+//! The collision halt: a boat that has come too close to another stops, whatever other behaviours
+//! want, until it is released. In the games of 2023, people separated such boats.
 
 use super::logic::BehaviourLogic;
 use super::output::BehaviourOutput;
@@ -13,15 +13,14 @@ pub(super) struct HaltingAvoidance {
     halt: Halt,
 }
 
-/// Whether the boat is halted.
 #[derive(Clone, Copy)]
 enum Halt {
-    /// No boat has come too near.
+    /// No boat has come too close.
     Clear,
     Halted {
         since: SimTime,
     },
-    /// Released after its time with others still near: it halts again only once it has been clear
+    /// Released after its time with others still near; it halts again only after it has been clear
     /// of them.
     Released,
 }
@@ -35,8 +34,8 @@ impl HaltingAvoidance {
         let value = |parameter: &Option<Parameter>| parameter.as_ref().map(|parameter| parameter.value(situation));
         let AvoidCollision { halt_m, release_m, release_s, .. } = &self.avoidance;
         let Some(halt_m) = value(halt_m) else { return Halt::Clear };
-        // Three times the halt distance by default: a halt released at the distance where it began
-        // would begin again at once.
+        // Three times the halt distance by default: if a halt ended at the distance at which it
+        // begins, it would begin again at once.
         let (release_m, release_s) = (value(release_m).unwrap_or(3.0 * halt_m), value(release_s));
         let distances = situation.others.iter().map(|other| situation.at.distance(other.at));
         // All boats, including those that `contacts` excludes: the halt is about hulls, not tags.
@@ -59,7 +58,7 @@ impl BehaviourLogic for HaltingAvoidance {
     }
 
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
-        // The avoidance also runs during a halt, so that its functions are visible, and ready when
+        // The avoidance also runs during a halt, so that its functions are visible and ready when
         // the halt ends.
         self.avoidance.run(situation, output);
         self.halt = self.next(situation);

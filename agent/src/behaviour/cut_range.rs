@@ -23,13 +23,13 @@ impl BehaviourLogic for CutRange {
             velocity,
             horizon_s: self.time_on_leg_s.value(situation),
             min_m: 0.0,
-            // Only getting nearer counts, so the utility is scaled by the present distance.
+            // Only getting closer counts, so the utility is scaled by the present distance.
             max_m: distance_m.max(1.0),
             touch_m: 0.0,
             approach: Approach::Seek,
             lag: None,
         };
-        // MOOS-IvP's CutRange: at patience 0 it closes in as fast as it can now, at patience 1 it
+        // As in MOOS-IvP's CutRange, patience 0 closes in as fast as it can now, and patience 1
         // heads for the meeting point.
         output.add_share(1.0 - patience, Some(contact.vehicle), &Objective::Closing(closing));
         output.add_share(patience, Some(contact.vehicle), &Objective::Closest(closest));

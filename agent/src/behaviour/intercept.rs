@@ -1,4 +1,4 @@
-//! Intercept: steers for the earliest point where a boat can be met (lead pursuit).
+//! Intercept: steers for the earliest point at which a boat can be met (lead pursuit).
 
 use super::logic::BehaviourLogic;
 use super::output::BehaviourOutput;
@@ -15,7 +15,7 @@ impl BehaviourLogic for Intercept {
             return;
         }
         let speed_m_s = self.speed_m_s.value(situation).min(situation.model.speed_max_m_s);
-        // The same water carries both boats: relative to it the contact moves at its velocity less
+        // The same water carries both boats: relative to it, the contact's velocity is reduced by
         // the drift.
         let velocity = contact.velocity() - situation.motion.drift();
         let meeting = meeting_point(situation.at, speed_m_s, MovingPoint { at: contact.at, velocity });
@@ -24,12 +24,12 @@ impl BehaviourLogic for Intercept {
     }
 }
 
-/// The earliest point where a boat at `from`, going straight at this speed, meets a contact of
+/// The earliest point at which a boat at `from`, going straight at this speed, meets a contact of
 /// constant velocity; the contact's present position if they never meet.
 pub(super) fn meeting_point(from: Ned, speed_m_s: f64, contact: MovingPoint) -> Ned {
     let time_s = meeting_time_s(contact.at - from, contact.velocity, speed_m_s);
-    // A faster contact that is moving away cannot be met. The boat steers for its present position:
-    // it may turn.
+    // A faster contact that moves away cannot be met. The boat steers for its present position,
+    // because it may turn.
     contact.at + contact.velocity.scaled(time_s.unwrap_or(0.0))
 }
 
@@ -52,10 +52,10 @@ mod tests {
             let times_s = (got.length() / 2.5, if speed_m_s > 0.0 { got.distance(point.at) / speed_m_s } else { -1.0 });
             assert!(times_s.1 < 0.0 || (times_s.0 - times_s.1).abs() < 1e-9, "{point:?}: {times_s:?}");
         }
-        // A faster contact moving away: chased at its present position.
+        // A faster contact moving away is chased at its present position.
         let got = meeting_point(Ned::default(), 1.0, contact(10.0, 0.0, 2.0, 0.0));
         assert_eq!(got, Ned { north: 10.0, east: 0.0 });
-        // An approaching contact of the same speed: met half way.
+        // An approaching contact of the same speed is met half-way.
         let got = meeting_point(Ned::default(), 2.0, contact(10.0, 0.0, -2.0, 0.0));
         assert!(got.distance(Ned { north: 5.0, east: 0.0 }) < 1e-9, "{got:?}");
     }

@@ -4,7 +4,7 @@ use super::output::BehaviourOutput;
 use crate::policy::BoardPolicy;
 use crate::situation::Situation;
 
-/// The actions of a running behaviour; the helm decides when it runs.
+/// The logic of a behaviour; the helm decides when it runs.
 pub(crate) trait BehaviourLogic: Send {
     /// Observes the situation of a decision, whether the behaviour runs or not.
     fn observe(&mut self, _situation: &Situation) {}
@@ -14,13 +14,13 @@ pub(crate) trait BehaviourLogic: Send {
         None
     }
 
-    /// Called when the behaviour starts running: resets its memory.
+    /// Resets the memory when the behaviour starts running.
     fn begin(&mut self, _situation: &Situation) {}
 
-    /// Produces the objective functions of this decision.
+    /// Adds the objective functions of this decision.
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>);
 
-    /// The trained policy of this behaviour, if it has one.
+    /// The trained policy of this behaviour, if any.
     fn policy(&self) -> Option<&BoardPolicy> {
         None
     }

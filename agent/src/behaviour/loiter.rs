@@ -14,7 +14,7 @@ pub(super) struct LoiterBehaviour {
     task: Loiter,
     /// The corners, clockwise.
     corners: Vec<Ned>,
-    /// The corner to steer for; none until the first is chosen.
+    /// The corner to steer for; `None` until the first is chosen.
     target: Option<usize>,
     clockwise: bool,
     arrival: Arrival,
@@ -25,14 +25,14 @@ impl LoiterBehaviour {
         LoiterBehaviour { task, corners: Vec::new(), target: None, clockwise: true, arrival: Arrival::new() }
     }
 
-    /// Chooses the first corner and the direction: the corners ahead in the chosen direction.
+    /// Chooses the first corner and the direction, by the corners ahead in that direction.
     fn choose(&mut self, situation: &Situation) {
         let centre = centre_of(&self.corners);
         let out = situation.at - centre;
         self.clockwise = match self.task.turn {
             Turn::Clockwise => true,
             Turn::Counterclockwise => false,
-            // North-east-down: the cross product is positive for a clockwise course around the
+            // In north-east-down, the cross product is positive for a clockwise course around the
             // centre.
             Turn::Best => {
                 let (east, north) = math::sin_cos(situation.own.nav.psi_rad);
@@ -42,8 +42,7 @@ impl LoiterBehaviour {
         let count = self.corners.len();
         let distance = |i: usize| situation.at.distance_squared(self.corners[i]);
         let nearest = (1..count).fold(0, |best, i| if distance(i) < distance(best) { i } else { best });
-        // The corner after the nearest: the nearest one may be behind the boat, which would turn
-        // back for it.
+        // The corner after the nearest one, which may be behind the boat.
         self.target = Some(self.after(nearest));
         self.arrival = self.arrival.next();
     }
@@ -62,14 +61,14 @@ impl BehaviourLogic for LoiterBehaviour {
 
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
         if self.corners.len() < 3 {
-            // The place that it circles was unknown when it began.
+            // The place to circle was unknown at the start.
             corners_of(&self.task.shape, situation, &mut self.corners);
         }
         if self.corners.len() < 3 {
             return;
         }
-        // A boat that an evasion or a tag drove off rejoins the nearest part of the polygon, not
-        // its previous target corner.
+        // A boat driven off by an evasion or a tag rejoins the nearest part of the polygon, not its
+        // previous target corner.
         let far = distance_to_outline(&self.corners, situation.at) > self.task.acquire_m.value(situation);
         if self.target.is_none() || far {
             self.choose(situation);

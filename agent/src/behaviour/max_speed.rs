@@ -1,4 +1,4 @@
-//! Maximum speed: limits the speed near other boats, or always.
+//! Maximum speed: limits the speed, always or near other boats.
 
 use super::logic::BehaviourLogic;
 use super::nearest::is_meant;

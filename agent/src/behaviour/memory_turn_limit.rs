@@ -46,7 +46,7 @@ impl BehaviourLogic for MemoryTurnLimitBehaviour {
         while self.headings.front().is_some_and(|(at, _)| *at + memory < situation.now) {
             self.headings.pop_front();
         }
-        // Evenly spaced when the memory is too long to store every decision.
+        // Evenly spaced if the memory is too long to store every decision.
         let spacing = SimTime::from_s(memory.as_s() / (MOST - 1) as f64);
         if self.headings.back().is_none_or(|(at, _)| *at + spacing <= situation.now) && self.headings.len() < MOST {
             self.headings.push_back((situation.now, situation.own.nav.psi_rad));

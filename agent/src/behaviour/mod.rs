@@ -33,7 +33,6 @@ pub(crate) use output::{BehaviourOutput, Functions};
 
 use scenario::strategy::Task;
 
-/// Creates the logic of a behaviour with this task.
 pub(crate) fn logic_of(task: &Task) -> Box<dyn BehaviourLogic> {
     match task.clone() {
         Task::Waypoint(task) => Box::new(waypoint::WaypointBehaviour::new(task)),

@@ -1,12 +1,12 @@
-//! Selects the nearest boats or obstacles that a behaviour responds to; nearer ones weigh more.
+//! Selects the nearest boats or obstacles for a behaviour; nearer ones weigh more.
 
 use crate::situation::{OtherBoat, Situation};
 use scenario::strategy::{Boat, Contacts, NEAREST_MAX};
 
-/// Look-ahead for whether a boat enters the side on which it can be tagged, s.
+/// Look-ahead for entering the side on which the boat can be tagged, s.
 const TAG_FORESIGHT_S: f64 = 5.0;
 
-/// The nearest few, without a heap allocation: no behaviour responds to more.
+/// The nearest few, without heap allocation; no behaviour responds to more.
 pub(super) struct Nearest {
     /// Distance, m, and index; nearest first, ties by insertion order.
     entries: [(f64, usize); NEAREST_MAX],
@@ -19,7 +19,7 @@ impl Nearest {
         for entry in those {
             let place = nearest.entries[..nearest.count].partition_point(|known| known.0 <= entry.0);
             // At most sixteen, so that the cost of a decision is bounded for any fleet; the
-            // nearest, so that list order drops none.
+            // nearest, so that the order of the list drops none of them.
             if place < NEAREST_MAX {
                 nearest.count = (nearest.count + 1).min(NEAREST_MAX);
                 nearest.entries[place..nearest.count].rotate_right(1);
@@ -51,7 +51,7 @@ pub(super) fn is_meant(contacts: Contacts, situation: &Situation, other: &OtherB
         Contacts::All => true,
         Contacts::Enemies => other.is_enemy,
         Contacts::Mates => !other.is_enemy,
-        // Boats that keep clear of enemies by more than the tag distance never tag anybody, and all
+        // Boats that keep clear of enemies by more than the tag distance never tag anyone, and all
         // strategies score alike. A strategy may therefore avoid only boats with which no tag is
         // possible.
         Contacts::NoTag => !other.is_enemy || other.tagged || situation.own.tagged,
@@ -60,7 +60,7 @@ pub(super) fn is_meant(contacts: Contacts, situation: &Situation, other: &OtherB
             opponent == Some(other.vehicle) && is_meant(Contacts::Taggers, situation, other)
         }
         Contacts::Taggers => {
-            // An enemy tags on its own side only; it already counts when the own boat is about to
+            // An enemy tags only on its own side; it already counts when this boat is about to
             // enter that side.
             let soon = situation.at + situation.velocity.scaled(TAG_FORESIGHT_S);
             let exposed = !situation.model.is_own_side(situation.at) || !situation.model.is_own_side(soon);

@@ -1,4 +1,4 @@
-//! Operation region: keeps the boat on the field, and brings it back slowly when it is outside.
+//! Operation region: keeps the boat on the field, and brings it back slowly from outside.
 
 use super::clearance::Clearance;
 use super::logic::BehaviourLogic;
@@ -13,16 +13,16 @@ use std::f64::consts::PI;
 
 /// A returning boat steers for a point this far inside the edge, m.
 const WELL_IN_M: f64 = 5.0;
-/// A boat keeps off the edges by this many seconds of the drift's standard deviation more: waves
-/// and gusts displace it and delay its turns. In a gale over a lake that deviation is 0.3 to 0.5
-/// m/s. The farthest metres count little. Otherwise a few centimetres would outweigh the boat's
-/// task, which weighs a twentieth.
+/// A boat keeps away from the edges by this many seconds of the drift's standard deviation more,
+/// because waves and gusts displace it and delay its turns. In a gale over a lake that deviation is
+/// 0.3 to 0.5 m/s. The farthest metres count little, or a few centimetres would outweigh the boat's
+/// task, which has a twentieth of the weight.
 const GUST_S: f64 = 36.0;
-/// Speed range from the recovery speed down to zero utility, m/s: the boat returns as slowly as
+/// Speed range from the recovery speed to zero utility, m/s: the boat returns as slowly as
 /// configured.
 const RECOVERY_BASE_M_S: f64 = 0.5;
 
-/// Which side of the edge the boat counts as being on.
+/// The side of the edge on which the boat counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Side {
     In,
@@ -32,7 +32,7 @@ enum Side {
 pub(super) struct OpRegionBehaviour {
     task: OpRegion,
     side: Side,
-    /// When the boat crossed to the side opposite its counted one.
+    /// When the boat crossed to the other side than its counted one.
     crossed: Option<SimTime>,
     table: Table,
     instructions: Instructions,
@@ -44,7 +44,7 @@ impl OpRegionBehaviour {
         OpRegionBehaviour { task, side: Side::In, crossed: None, table, instructions }
     }
 
-    /// A boat counts as outside, or inside again, once it has been there for a while.
+    /// A boat counts as outside, or as inside again, once it has been there for a while.
     fn debounce(&mut self, situation: &Situation, inside_m: f64) {
         let (is_other, wait_s) = match self.side {
             Side::In => (inside_m < 0.0, self.task.exit_s.value(situation)),
@@ -95,8 +95,7 @@ impl BehaviourLogic for OpRegionBehaviour {
         // and waves.
         let gust_m = GUST_S * situation.motion.spread_m_s();
         let save_m = (save_m + gust_m).max(0.1);
-        // Beyond this distance no course can lead out within the look-ahead, and the table is
-        // skipped.
+        // Beyond this distance no course leads out within the look-ahead, and the table is skipped.
         let reach_m = region.reach_m(situation, lookahead_s, save_m);
         if inside_m > reach_m {
             return;
@@ -148,8 +147,7 @@ impl Region {
                 (minus(field.across), y - margin_m),
                 (field.across, depth_m - margin_m - y),
             ],
-            // The present drift where drift is not estimated: a drift over the edge must always
-            // count.
+            // The present drift if drift is not estimated: a drift over the edge must always count.
             drift: situation.motion.drift_now(&situation.own.nav),
             handling: situation.motion.handling(),
             margin_m,
@@ -161,7 +159,7 @@ impl Region {
         self.edges.iter().map(|(_, inside_m)| *inside_m).fold(f64::INFINITY, f64::min)
     }
 
-    /// At this distance inside no candidate comes near an edge, m.
+    /// The distance inside from which on no candidate comes near an edge, m.
     fn reach_m(&self, situation: &Situation, lookahead_s: f64, save_m: f64) -> f64 {
         let fastest_m_s = situation.model.speed_max_m_s.max(situation.own.nav.surge_m_s);
         // The widest turn goes out by twice its radius.

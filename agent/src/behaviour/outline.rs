@@ -1,7 +1,7 @@
-//! Outline: the boat's least distance to a polygon on each course, at each speed.
+//! Outline: the boat's least distance to a polygon, for each course and speed.
 //!
 //! After a decision the boat keeps its motion while it turns, then goes straight. A faster run is a
-//! longer one, so its pass distance is the minimum of its own and the slower runs'.
+//! longer one, so its pass distance is the minimum of its own and those of slower runs.
 
 use super::steering::CPA_MIN_UTILITY;
 use crate::ivp::{Courses, Grid, LANES, Lag, Lanes, Table, larger, smaller};
@@ -12,7 +12,7 @@ use rules::field::{is_within, sides};
 /// Largest rounding error of a bound, m, with a margin.
 const ROUNDING_M: f64 = 1e-6;
 
-/// A polygon with lower bounds of its distance.
+/// A polygon with lower bounds on its distance.
 pub(super) struct Outline {
     corners: Vec<Ned>,
     sides: Vec<Side>,
@@ -20,7 +20,7 @@ pub(super) struct Outline {
     half_planes: Vec<HalfPlane>,
     /// The half planes that exclude the boat.
     facing: Vec<HalfPlane>,
-    /// For the current run: where it passes each corner.
+    /// Where the current run passes each corner.
     feet: Vec<Foot>,
     /// Utilities of a group of courses by speed, from the first speed that matters.
     utilities: Vec<Lanes<f32>>,
@@ -75,11 +75,11 @@ impl Places {
     }
 }
 
-/// The points of a group of straight runs nearest to a corner.
+/// The points of a group of straight runs that are nearest to a corner.
 struct Foot {
-    /// When, s; negative if before the run begins.
+    /// Time, s; negative if before the start of the run.
     after_s: Lanes<f64>,
-    /// Squared distance, m²; infinite if before the run begins.
+    /// Squared distance, m²; infinite if before the start of the run.
     squared_m2: Lanes<f64>,
 }
 
@@ -87,7 +87,7 @@ struct Foot {
 struct Runs {
     from: Places,
     along: Places,
-    /// When they first cross a side, s; infinite if never.
+    /// Time of the first crossing of a side, s; infinite if never.
     crossing_s: Lanes<f64>,
 }
 
@@ -102,11 +102,11 @@ impl Outline {
         let mut half_planes: Vec<HalfPlane> = Vec::new();
         for side in &sides {
             let unit = side.along.scaled(side.per_m2.sqrt());
-            // Half planes on both sides of each side's line: a half plane that contains all corners
-            // is a valid bound on either side, also for a concave polygon.
+            // A half plane that contains all corners is a valid bound on either side of a side's
+            // line, even for a concave polygon.
             for out in [1.0, -1.0] {
                 let normal = Ned { north: out * unit.east, east: -out * unit.north };
-                // Parallel sides share a half plane, and each half plane is tested for all courses.
+                // Parallel sides share a half plane, because each is tested for all courses.
                 if half_planes.iter().all(|known| known.normal.dot(normal) < 1.0 - 1e-9) {
                     let reach_m = corners.iter().map(|corner| corner.dot(normal)).fold(f64::NEG_INFINITY, f64::max);
                     half_planes.push(HalfPlane { normal, reach_m });
@@ -151,7 +151,7 @@ impl Outline {
                 let (off_north, off_east) = (north - after_s * run_north, east - after_s * run_east);
                 let squared_m2 = off_north * off_north + off_east * off_east;
                 foot.after_s.0[i] = after_s;
-                // No run passes a corner behind it, however long.
+                // No run passes a corner behind it, however long it is.
                 foot.squared_m2.0[i] = if after_s >= 0.0 { squared_m2 } else { f64::INFINITY };
                 // Line intersection by Cramer's rule; for parallel lines the corners suffice.
                 let per = 1.0 / (run_north * side.along.east - run_east * side.along.north);
@@ -166,7 +166,7 @@ impl Outline {
     }
 
     /// The least squared distance of runs of this duration, or `before_m2` if that is less, m².
-    /// Points between their corners and ends are farther away.
+    /// Points between the corners and ends considered are farther away.
     #[inline(always)]
     fn passed_m2(&self, runs: &Runs, after_s: &Lanes<f64>, before_m2: &Lanes<f64>) -> Lanes<f64> {
         let mut least = self.squared_m2(&runs.from.after(&runs.along, after_s));
@@ -184,7 +184,7 @@ impl Outline {
     }
 }
 
-/// Lowers the utilities of an empty table to the worth of passes of a polygon.
+/// Lowers the utilities of an empty table to those of passing a polygon.
 pub(super) struct Passes<'a> {
     pub(super) table: &'a mut Table,
     pub(super) grid: &'a Grid,
@@ -237,7 +237,7 @@ impl Passes<'_> {
         let fastest_m = self.grid.speed_max_m_s() * self.horizon_s;
         let end = begin.after(&along, &Lanes::splat(fastest_m));
         let mut before_m2 = Lanes::splat(f64::INFINITY);
-        // Near an obstacle a helm spent two thirds of its time on distances between a polygon and
+        // Near an obstacle, a helm spent two thirds of its time on distances between a polygon and
         // each of 36 legs on each of 360 courses. Half planes rule out most courses at once: games
         // with obstacles take 0.34 to 0.53 of the time, with the same digests.
         match self.clear_of(&start, &begin, &end) {
@@ -279,8 +279,8 @@ impl Passes<'_> {
         duration_s
     }
 
-    /// How far a single half plane proves ways to be clear of the polygon: from here to the
-    /// straight run's release, start and end points.
+    /// How far a single half plane proves paths clear of the polygon: from here to the straight
+    /// run's release, start and end points.
     #[inline(always)]
     fn clear_of(&self, start: &Places, begin: &Places, end: &Places) -> Clear {
         let most_m = self.max_m + ROUNDING_M;
@@ -303,8 +303,8 @@ impl Passes<'_> {
         clear
     }
 
-    /// Computes the worth of straight runs by speed, from the first speed that makes a difference
-    /// to the last. Returns the first.
+    /// Computes the utilities of straight runs by speed, from the first speed that matters to the
+    /// last. Returns the first.
     #[inline(always)]
     fn run_straight(&mut self, begin: Places, along: Places, before_m2: &Lanes<f64>) -> usize {
         let (speeds_m_s, max_m2) = (self.grid.speeds_m_s(), self.max_m * self.max_m);
@@ -332,7 +332,7 @@ impl Passes<'_> {
         first
     }
 
-    /// The distance that all straight runs can go, m, before one may come within `near_m`.
+    /// The distance that all straight runs can go before one may come within `near_m`, m.
     #[inline(always)]
     fn clear_m(&self, begin: &Places, along: &Places, near_m: f64) -> f64 {
         let mut most_m = f64::NEG_INFINITY;
@@ -365,7 +365,7 @@ impl Passes<'_> {
     }
 }
 
-/// How far ways are clear of a polygon.
+/// How far paths are clear of a polygon.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Clear {
     No,
@@ -388,7 +388,7 @@ mod tests {
         Ned { north: stream.between(-most, most), east: stream.between(-most, most) }
     }
 
-    /// A boat near a polygon of any shape, including self-intersecting ones and zero drift.
+    /// A boat near a polygon of any shape, including self-intersecting ones; also without drift.
     struct Scene {
         corners: Vec<Ned>,
         at: Ned,
@@ -467,7 +467,7 @@ mod tests {
             for k in 0..grid.courses() {
                 for (j, want) in scene.worth(&grid, k).into_iter().enumerate() {
                     let got = tables[0].utility(k, j);
-                    assert!((f64::from(got) - want).abs() < 1e-5, "seed {seed}, {k}, {j}: {got}, expected {want}");
+                    assert!((f64::from(got) - want).abs() < 1e-5, "seed {seed}, {k}, {j}: {got}, want {want}");
                     assert!(tables.iter().all(|table| table.utility(k, j).to_bits() == got.to_bits()), "seed {seed}");
                     (clear, near) = (clear + usize::from(want == 100.0), near + usize::from(want < 100.0));
                 }

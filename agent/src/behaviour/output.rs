@@ -1,4 +1,4 @@
-//! The output of behaviours at one decision: weighted objective functions and task status.
+//! What behaviours produce at one decision: weighted objective functions, and their task status.
 
 use crate::ivp::{Grid, Objective, Problem};
 use primitives::VehicleId;
@@ -8,10 +8,10 @@ use primitives::VehicleId;
 pub(crate) struct WeightedFunction {
     /// Index of the behaviour.
     pub(crate) behaviour: usize,
-    /// The contact that it concerns.
+    /// The contact concerned.
     pub(crate) contact: Option<VehicleId>,
     pub(crate) weight: f64,
-    /// All its utilities, a row of speeds for each course; kept only on request.
+    /// All utilities, a row of speeds for each course; kept only on request.
     pub(crate) utilities: Vec<f32>,
 }
 
@@ -34,18 +34,16 @@ impl Functions {
     }
 }
 
-/// The output of one behaviour.
 pub(crate) struct BehaviourOutput<'a> {
     functions: &'a mut Functions,
     behaviour: usize,
     weight: f64,
-    /// Whether it influences the helm.
+    /// Whether the behaviour influences the helm.
     pub(crate) active: bool,
-    /// Whether it reached a point.
+    /// Whether the behaviour reached a point.
     pub(crate) reached: bool,
-    /// Whether it has completed.
     pub(crate) complete: bool,
-    /// Whether it requires the boat to stop, whatever other behaviours want.
+    /// Whether the behaviour requires the boat to stop, whatever others want.
     pub(crate) stop: bool,
 }
 
@@ -68,7 +66,7 @@ impl<'a> BehaviourOutput<'a> {
         self.active = true;
         self.functions.problem.add(weight, objective);
         let mut utilities = Vec::new();
-        // A decision with its functions is 100,000 numbers, ten times per second per boat, and most
+        // The functions of a decision are 100,000 numbers, ten times per second and boat, and most
         // of the time nobody requests them.
         if self.functions.shown {
             let grid = self.grid();
@@ -84,7 +82,6 @@ impl<'a> BehaviourOutput<'a> {
         self.stop = true;
     }
 
-    /// The decision grid.
     pub(crate) fn grid(&self) -> &Grid {
         self.functions.problem.grid()
     }

@@ -1,5 +1,4 @@
-//! Policy: lets a model or an external program propose course and speed, weighed with everything
-//! else.
+//! Policy: a model or an external program proposes course and speed, weighed with everything else.
 
 use super::logic::BehaviourLogic;
 use super::output::BehaviourOutput;
@@ -12,10 +11,9 @@ use scenario::strategy::Policy;
 /// Width of the fall from the proposed speed to zero utility, m/s.
 const SPEED_BASE_M_S: f64 = 1.0;
 
-/// A policy behaviour.
 pub(super) struct PolicyBehaviour {
     task: Policy,
-    /// The model that proposes; none for an external source.
+    /// The model that proposes; `None` for an external source.
     policy: Option<BoardPolicy>,
 }
 

@@ -1,4 +1,4 @@
-//! Shield: keeps between the guarded place and the nearest enemy.
+//! Shield: stays between the guarded place and the nearest enemy.
 
 use super::logic::BehaviourLogic;
 use super::output::BehaviourOutput;
@@ -6,7 +6,7 @@ use super::steering::{speed_to_turn_onto, steer};
 use crate::situation::Situation;
 use scenario::strategy::Shield;
 
-/// Extra speed per metre off station, 1/s.
+/// Extra speed per metre from the station, 1/s.
 const CATCH_UP_PER_S: f64 = 0.5;
 
 impl BehaviourLogic for Shield {
@@ -15,7 +15,7 @@ impl BehaviourLogic for Shield {
         let Some(enemy) = situation.boat(self.against).copied() else { return };
         let line = enemy.at - guarded.at;
         let range_m = line.length();
-        // At most half way, so that the station is never behind a close enemy.
+        // At most half-way, so that the station is never behind a close enemy.
         let ahead_m = self.distance_m.value(situation).min(0.5 * range_m);
         let station = if range_m > 1e-6 { guarded.at + line.scaled(ahead_m / range_m) } else { guarded.at };
         let distance_m = situation.at.distance(station);
@@ -23,7 +23,7 @@ impl BehaviourLogic for Shield {
         let (course_rad, speed_m_s) = if distance_m > self.radius_m.value(situation) {
             (situation.at.bearing_rad(station), guarded_m_s + CATCH_UP_PER_S * distance_m)
         } else if guarded_m_s > 0.1 {
-            // On station: matches the guarded place's motion, with the bow to the enemy where it is
+            // On station: matches the guarded place's motion, with the bow to the enemy if it is
             // stationary.
             (primitives::math::atan2(guarded.velocity.east, guarded.velocity.north), guarded_m_s)
         } else {

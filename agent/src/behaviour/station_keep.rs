@@ -1,4 +1,4 @@
-//! Station keeping: holds a place, with more weight the farther the boat has drifted off.
+//! Station keeping: holds a place, with more weight the farther the boat has drifted away.
 
 use super::logic::BehaviourLogic;
 use super::output::BehaviourOutput;
@@ -13,7 +13,7 @@ const SPEED_BASE_M_S: f64 = 0.8;
 
 pub(super) struct StationKeepBehaviour {
     task: StationKeep,
-    /// The boat's position when the behaviour began.
+    /// The boat's position at the start of the behaviour.
     anchor: Ned,
 }
 
@@ -22,7 +22,6 @@ impl StationKeepBehaviour {
         StationKeepBehaviour { task, anchor: Ned::default() }
     }
 
-    /// The speed at this distance from the station, m/s.
     fn speed_m_s(&self, situation: &Situation, distance_m: f64) -> f64 {
         let (inner_m, outer_m) = (self.task.inner_radius_m.value(situation), self.task.outer_radius_m.value(situation));
         if distance_m <= inner_m {

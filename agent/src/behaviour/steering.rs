@@ -1,4 +1,4 @@
-//! Objective functions that several behaviours share: a course at a speed, and keeping clear of
+//! Objective functions shared by several behaviours: a course at a speed, and keeping clear of
 //! something.
 
 use crate::ivp::{Approach, Closest, Lag, Objective, Peak, Side};
@@ -6,24 +6,24 @@ use crate::situation::{MovingPoint, Situation};
 use primitives::{Ned, angle, math};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Width of the fall from the peak of a speed to zero utility, m/s: MOOS-IvP's for waypoints.
+/// Width of the fall from the peak of a speed to zero utility, m/s: that of MOOS-IvP's waypoints.
 const SPEED_BASE_M_S: f64 = 1.6;
 /// Utility drop from the summit of a speed peak to its edge, so that the desired speed itself is
 /// best.
 const SPEED_SUMMIT_DELTA: f64 = 20.0;
 
 /// Utility of a closest point of approach at the least distance. Below that it falls to zero, so
-/// that a boat that is too near comes no nearer.
+/// that a boat that is too close comes no closer.
 pub(super) const CPA_MIN_UTILITY: f64 = 50.0;
 
-/// The boat's delay in following a decision; its velocity is through the water, as decisions are.
+/// The boat's delay in following a decision. Its velocity is through the water, as decisions are.
 pub(super) fn lag(situation: &Situation) -> Lag {
     let handling = situation.motion.handling();
     Lag {
         velocity: situation.velocity_through_water(),
         heading: situation.ahead,
         reaction_s: handling.reaction_s,
-        // The observed turn rate, not only the one in the boat file: wind and speed change it.
+        // The observed turn rate, not only that of the boat file: wind and speed change it.
         turn_rad_s: handling.turn_rad_s,
         acceleration_m_s2: handling.acceleration_m_s2,
         deceleration_m_s2: handling.deceleration_m_s2,
@@ -35,8 +35,8 @@ pub(super) fn toward(situation: &Situation, to: Ned, speed_m_s: f64) -> Objectiv
     steer(situation, situation.at.bearing_rad(to), speed_m_s, 0.5)
 }
 
-/// A course, rad, and a speed over the ground, with the course's share of the utility; the speed is
-/// limited to the boat's maximum.
+/// A course, rad, and a speed over the ground, limited to the boat's maximum, with the course's
+/// share of the utility.
 pub(super) fn steer(situation: &Situation, course_rad: f64, speed_m_s: f64, course_share: f64) -> Objective<'static> {
     let (heading_rad, summit) = situation.motion.steer(course_rad, speed_m_s);
     steer_heading(heading_rad, summit, course_share)
@@ -61,8 +61,8 @@ pub(super) fn speed_to_turn_onto(situation: &Situation, to: Ned) -> f64 {
     0.5 * situation.motion.handling().turn_rad_s * situation.at.distance(to) / sin
 }
 
-/// Keeps clear of a disc: of its edge by at least `min_m`, ideally by `max_m`, for the duration of
-/// a leg; by more when passing it on a side other than `leave_to`.
+/// Keeps clear of the edge of a disc by at least `min_m`, ideally by `max_m`, for the duration of a
+/// leg; by more when passing on a side other than `leave_to`.
 pub(super) fn keep_clear(
     situation: &Situation,
     disc: MovingPoint,
@@ -73,15 +73,15 @@ pub(super) fn keep_clear(
 ) -> Objective<'static> {
     Objective::Closest(Closest {
         offset: disc.at - situation.at,
-        // Candidates are through the water, and the same water carries own ship and contact: with
-        // the drift subtracted from the contact all distances are exact.
+        // Candidates are through the water, and the same water carries both boats: with the drift
+        // subtracted from the contact, all distances are exact.
         velocity: disc.velocity - situation.motion.drift(),
         horizon_s,
         min_m: min_m + radius_m,
         max_m: max_m.max(min_m) + radius_m,
-        // Zero utility where hulls touch and half at the least distance. In MOOS-IvP a boat that is
-        // too near is indifferent to coming nearer, so that the smallest preference to pursue
-        // decides. In 150 games hulls touched a sixth as often with the slope.
+        // Zero utility where hulls touch, and half at the least distance. In MOOS-IvP a boat that
+        // is too close does not care about coming closer, so that the smallest preference to pursue
+        // decides. With the slope, hulls touched a sixth as often in 150 games.
         touch_m: radius_m,
         approach: Approach::Avoid { at_min: CPA_MIN_UTILITY, leave_to },
         lag: Some(lag(situation)),

@@ -3,7 +3,7 @@
 //!
 //! A decision takes in the picture, applies the rules, chooses the mode, runs every behaviour that
 //! may run, and selects the course and speed with the largest weighted sum of utilities. Values
-//! that behaviours post take effect after all have run, so that their order does not matter.
+//! posted by behaviours take effect after all have run, so that their order does not matter.
 
 mod report;
 mod run_state;
@@ -34,7 +34,7 @@ struct BehaviourInstance {
 /// The last decision.
 #[derive(Clone, Copy, Debug)]
 enum Decided {
-    /// No decision yet, or the boat holds; with the reason.
+    /// No decision yet, or the boat holds, for this reason.
     Hold(&'static str),
     /// A course and a speed.
     Steer(Choice),
@@ -47,7 +47,7 @@ pub struct HelmMind {
     mode: Option<usize>,
     instances: Vec<BehaviourInstance>,
     functions: Functions,
-    /// Values posted in this decision, which take effect after all behaviours have run.
+    /// Values posted in this decision; they take effect after all behaviours have run.
     posted: Vec<(u16, f64)>,
     decided: Decided,
 }
@@ -67,7 +67,7 @@ impl HelmMind {
             mode: None,
             functions: Functions::new(grid),
             posted: Vec::new(),
-            decided: Decided::Hold("nothing decided yet"),
+            decided: Decided::Hold("no decision yet"),
             program: program.clone(),
         }
     }
@@ -77,12 +77,11 @@ impl HelmMind {
         self.situation.preview(picture);
     }
 
-    /// The current situation.
     pub(crate) fn situation(&self) -> &Situation {
         &self.situation
     }
 
-    /// The mode of the last decision, by index in its program.
+    /// The mode of the last decision, by index in the program.
     pub(crate) fn mode(&self) -> Option<usize> {
         self.mode
     }
@@ -94,8 +93,7 @@ impl HelmMind {
         }
     }
 
-    /// Lets behaviours observe the situation and policies choose options, before the rules of this
-    /// decision apply.
+    /// Lets behaviours observe the situation and policies choose options, before the rules apply.
     fn observe_situation(&mut self) {
         for instance in &mut self.instances {
             instance.logic.observe(&self.situation);
@@ -109,8 +107,8 @@ impl HelmMind {
     fn apply_rules(&mut self, picture: &Picture) {
         for rule in &self.program.rules {
             if is_due(rule, &self.situation, picture) {
-                // Immediately, unlike posts by behaviours: rules apply from top to bottom, and a
-                // later rule sees the values that an earlier one set.
+                // Unlike posts by behaviours, rules take effect from top to bottom: a later rule
+                // sees the values set by an earlier one.
                 set(&mut self.situation, &rule.set, &mut self.posted);
             }
         }
@@ -126,7 +124,7 @@ impl HelmMind {
             return;
         }
         self.situation.mode_since = self.situation.now;
-        // Modes that begin, outermost first; parents precede their children.
+        // Modes that begin, outermost first: parents precede their children.
         for (i, entered) in self.program.modes.iter().enumerate() {
             if is_within(&self.program, mode, i) && !before.is_some_and(|before| is_within(&self.program, before, i)) {
                 set(&mut self.situation, &entered.enter, &mut self.posted);
@@ -180,20 +178,20 @@ impl HelmMind {
         }
         let problem = &mut self.functions.problem;
         if problem.is_empty() {
-            return Decided::Hold("no behaviour asks for anything");
+            return Decided::Hold("no behaviour has a preference");
         }
         // A decision without a preferred course would be the first on the grid, which is north.
         if !problem.decides_course() {
-            return Decided::Hold("no behaviour asks for a course");
+            return Decided::Hold("no behaviour prefers a course");
         }
         if !problem.decides_speed() {
-            return Decided::Hold("no behaviour asks for a speed");
+            return Decided::Hold("no behaviour prefers a speed");
         }
         let last = match self.decided {
             Decided::Steer(choice) => Some(choice.decision),
             Decided::Hold(_) => None,
         };
-        // A share of all weights, at most a tenth (checked when a file is loaded): it can delay a
+        // A share of all weights, at most a tenth (checked when the file is loaded): it can delay a
         // change of mind, but not outweigh safety.
         let weights: f64 = self.functions.list.iter().map(|function| function.weight).sum();
         let steadiness = last.and_then(|last| Steadiness::new(problem, last, self.program.helm.hysteresis * weights));
@@ -225,7 +223,7 @@ impl HelmMind {
 impl Mind for HelmMind {
     fn decide(&mut self, picture: &Picture) -> Order {
         if !self.situation.update(picture) {
-            self.decided = Decided::Hold("the picture does not show the own boat");
+            self.decided = Decided::Hold("the picture does not show this boat");
             self.situation.motion.hold();
             self.functions.clear();
             self.instances.iter_mut().for_each(|instance| instance.weight = 0.0);
@@ -273,7 +271,7 @@ fn is_within(program: &Program, mode: usize, whole: usize) -> bool {
     mode == whole || program.modes[mode].parent.is_some_and(|parent| is_within(program, parent, whole))
 }
 
-/// Assigns values to variables; evaluates all expressions before the first assignment.
+/// Assigns values to variables. Evaluates all expressions before the first assignment.
 fn set(situation: &mut Situation, values: &[(u16, Expression)], scratch: &mut Vec<(u16, f64)>) {
     scratch.clear();
     scratch.extend(values.iter().map(|(variable, value)| (*variable, value.value(situation))));
@@ -283,8 +281,8 @@ fn set(situation: &mut Situation, values: &[(u16, Expression)], scratch: &mut Ve
 }
 
 fn is_due(rule: &Rule, situation: &Situation, picture: &Picture) -> bool {
-    // By events of the picture, not by comparing facts with the last one: a picture may be lost,
-    // and its events arrive with the next.
+    // By the picture's events rather than by comparing facts: a picture may be lost, and its events
+    // arrive with the next one.
     let happened = rule.on.is_none_or(|trigger| {
         let events = picture.events.iter().filter_map(|record| record.logged());
         events
@@ -295,7 +293,7 @@ fn is_due(rule: &Rule, situation: &Situation, picture: &Picture) -> bool {
     happened && rule.when.as_ref().is_none_or(|when| when.is_true(situation))
 }
 
-/// The boats involved in this event, if it is of the given kind.
+/// The boats involved in this event, if it is of this kind.
 fn happening(event: Event, what: What) -> [Option<VehicleId>; 2] {
     match (what, event) {
         (What::Collides, Event::Collided { .. }) => [event.vehicle(), event.other()],

@@ -1,10 +1,10 @@
-//! The run state of a behaviour and its transitions: idle, running, active, complete.
+//! The run state of a behaviour: idle, running, active or complete.
 
 use messages::helm::RunState;
 use primitives::SimTime;
 use scenario::strategy::Moment;
 
-/// One behaviour's run state, and since when it has been running.
+/// A behaviour's run state, and since when it has been running.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BehaviourRun {
     pub(crate) state: RunState,
@@ -62,7 +62,7 @@ impl BehaviourRun {
         }
     }
 
-    /// Completes it; a perpetual behaviour restarts at the next decision.
+    /// Ends a run. A perpetual behaviour restarts at the next decision.
     pub(crate) fn complete(&mut self, perpetual: bool, mut post: impl FnMut(Moment)) {
         if self.state == RunState::Active {
             post(Moment::Inactive);

@@ -1,16 +1,16 @@
-//! Steadiness: of two decisions that are nearly as good, the helm takes the one nearer to the last.
+//! Steadiness: of two nearly equal decisions, the helm takes the one nearer to the last.
 //!
-//! Where a scene has two ways out, noise favours one and then the other, and a boat that obeys at
-//! once follows neither. A small bonus therefore goes to candidates near the last decision. The
-//! best of them may still move as the scene changes, so only changes of mind are delayed.
+//! If a scene has two ways out, noise favours one and then the other, and a boat that obeys at once
+//! follows neither. Candidates near the last decision therefore get a small bonus. The best of them
+//! may still move with the scene, so only changes of mind are delayed.
 
 use crate::ivp::{Choice, Decision, FUNCTIONS_MAX, Grid, Objective, Peak, Problem};
 
-/// Courses within this of the last one are near it, rad.
+/// Courses within this of the last one count as near, rad.
 const NEAR_RAD: f64 = std::f64::consts::FRAC_PI_6;
-/// Speeds within this of the last one are near it, m/s.
+/// Speeds within this of the last one count as near, m/s.
 const NEAR_M_S: f64 = 0.75;
-/// Width of the fall from near to zero, rad or m/s: a step, but for rounding.
+/// Width of the fall from near to zero, rad or m/s: a step except for rounding.
 const STEP: f64 = 1e-6;
 
 /// The bonus for candidates near the last decision.
@@ -20,13 +20,14 @@ pub(super) struct Steadiness {
 }
 
 impl Steadiness {
-    /// Adds it to a problem, half of this weight each for course and speed; none at weight 0.
+    /// Adds the bonus to a problem, half of the weight each for course and speed; `None` at weight
+    /// 0.
     pub(super) fn new(problem: &mut Problem, last: Decision, weight: f64) -> Option<Steadiness> {
-        // A full problem has no room for it; a checked program never has that many functions.
+        // A full problem has no space for it; a checked program never has that many functions.
         if weight <= 0.0 || problem.len() >= FUNCTIONS_MAX {
             return None;
         }
-        // Near the last decision, not the decision itself: a bonus for that made a boat lag behind
+        // Near the last decision rather than exactly there: a bonus for that made a boat lag behind
         // moving targets.
         let near = |summit, peak_width| Peak { summit, peak_width, base_width: STEP, summit_delta: 0.0, height: 100.0 };
         let grid = problem.grid();

@@ -1,28 +1,27 @@
-//! Cells of the decision grid: neighbouring courses by neighbouring speeds, with one bound of a
-//! function for all of them.
+//! Cells of the decision grid: neighbouring courses by neighbouring speeds, which share one bound
+//! of a function.
 //!
 //! As velocities they form a ring segment. It lies within a polygon of four corners: at the first
-//! and the last course, at the slowest speed and at the fastest speed extended so far that the side
-//! between them touches the outer arc. For a wide segment, the square around all speeds is used
+//! and the last course, at the slowest speed and at the fastest speed, extended so far that the
+//! side between them touches the outer arc. A wide segment uses the square around all speeds
 //! instead.
 
 use super::grid::Grid;
 use super::lanes::{LANES, Lanes, SIDE};
 use std::f64::consts::{FRAC_PI_3, TAU};
 
-/// A wider ring segment is treated as a whole disc, rad to either side.
+/// A wider ring segment counts as a whole disc, rad to either side.
 const WIDEST_RAD: f64 = FRAC_PI_3;
 
-/// A cell.
 #[derive(Clone, Copy)]
 pub(super) struct Cell {
-    /// Its first and its last course, unit vectors.
+    /// The first and the last course, unit vectors.
     pub(super) first: (f32, f32),
     pub(super) last: (f32, f32),
     /// The middle course, a unit vector.
     pub(super) north: f32,
     pub(super) east: f32,
-    /// The largest angle between that course and any other of the cell, rad.
+    /// The largest angle between the middle course and any other course of the cell, rad.
     pub(super) half: f32,
     pub(super) slow: f32,
     pub(super) fast: f32,
@@ -33,7 +32,7 @@ pub(super) struct Cell {
 }
 
 impl Cell {
-    /// Velocities, north and east, m/s: the polygon between them contains all velocities of the
+    /// Velocities, north and east, m/s. The polygon between them contains all velocities of the
     /// cell.
     #[inline(always)]
     pub(super) fn corners(&self) -> [(f32, f32); 4] {
@@ -44,7 +43,7 @@ impl Cell {
         [at(self.first, slow), at(self.last, slow), at(self.first, fast), at(self.last, fast)]
     }
 
-    /// Whether it is treated as a whole disc.
+    /// Whether it counts as a whole disc.
     #[inline(always)]
     pub(super) fn is_disc(&self) -> bool {
         self.is_disc
@@ -78,7 +77,7 @@ pub(super) struct SpeedSpans {
 #[derive(Clone, Copy)]
 pub(super) struct CellSize {
     side: usize,
-    /// Half of the angle between its first and last course; none if it is treated as a disc.
+    /// Half of the angle between its first and last course; `None` for a disc.
     half_rad: Option<f64>,
 }
 
@@ -102,7 +101,7 @@ impl CellSize {
             east: part(5),
             half: self.half_rad.unwrap_or(std::f64::consts::PI) as f32,
             // The chord between two corners at the fastest speed lies inside the arc by this
-            // factor; extended by it, the polygon contains every velocity of the cell.
+            // factor. Extended by it, the polygon contains every velocity of the cell.
             stretch: self.half_rad.map_or(1.0, |half_rad| 1.0 / primitives::math::sin_cos(half_rad).1) as f32,
             is_disc: self.half_rad.is_none(),
         }
@@ -115,7 +114,7 @@ impl CellSize {
         SpeedSpans { slow: part(0), fast: part(1), mean: part(2) }
     }
 
-    /// First, last and middle course; beyond the grid those of its last course.
+    /// First, last and middle course; beyond the grid, its last course.
     fn course(self, grid: &Grid, number: usize) -> [f32; 6] {
         // The grid size need not be a multiple of the cell size. Lanes beyond it repeat the last
         // course, which keeps all bounds valid, and their sums mark them as absent.
@@ -130,7 +129,7 @@ impl CellSize {
         [first.0, first.1, last.0, last.1, north as f32, east as f32]
     }
 
-    /// The slowest, the fastest and the mean speed, m/s; beyond the grid those of its last speed.
+    /// The slowest, the fastest and the mean speed, m/s; beyond the grid, its last speed.
     fn speed(self, grid: &Grid, number: usize) -> [f32; 3] {
         let of = |i: usize| grid.speed_m_s((self.side * number + i).min(grid.speeds() - 1)) as f32;
         let (slow, fast) = (of(0), of(self.side - 1));
@@ -138,7 +137,6 @@ impl CellSize {
     }
 }
 
-/// The cell in lane `i`.
 #[inline(always)]
 pub(super) fn cell(courses: &CourseSpans, speeds: &SpeedSpans, i: usize) -> Cell {
     Cell {
@@ -293,6 +291,6 @@ mod tests {
                 }
             }
         }
-        assert!(clear > 1000, "{clear} points in cells without a contact near");
+        assert!(clear > 1000, "only {clear} points in cells far from contacts");
     }
 }

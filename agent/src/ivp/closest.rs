@@ -1,8 +1,8 @@
 //! The closest point of approach to a contact for every course and speed.
 //!
-//! With the contact at `p` from the own ship, moving with `c`, and the own ship on course `d` (a
-//! unit vector) at speed `s`, the contact's relative velocity is `w = c - s d`. Its distance `|p +
-//! w t|` is least at
+//! The contact is at `p` relative to the own ship and moves with `c`; the own ship is on course `d`
+//! (a unit vector) at speed `s`. The contact's relative velocity is `w = c - s d`, and its distance
+//! `|p + w t|` is least at
 //!
 //! ```text
 //! t* = - p.w / w.w      clamped to 0 and the horizon,
@@ -11,17 +11,17 @@
 //! since the square of the distance is a parabola in `t`.
 //!
 //! A boat does not turn or brake at once. With a [`Lag`] it keeps its motion for its reaction time,
-//! then goes straight to the end of its [turn](Turning), then follows the candidate at the mean
+//! goes straight to the end of its [turn](Turning), and then follows the candidate at the mean
 //! [speed](MeanSpeed) until it meets the contact. The least distance of these three legs counts.
 //!
 //! Two boats that avoid each other may choose the same side and collide. If they are to leave each
-//! other on a [`Side`], the distance counts less where the line of sight turns to the other side.
+//! other on a [`Side`], distances count less where the line of sight turns to the other side.
 //!
-//! Bounds over a cell: its first and last course at its slowest and fastest speed are four ways. At
-//! any time every other way of the cell is between them, except for the bend of the arcs between
-//! these courses. The distance at that time is convex in the position, so its largest value is at
-//! one of the four. The closest approach is no farther than that, so it is an upper bound for the
-//! cell. Conversely, nothing on a leg is nearer than the least extent of the four along any
+//! Bounds over a cell: its first and last course at its slowest and fastest speed are four paths.
+//! At any time every other path of the cell is between them, except for the bend of the arcs
+//! between these courses. The distance at that time is convex in the position, so its largest value
+//! is at one of the four. The closest approach is no farther than that, which is an upper bound for
+//! the cell. Conversely, nothing on a leg is nearer than the least extent of the four along any
 //! direction.
 
 use super::cell::Cell;
@@ -29,22 +29,22 @@ use super::lanes::{larger, smaller};
 use super::turn::{Fan, Lag, MeanSpeed, Turn, Turning, Vector};
 use primitives::Ned;
 
-/// Largest rounding error of a number in single precision, with a margin, relative to the lengths
-/// that it is computed from.
+/// Maximum relative rounding error in single precision, with a margin, relative to the lengths
+/// involved.
 const ROUNDING: f64 = 1e-5;
 
 /// The slope of a step.
 const STEP: f64 = 1e12;
 
-/// Lower bound of the time to meet a contact, also for contacts that are never met, s.
+/// Minimum time to meet a contact, even for contacts that are never met, s.
 const MEETING_MIN_S: f64 = 1.0;
 
 /// A side of a boat.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// Left, looking ahead: the line of sight to a contact left on this side rotates anticlockwise.
+    /// Left: the line of sight to a contact left on this side rotates anticlockwise.
     Port,
-    /// Right, looking ahead.
+    /// Right.
     Starboard,
 }
 
@@ -57,11 +57,11 @@ const OTHER_SIDE: f32 = 0.2;
 pub enum Approach {
     /// Farther is better: linear from 0 where they touch to `at_min` at the least distance, and
     /// from there to 100 at the largest. MOOS-IvP has a step of 25 at the least distance and zero
-    /// below it, so that a boat that is too near is indifferent to coming nearer.
+    /// below it, so that a boat that is too close does not care about coming closer.
     Avoid {
         /// Utility at the least distance, 0 to 100.
         at_min: f64,
-        /// The side on which to leave the contact; none if it does not matter.
+        /// The side on which to leave the contact; `None` if it does not matter.
         leave_to: Option<Side>,
     },
     /// Closer is better: 100 at or below the least distance, falling linearly to 0 at the largest.
@@ -85,12 +85,12 @@ pub struct Closest {
     pub touch_m: f64,
     /// Whether to avoid or to approach.
     pub approach: Approach,
-    /// The own ship's delay; none if it follows decisions at once.
+    /// The own ship's delay; `None` if it follows decisions at once.
     pub lag: Option<Lag>,
 }
 
 impl Closest {
-    /// The function in single precision; none if a number is not finite or the horizon is negative.
+    /// The function in single precision; `None` if a number is non-finite or the horizon negative.
     pub(super) fn ready(&self, speed_max_m_s: f64) -> Option<Ready> {
         let (at_min, leave_to) = match self.approach {
             Approach::Avoid { at_min, leave_to } => (at_min, leave_to),
@@ -102,7 +102,7 @@ impl Closest {
         let sound = vectors.as_flattened().iter().chain(&limits).all(|x| x.is_finite() && x.abs() < 1e7)
             && self.horizon_s >= 0.0
             && lag.is_none_or(Lag::is_sound);
-        // Incoming pictures are validated, so this is a bug: tests stop, a boat on the water
+        // Incoming pictures are validated, so this is a bug: tests stop, and a boat on the water
         // continues without this function.
         debug_assert!(sound, "{self:?}");
         if !sound {
@@ -125,9 +125,9 @@ impl Closest {
             Some(Side::Starboard) => ((-offset.1, offset.0), OTHER_SIDE),
             None => ((0.0, 0.0), 1.0),
         };
-        // The mean speed depends on the meeting time, which depends on the speed. The meeting time
-        // at present velocities is used for all candidates: solved for each, the squared distance
-        // would no longer be a parabola.
+        // The mean speed depends on the meeting time, which depends on the speed. All candidates
+        // use the meeting time at present velocities; solved for each, the squared distance would
+        // no longer be a parabola.
         let meeting_s = f64::from(time(offset, present, self.horizon_s as f32)).max(MEETING_MIN_S);
         Some(Ready {
             start: (offset.0 + present.0 * reaction, offset.1 + present.1 * reaction),
@@ -188,7 +188,7 @@ pub(super) struct Ready {
     pub(super) group: usize,
 }
 
-/// The contact's relative motion on the ways of a cell: to its first and its last course, each at
+/// The contact's relative motion on the paths of a cell: to its first and its last course, each at
 /// its slowest and fastest speed, and one in the middle.
 #[derive(Clone, Copy)]
 pub(super) struct Ways {
@@ -197,15 +197,15 @@ pub(super) struct Ways {
     last: Vector,
     from_first: [Vector; 2],
     from_last: [Vector; 2],
-    /// For the middle way: the contact's position after the turn, its motion until then and the
-    /// share of that until it was nearest, its motion afterwards, and the time when it is nearest.
+    /// For the middle path: the contact's position after the turn, its motion until then and the
+    /// share of that until it was nearest, its motion afterwards, and the time at which it is
+    /// nearest.
     middle: Vector,
     past: Vector,
     share: f32,
     w: Vector,
     t: f32,
-    /// How far other ways may deviate from the polygon of these, m, and the increase per second,
-    /// m/s.
+    /// How far other paths may deviate from the polygon of these, m, and the increase of that, m/s.
     off: f32,
     bend: f32,
 }
@@ -219,7 +219,7 @@ impl Ready {
     /// Utility of a course, a unit vector, at a speed, m/s.
     pub(super) fn utility(&self, north: f32, east: f32, speed: f32) -> f32 {
         let course = (north, east);
-        // Reports and tests use the same arithmetic as the search, lane by lane: the displayed
+        // Reports and tests use the same arithmetic as the search, lane by lane, so the displayed
         // value is the one that decided.
         let distance = self.distance(&self.turning.to(course), course, speed);
         if self.seek { self.worth_near(distance) } else { self.worth_far(distance) }
@@ -234,8 +234,8 @@ impl Ready {
     pub(super) fn has_distances_of(&self, other: &Ready) -> bool {
         let ways = |ready: &Ready| (ready.start, ready.least_before, ready.velocity, ready.horizon, ready.seek);
         let sides = |ready: &Ready| (ready.beside, ready.other_side);
-        // Two behaviours may avoid the same boats at different distances: the distances are
-        // expensive, their utilities are not.
+        // Two behaviours may avoid the same boats at different distances. Distances are expensive;
+        // their utilities are not.
         ways(self) == ways(other)
             && sides(self) == sides(other)
             && self.turning == other.turning
@@ -251,14 +251,13 @@ impl Ready {
         let turning = square(self.start, past, time(self.start, past, 1.0));
         let t = time(at, w, self.horizon);
         let straight = square(at, w, t);
-        // The contact's position when it is nearest: whether the line of sight has turned to the
-        // wrong side by then.
+        // The contact's position when it is nearest, to see whether the line of sight has turned to
+        // the wrong side by then.
         let share = if dot(self.beside, (at.0 + w.0 * t, at.1 + w.1 * t)) < 0.0 { self.other_side } else { 1.0 };
         // One square root for all three legs: the least distance has the least square.
         smaller(smaller(straight, turning), self.least_before).sqrt() * share
     }
 
-    /// The ways of a cell.
     #[inline(always)]
     pub(super) fn ways(&self, fan: &Fan, cell: &Cell) -> Ways {
         let (first, last) = (self.after(&fan.first), self.after(&fan.last));
@@ -343,8 +342,8 @@ impl Ready {
 /// The time of the closest point of approach, clamped to 0 and `longest`, s.
 #[inline(always)]
 fn time(p: Vector, w: Vector, longest: f32) -> f32 {
-    // At almost zero relative speed any time will do. A maximum in place of a branch on zero
-    // vectorises.
+    // At almost zero relative speed any time will do. A maximum vectorises, unlike a branch on
+    // zero.
     let time = -dot(p, w) / larger(dot(w, w), 1e-20);
     smaller(larger(time, 0.0), longest)
 }

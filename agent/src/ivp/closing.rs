@@ -1,4 +1,4 @@
-//! How fast the own ship closes on a point or a contact, or opens from it.
+//! How fast the own ship closes on a point or contact, or moves away from it.
 
 use super::cell::Cell;
 use super::lanes::{larger, smaller};
@@ -18,7 +18,7 @@ pub struct Closing {
 }
 
 impl Closing {
-    /// The function in single precision; none if a number is not finite.
+    /// The function in single precision; `None` if a number is non-finite.
     pub(super) fn ready(&self, speed_max_m_s: f64) -> Option<Ready> {
         let numbers = [self.offset.north, self.offset.east, self.velocity.north, self.velocity.east];
         let sound = numbers.iter().all(|x| x.is_finite() && x.abs() < 1e7);
@@ -54,7 +54,7 @@ pub(super) struct Ready {
     rest: f32,
 }
 
-/// Largest rounding error of a bound, in points of utility, with a margin.
+/// Maximum rounding error of a bound, in points of utility, with a margin.
 const ROUNDING: f32 = 1e-3;
 
 impl Ready {

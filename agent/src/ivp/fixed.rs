@@ -1,4 +1,4 @@
-//! Weighted utilities as integers, so that a sum does not depend on its order.
+//! Weighted utilities as integers, so that sums do not depend on their order.
 
 use super::lanes::{larger, smaller};
 
@@ -20,8 +20,8 @@ const _: () = assert!(scenario::strategy::FUNCTIONS_MAX <= FUNCTIONS_MAX);
 /// The value of an absent place: below all others, and far enough from overflow for a sum of two.
 pub(super) const NOWHERE: i32 = i32::MIN / 4;
 
-/// From here to twice this value, the numbers representable in an `f32` are the integers: adding to
-/// it rounds to an integer.
+/// From here to twice this value, the numbers of an `f32` are the integers, so adding to it rounds
+/// to an integer.
 const INTEGERS: f32 = (1_u32 << 23) as f32;
 
 // A product is smaller, so the sum of both rounds to nearest, half to even.

@@ -9,8 +9,8 @@ const TICKS: f64 = 65_536.0;
 
 /// Courses over the full circle, and speeds from rest to the top speed, both evenly spaced.
 ///
-/// Course `k` is `k` times a full turn divided by the number of courses, clockwise from north;
-/// speed `j` is `j` times the top speed divided by one less than the number of speeds.
+/// Course `k` is `k` times a full turn divided by the number of courses, clockwise from north.
+/// Speed `j` is `j` times the top speed divided by one less than the number of speeds.
 #[derive(Clone, Debug)]
 pub struct Grid {
     courses: usize,
@@ -37,13 +37,16 @@ impl Grid {
     ///
     /// # Panics
     /// With less than one course or two speeds, more than 65,536 of either, or a top speed that is
-    /// not a positive number.
+    /// not positive and finite.
     #[must_use]
     pub fn new(courses: usize, speeds: usize, speed_max_m_s: f64) -> Grid {
         // A decision stores its course and speed indices as two `u16`.
-        assert!((1..=1 << 16).contains(&courses), "{courses} courses, allowed are 1 to 65536");
-        assert!((2..=1 << 16).contains(&speeds), "{speeds} speeds, allowed are 2 to 65536");
-        assert!(speed_max_m_s.is_finite() && speed_max_m_s > 0.0, "a fastest speed of {speed_max_m_s} m/s");
+        assert!((1..=1 << 16).contains(&courses), "{courses} courses, expected 1 to 65536");
+        assert!((2..=1 << 16).contains(&speeds), "{speeds} speeds, expected 2 to 65536");
+        assert!(
+            speed_max_m_s.is_finite() && speed_max_m_s > 0.0,
+            "top speed is {speed_max_m_s} m/s, expected a positive number"
+        );
         let directions: Vec<(f32, f32)> = (0..courses).map(|k| direction(k, courses)).collect();
         let of = |first: usize, i: usize| (first + i).min(courses - 1);
         let side_by_side = (0..courses)
@@ -94,8 +97,8 @@ impl Grid {
     /// The unit vector of course `k`: north, east.
     ///
     /// Courses that are mirror images in an axis or a diagonal, or rotated by a quarter or half
-    /// turn, have exactly the same components except for order and sign, where the number of
-    /// courses allows it.
+    /// turn, have exactly the same components except for order and sign, if the number of courses
+    /// allows it.
     #[must_use]
     pub fn direction(&self, k: usize) -> (f32, f32) {
         self.directions[k]
@@ -124,8 +127,8 @@ impl Grid {
         ((part * self.circle()).round() as i64).rem_euclid(self.circle() as i64) as f64
     }
 
-    /// Ticks from an angle (in ticks) to course `k`, the short way: positive to starboard; exactly
-    /// half a turn counts as starboard.
+    /// Ticks from an angle (in ticks) to course `k`, the short way, positive to starboard. Half a
+    /// turn counts as starboard.
     #[inline(always)]
     pub(super) fn ticks_between(&self, from: f64, k: usize) -> f64 {
         // Both are below a full turn, so no division is needed.
@@ -134,7 +137,6 @@ impl Grid {
         if 2.0 * ahead > circle { ahead - circle } else { ahead }
     }
 
-    /// One tick, rad.
     pub(super) fn tick_rad(&self) -> f64 {
         TAU / self.circle()
     }

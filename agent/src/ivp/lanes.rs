@@ -2,7 +2,7 @@
 
 /// Number of lanes.
 // Sixteen `f32` are one AVX-512 register. With narrower registers the compiler uses two or four,
-// with the same bits: no lane depends on the number of lanes per register.
+// with the same bits, because no lane depends on the register width.
 pub(crate) const LANES: usize = 16;
 
 /// Courses and speeds per tile side: a tile is `SIDE` courses by `SIDE` speeds, a sector `SIDE` by
@@ -31,13 +31,13 @@ impl<T: Copy> Lanes<T> {
 }
 
 impl<T: Copy> Lanes<T> {
-    /// All lanes reduced to one number, two at a time.
+    /// Reduces all lanes to one number, two at a time.
     #[inline(always)]
     pub(crate) fn reduced(&self, of_two: impl Fn(T, T) -> T) -> T {
         let mut halves = self.0;
         let mut width = LANES / 2;
-        // In halves, always the same pairs: sums and comparisons have the same order on every
-        // machine.
+        // In halves with always the same pairs, so that sums and comparisons have the same order on
+        // every machine.
         while width > 0 {
             for i in 0..width {
                 halves[i] = of_two(halves[i], halves[i + width]);
@@ -55,7 +55,7 @@ impl Lanes<i32> {
         self.reduced(larger)
     }
 
-    /// The first lane with this number, which must be present.
+    /// The first lane with this number, which must exist.
     #[inline(always)]
     pub(super) fn place_of(&self, number: i32) -> usize {
         let mut places = 0_u32;

@@ -21,7 +21,6 @@ impl SpeedLimit {
         self.at(grid.speed_m_s(j))
     }
 
-    /// Utility of a speed, m/s.
     #[inline(always)]
     pub(super) fn at(&self, speed_m_s: f64) -> f32 {
         let beyond_m_s = speed_m_s - self.high_m_s;

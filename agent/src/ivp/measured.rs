@@ -1,4 +1,4 @@
-//! Vectorised contact distances: computed once for all functions that share them.
+//! Vectorised contact distances, computed once for all functions that share them.
 
 use super::cell::{CourseSpans, SpeedSpans, cell};
 use super::closest::Ready;
@@ -30,7 +30,7 @@ impl Turns {
     }
 }
 
-/// Contact distances at a group of points; caches the last result.
+/// Contact distances at a group of points. Caches the last result.
 pub(super) struct Distances<'a> {
     known: Option<&'a Ready>,
     turns: Turns,
@@ -52,8 +52,7 @@ impl<'a> Distances<'a> {
             return;
         }
         let turning = ready.turning();
-        // The own ship's turns are the same for all contacts: they cost a square root each and are
-        // computed once.
+        // The own ship's turns are the same for all contacts; each costs a square root.
         if self.known.is_none_or(|known| turning != known.turning()) {
             for i in 0..LANES {
                 self.turns.set(i, &turning.to((north.0[i], east.0[i])));
@@ -66,7 +65,7 @@ impl<'a> Distances<'a> {
     }
 }
 
-/// Bounds of contact distances over a group of cells; caches the last result.
+/// Bounds of contact distances over a group of cells. Caches the last result.
 pub(super) struct Bounded<'a> {
     known: Option<&'a Ready>,
     first: Turns,

@@ -15,13 +15,12 @@
 //! MOOS-IvP and a Users Guide to the IvP Helm", MIT CSAIL 2009). They tile the decision space with
 //! boxes, put a linear function on each, and search the tiles by branch and bound: exact for the
 //! tiles, approximate for the functions. Over course and speed alone the functions themselves are
-//! cheap to evaluate, so [`Problem`] evaluates them, and its answer is exact on the grid:
+//! cheap, so [`Problem`] evaluates them, and its result is exact on the grid:
 //!
 //! - functions of course only, of speed only, or sums of both, are added up in two lists;
-//! - the others are evaluated for tiles of four courses by four speeds at a time. Tiles whose bound
-//!   is below the best value found so far are skipped, many at once where a bound for all of them
-//!   is;
-//! - weight times utility is rounded to [`QUANTUM`] before it is added, so sums are of integers:
+//! - the others are evaluated for tiles of four courses by four speeds. Tiles whose bound is below the
+//!   best value so far are skipped, often many at once;
+//! - weight times utility is rounded to [`QUANTUM`] before it is added. Sums are therefore of integers:
 //!   the order of functions does not matter, and ties are exact.
 //!
 //! Open [`Objective`] first, then [`Problem`].

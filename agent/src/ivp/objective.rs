@@ -10,8 +10,8 @@ use super::table::Table;
 
 /// A utility of 0 to 100 for each course and speed.
 ///
-/// Non-finite numbers count as no utility at all (a debug build panics). `Course`, `Speed`,
-/// `Coupled` and `Limit` are almost free; the others are evaluated point by point.
+/// Non-finite numbers count as no utility (a debug build panics). `Course`, `Speed`, `Coupled` and
+/// `Limit` are almost free; the others are evaluated point by point.
 #[derive(Clone, Copy, Debug)]
 pub enum Objective<'a> {
     /// Course only.
@@ -61,7 +61,7 @@ impl Objective<'_> {
     /// The utility of course `k` at speed `j`, in the solver's arithmetic.
     ///
     /// # Panics
-    /// Beyond the grid, and with a table of another size.
+    /// Beyond the grid, or with a table of another size.
     #[must_use]
     pub fn utility(&self, grid: &Grid, k: usize, j: usize) -> f32 {
         assert!(k < grid.courses() && j < grid.speeds(), "course {k}, speed {j}");
@@ -81,8 +81,8 @@ impl Objective<'_> {
         }
     }
 
-    /// Its contribution to the sum at course `k` and speed `j` with this weight, in steps of
-    /// [`QUANTUM`](super::QUANTUM): the rounded weighted utility; for `Coupled` the two parts are
+    /// Its contribution to the sum at course `k` and speed `j`, in steps of
+    /// [`QUANTUM`](super::QUANTUM): the rounded weighted utility. For `Coupled` the two parts are
     /// rounded separately.
     #[must_use]
     pub fn contribution(&self, grid: &Grid, weight: f64, k: usize, j: usize) -> i32 {
@@ -105,13 +105,12 @@ impl Objective<'_> {
         }
     }
 
-    /// The weights of course and speed, of functions that are a sum of two.
+    /// The weights of course and speed, for functions that are a sum of two.
     pub(super) fn weights(&self, weight: Weight) -> (Weight, Weight) {
         let share = self.course_share();
         (weight.share(share), weight.share(1.0 - share))
     }
 
-    /// Its course peak, if it has one.
     pub(super) fn course_peak(&self) -> Option<&Peak> {
         match self {
             Objective::Course(peak) | Objective::Coupled { course: peak, .. } => Some(peak),
@@ -144,7 +143,7 @@ impl Objective<'_> {
                 let size = (grid.courses(), grid.speeds());
                 // A bug of the caller, not a fault of a file: a table of another grid would be read
                 // beyond its end.
-                assert!(table.size() == size, "a table of {:?} courses and speeds, not {size:?}", table.size());
+                assert!(table.size() == size, "table of {:?} courses and speeds, expected {size:?}", table.size());
                 Parts::Table(table)
             }
             _ => Parts::Separable,

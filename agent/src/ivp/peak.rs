@@ -25,8 +25,8 @@ pub struct Peak {
     pub peak_width: f64,
     /// From there to zero utility, rad or m/s.
     pub base_width: f64,
-    /// Utility drop from the summit to the edge of the peak, on a scale of 100. Without a peak
-    /// width it has no effect.
+    /// Utility drop from the summit to the edge of the peak, 0 to 100. No effect without a peak
+    /// width.
     pub summit_delta: f64,
     /// Utility at the summit, 0 to 100.
     pub height: f64,

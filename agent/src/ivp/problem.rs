@@ -1,4 +1,4 @@
-//! One decision: functions go in, the best course and speed come out.
+//! One decision: takes functions, and finds the best course and speed.
 
 use super::cell::Cells;
 use super::fixed::{FUNCTIONS_MAX, QUANTUM, Weight};
@@ -33,11 +33,11 @@ pub struct Choice {
     pub decision: Decision,
     /// Its weighted sum: the largest on the grid.
     pub value: f64,
-    /// Number of evaluated points, some counted twice; the others could not win.
+    /// Number of points evaluated, some counted twice; the others could not win.
     pub evaluated: usize,
 }
 
-/// The functions of one decision, prepared for summation; its lists are reused for the next one.
+/// The functions of one decision, prepared for summation. Its lists are reused for the next one.
 #[derive(Clone, Debug)]
 pub struct Problem {
     grid: Grid,
@@ -48,7 +48,7 @@ pub struct Problem {
     functions: usize,
     decides_course: bool,
     decides_speed: bool,
-    /// The last result: usually nearly as good at the next decision.
+    /// The last result, usually nearly as good at the next decision.
     found: Option<Decision>,
 }
 
@@ -59,8 +59,8 @@ impl Problem {
         Problem::with_instructions(grid, Instructions::best())
     }
 
-    /// A problem on this grid, without functions, for this instruction set, which affects only
-    /// speed, not results.
+    /// A problem on this grid, without functions, for this instruction set, which affects only the
+    /// speed.
     #[must_use]
     pub fn with_instructions(grid: Grid, instructions: Instructions) -> Problem {
         let cells = Cells::new(&grid);
@@ -94,7 +94,7 @@ impl Problem {
     /// Adds a function with its priority weight, 0 to [`WEIGHT_MAX`](super::WEIGHT_MAX).
     ///
     /// # Panics
-    /// Beyond [`FUNCTIONS_MAX`] functions, and with a table of another size than the grid.
+    /// Beyond [`FUNCTIONS_MAX`] functions, or with a table of another size than the grid.
     pub fn add(&mut self, weight: f64, objective: &Objective) {
         assert!(self.functions < FUNCTIONS_MAX, "more than {FUNCTIONS_MAX} functions");
         let weight = Weight::new(weight);
@@ -109,25 +109,25 @@ impl Problem {
         self.sums.add(&self.grid, self.instructions, weight, objective);
     }
 
-    /// The number of added functions.
+    /// The number of functions.
     #[must_use]
     pub fn len(&self) -> usize {
         self.functions
     }
 
-    /// Whether no function was added.
+    /// Whether there are no functions.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.functions == 0
     }
 
-    /// Whether a function distinguishes courses.
+    /// Whether any function distinguishes courses.
     #[must_use]
     pub fn decides_course(&self) -> bool {
         self.decides_course
     }
 
-    /// Whether a function distinguishes speeds.
+    /// Whether any function distinguishes speeds.
     #[must_use]
     pub fn decides_speed(&self) -> bool {
         self.decides_speed
@@ -142,7 +142,7 @@ impl Problem {
         f64::from(self.quanta(k, j)) * QUANTUM
     }
 
-    /// The best decision: exactly the largest weighted sum on the grid.
+    /// The best decision, with exactly the largest weighted sum on the grid.
     ///
     /// Ties go to the course with the smallest angle from the present one, then to starboard; on
     /// that course to the speed nearest to the present one, then to the lower.
@@ -154,7 +154,7 @@ impl Problem {
             bounds: &mut self.bounds,
             present: Present { course: self.grid.ticks_of(preference.course_rad), speed_m_s: preference.speed_m_s },
             // A good first guess lets most cells be skipped at once. It changes how many points are
-            // evaluated, never the result.
+            // evaluated, but never the result.
             guess: self.found.map(|found| (found.course.into(), found.speed.into())),
         };
         let (best, evaluated) = self.instructions.run(search);

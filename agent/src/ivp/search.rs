@@ -1,4 +1,4 @@
-//! The search for the largest sum: sectors whose bound reaches the best point found, then their
+//! The search for the largest sum: sectors whose bound reaches the best point so far, then their
 //! tiles and points.
 
 use super::cell::{Cells, CourseSpans, SpeedSpans, cell};
@@ -31,10 +31,10 @@ pub(super) struct Present {
     pub(super) speed_m_s: f64,
 }
 
-/// Bounds of all cells during a search; reused for the next one.
+/// Bounds of all cells during a search. Reused for the next one.
 #[derive(Clone, Debug)]
 pub(super) struct Bounds {
-    /// By sector: the upper bound of lists and tables in each of its tiles, in quanta.
+    /// By sector: the upper bounds of lists and tables in its tiles, in quanta.
     lists: Vec<Lanes<i32>>,
     /// The upper bound of each sector, in quanta.
     sectors: Vec<Lanes<i32>>,
@@ -55,14 +55,13 @@ impl Bounds {
     }
 }
 
-/// A search.
 pub(super) struct Search<'a> {
     pub(super) grid: &'a Grid,
     pub(super) cells: &'a Cells,
     pub(super) sums: &'a Sums,
     pub(super) bounds: &'a mut Bounds,
     pub(super) present: Present,
-    /// A probably good point: its value excludes most others at once.
+    /// A point that is probably good: its value excludes most others at once.
     pub(super) guess: Option<(usize, usize)>,
 }
 
@@ -81,7 +80,7 @@ impl Kernel for Search<'_> {
             self.evaluate((k / SIDE, j / SIDE), &mut best);
             evaluated += LANES;
         }
-        // The most promising first.
+        // Most promising first.
         while let Some(sector) = take_most(&mut self.bounds.sectors, best.value) {
             let (across, along) = (sector % self.cells.sector_courses, sector / self.cells.sector_courses);
             let mut tiles = [self.tiles(sector)];
@@ -94,7 +93,7 @@ impl Kernel for Search<'_> {
     }
 }
 
-/// Removes and returns the place of the largest number that reaches `least`.
+/// Takes out the place of the largest number that reaches `least`.
 #[inline(always)]
 fn take_most(list: &mut [Lanes<i32>], least: i32) -> Option<usize> {
     let mut side_by_side = list[0];
@@ -165,7 +164,7 @@ impl Search<'_> {
         self.sums.add_bounds(self.bounds.lists[sector], (courses, speeds), self.clear(sector))
     }
 
-    /// Evaluates a tile, and keeps its best point if that beats the best so far.
+    /// Evaluates a tile. Keeps its best point if that beats the best so far.
     #[inline(always)]
     fn evaluate(&self, (course_tile, speed_tile): (usize, usize), best: &mut Best) {
         let sector = speed_tile / SIDE * self.cells.sector_courses + course_tile / SIDE;
@@ -229,7 +228,7 @@ impl Sums {
         for i in 0..LANES {
             let is_there = most_courses[i % SIDE] >= 0 && most_speeds[i / SIDE] >= 0;
             // Lanes beyond the grid have sums far below zero, but the functions' bounds could lift
-            // them: they are marked again at the end.
+            // them, so they are marked again at the end.
             tiles.0[i] = if is_there { tiles.0[i] } else { DONE };
         }
         tiles
@@ -252,12 +251,12 @@ impl Sums {
         sums
     }
 
-    /// The same for sectors; also sets a bit in `clear` for each sector in which a formula has full
+    /// The same for sectors. Also sets a bit in `clear` for each sector in which a formula has full
     /// utility.
     #[inline(always)]
     fn bound_sectors(&self, mut sums: Lanes<i32>, cells: (&CourseSpans, &SpeedSpans), clear: &mut [u16]) -> Lanes<i32> {
         let mut bounded = Bounded::new();
-        // A contact that stays far away in a whole sector adds its full weight there: most contacts
+        // A contact that stays far away in a whole sector adds its full weight there. Most contacts
         // do, and their points need no distance.
         for ((weight, field), clear) in self.fields.iter().zip(clear) {
             *clear = 0;
@@ -318,7 +317,7 @@ impl Sums {
 }
 
 /// Formulas with full utility throughout a sector: those that avoid a contact that comes near on no
-/// way in it.
+/// path in it.
 #[derive(Clone, Copy)]
 struct Clear<'a> {
     /// By formula, a bit for each sector of the group.
@@ -361,7 +360,7 @@ fn add_closing_bounds(
     }
 }
 
-/// A bit for each cell of a group in which no distance falls below the limit, given the least
+/// A bit for each cell of a group in which no distance falls below the limit, from the least
 /// distances, m.
 #[inline(always)]
 fn clear_bits(ready: &closest::Ready, least: &Lanes<f32>) -> u16 {

@@ -1,4 +1,4 @@
-//! The functions of a decision in summed form: lists by course and by speed, formulas, and a table.
+//! The functions of a decision as sums: lists by course and by speed, formulas, and a table.
 
 use super::fixed::{self, FUNCTIONS_MAX, NOWHERE, Weight};
 use super::grid::Grid;
@@ -17,7 +17,7 @@ pub(super) struct Sums {
     pub(super) courses: Vec<Lanes<i32>>,
     /// The sums of speed-only functions, in quanta by speed; beyond the last speed, [`NOWHERE`].
     pub(super) speeds: Vec<Lanes<i32>>,
-    /// Formulas of both.
+    /// Formulas in both course and speed.
     pub(super) fields: Vec<(Weight, Field)>,
     /// The sum of weighted tables, in quanta: for each group of speeds, a row of speeds per lane of
     /// `courses`. Undefined for groups of courses that no table lowers.
@@ -32,7 +32,7 @@ impl Sums {
         let lists = |count: usize| vec![Lanes::splat(0); count.div_ceil(LANES)];
         let (courses, speeds) = (lists(grid.courses()), lists(grid.speeds()));
         let lowered = vec![false; courses.len()];
-        // Programs have up to one table per obstacle and one formula per contact: no list grows
+        // Programs have up to one table per obstacle and one formula per contact, so no list grows
         // later.
         let mut sums =
             Sums { courses, speeds, fields: Vec::with_capacity(FUNCTIONS_MAX / 8), table: Vec::new(), lowered };
@@ -62,7 +62,7 @@ impl Sums {
         }
     }
 
-    /// Adds a formula after one with the same distances, if any, so that it reuses them.
+    /// Adds a formula after one with the same distances, if any, to reuse them.
     fn add_field(&mut self, weight: Weight, mut field: Field) {
         let mut place = self.fields.len();
         if let Field::Closest(ready) = &mut field {
@@ -137,7 +137,7 @@ impl Kernel for AddSeparable<'_> {
     }
 }
 
-/// Adds a weighted peak to a group of courses, beginning at `first`.
+/// Adds a weighted peak to a group of courses from `first` on.
 #[inline(always)]
 fn add_peak(sums: &mut Lanes<i32>, first: usize, weight: Weight, peak: &CoursePeak, grid: &Grid) {
     for i in 0..LANES {
@@ -166,7 +166,6 @@ fn of_limit(weight: Weight, limit: &SpeedLimit, speed_m_s: &Lanes<f64>) -> Lanes
     quanta
 }
 
-/// Adds a table.
 struct AddTable<'a> {
     sums: &'a mut Sums,
     grid: &'a Grid,
@@ -184,7 +183,7 @@ impl Kernel for AddTable<'_> {
             let first = LANES * across;
             let count = (grid.courses() - first).min(LANES);
             for (i, sum) in sums.courses[across].0.iter_mut().enumerate().take(count) {
-                // Courses that nothing lowers get 100 at all speeds: most of 360 courses by 36
+                // Courses that nothing lowers get 100 at all speeds, so most of 360 courses by 36
                 // speeds need no work. Skipping them took a game of `surveyor_2v2` from 1,220 to
                 // 2,600 times real time.
                 *sum += if lowered >> i & 1 == 0 { weight.quanta(100.0) } else { 0 };
@@ -206,7 +205,6 @@ impl Kernel for AddTable<'_> {
     }
 }
 
-/// Adds weighted utilities.
 #[inline(always)]
 fn add_weighted(sum: &mut Lanes<i32>, weight: Weight, utilities: &Lanes<f32>) {
     for i in 0..LANES {

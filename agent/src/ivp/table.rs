@@ -3,12 +3,12 @@
 use super::grid::Grid;
 use super::lanes::{LANES, Lanes};
 
-/// Utilities by course and speed, initially 100: courses that stay at 100 cost nothing.
+/// Utilities by course and speed, initially 100. Courses that stay at 100 cost nothing.
 #[derive(Clone, Debug, Default)]
 pub struct Table {
     courses: usize,
     speeds: usize,
-    /// By course, as many groups as hold all speeds. Undefined for courses that are not lowered,
+    /// By course: as many groups as hold all speeds. Undefined for courses that are not lowered,
     /// and beyond the last speed.
     rows: Vec<Lanes<f32>>,
     /// By group of courses: a bit for each lowered one.
@@ -38,13 +38,13 @@ impl Table {
         self.lowered.resize(self.courses.div_ceil(LANES), 0);
     }
 
-    /// The utilities of a course for lowering: by speed, in groups.
+    /// The utilities of a course, for lowering: by speed, in groups.
     #[inline(always)]
     pub(crate) fn lowered_mut(&mut self, k: usize) -> &mut [Lanes<f32>] {
         let lanes = self.lanes();
         let (row, lowered) = (&mut self.rows[k * lanes..][..lanes], &mut self.lowered[k / LANES]);
         if *lowered >> (k % LANES) & 1 == 0 {
-            // Filled on first use: so `clear` costs nothing per course.
+            // Filled on first use, so that `clear` costs nothing per course.
             *lowered |= 1 << (k % LANES);
             row.fill(Lanes::splat(100.0));
         }

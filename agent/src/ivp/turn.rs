@@ -48,7 +48,6 @@ impl Lag {
         self.reaction_s + 0.5 * ANGLE_OF_CHORD / self.turn_rad_s * chord
     }
 
-    /// Speed ahead, m/s.
     fn ahead_m_s(&self) -> f64 {
         self.velocity.dot(self.heading).max(0.0)
     }
@@ -67,10 +66,10 @@ impl Lag {
     }
 }
 
-/// Largest error of an angle in single precision, as its cosine is near 1, rad.
+/// Maximum error of an angle in single precision, where its cosine is near 1, rad.
 const ROUNDING_RAD: f32 = 1e-3;
 
-/// The own ship's turn in single precision: the same for all contacts.
+/// The own ship's turn in single precision, the same for all contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Turning {
     heading: Vector,
@@ -92,9 +91,9 @@ pub(super) struct Turn {
 pub(super) struct Fan {
     pub(super) first: Turn,
     pub(super) last: Turn,
-    /// How far any of their end points may be from the straight line between these two, m.
+    /// Maximum distance of any of their end points from the straight line between these two, m.
     pub(super) off: f32,
-    /// How far its duration may be from the corresponding mean of theirs, s.
+    /// Maximum deviation of its duration from the corresponding mean of theirs, s.
     pub(super) off_s: f32,
 }
 
@@ -121,7 +120,7 @@ impl Turning {
         let arc_of_chord = 1.0 + x2 * (1.0 / 6.0) + 0.36 * x4 * x4;
         let (middle_north, middle_east) = (self.heading.0 + north, self.heading.1 + east);
         let middle = (middle_north * middle_north + middle_east * middle_east).sqrt();
-        // To the course straight back the middle of both headings is zero and has no direction.
+        // For the course straight back, the middle of both headings is zero and has no direction.
         let scale = self.radius * chord / larger(middle, 1e-3);
         Turn { duration: chord * arc_of_chord * self.s_per_rad, by: (scale * middle_north, scale * middle_east) }
     }
@@ -130,9 +129,9 @@ impl Turning {
     ///
     /// With the course, their end points move at the rate of the radius, in a direction that
     /// rotates with the course. Their durations change at a rate that varies by less than 2.4. A
-    /// value between two of them is off the straight line by at most half of that times the square
-    /// of half the cell's angle. At the bow both rates change sign, and opposite to it the end
-    /// points jump.
+    /// value between two of them deviates from the straight line by at most half of that times the
+    /// square of half the cell's angle. At the bow both rates change sign, and opposite to it the
+    /// end points jump.
     #[inline(always)]
     pub(super) fn fan(&self, cell: &Cell) -> Fan {
         let (first, last) = (self.to(cell.first), self.to(cell.last));
@@ -179,8 +178,9 @@ impl MeanSpeed {
         })
     }
 
-    /// For a ship ordered to a speed. If the change takes the share `y` of the time, the mean
-    /// change is `y - y^2 / 2` of the largest possible.
+    /// The mean speed for an ordered one. If the change takes the share `y` of the time, the mean
+    /// change is `y
+    /// - y^2 / 2` of the largest possible.
     #[inline(always)]
     pub(super) fn of(&self, speed: f32) -> f32 {
         let (most, per_most) = if speed > self.ahead { self.gain } else { self.loss };

@@ -19,9 +19,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-/// How often an agent without incoming pictures checks that the sim is still alive.
+/// How often an agent without incoming pictures checks whether the sim is alive.
 const LOOK_AGAIN: Duration = Duration::from_millis(100);
-/// In lockstep, messages of mates arrive before the picture, unless hubs on the way reorder them or
+/// In lockstep, messages of mates arrive before the picture unless hubs on the way reorder them or
 /// a link was cut. The agent waits this long for them, once.
 const MESSAGES_LATE: Duration = Duration::from_millis(500);
 /// Maximum number of pictures per team queued while the minds decide.
@@ -47,7 +47,7 @@ pub(super) struct AgentLoop {
 }
 
 impl AgentLoop {
-    /// Creates the minds, subscriptions and publishers before the sim depends on them.
+    /// Creates minds, subscriptions and publishers before the sim depends on them.
     pub(super) fn open(
         bus: &Bus,
         game: &GameName,
@@ -59,7 +59,7 @@ impl AgentLoop {
             Some(strategy) => mind_by(scenario, vehicle, strategy),
             None => mind_of(scenario, vehicle),
         };
-        // The sim will reject unknown names.
+        // The sim rejects unknown names.
         let known = settings.vehicles.iter().filter_map(|name| scenario.vehicle_by_name(name));
         let runner = MindRunner::new(known.map(|vehicle| (vehicle, mind(vehicle))));
         // The sim waits `patience_s` before it drops an agent. Waits for mates use at most half of
@@ -91,10 +91,10 @@ impl AgentLoop {
         scenario: &Scenario,
         joined: Joined,
     ) -> Result<(), NodeError> {
-        // Orders carry the vehicle: with boats other than the requested ones the minds would steer
-        // boats they do not know.
+        // Orders name the vehicle: with boats other than the requested ones, the minds would steer
+        // boats that they do not know.
         if !self.runner.minds().map(|(vehicle, _)| vehicle).eq(joined.vehicles) {
-            return Err(NodeError::Refused("it granted other boats than those that were asked for".to_owned()));
+            return Err(NodeError::Refused("it granted boats that were not requested".to_owned()));
         }
         self.ticket = joined.ticket;
         self.helm_queries = Some(HelmQueries::open(bus, game, scenario, &self.runner)?);
@@ -117,7 +117,7 @@ impl AgentLoop {
                 if self.pictures[cell].as_ref().is_some_and(|picture| picture.over) {
                     return Ok(());
                 }
-                // The newest picture only: a queue would make a slow agent work on stale ones.
+                // Only the newest picture: a queue would make a slow agent work on outdated ones.
                 // Events of skipped pictures carry over to the next.
                 decided |= self.decide()?;
             }
@@ -149,7 +149,7 @@ impl AgentLoop {
         Ok(())
     }
 
-    /// Decides when the pictures of all teams have the same tick; answers a repeated tick with the
+    /// Decides when the pictures of all teams have the same tick. Answers a repeated tick with the
     /// same orders. Returns whether the minds have decided.
     fn decide(&mut self) -> Result<bool, NodeError> {
         let stamp_of = |team: &TeamId| self.pictures[team.index()].as_ref().map(|picture| picture.stamp);
@@ -160,7 +160,7 @@ impl AgentLoop {
             return Ok(false);
         }
         // The sim repeats unanswered pictures every 250 ms. The agent repeats the same orders,
-        // since deciding again would change the minds' memory.
+        // because deciding again would change the minds' memory.
         let is_new = self.runner.decided() != Some(stamp.seq);
         if is_new {
             self.talk.hear(&mut self.runner, stamp.seq);
@@ -169,7 +169,7 @@ impl AgentLoop {
             self.runner.decide(stamp, |vehicle| pictures.iter().flatten().find(|p| p.own(vehicle).is_some()));
             self.talk.publish_words(self.runner.sent(), stamp);
         }
-        // Messages to mates before orders: the sim advances when it has the orders, and then the
+        // Messages to mates before orders: the sim advances once it has the orders, and then the
         // messages are already in transit.
         self.talk.send()?;
         if let Some(orders) = self.runner.answer(self.ticket) {
@@ -179,7 +179,7 @@ impl AgentLoop {
     }
 }
 
-/// A picture with the events of the previous one added, if no decision was made on that one;
+/// A picture with the events of the previous one added if no decision was made on that one.
 /// `decided` is the number of the last decision. Each event is in one picture only.
 fn with_missed_events(mut picture: Picture, before: Option<Picture>, decided: Option<u64>) -> Picture {
     let is_missed =
@@ -252,8 +252,12 @@ mod tests {
         assert_eq!(subjects(&late), [3, 4]);
         let later = with_missed_events(picture(5), Some(late.clone()), Some(2));
         assert_eq!(subjects(&later), [3, 4, 5]);
-        assert_eq!(subjects(&with_missed_events(picture(5), Some(late.clone()), Some(4))), [5], "it was decided on");
-        assert_eq!(subjects(&with_missed_events(picture(4), Some(late), None)), [4], "the same picture once more");
+        assert_eq!(
+            subjects(&with_missed_events(picture(5), Some(late.clone()), Some(4))),
+            [5],
+            "there was a decision on it"
+        );
+        assert_eq!(subjects(&with_missed_events(picture(4), Some(late), None)), [4], "the same picture again");
         let many = (0..3000).fold(picture(0), |last, seq| with_missed_events(picture(seq + 1), Some(last), None));
         assert_eq!((many.events.len(), many.events.last().map(|event| event.subject)), (EVENTS_MAX, Some(3000)));
     }

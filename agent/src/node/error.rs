@@ -17,8 +17,8 @@ pub enum NodeError {
     /// The sim rejected the request.
     #[error("the sim refuses: {0}")]
     Refused(String),
-    /// The sim uses another version.
-    #[error("agent and sim are not of one version: the agent is {ours}, {theirs}", ours = primitives::VERSION)]
+    /// The sim has another version.
+    #[error("agent and sim have different versions: the agent is {ours}, {theirs}", ours = primitives::VERSION)]
     Version {
         /// The sim's version, as far as known.
         theirs: String,

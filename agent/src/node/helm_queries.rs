@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 /// Capacity of the query queue.
 const INBOX: usize = 32;
-/// A mind keeps its utilities for this long after the last query that requested them.
+/// How long a mind keeps its utilities after the last query that requested them.
 const LOOKED_AT: Duration = Duration::from_secs(5);
 /// A query before the first kept decision waits this long for one. A paused game makes no
 /// decisions, and the page waits at most a second.
@@ -56,7 +56,7 @@ impl HelmQueries {
         Ok(HelmQueries { inbox, waiting: Vec::new(), looked: Vec::new(), _declarations: declarations })
     }
 
-    /// Answers pending queries; `decided` is whether the minds have decided since the last call.
+    /// Answers pending queries. `decided` is whether the minds have decided since the last call.
     pub(super) fn answer(&mut self, runner: &mut MindRunner, decided: bool) {
         let waiting = std::mem::take(&mut self.waiting);
         for asked in waiting {
@@ -82,7 +82,7 @@ impl HelmQueries {
         let wants: HelmQuestion = serde_json::from_slice(query.payload()).unwrap_or_default();
         let asked = Asked { vehicle, wants, query, at: clock::now() };
         if !wants.functions {
-            // Modes and weights need no inspection: a list of boats costs a helm nothing.
+            // Modes and weights need no inspection, so a list of boats costs a helm nothing.
             return reply(runner, asked);
         }
         match self.looked.iter_mut().find(|(looked, _)| *looked == vehicle) {
@@ -119,5 +119,5 @@ fn reply(runner: &MindRunner, asked: Asked) {
     if let Some(report) = report.as_mut().filter(|_| !asked.wants.functions) {
         report.functions.iter_mut().for_each(|function| function.utilities.clear());
     }
-    asked.query.answer(serde_json::to_vec(&report).expect("a report is JSON"));
+    asked.query.answer(serde_json::to_vec(&report).expect("a report can be encoded"));
 }

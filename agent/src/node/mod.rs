@@ -1,7 +1,7 @@
 //! An agent on the network: finds a game, joins it, and decides for its vehicles until the game is
 //! over.
 //!
-//! Everything but the vehicles' names comes from the sim: field, rules, strategies, seed.
+//! Everything except the vehicles' names comes from the sim: field, rules, strategies, seed.
 
 mod agent_loop;
 mod error;
@@ -21,9 +21,9 @@ use messages::refusal::Refusals;
 
 /// What an agent reports to the program that runs it.
 pub enum News<'a> {
-    /// No sim found (yet).
+    /// No sim found yet.
     Looking {
-        /// The reason for waiting.
+        /// Why the agent is waiting.
         reason: &'a str,
     },
     /// The agent is in the game.
@@ -33,7 +33,7 @@ pub enum News<'a> {
     },
     /// The game is over, or the agent has left it.
     Left {
-        /// Counts of rejected messages and of expected ones that never arrived.
+        /// Counts of rejected messages, and of expected ones that never arrived.
         refused: Refusals,
     },
 }
@@ -41,7 +41,7 @@ pub enum News<'a> {
 /// Joins a game and plays until it is over.
 ///
 /// # Errors
-/// [`NodeError`]; the loss of the sim is an error.
+/// [`NodeError`], including the loss of the sim.
 pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), NodeError> {
     let mut search = GameSearch::new(settings.wait, &settings.stop);
     let mut report = |reason: &str| tell(News::Looking { reason });

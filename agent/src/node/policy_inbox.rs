@@ -1,5 +1,5 @@
-//! Policy proposals: courses and speeds that external programs and people propose for the boats of
-//! this process.
+//! Policy proposals: courses and speeds that external programs and people propose for this
+//! process's boats.
 
 use super::error::NodeError;
 use crate::MindRunner;
@@ -66,8 +66,8 @@ impl PolicyInbox {
             return;
         }
         let is_complete =
-            // Real-time games do not wait for policies. In lockstep, not waiting would make the
-            // game depend on process speed.
+            // Real-time games do not wait for policies. In lockstep, the game would otherwise
+            // depend on process speed.
             self.patience.is_zero() || self.proposals.wait(self.patience, |proposals| proposals.is_for(stamp.seq));
         self.proposals.visit(|proposals| {
             proposals.refusals.add(Refusal::ProposalMissing, u64::from(!is_complete));
@@ -122,7 +122,7 @@ mod tests {
         let boat = |v: u16| Boat { vehicle: VehicleId(v), is_awaited: v < 2, newest: None };
         let mut proposals = Proposals { boats: vec![boat(0), boat(1), boat(2)], refusals: Refusals::default() };
         proposals.receive(0, &codec::encode(&proposal(0, 4, 1.0)));
-        assert!(!proposals.is_for(4), "the other is missing");
+        assert!(!proposals.is_for(4), "the other proposal is missing");
         proposals.receive(1, &codec::encode(&proposal(1, 4, 1.0)));
         assert!(proposals.is_for(4) && !proposals.is_for(5));
         proposals.receive(1, &codec::encode(&proposal(1, 5, 2.0)));

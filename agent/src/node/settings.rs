@@ -9,7 +9,7 @@ use std::time::Duration;
 
 /// Settings of an agent node.
 pub struct Settings {
-    /// The game to join; if none, the only one available.
+    /// The game to join. `None`: the only one available.
     pub game: Option<GameName>,
     /// The address of the sim.
     pub place: Place,
@@ -17,12 +17,12 @@ pub struct Settings {
     pub vehicles: Vec<String>,
     /// Maximum time to search for the sim and to wait for free vehicles.
     pub wait: Duration,
-    /// Without a picture for this long, the sim counts as dead.
+    /// Without a picture for this long, the sim counts as gone.
     pub silence: Duration,
     /// Overrides the scenario's strategy.
     pub strategy: Option<Strategy>,
-    /// In lockstep: maximum wait for a policy's proposal at every decision, where a strategy uses
-    /// one. Limited to half of the scenario's patience.
+    /// In lockstep: maximum wait for a policy's proposal at every decision, limited to half of the
+    /// scenario's patience.
     pub policy_wait: Duration,
     /// Set from outside to leave the game.
     pub stop: Arc<AtomicBool>,

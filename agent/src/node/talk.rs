@@ -1,4 +1,4 @@
-//! Team messages over the network: published to and received from mates in other processes.
+//! Team messages over the network: to and from mates in other processes.
 
 use super::error::NodeError;
 use super::team_inbox::TeamInbox;
@@ -46,7 +46,7 @@ impl Talk {
         talking.sort_unstable();
         talking.dedup();
         let own: Vec<VehicleId> = runner.minds().map(|(vehicle, _)| vehicle).collect();
-        // By the scenario's strategies: a mate with another one from `--strategy` may be waited for
+        // By the scenario's strategies: a mate with another one from `--strategy` may be awaited
         // once at most.
         let talks = |vehicle| roles::role_of(scenario, vehicle).variables.iter().any(|variable| variable.shared);
         let boats =
@@ -56,9 +56,9 @@ impl Talk {
         for team in talking {
             let inbox = Arc::clone(&team_inbox);
             let take = move |bytes: &[u8]| inbox.visit(|team_inbox| team_inbox.receive(team, bytes));
-            // From agent to agent, past the sim's loop: the sim neither needs nor checks these
-            // messages. As part of orders they would slow lockstep for all, and on the water no sim
-            // can relay them.
+            // From agent to agent, past the sim's loop, because the sim neither needs nor checks
+            // these messages. As part of orders they would slow lockstep for all, and on the water
+            // no sim can relay them.
             declarations.push(bus.subscribe_remote(topic::say(game, scenario, team), take)?);
             let publisher = bus.publisher(topic::say(game, scenario, team), Priority::Normal)?;
             outgoing.push(Outgoing { team, publisher, last: None });
@@ -84,19 +84,19 @@ impl Talk {
         runner.receive(&self.words);
     }
 
-    /// Takes the minds' messages after a decision, for sending to mates elsewhere.
+    /// Takes the minds' messages after a decision, to send to mates elsewhere.
     pub(super) fn publish_words(&mut self, said: &[Word], stamp: Stamp) {
         for to in &mut self.outgoing {
             let ours = |word: &&Word| self.teams.get(word.vehicle.index()) == Some(&to.team);
             let words: Vec<Word> = said.iter().filter(ours).copied().collect();
-            // Kept, since a repeated picture is answered with the same messages: lost ones are sent
-            // again.
+            // Kept, because a repeated picture is answered with the same messages, so that lost
+            // ones are sent again.
             to.last = (!words.is_empty()).then_some(Say { stamp: Stamp { version: Say::VERSION, ..stamp }, words });
         }
     }
 
-    /// Sends or repeats the messages: they may have been lost along with the orders. They must be
-    /// sent before the orders, so that they are in transit before the next picture.
+    /// Sends or repeats the messages, which may have been lost along with the orders. Must precede
+    /// the orders, so that the messages are in transit before the next picture.
     pub(super) fn send(&self) -> Result<(), NodeError> {
         for to in &self.outgoing {
             if let Some(last) = &to.last {

@@ -1,7 +1,7 @@
-//! Messages of mates in other processes, kept until the decision at which they are delivered.
+//! Messages from mates in other processes, kept until the decision at which they are delivered.
 //!
-//! No network and no clock in here. Messages that a mate sends after decision `k` are delivered at
-//! decision `k + 1`, not earlier. A faster mate may have sent its messages of `k + 1` already, so
+//! No network and no clock here. Messages that a mate sends after decision `k` are delivered at
+//! decision `k + 1`, not earlier. A faster mate may already have sent its messages of `k + 1`, so
 //! the last two are kept.
 
 use messages::refusal::{Refusal, Refusals};
@@ -26,7 +26,7 @@ struct Sender {
     talks: bool,
     newest: Option<Sent>,
     before: Option<Sent>,
-    /// The decision that its next message is due at, if any.
+    /// The decision at which its next message is due, if any.
     awaited_at: Option<u64>,
 }
 
@@ -42,7 +42,7 @@ pub struct TeamInbox {
 }
 
 impl TeamInbox {
-    /// An inbox for boats by vehicle index, each with its team and whether it talks; `own` lists
+    /// An inbox for boats by vehicle index, each with its team and whether it talks. `own` lists
     /// the boats of this process.
     pub fn new(boats: impl Iterator<Item = (TeamId, bool)>, own: &[VehicleId]) -> TeamInbox {
         let sender = |(i, (team, talks))| {
@@ -57,8 +57,8 @@ impl TeamInbox {
     pub fn receive(&mut self, team: TeamId, bytes: &[u8]) {
         let Some(say) = self.refusals.decode::<Say>(bytes) else { return };
         for word in say.words {
-            // Messages identify boats, not processes: the name stays when another process takes a
-            // boat over.
+            // Messages identify boats, not processes: the name stays when another process takes
+            // over a boat.
             let sender = self.senders.get_mut(word.vehicle.index());
             let Some(sender) = sender.filter(|sender| sender.is_mate && sender.team == team) else {
                 self.refusals.count(Refusal::NotYours);
@@ -79,8 +79,8 @@ impl TeamInbox {
         !self.senders.iter().any(|sender| sender.is_awaited(seq) && !sender.is_past(seq))
     }
 
-    /// Adds the messages due at decision `seq`: each boat's newest message from an earlier
-    /// decision. Returns the number of boats whose expected message is missing.
+    /// Adds the messages due at decision `seq`: each boat's newest from an earlier decision.
+    /// Returns the number of boats whose expected message is missing.
     pub fn deliver(&mut self, seq: u64, words: &mut Vec<Word>) -> u64 {
         let mut missed = 0;
         for sender in &mut self.senders {
@@ -110,10 +110,10 @@ impl TeamInbox {
 }
 
 impl Sender {
-    /// Stores a word sent after decision `seq`, if there is room.
+    /// Stores a word sent after decision `seq`, if there is space.
     fn note(&mut self, seq: u64, word: Word) -> bool {
         let Some(newest) = self.newest.as_mut().filter(|newest| newest.seq == seq) else {
-            // By arrival, not by stamp: a wrong stamp displaces one message at most.
+            // By arrival, not by stamp: a wrong stamp displaces at most one message.
             self.before = self.newest.replace(Sent { seq, words: vec![word] });
             return true;
         };
@@ -177,7 +177,7 @@ mod tests {
         assert_eq!(
             (inbox.deliver(3, &mut words), inbox.deliver(4, &mut words)),
             (1, 0),
-            "missed once, it is not waited for again"
+            "missed once, it is not awaited again"
         );
         assert_eq!(words, []);
     }
@@ -207,7 +207,7 @@ mod tests {
             assert_eq!(inbox.deliver(first, &mut words), 0);
             assert!(!inbox.is_complete(first + 1));
             let mut lost = inbox.clone();
-            assert_eq!(lost.deliver(first + 1, &mut words), 1, "it was lost");
+            assert_eq!(lost.deliver(first + 1, &mut words), 1, "the message was lost");
             assert!(lost.is_complete(first + 2), "it may be silent");
             receive(&mut inbox, &say(first, &[(1, 10.0)]));
             assert!(inbox.is_complete(first + 1));
@@ -220,7 +220,7 @@ mod tests {
         let mut inbox = team_inbox();
         (0..5).for_each(|seq| receive(&mut inbox, &say(seq, &[(1, seq as f64)])));
         assert_eq!(delivered(&mut inbox, 9), [4.0]);
-        assert_eq!(delivered(&mut inbox, 10), [0.0; 0], "and once only");
+        assert_eq!(delivered(&mut inbox, 10), [0.0; 0], "only once");
     }
 
     #[test]
@@ -253,7 +253,7 @@ mod tests {
         // The number of a decision that never comes hides earlier messages, but not for long.
         receive(&mut inbox, &say(u64::MAX, &[(1, 1.0)]));
         assert!(inbox.is_complete(u64::MAX));
-        assert!(inbox.is_complete(3), "it is past what is waited for");
+        assert!(inbox.is_complete(3), "it is beyond the awaited decision");
         receive(&mut inbox, &say(1, &[(1, 6.0)]));
         assert_eq!(delivered(&mut inbox, 2), [6.0]);
     }

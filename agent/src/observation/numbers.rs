@@ -12,9 +12,10 @@ impl<'a> Numbers<'a> {
 
     /// Writes the next number.
     pub(super) fn push(&mut self, number: f64) {
-        // Spaces report their size to trainers before anything is written: a mismatch is a bug in
-        // Squall.
-        let (next, left) = std::mem::take(&mut self.left).split_first_mut().expect("there is room for every number");
+        // Spaces report their size to trainers before anything is written, so a mismatch is our
+        // bug.
+        let (next, left) =
+            std::mem::take(&mut self.left).split_first_mut().expect("the slice has space for every number");
         *next = number as f32;
         self.left = left;
     }

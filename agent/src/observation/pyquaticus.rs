@@ -2,14 +2,14 @@
 //! to the heading in half turns clockwise, distances in field diagonals, everything scaled to -1 to
 //! 1, booleans as -1 and 1.
 //!
-//! For the own boat: the enemies' flag, the own flag, the walls to starboard, behind, to port and
-//! ahead as the team faces the enemies' end, the scrimmage line, speed, carrying, own side, time
-//! since its last tag, tagged, both scores. Then for each other boat, mates first: bearing,
-//! distance, heading relative to the line to the own boat, speed, carrying, own side, time since
-//! its last tag, tagged.
+//! For the boat itself: the enemies' flag, its own flag, the walls to starboard, behind, to port
+//! and ahead as the team faces the enemies' end, the scrimmage line, speed, carrying, own side,
+//! time since its last tag, tagged, both scores. Then for each other boat, mates first: bearing,
+//! distance, heading relative to the line to this boat, speed, carrying, own side, time since its
+//! last tag, tagged.
 //!
 //! Pyquaticus provides the truth; this space provides the boat's knowledge. All values of an
-//! unknown boat are 0. An enemy's last tag time is known if it tagged one of the team.
+//! unknown boat are 0. An enemy's last tag time is known if it tagged a boat of the team.
 
 use super::numbers::Numbers;
 use crate::situation::{OtherBoat, Situation};
@@ -73,8 +73,8 @@ fn toward(situation: &Situation, place: Ned, out: &mut Numbers<'_>) {
     out.push(unit(situation.at.distance(place), diagonal_m));
 }
 
-/// Whether a place is on a team's side of the scrimmage line, on the field or not: as in
-/// Pyquaticus, and unlike `Field::is_own_side`.
+/// Whether a place is on a team's side of the scrimmage line, on the field or not, as in Pyquaticus
+/// and unlike `Field::is_own_side`.
 fn is_own_side(situation: &Situation, at: Ned, team: usize) -> bool {
     let field = &situation.model.field;
     let beyond_m = (at - field.middle()).dot(field.along);

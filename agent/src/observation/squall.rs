@@ -1,10 +1,10 @@
-//! The observation space `squall`: the own sensors' and the radio's data in a frame that is the
-//! same for both teams.
+//! The observation space `squall`: data from the boat's sensors and the radio, in a frame that is
+//! the same for both teams.
 //!
-//! Places on the field are relative to its middle: ahead of the team as it faces the enemies' end,
-//! and to its port. Other boats and goals are along the own boat's axes. Lengths are in hundreds of
-//! metres, each with its nearness: 10 m divided by 10 m plus the distance. Speeds are in units of 3
-//! m/s; booleans are 0 or 1.
+//! Places on the field are relative to its centre: ahead, as the team faces the enemies' end, and
+//! to port. Other boats and goals are along the boat's axes. Lengths are in hundreds of metres,
+//! each with its nearness: 10 m divided by 10 m plus the distance. Speeds are in units of 3 m/s;
+//! booleans are 0 or 1.
 
 use super::numbers::Numbers;
 use crate::situation::{OtherBoat, Situation};
@@ -28,7 +28,6 @@ const YAW_RATE_RAD_S: f64 = 0.5;
 const AGE_S: f64 = 10.0;
 /// Edges and obstacles beyond this distance make no difference, m.
 const FAR_M: f64 = 20.0;
-/// Unit of points.
 const POINTS: f64 = 10.0;
 
 /// Writes all values.
@@ -42,7 +41,7 @@ pub(super) fn write(situation: &Situation, (mates, enemies): (usize, usize), out
     let mut nearest: Vec<&OtherBoat> = others(true).collect();
     let distance = |other: &OtherBoat| situation.at.distance_squared(other.at);
     // Enemies by distance: their order has no meaning for a policy, and with fewer slots than
-    // enemies the relevant ones are kept. Mates keep their places.
+    // enemies the relevant ones are kept. Mates keep their slots.
     nearest.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
     slots(situation, nearest.into_iter(), enemies, out);
 }
@@ -89,7 +88,7 @@ fn edges(situation: &Situation, out: &mut Numbers<'_>) {
     out.push((situation.own.nav.speed_m_s() / situation.model.speed_max_m_s.max(0.1)).min(2.0));
 }
 
-/// 16 values: the enemies' flag, the own flag, the place for capturing or untagging, and the
+/// 16 values: the enemies' flag, the team's own flag, the place for capturing or untagging, and the
 /// current goal among them.
 fn goals(situation: &Situation, out: &mut Numbers<'_>) {
     let at = |mark| situation.locate(&Place::Mark(mark)).map_or(situation.at, |point| point.at);
@@ -147,7 +146,7 @@ fn other_boat(situation: &Situation, other: &OtherBoat, out: &mut Numbers<'_>) {
     out.push(NEAR_M / (NEAR_M + other.at.distance(home)));
 }
 
-/// 4 values: the direction of a place along the own axes, its distance and nearness.
+/// 4 values: direction of a place along the boat's axes, distance and nearness.
 fn toward(situation: &Situation, place: Ned, out: &mut Numbers<'_>) {
     let line = place - situation.at;
     let [ahead_m, starboard_m] = along_axes(situation, line);
@@ -162,7 +161,7 @@ fn toward(situation: &Situation, place: Ned, out: &mut Numbers<'_>) {
     out.push(NEAR_M / (NEAR_M + distance_m));
 }
 
-/// A vector's components ahead of the own boat and to its starboard.
+/// A vector's components ahead of the boat and to starboard.
 fn along_axes(situation: &Situation, vector: Ned) -> [f64; 2] {
     let ahead = situation.ahead;
     [vector.dot(ahead), vector.east * ahead.north - vector.north * ahead.east]

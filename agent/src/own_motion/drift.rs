@@ -1,5 +1,5 @@
-//! The drift of a boat: the velocity that wind, waves and current add to its way through the water,
-//! and how much that varies.
+//! The drift of a boat: the velocity that wind, waves and current add to its velocity through the
+//! water, and how much that varies.
 //!
 //! Thrusters push a boat along its heading and nothing pushes it across, so its velocity across the
 //! heading is the drift's component there. A Kalman filter combines these components from all
@@ -16,25 +16,25 @@
 //! the variance s² and the correlation time T it has the density r = 2 s² T at frequencies far
 //! below those of the waves. s² is the mean square of the innovation.
 //!
-//! A turn makes a boat slide outwards, which is separate from drift: by Y = -(m + A11) u r against
-//! the resistance in sway, with the values of the boat's file (Fossen 2021, ch. 6). A part of that
+//! In a turn a boat slides outwards, apart from any drift: by Y = -(m + A11) u r against the
+//! resistance in sway, with the values of the boat's file (Fossen 2021, ch. 6). A part of that
 //! counts as noise.
 //!
 //! The component along a constant heading is unobservable. A boat that steers by speed over the
-//! ground does not need it, and it becomes known from the first turn on.
+//! ground does not need it, and it becomes known with the first turn.
 
 use super::handling::Handling;
 use messages::picture::Nav;
 use primitives::{Ned, math};
 
-/// Variance of the drift's change in a second, m²/s³: a gust or a turn beam-on changes it by 0.2
-/// m/s in four seconds.
+/// Variance of the drift's change per second, m²/s³: a gust or a turn beam-on changes it by 0.2 m/s
+/// in four seconds.
 const WALK_M2_S3: f64 = 0.01;
-/// Variance of an unknown drift, m²/s²; its upper bound.
+/// Variance of an unknown drift, its upper bound, m²/s².
 const UNKNOWN_M2_S2: f64 = 1.0;
 /// Correlation time of the wave disturbance, s.
 const WAVE_TIME_S: f64 = 0.5;
-/// Least standard deviation of the velocity across, m/s: a satellite receiver's.
+/// Minimum standard deviation of the velocity across, m/s: a satellite receiver's.
 const NOISE_M_S: f64 = 0.05;
 /// Time constant of the mean square, s.
 const SPREAD_TIME_S: f64 = 20.0;
@@ -43,7 +43,7 @@ const SLIDE_ERROR: f64 = 0.5;
 /// Correlation time of that error, s: a turn.
 const SLIDE_TIME_S: f64 = 4.0;
 
-/// The estimate. The default is that of an unknown boat.
+/// The estimate. The default belongs to an unknown boat.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DriftEstimate {
     drift: Ned,
@@ -105,7 +105,7 @@ impl DriftEstimate {
         self.drift
     }
 
-    /// Standard deviation of the velocity about the drift, m/s: waves and gusts, without the
+    /// Standard deviation of the velocity around the drift, m/s: waves and gusts, without the
     /// receiver's noise.
     pub(crate) fn spread_m_s(&self) -> f64 {
         (self.square_m2_s2 - NOISE_M_S * NOISE_M_S).max(0.0).sqrt()

@@ -1,4 +1,4 @@
-//! Handling: how soon, how fast and how hard a boat turns and brakes, from its file and then from
+//! Handling: how soon, fast and hard a boat turns and brakes, from its file and then from
 //! observation.
 
 use scenario::boat::{Autopilot, Boat, Drive, Hull, Kinematic, ThrustCurve, Thruster};
@@ -9,7 +9,7 @@ const MEAN_OF_STEADY: f64 = 0.7;
 const DECISION_S: f64 = 0.45;
 /// Mean yaw rate of a turn as a share of its initial rate, since the error decreases.
 const MEAN_OF_FIRST: f64 = 0.6;
-/// Least turn rate as a share of the greatest: the helm keeps asking for more during a turn.
+/// Minimum turn rate as a share of the maximum: the helm keeps asking for more during a turn.
 const LEAST_OF_MOST: f64 = 0.3;
 /// Time constant of the observed turn rate, s of turning.
 const MEMORY_S: f64 = 8.0;
@@ -84,7 +84,7 @@ impl Handling {
 }
 
 /// The steady yaw rate at half speed solves N = (N_r + N_ur u) r + N_rr r² for the largest moment N
-/// of both thrusters; the loop of natural frequency w and damping ratio z starts to turn like a
+/// of both thrusters. A loop with natural frequency w and damping ratio z starts to turn like a
 /// first-order one with w / (2 z).
 fn of_thrusters(hull: &Hull, thruster: &Thruster, autopilot: &Autopilot) -> Handling {
     let (ahead_newton, astern_newton) = match &thruster.curve {
@@ -113,7 +113,7 @@ fn of_thrusters(hull: &Hull, thruster: &Thruster, autopilot: &Autopilot) -> Hand
         reaction_s: DECISION_S + thruster.lag_s + thruster.flaws.latency_s,
         turn_rad_s: MEAN_OF_STEADY * steady_rad_s,
         turn_per_rad_s: 0.5 * autopilot.heading_bandwidth_rad_s / autopilot.heading_damping,
-        // Half of the thrusters' capability: changing thrust takes time.
+        // Half of the thrusters' capability, because changing thrust takes time.
         acceleration_m_s2: ahead_newton / mass_kg,
         deceleration_m_s2: astern_newton / mass_kg,
         slide_s: mass_kg / sway_kg_s,
@@ -144,15 +144,15 @@ fn of_kinematic(kinematic: &Kinematic) -> Handling {
 /// forgetting.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SeenTurn {
-    /// Sums of the expected rate times the observed one and times itself, rad²/s.
+    /// Sums of the expected rate times the observed one, and times itself, rad²/s.
     seen: f64,
     expected: f64,
-    /// The expected yaw rate now, rad/s: it builds up over the reaction time.
+    /// The expected yaw rate now, rad/s; it builds up over the reaction time.
     rate_rad_s: f64,
 }
 
 impl SeenTurn {
-    /// Processes the yaw rate after `step_s` with this heading error.
+    /// Takes in the yaw rate measured after `step_s` with this heading error.
     pub(crate) fn observe(&mut self, error_rad: f64, yaw_rate_rad_s: f64, handling: &Handling, step_s: f64) {
         let wanted_rad_s = handling.yaw_rate_rad_s(error_rad);
         self.rate_rad_s += (step_s / (handling.reaction_s + step_s)) * (wanted_rad_s - self.rate_rad_s);

@@ -16,11 +16,11 @@ use primitives::math;
 const MODEL_GAIN_PER_S: f64 = 0.6;
 /// Learning rate of the offset, 1/s.
 const OFFSET_GAIN_PER_S: f64 = 0.25;
-/// While the model still has to turn by more than this, the offset is not updated, rad: the
-/// difference comes from the turn.
+/// While the model must still turn by more than this, the offset is not updated, because the
+/// difference comes from the turn, rad.
 const TURNING_RAD: f64 = 0.35;
-/// A change of heading after which an offset means little, rad: the wind then acts at another
-/// angle.
+/// Change of heading after which an offset means little, because the wind acts at another angle,
+/// rad.
 const FORGOTTEN_RAD: f64 = 0.8;
 /// Upper bound of the offset, rad.
 const OFFSET_MAX_RAD: f64 = 0.7;
@@ -29,12 +29,12 @@ const OFFSET_MAX_RAD: f64 = 0.7;
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct HeadingOffset {
     offset_rad: f64,
-    /// The modelled heading without the offset; none before the first.
+    /// The modelled heading without the offset; `None` before the first.
     model_rad: Option<f64>,
 }
 
 impl HeadingOffset {
-    /// Processes the heading after `step_s` under a steering order.
+    /// Takes in the heading measured after `step_s` under a steering order.
     pub(crate) fn observe(&mut self, ordered_rad: f64, heading_rad: f64, handling: &Handling, step_s: f64) {
         let model_rad = self.model_rad.get_or_insert(heading_rad);
         let error_rad = wrap_pi(ordered_rad - *model_rad);

@@ -1,7 +1,7 @@
-//! The own boat's response to orders: its drift, its heading offset and its handling.
+//! The boat's response to orders: its drift, its heading offset and its handling.
 //!
 //! Everything derives from the boat's file, its own navigation and its own orders, so that it works
-//! on a real boat as in simulation. Decisions are heading and speed through the water: the velocity
+//! on a real boat as in simulation. Decisions are heading and speed through the water; the velocity
 //! over the ground is that plus the drift.
 
 mod drift;
@@ -20,11 +20,11 @@ use primitives::{Ned, SimTime, math};
 use scenario::boat::{Boat, Drive};
 use std::f64::consts::PI;
 
-/// Upper bound of a turn in one order, rad: a front seat turns the shorter way, which is ambiguous
-/// for half a turn.
+/// Maximum turn in one order, rad: a front seat turns the shorter way, which is ambiguous for half
+/// a turn.
 const TURN_MAX_RAD: f64 = 2.6;
-/// A point boat whose thrust follows the order brakes at full deceleration when ordered slower by
-/// the speed that it then loses in this time, s.
+/// A point boat whose thrust follows the order brakes at full deceleration when its order is lower
+/// by the speed that it then loses in this time, s.
 const BRAKES_S: f64 = 1.0;
 /// A turn at least this large keeps its initial side, rad.
 const LARGE_TURN_RAD: f64 = 2.2;
@@ -38,21 +38,20 @@ enum SpeedReference {
     Water,
 }
 
-/// The own boat's motion model.
 #[derive(Clone, Debug)]
 pub(crate) struct OwnMotion {
     file: Handling,
     reference: SpeedReference,
     speed_max_m_s: f64,
-    /// For a boat that turns by its thrust, with thrust proportional to the ordered speed: it
-    /// brakes at full deceleration when ordered to go slower by this much, m/s.
+    /// For a boat that steers by differential thrust, with thrust proportional to the ordered
+    /// speed: it brakes at full deceleration when its order is lower by this much, m/s.
     brakes_by_m_s: Option<f64>,
     /// Whether orders compensate for drift and offset.
     compensates: bool,
     drift: DriftEstimate,
     offset: HeadingOffset,
     turn: SeenTurn,
-    /// The desired heading and the one ordered for it, rad; none after another order.
+    /// The desired heading and the one ordered for it, rad; `None` after another order.
     ordered: Option<(f64, f64)>,
     fix_at: SimTime,
     psi_rad: f64,
@@ -92,8 +91,8 @@ impl OwnMotion {
         }
     }
 
-    /// Processes the boat's own state `step_s` after the last call. `obeys` is whether the rules
-    /// let it follow its orders.
+    /// Processes the boat's state `step_s` after the last call. `obeys` is whether the rules let it
+    /// follow its orders.
     pub(crate) fn observe(&mut self, own: &OwnBoat, step_s: f64, obeys: bool) {
         (self.psi_rad, self.surge_m_s) = (own.nav.psi_rad, own.nav.surge_m_s);
         if !self.compensates || step_s <= 0.0 {
@@ -115,18 +114,18 @@ impl OwnMotion {
         }
     }
 
-    /// Velocity over the ground less that through the water, m/s.
+    /// Velocity over the ground minus that through the water, m/s.
     pub(crate) fn drift(&self) -> Ned {
         if self.compensates { self.drift.drift() } else { Ned::default() }
     }
 
-    /// The velocity to add to a decision's way, m/s: the estimated drift, or the boat's present
-    /// sway where drift is not estimated.
+    /// The velocity to add to a decision's, m/s: the estimated drift, or the boat's present sway if
+    /// drift is not estimated.
     pub(crate) fn drift_now(&self, nav: &Nav) -> Ned {
         if self.compensates { self.drift.drift() } else { nav.pose().rotation().starboard().scaled(nav.sway_m_s) }
     }
 
-    /// Standard deviation of the velocity about the drift, m/s.
+    /// Standard deviation of the velocity around the drift, m/s.
     pub(crate) fn spread_m_s(&self) -> f64 {
         if self.compensates { self.drift.spread_m_s() } else { 0.0 }
     }
@@ -157,8 +156,8 @@ impl OwnMotion {
         // boat's speed, and the rest goes along it.
         let room = self.speed_max_m_s * self.speed_max_m_s - across.dot(across);
         // A grid of courses over the ground would need the heading of each point for its turn, and
-        // would treat an order to stand still as no motion through the water. So a behaviour that
-        // wants a course gets its crab angle here, once.
+        // would treat an order to stop as no motion through the water. A behaviour that wants a
+        // course therefore gets its crab angle here, once.
         let fastest_m_s = along_m_s + room.max(0.0).sqrt();
         let way = course.scaled(speed_m_s.min(fastest_m_s)) - drift;
         let through_m_s = way.length();
@@ -184,7 +183,7 @@ impl OwnMotion {
                 let (east, north) = math::sin_cos(heading_rad);
                 (speed_m_s + self.drift().dot(Ned { north, east })).clamp(0.0, self.speed_max_m_s)
             }
-            // Ordered to its final low speed at once, it could not steer while it brakes.
+            // With its final low speed ordered at once, it could not steer while it brakes.
             SpeedReference::Water => self.brakes_by_m_s.map_or(speed_m_s, |by| speed_m_s.max(self.surge_m_s - by)),
         };
         Order::Steer { heading_rad: ordered_rad, speed_m_s: ahead_m_s }
@@ -205,7 +204,7 @@ impl OwnMotion {
         self.psi_rad + self.side * to_side_rad.min(TURN_MAX_RAD)
     }
 
-    /// Called when an order other than steering is given.
+    /// Called for an order other than steering.
     pub(crate) fn hold(&mut self) {
         (self.ordered, self.side) = (None, 0.0);
     }
@@ -224,7 +223,7 @@ mod tests {
         OwnMotion::new(&boat, boat.speed_max_m_s(), true)
     }
 
-    /// Feeds navigation ten times a second for `for_s`, from `after_s` on.
+    /// Feeds navigation ten times per second for `for_s`, from `after_s` on.
     fn show(motion: &mut OwnMotion, after_s: f64, for_s: f64, nav: impl Fn(f64) -> Nav) {
         for i in 0..(10.0 * for_s) as u32 {
             let at_s = 0.1 * f64::from(i);
@@ -242,12 +241,12 @@ mod tests {
         assert!(motion.drift().distance(Ned { north: 0.0, east: 0.5 }) < 0.01, "{:?}", motion.drift());
         let drift_m_s = motion.drift().length();
         let (heading_rad, speed_m_s) = motion.steer(0.0, 1.5);
-        assert!((heading_rad + libm::asin(drift_m_s / speed_m_s)).abs() < 0.01, "sin of the crab angle is d / V");
+        assert!((heading_rad + libm::asin(drift_m_s / speed_m_s)).abs() < 0.01, "the sine of the crab angle is d / V");
         assert!((speed_m_s - math::length(1.5, drift_m_s)).abs() < 0.01);
         // A speed beyond the boat's capability becomes its maximum on that course.
         let (heading_rad, speed_m_s) = motion.steer(0.0, 5.0);
         assert!((speed_m_s - 3.0).abs() < 1e-9 && (heading_rad + libm::asin(drift_m_s / 3.0)).abs() < 0.01);
-        // To stand still it points against the drift.
+        // To stop over the ground, it points against the drift.
         let (heading_rad, speed_m_s) = motion.steer(0.0, 0.0);
         assert!((heading_rad + 0.5 * PI).abs() < 0.03 && (speed_m_s - drift_m_s).abs() < 1e-9);
     }
@@ -263,7 +262,7 @@ mod tests {
                 ordered_rad = heading_rad;
             }
         }
-        assert!((ordered_rad + 0.3 - 1.0).abs() < 0.02, "it lies at {} rad, wanted 1", ordered_rad + 0.3);
+        assert!((ordered_rad + 0.3 - 1.0).abs() < 0.02, "heading {} rad, want 1", ordered_rad + 0.3);
     }
 
     #[test]
@@ -273,8 +272,10 @@ mod tests {
         {
             let mut motion = motion(boat);
             show(&mut motion, 0.0, 1.0, |_| Nav { surge_m_s: 6.0, ..Nav::default() });
-            let Order::Steer { speed_m_s: got_m_s, .. } = motion.order(1.0, speed_m_s) else { panic!("it steers") };
-            assert!((got_m_s - want_m_s).abs() < 1e-9, "{boat} told {speed_m_s} is ordered {got_m_s}");
+            let Order::Steer { speed_m_s: got_m_s, .. } = motion.order(1.0, speed_m_s) else {
+                panic!("expected a steer order")
+            };
+            assert!((got_m_s - want_m_s).abs() < 1e-9, "{boat} at {speed_m_s}: ordered {got_m_s}, want {want_m_s}");
         }
     }
 
@@ -313,6 +314,6 @@ mod tests {
             show(&mut motion, 0.1 * f64::from(i), 0.1, |_| nav);
         }
         let seen = motion.handling().turn_rad_s / before_rad_s;
-        assert!((0.35..0.65).contains(&seen), "seen to turn at {seen} of what its file says");
+        assert!((0.35..0.65).contains(&seen), "observed turn rate is {seen} of that in its file");
     }
 }

@@ -16,7 +16,7 @@ pub(crate) struct GameModel {
     pub(crate) team: TeamId,
     pub(crate) field: Field,
     pub(crate) rules: Rules,
-    /// The own boat's index in its team.
+    /// The boat's index in its team.
     pub(crate) rank: usize,
     /// The enemies, in the scenario's order.
     pub(crate) enemies: Vec<VehicleId>,
@@ -26,13 +26,13 @@ pub(crate) struct GameModel {
     pub(crate) targets: Vec<(FlagId, Ned)>,
     /// The flags to defend.
     pub(crate) own_flags: Vec<(FlagId, Ned)>,
-    /// The score that ends the game, or Pyquaticus' default.
+    /// The score that ends the game, or Pyquaticus's default.
     pub(crate) score_max: f64,
     /// The top speed of every boat of the game, m/s, by vehicle index.
     pub(crate) boat_speeds_m_s: Vec<f64>,
     /// The highest speed of the helm's decisions, m/s.
     pub(crate) speed_max_m_s: f64,
-    /// The team's named points, by name.
+    /// The team's named points, sorted by name.
     points: Vec<(String, Ned)>,
 }
 
@@ -72,12 +72,12 @@ impl GameModel {
         }
     }
 
-    /// The home of the own flag that is nearest to a place.
+    /// The home of the team's flag that is nearest to a place.
     pub(crate) fn own_flag_near(&self, at: Ned) -> Ned {
         self.field.nearest_own_flag(self.team, at).expect(HAS_ALL)
     }
 
-    /// A named point of the own team.
+    /// A named point of the team.
     pub(crate) fn point(&self, name: &str) -> Option<Ned> {
         let found = self.points.binary_search_by(|(known, _)| known.as_str().cmp(name));
         found.ok().map(|i| self.points[i].1)
@@ -98,7 +98,7 @@ impl GameModel {
         self.rules.untag_centre(&self.field, self.team, at).expect(HAS_ALL)
     }
 
-    /// Whether `at` is on the own team's side.
+    /// Whether `at` is on the team's own side.
     pub(crate) fn is_own_side(&self, at: Ned) -> bool {
         // A point inside both edges, not the corner itself, which lies on the boundary.
         self.field.is_own_side(self.team, at)

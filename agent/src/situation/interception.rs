@@ -1,4 +1,4 @@
-//! Interception: assigns boats of the own team to intruders.
+//! Interception: assigns boats of the team to intruders.
 //!
 //! Every boat computes it from the whole team's knowledge, so all get the same result without
 //! communication.
@@ -39,8 +39,8 @@ pub(super) struct Pair {
     pub(super) intruder: VehicleId,
 }
 
-/// Assigns each intruder, in order, the remaining boat that meets it soonest; ties go to the first
-/// boat.
+/// Assigns to each intruder, in order, the remaining boat that meets it soonest; ties go to the
+/// first boat.
 pub(super) fn assign(interceptors: &[Interceptor], intruders: &[Intruder], before: &[Pair]) -> Vec<Pair> {
     // Greedy, not the best sum over all pairs: the intruder nearest to the flag matters most, and a
     // distant boat does not change the result.
@@ -72,16 +72,16 @@ pub(super) fn assign(interceptors: &[Interceptor], intruders: &[Intruder], befor
     pairs
 }
 
-/// Time until both can be at the same place, s; if the intruder outruns the boat, until the boat
-/// reaches the intruder's present position.
+/// Time until both can be at the same place, s. If the intruder outruns the boat, the time until
+/// the boat reaches the intruder's present position.
 fn time_to_meet_s(interceptor: &Interceptor, intruder: &Intruder) -> f64 {
     let line = intruder.at - interceptor.at;
     meeting_time_s(line, intruder.velocity, interceptor.speed_m_s)
         .unwrap_or_else(|| 2.0 * line.length() / interceptor.speed_m_s)
 }
 
-/// The earliest meeting time of a boat going straight at this speed with a contact at `line` of
-/// constant velocity, s; none if they never meet.
+/// The earliest time at which a boat going straight at this speed meets a contact at `line` of
+/// constant velocity, s; `None` if they never meet.
 ///
 /// The time is the smallest positive root of |line + velocity t| = speed t.
 pub(crate) fn meeting_time_s(line: Ned, velocity: Ned, speed_m_s: f64) -> Option<f64> {
@@ -134,14 +134,14 @@ mod tests {
         let meets = |near| numbers(&assign(&[near, quick], &[intruder(7, 0.0)], &[]));
         assert_eq!(meets(near), [(0, 7)]);
         near.unready_s = 20.0;
-        assert_eq!(meets(near), [(1, 7)], "15 s there, but 20 s until it can tag");
+        assert_eq!(meets(near), [(1, 7)], "15 s to get there, but 20 s until it can tag");
     }
 
     #[test]
     fn noise_does_not_change_who_meets_whom_and_what_is_better_does() {
         let before = [Pair { interceptor: VehicleId(0), intruder: VehicleId(7) }];
         for (east, want) in [(10.0, 0), (12.0, 0), (15.9, 0), (16.1, 1)] {
-            // The other boat is 10 m away on the other side: each further metre takes half a
+            // The other boat is 10 m away on the other side; each further metre takes half a
             // second.
             let boats = [interceptor(0, east), interceptor(1, -10.0)];
             let got = numbers(&assign(&boats, &[intruder(7, 0.0)], &before));
@@ -182,6 +182,6 @@ mod tests {
         let going = |east| Ned { north: 0.0, east };
         assert!((time_s(going(-1.0)) - 10.0).abs() < 1e-9 && (time_s(going(1.0)) - 30.0).abs() < 1e-9);
         assert!((time_s(going(-2.0)) - 7.5).abs() < 1e-9, "as fast as the boat");
-        assert!((time_s(going(3.0)) - 30.0).abs() < 1e-9, "never: twice the time to where it is now");
+        assert!((time_s(going(3.0)) - 30.0).abs() < 1e-9, "never: twice the time to its present position");
     }
 }

@@ -1,4 +1,4 @@
-//! The situation: a helm's knowledge at this decision, in the terms of strategies.
+//! The situation: a helm's knowledge at a decision, in the terms of strategies.
 
 mod game_model;
 mod interception;
@@ -24,16 +24,16 @@ use scenario::strategy::{Boat, Expression, Fact, Mark, Measure, Place, Program, 
 use std::cell::OnceCell;
 use turn_estimate::{TurnEstimate, turning_on};
 
-/// A contact is assumed to keep its velocity for this long, s; then to slow down ...
+/// A contact is assumed to keep its velocity for this long and then to slow down, s.
 const KEEPS_ON_S: f64 = 15.0;
-/// ... and to lie still after this long, s.
+/// A contact is assumed to be at rest after this long, s.
 const STILL_AFTER_S: f64 = 30.0;
-/// Distance of an unknown thing, m.
+/// Distance to anything unknown, m.
 const NOWHERE_M: f64 = 1e9;
 /// A boat this far inside its untagging place was tagged there and must leave it, as a share of the
 /// radius.
 const WELL_INSIDE: f64 = 0.5;
-/// It counts as having left beyond this share of the radius.
+/// Share of the radius beyond which it counts as having left.
 const WELL_OUTSIDE: f64 = 1.2;
 
 /// Another boat.
@@ -49,16 +49,16 @@ pub(crate) struct OtherBoat {
     pub(crate) tagged: bool,
     pub(crate) carrying: Option<FlagId>,
     /// The earliest time of its next tag: from a mate's own messages; for enemies only if they
-    /// tagged one of the team.
+    /// tagged a boat of the team.
     pub(crate) tag_ready: SimTime,
     /// Age of the last observation, s; mates report themselves in every picture.
     pub(crate) age_s: f64,
-    /// Whether it is an enemy on the own team's side.
+    /// Whether it is an enemy on the team's own side.
     pub(crate) intrudes: bool,
 }
 
-/// A velocity over the ground as received, m/s. It is rotated on demand, since few boats of a large
-/// team need it.
+/// A velocity over the ground as received, m/s. It is rotated on demand, because few boats of a
+/// large team need it.
 #[derive(Clone, Copy, Debug)]
 enum Velocity {
     Ned(Ned),
@@ -87,24 +87,25 @@ pub(crate) struct Situation {
     pub(crate) model: GameModel,
     pub(crate) now: SimTime,
     pub(crate) step_s: f64,
-    /// Whether it has taken in a picture.
+    /// Whether a picture has been taken in.
     begun: bool,
-    /// For a previewed picture: whether the own boat was in it.
+    /// For a previewed picture: whether it shows the boat itself.
     is_seen: Option<bool>,
     pub(crate) mode_since: SimTime,
     pub(crate) own: OwnBoat,
     pub(crate) at: Ned,
     /// The unit vector along the bow.
     pub(crate) ahead: Ned,
-    /// The own velocity over the ground, m/s.
+    /// The boat's velocity over the ground, m/s.
     pub(crate) velocity: Ned,
-    /// The own boat's response to orders.
+    /// The boat's response to orders.
     pub(crate) motion: OwnMotion,
-    /// All other boats that are known: mates first, then enemies, each in the scenario's order.
+    /// All other known boats: mates first, then enemies, each in the scenario's order.
     pub(crate) others: Vec<OtherBoat>,
     /// Turn estimates of contacts, by vehicle index.
     turns: Vec<Option<TurnEstimate>>,
-    /// The earliest time of the next tag of enemies that tagged one of the team, by vehicle index.
+    /// By vehicle index: the earliest time of the next tag of enemies that tagged a boat of the
+    /// team.
     tag_ready: Vec<SimTime>,
     pub(crate) variables: Vec<f64>,
     pub(crate) team_messages: TeamMessages,
@@ -116,9 +117,9 @@ pub(crate) struct Situation {
     enemy_score: f64,
     /// The interception pairs, computed on first use in a decision.
     interception: OnceCell<Vec<Pair>>,
-    /// The previous interception pairs.
     interception_before: Vec<Pair>,
-    /// Tagged inside its untagging place: it must leave before it can come home.
+    /// Whether the boat was tagged inside its untagging place and must leave it before it can come
+    /// home.
     leaving: bool,
 }
 
@@ -161,7 +162,7 @@ impl Situation {
         self.is_seen = Some(self.apply_picture(picture));
     }
 
-    /// Takes the newest picture in unless a preview has; `false` if the own boat is not in it.
+    /// Takes in the newest picture unless a preview has. Returns whether it shows the boat itself.
     pub(crate) fn update(&mut self, picture: &Picture) -> bool {
         self.is_seen.take().unwrap_or_else(|| self.apply_picture(picture))
     }
@@ -237,7 +238,7 @@ impl Situation {
         true
     }
 
-    /// Enemies that have tagged one of the team cannot tag again for a while.
+    /// Enemies that have tagged a boat of the team cannot tag again for a while.
     fn note_tags(&mut self, picture: &Picture) {
         for logged in picture.events.iter().filter_map(EventRecord::logged) {
             if let Event::Tagged { cause: TagCause::Opponent(by), .. } = logged.event {
@@ -248,27 +249,25 @@ impl Situation {
         }
     }
 
-    /// The own velocity through the water, as far as it is known, m/s.
+    /// The boat's velocity through the water, as far as known, m/s.
     pub(crate) fn velocity_through_water(&self) -> Ned {
         self.velocity - self.motion.drift()
     }
 
-    /// The own boat extrapolated through a brief continued turn.
+    /// The boat extrapolated through a brief continued turn.
     pub(crate) fn turning_on(&self) -> MovingPoint {
         turning_on(MovingPoint { at: self.at, velocity: self.velocity }, self.own.nav.yaw_rate_rad_s)
     }
 
-    /// The enemies.
     pub(crate) fn enemies(&self) -> impl Iterator<Item = &OtherBoat> {
         self.others.iter().filter(|other| other.is_enemy)
     }
 
-    /// The enemies on the own side that are not tagged.
+    /// The enemies on the team's own side that are not tagged.
     fn intruders(&self) -> impl Iterator<Item = &OtherBoat> {
         self.enemies().filter(|enemy| !enemy.tagged && enemy.intrudes)
     }
 
-    /// The mates.
     fn mates(&self) -> impl Iterator<Item = &OtherBoat> {
         self.others.iter().filter(|other| !other.is_enemy)
     }
@@ -300,7 +299,7 @@ impl Situation {
         }
     }
 
-    /// The squared distance of a place from the nearest own flag, m².
+    /// The squared distance of a place from the team's nearest flag, m².
     fn flag_distance_squared(&self, at: Ned) -> f64 {
         self.model.own_flag_near(at).distance_squared(at)
     }
@@ -309,9 +308,8 @@ impl Situation {
     fn intercepted(&self) -> Vec<Pair> {
         let mut intruders: Vec<Intruder> = self.intruders().map(Intruder::from).collect();
         // By the flag nearest to each intruder, not the one nearest to this boat, so that all boats
-        // of the team find the same order.
-        // By their distance to the flag in the whole team's knowledge, so that every mate computes
-        // the same pairs.
+        // of the team find the same order. By their distance to the flag in the whole team's
+        // knowledge, so that every mate computes the same pairs.
         intruders.sort_by(|a, b| self.flag_distance_squared(a.at).total_cmp(&self.flag_distance_squared(b.at)));
         let boat = |vehicle: VehicleId, at: Ned, tag_ready: SimTime| Interceptor {
             vehicle,
@@ -353,7 +351,7 @@ impl Situation {
         }
     }
 
-    /// The nearest flag to attack that is home, or the nearest of all.
+    /// The nearest flag to attack that is home, or else the nearest of all.
     fn enemy_flag(&self) -> Ned {
         let targets = self.model.targets.iter();
         let key = |(flag, home): &&(FlagId, Ned)| (self.carried(*flag).is_some(), self.at.distance_squared(*home));
@@ -371,10 +369,6 @@ impl Situation {
     /// The carrier of a flag.
     fn carried(&self, flag: FlagId) -> Option<VehicleId> {
         self.carriers.get(flag.index()).copied().flatten()
-    }
-
-    fn own_point(&self) -> MovingPoint {
-        MovingPoint { at: self.at, velocity: self.velocity }
     }
 }
 
@@ -420,7 +414,10 @@ impl Values for Situation {
         let point = self.locate(place);
         let truth = |is: bool| f64::from(u8::from(is));
         match measure {
-            Measure::Distance | Measure::Closing => between(measure, Some(self.own_point()), point),
+            Measure::Distance | Measure::Closing => {
+                let own = MovingPoint { at: self.at, velocity: self.velocity };
+                between(measure, Some(own), point)
+            }
             Measure::Speed => point.map_or(0.0, |point| point.velocity.length()),
             Measure::Known => truth(point.is_some()),
             Measure::OnOwnSide => truth(point.is_some_and(|point| self.model.is_own_side(point.at))),
@@ -461,7 +458,6 @@ fn between(measure: Measure, from: Option<MovingPoint>, to: Option<MovingPoint>)
     }
 }
 
-/// The closing speed of two points, m/s.
 fn closing_m_s(from: MovingPoint, to: MovingPoint) -> f64 {
     let line = to.at - from.at;
     let distance_m = line.length();
@@ -472,7 +468,7 @@ fn closing_m_s(from: MovingPoint, to: MovingPoint) -> f64 {
 }
 
 /// The estimated position and velocity of a contact now: constant velocity, then slowing down, then
-/// still.
+/// at rest.
 fn dead_reckoned(contact: &Contact, now: SimTime) -> (Ned, Ned) {
     let seen = Ned { north: contact.north_m, east: contact.east_m };
     let velocity = Ned { north: contact.velocity_north_m_s, east: contact.velocity_east_m_s };
@@ -484,7 +480,7 @@ fn dead_reckoned(contact: &Contact, now: SimTime) -> (Ned, Ned) {
     (seen + velocity.scaled(gone_s), velocity.scaled(left))
 }
 
-/// The one nearest to `at`; ties go to the first.
+/// The boat nearest to `at`; ties go to the first.
 fn nearest<'a>(at: Ned, others: impl Iterator<Item = &'a OtherBoat>) -> Option<&'a OtherBoat> {
     others.min_by(|a, b| at.distance_squared(a.at).total_cmp(&at.distance_squared(b.at)))
 }

@@ -1,4 +1,4 @@
-//! Team messages: variables that a strategy shares, sent to mates and received from them.
+//! Team messages: variables that a strategy shares, to and from mates.
 
 use messages::Word;
 use primitives::VehicleId;
@@ -9,14 +9,14 @@ use xxhash_rust::xxh3::xxh3_64;
 #[derive(Clone, Debug)]
 struct MateVariables {
     mate: VehicleId,
-    /// By variable of the own program: its value at the mate, if ever received.
+    /// By variable of this program: its value at the mate, if ever received.
     values: Vec<Option<f64>>,
 }
 
 /// The messages received from all mates.
 #[derive(Clone, Debug)]
 pub(crate) struct TeamMessages {
-    /// By variable: the key that it is sent under, if it is shared.
+    /// By variable: the key under which it is sent, if shared.
     keys: Vec<Option<u64>>,
     mates: Vec<MateVariables>,
 }
@@ -34,7 +34,7 @@ impl TeamMessages {
         self.keys.iter().any(Option::is_some)
     }
 
-    /// Receives messages of mates; ignores words of other boats and about unknown variables.
+    /// Receives messages of mates. Ignores other boats and unknown variables.
     pub(crate) fn receive(&mut self, messages: &[Word]) {
         for word in messages.iter().filter(|word| word.value.is_finite()) {
             let variable = self.keys.iter().position(|key| *key == Some(word.key));
@@ -46,14 +46,14 @@ impl TeamMessages {
         }
     }
 
-    /// Adds the own values of all shared variables.
+    /// Adds the values of all shared variables.
     pub(crate) fn send(&self, me: VehicleId, variables: &[f64], messages: &mut Vec<Word>) {
         let shared = self.keys.iter().zip(variables).filter_map(|(key, value)| key.map(|key| (key, *value)));
         messages.extend(shared.map(|(key, value)| Word { vehicle: me, key, value }));
     }
 
-    /// The number of mates for which `condition` holds; a mate without all values that it needs
-    /// does not count.
+    /// The number of mates for which `condition` holds. A mate without all required values does not
+    /// count.
     pub(crate) fn count(&self, condition: &Expression) -> f64 {
         let holds = |from: &&MateVariables| {
             let mut complete = true;
@@ -74,7 +74,7 @@ fn key_of(variable: &Variable) -> u64 {
         Kind::Number => "number".to_owned(),
         Kind::Text(values) => values.join(","),
     };
-    // A hash of the name and kind: two strategies of one team need not list the same variables, and
+    // A hash of name and kind: two strategies of one team need not list the same variables, and
     // words have a fixed size on the wire.
     xxh3_64(format!("{} {kind}", variable.name).as_bytes())
 }

@@ -1,4 +1,4 @@
-//! Turn estimates: the yaw rates of boats and their extrapolated motion.
+//! Turn estimates: the yaw rates of boats, and their extrapolated motion.
 
 use super::moving_point::MovingPoint;
 use messages::picture::Contact;
@@ -41,7 +41,7 @@ impl TurnEstimate {
         }
     }
 
-    /// The yaw rate, rad/s clockwise; none if the contact has not been seen for longer than the
+    /// The yaw rate, rad/s clockwise; 0 if the contact has not been seen for longer than the
     /// assumed turn.
     pub(super) fn yaw_rate_rad_s(&self, now: SimTime) -> f64 {
         if (now - self.seen).as_s() > TURNS_ON_S { 0.0 } else { self.yaw_rate_rad_s }
@@ -111,6 +111,6 @@ mod tests {
         }
         let rate = |ms: i64| turn.yaw_rate_rad_s(SimTime::from_s(0.001 * ms as f64));
         assert!((rate(4_900) - 0.3).abs() < 1e-3, "{}", rate(4_900));
-        assert_eq!(rate(9_000), 0.0, "it is out of sight");
+        assert_eq!(rate(9_000), 0.0, "the contact is out of sight");
     }
 }

@@ -15,7 +15,7 @@ fn is_active(report: &HelmReport) -> bool {
     report.behaviours.iter().any(|b| b.name == "it" && b.run_state == RunState::Active)
 }
 
-/// In the middle of the field.
+/// At the centre of the field.
 fn here() -> Picture {
     alone(0.0, Boat::at(0.0, 0.0).going(0.0, 1.0))
 }
@@ -31,11 +31,11 @@ fn boat(text: &str) -> Boat {
     match (text.split(' ').count(), numbers.as_slice()) {
         (3, &[x, y]) => Boat::at(x, y),
         (6, &[x, y, heading_deg, speed_m_s]) => Boat::at(x, y).going(heading_deg, speed_m_s),
-        _ => panic!("no boat: {text}"),
+        _ => panic!("expected a boat, got {text}"),
     }
 }
 
-/// Whether a decision matches the wanted course and speed, or none.
+/// Whether a decision has the expected course and speed, or none.
 fn is_wanted(report: &HelmReport, want: &str) -> bool {
     match report.course_deg.zip(report.speed_m_s).filter(|_| is_active(report)) {
         None => want == "nothing",
@@ -66,14 +66,14 @@ fn every_behaviour_alone_decides_as_the_cases_say() {
                 let report = alone_decides(&behaviour, &picture);
                 decided += 1;
                 let got = (report.course_deg, report.speed_m_s, is_active(&report));
-                wrong.extend((!is_wanted(&report, want)).then(|| format!("{name}: {got:?}, wanted {want}")));
+                wrong.extend((!is_wanted(&report, want)).then(|| format!("{name}: {got:?}, want {want}")));
             } else {
                 behaviour += &format!("{line}\n");
             }
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    assert_eq!(decided, text.lines().filter(|line| line.starts_with("##")).count(), "cases, each with one decision");
+    assert_eq!(decided, text.lines().filter(|line| line.starts_with("##")).count(), "every case has one decision");
     assert!(decided >= 30, "only {decided} cases");
 }
 
@@ -85,7 +85,7 @@ fn driven(behaviour: &str, from: Boat, turn_rad_s: f64, contact: Boat) -> Vec<Bo
         let mut scene = with_contact(own, contact);
         scene.stamp.valid_ns = SimTime::from_s(0.1 * f64::from(step));
         let report = decided(&mut helm, &scene);
-        let wanted = report.course_deg.zip(report.speed_m_s).expect("it steers");
+        let wanted = report.course_deg.zip(report.speed_m_s).expect("the helm steers");
         let off_rad = primitives::angle::wrap_pi((wanted.0 - own.heading_deg).to_radians());
         own.heading_deg += off_rad.clamp(-0.1 * turn_rad_s, 0.1 * turn_rad_s).to_degrees();
         own.speed_m_s += 0.1 * (wanted.1 - own.speed_m_s);
@@ -105,7 +105,7 @@ fn a_shield_settles_at_its_station_from_wherever_it_comes() {
         let from = Boat::at(-52.0, -8.0).going(heading_deg, 2.4);
         let track = driven(shield, from, TURN_RAD_S, Boat::at(40.0, 0.0));
         let farthest_m = track[300..].iter().map(|own| libm::hypot(own.x + 56.0, own.y)).fold(0.0, f64::max);
-        assert!(farthest_m < 4.0, "it came with heading {heading_deg} and is {farthest_m} m off after half a minute");
+        assert!(farthest_m < 4.0, "heading {heading_deg}: {farthest_m} m from its station after half a minute");
     }
 }
 
@@ -121,7 +121,7 @@ fn a_loiter_goes_round_the_way_it_is_told() {
         [("clockwise", 270.0, true), ("counterclockwise", 90.0, false), ("best", 80.0, true), ("best", 280.0, false)]
     {
         let picture = alone(0.0, Boat::at(0.0, 20.0).going(heading_deg, 1.0));
-        let course_deg = alone_decides(&ring(turn), &picture).course_deg.expect("it goes on");
+        let course_deg = alone_decides(&ring(turn), &picture).course_deg.expect("the helm steers");
         assert_eq!((0.0..180.0).contains(&course_deg), east, "{turn} with heading {heading_deg}: {course_deg}");
     }
 }
@@ -139,7 +139,7 @@ fn a_loiter_goes_all_the_way_round() {
         last = bearing_deg;
     }
     // The perimeter is 145 m: 300 m are two rounds.
-    assert!((650.0..850.0).contains(&turned_deg), "{turned_deg} degrees round");
+    assert!((650.0..850.0).contains(&turned_deg), "turned {turned_deg} degrees");
 }
 
 #[test]
@@ -147,7 +147,7 @@ fn weights_of_avoidance_grow_to_what_is_configured_and_no_further() {
     let weight = |distance_m: f64, grade: &str| {
         let behaviour =
             format!("kind = 'avoid_collision'\nweight = 300\ninner_m = 10\nouter_m = 20\ngrade = '{grade}'");
-        // Beyond the own side, where nobody can be tagged.
+        // Beyond its own side, where no boat can be tagged.
         let report = alone_decides(&behaviour, &with_contact(Boat::at(10.0, 0.0), Boat::at(10.0, distance_m)));
         report.functions.iter().find(|f| f.behaviour == "it").map_or(0.0, |f| f.weight)
     };
@@ -161,7 +161,7 @@ fn weights_of_avoidance_grow_to_what_is_configured_and_no_further() {
         (20.0, "linear", 0.0),
     ] {
         let got = weight(distance_m, grade);
-        assert!((got - want).abs() < 1e-6, "{grade} at {distance_m} m: {got}, wanted {want}");
+        assert!((got - want).abs() < 1e-6, "{grade} at {distance_m} m: {got}, want {want}");
     }
 }
 
@@ -175,7 +175,7 @@ fn a_boat_in_the_way_is_passed_and_one_astern_changes_nothing() {
     let course_rad = ahead.course_deg.expect("a course").to_radians();
     // It keeps its motion for a moment before it turns.
     let miss_m = ((13.0 - 2.0 * 0.7) * libm::cos(course_rad)).abs();
-    assert!(miss_m > 5.5, "course {course_rad} rad passes at {miss_m} m");
+    assert!(miss_m > 5.5, "on course {course_rad} rad it passes at {miss_m} m");
     assert!((decided(&mut helm(&scenario), &scene(-9.0)).course_deg.expect("a course") - 90.0).abs() < 0.51);
 }
 
@@ -197,19 +197,22 @@ fn the_operation_region_turns_a_boat_back_and_recovers_it_slowly() {
     let mut helm = helm(&without_safety(program));
     let mut see = |at_s: f64, x: f64| decided(&mut helm, &alone(at_s, Boat::at(x, 5.0).going(90.0, 2.0)));
     let deep_inside = see(0.0, 0.0);
-    assert!((deep_inside.course_deg.expect("a course") - 91.0).abs() < 1.0, "far inside the waypoint has its way");
+    assert!((deep_inside.course_deg.expect("a course") - 91.0).abs() < 1.0, "far inside, the waypoint decides");
     let near = see(1.0, 76.0);
     let outward_m_s = near.speed_m_s.expect("a speed") * libm::sin(near.course_deg.expect("a course").to_radians());
-    assert!(outward_m_s <= 0.01, "near the edge it does not go on out: {outward_m_s} m/s");
+    assert!(outward_m_s <= 0.01, "near the edge it still goes outward: {outward_m_s} m/s");
     let just_out = see(2.0, 81.0);
-    assert!(just_out.speed_m_s.expect("a speed") > 0.6, "out for a moment is not out yet: it comes back at once");
+    assert!(just_out.speed_m_s.expect("a speed") > 0.6, "outside only for a moment, it returns at normal speed");
     let out = see(3.1, 81.0);
     assert!((out.course_deg.expect("a course") - 270.0).abs() < 0.51, "{:?}", out.course_deg);
     assert!((out.speed_m_s.expect("a speed") - 0.5).abs() < 0.05, "{:?}", out.speed_m_s);
     let far_out = see(4.0, 101.0);
     assert_eq!(far_out.hold.as_deref(), Some("stopped by a behaviour"));
     let in_again = see(5.0, 79.0);
-    assert!((in_again.speed_m_s.expect("a speed") - 0.5).abs() < 0.05, "in for a moment is not in yet");
+    assert!(
+        (in_again.speed_m_s.expect("a speed") - 0.5).abs() < 0.05,
+        "inside only for a moment, it is still recovering"
+    );
     let in_for_good = see(6.1, 60.0);
     assert!(in_for_good.speed_m_s.expect("a speed") > 1.0, "{:?}", in_for_good.speed_m_s);
 }
@@ -230,7 +233,7 @@ fn a_point_within_the_turning_circle_does_not_hold_a_boat_in_an_orbit() {
         at = (at.0 + 0.15 * libm::sin(heading_rad), at.1 + 0.15 * libm::cos(heading_rad));
         farthest_m = farthest_m.max(libm::hypot(at.0, at.1));
     }
-    assert!(farthest_m > 25.0, "in a minute it got {farthest_m} m away from the first point");
+    assert!(farthest_m > 25.0, "after a minute it is only {farthest_m} m from the first point");
 }
 
 #[test]
@@ -243,10 +246,13 @@ fn who_looks_inside_sees_the_utilities() {
     for function in &report.functions {
         assert_eq!(function.utilities.len(), report.courses * report.speeds, "{}", function.behaviour);
     }
-    let it = report.functions.iter().find(|f| f.behaviour == "it").expect("the waypoint asks");
-    assert!(it.utility.expect("it is looked at") > 99.0, "{:?}", it.utility);
+    let it = report.functions.iter().find(|f| f.behaviour == "it").expect("the waypoint has a function");
+    assert!(it.utility.expect("the utility was requested") > 99.0, "{:?}", it.utility);
     let best = it.utilities.iter().copied().fold(0.0, f32::max);
-    assert!((best - it.utility.expect("it is looked at")).abs() < 1e-3, "it gets what it wants: {best}");
+    assert!(
+        (best - it.utility.expect("the utility was requested")).abs() < 1e-3,
+        "the waypoint's preference wins: {best}"
+    );
     let value: f64 = report.functions.iter().map(|f| f.weight * f64::from(f.utility.unwrap_or(0.0))).sum();
     assert!((value - report.value.expect("a value")).abs() < 0.1, "{value}, {:?}", report.value);
 }
@@ -277,9 +283,12 @@ fn safety_arbitrates_what_a_policy_proposes() {
     };
     let east = (std::f64::consts::FRAC_PI_2, 3.0);
     let (course_rad, speed_m_s) = advised(&alone(0.0, Boat::at(0.0, 0.0).going(90.0, 2.0)), east);
-    assert!((course_rad - east.0).abs() < 0.01 && (speed_m_s - 3.0).abs() < 0.05, "in the open it has its way");
+    assert!(
+        (course_rad - east.0).abs() < 0.01 && (speed_m_s - 3.0).abs() < 0.05,
+        "in open water the proposal is followed"
+    );
     let (course_rad, speed_m_s) = advised(&alone(0.0, Boat::at(74.0, 0.0).going(90.0, 2.0)), east);
-    assert!(speed_m_s * libm::sin(course_rad) < 0.1, "not out of the field: {course_rad} rad, {speed_m_s} m/s");
+    assert!(speed_m_s * libm::sin(course_rad) < 0.1, "it leaves the field: {course_rad} rad, {speed_m_s} m/s");
     let ahead = with_contact(Boat::at(0.0, 0.0).going(90.0, 2.0), Boat::at(14.0, 0.0));
     let (course_rad, speed_m_s) = advised(&ahead, east);
     // It keeps its motion for a moment, then follows the decision for the eight seconds of the
@@ -288,14 +297,14 @@ fn safety_arbitrates_what_a_policy_proposes() {
     let from_m = |run_m: f64| (run_m * libm::cos(course_rad), 14.0 - 2.0 * 0.7 - run_m * libm::sin(course_rad));
     let miss_m =
         places.map(|run_m| primitives::math::length(from_m(run_m).0, from_m(run_m).1)).fold(f64::INFINITY, f64::min);
-    assert!(miss_m > 4.9, "not into a boat: {course_rad} rad, {speed_m_s} m/s, {miss_m} m");
+    assert!(miss_m > 4.9, "too close to a boat: {course_rad} rad, {speed_m_s} m/s, {miss_m} m");
 }
 
 #[test]
 fn a_full_stop_lies_still_and_lets_safety_have_its_way() {
     let stop = "[behaviour.stop]\nkind = \"full_stop\"\n";
     let alone_it_is = decided(&mut helm(&without_safety(stop)), &here());
-    assert_eq!(alone_it_is.hold.as_deref(), Some("no behaviour asks for a course"));
+    assert_eq!(alone_it_is.hold.as_deref(), Some("no behaviour prefers a course"));
     let go = "[behaviour.go]\nkind = \"waypoint\"\npoints = [[60, 0]]\nspeed_m_s = 2\nweight = 50\n";
     let against = decided(&mut helm(&without_safety(&format!("{stop}{go}"))), &here());
     assert_eq!(against.speed_m_s, Some(0.0));

@@ -10,11 +10,11 @@ use rules::event::{Event, Logged, TagCause};
 const PROGRAM: &str = include_str!("mode.toml");
 
 fn variable(report: &HelmReport, name: &str) -> String {
-    report.variables.iter().find(|variable| variable.name == name).expect("such a variable").value.clone()
+    report.variables.iter().find(|variable| variable.name == name).expect("the variable exists").value.clone()
 }
 
 fn run_state(report: &HelmReport, name: &str) -> RunState {
-    report.behaviours.iter().find(|behaviour| behaviour.name == name).expect("such a behaviour").run_state
+    report.behaviours.iter().find(|behaviour| behaviour.name == name).expect("the behaviour exists").run_state
 }
 
 fn at(helm: &mut HelmMind, at_s: f64, x: f64) -> HelmReport {
@@ -62,7 +62,7 @@ fn behaviours_live_and_post() {
     let done = at(&mut helm, 6.0, -30.0);
     assert_eq!(
         (run_state(&done, "drive"), done.hold.as_deref()),
-        (RunState::Idle, Some("no behaviour asks for anything"))
+        (RunState::Idle, Some("no behaviour has a preference"))
     );
 }
 
@@ -72,7 +72,7 @@ fn mates_count_when_they_have_sent_everything_that_is_asked() {
     let (mut mine, mut words) = (helm(&scenario), vec![]);
     let weight = |helm: &mut HelmMind| {
         let report = at(helm, 0.0, -30.0);
-        report.behaviours.iter().find(|behaviour| behaviour.name == "rest").expect("such a behaviour").weight
+        report.behaviours.iter().find(|behaviour| behaviour.name == "rest").expect("the behaviour exists").weight
     };
     assert_eq!(weight(&mut mine), 1.0);
     let mate = HelmMind::new(&scenario, VehicleId(1), agent::roles::role_of(&scenario, VehicleId(1)));
@@ -135,7 +135,7 @@ fn time_is_counted_from_the_first_picture() {
     }
 }
 
-/// North or south: on the own side the one has a slightly higher utility, beyond it the other.
+/// North or south: on its own side one has a slightly higher utility, beyond it the other.
 const TWO_WAYS: &str = "[behaviour.speed]\nkind = \"constant_speed\"\nspeed_m_s = 2\nweight = 10\n\
     [behaviour.north]\nkind = \"constant_heading\"\nheading_deg = 0\nbase_width_deg = 60\nweight = \"own_side ? 50 : 49\"\n\
     [behaviour.south]\nkind = \"constant_heading\"\nheading_deg = 180\nbase_width_deg = 60\nweight = \"own_side ? 49 : 50\"\n";
@@ -164,7 +164,7 @@ fn a_steady_helm_follows_what_moves_and_turns_round_for_what_is_better() {
     assert!((report.course_deg.expect("a course") - 100.0).abs() < 0.51, "{report:?}");
     assert!(
         (report.value.expect("a value") - 100.0 * 100.0).abs() < 50.0,
-        "what steadiness adds is not told: {report:?}"
+        "the report includes the steadiness bonus: {report:?}"
     );
     let behind = decided(&mut mind, &alone(0.2, Boat::at(75.0, 0.0)));
     assert!((behind.course_deg.expect("a course") - 270.0).abs() < 0.51, "{behind:?}");
@@ -175,5 +175,5 @@ fn a_boat_that_is_not_in_the_picture_holds() {
     let mut helm = helm(&without_safety(PROGRAM));
     let mut without = picture(0.0, [Boat::at(0.0, 0.0); 2], [Boat::at(50.0, 0.0); 2]);
     without.own.remove(0);
-    assert_eq!(decided(&mut helm, &without).hold.as_deref(), Some("the picture does not show the own boat"));
+    assert_eq!(decided(&mut helm, &without).hold.as_deref(), Some("the picture does not show this boat"));
 }

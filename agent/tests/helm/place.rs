@@ -1,4 +1,4 @@
-//! Where boats steer to capture a flag and to be freed: the nearest places that the referee
+//! Where boats steer to capture a flag and to be untagged: the nearest places that the referee
 //! accepts.
 
 use crate::scene::helm;
@@ -15,21 +15,21 @@ const ROUNDING_M: f64 = 1e-3;
 
 /// A shipped game in which all boats compute their distance to these places.
 fn scenario(game: &str) -> Scenario {
-    let folder = tempfile::tempdir().expect("a folder for files");
+    let folder = tempfile::tempdir().expect("a temporary folder");
     let games = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games");
     let teams = ["blue", "red"].map(|team| format!("[[team]]\nname = \"{team}\"\nstrategy = \"strategy.toml\"\n"));
     let game = format!("base = '{}'\n{}", games.join(format!("{game}.toml")).display(), teams.concat());
-    let strategy = "unsafe_i_know = true\nunsafe_because = \"what is tested is alone\"\n\
+    let strategy = "unsafe_i_know = true\nunsafe_because = \"tests a behaviour alone\"\n\
                     [variables]\ncapture_m = 0\nown_flag_m = 0\nuntag_m = 0\n[[rule]]\nwhen = \"true\"\n\
                     set = { capture_m = \"distance(capture_place)\", own_flag_m = \"distance(own_flag)\", \
                     untag_m = \"distance(untag_place)\" }\n[behaviour.stop]\nkind = \"full_stop\"\n";
     for (name, content) in [("game.toml", game.as_str()), ("strategy.toml", strategy)] {
-        std::fs::write(folder.path().join(name), content).expect("a file in it");
+        std::fs::write(folder.path().join(name), content).expect("the file can be written");
     }
     scenario::load(&folder.path().join("game.toml")).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// The picture of a boat that is alone there.
+/// The picture of a boat alone at this position.
 fn alone(scenario: &Scenario, at: Ned) -> Picture {
     let nav = Nav { north_m: at.north, east_m: at.east, ..Nav::default() };
     Picture {
@@ -54,10 +54,14 @@ fn a_boat_makes_for_the_nearest_place_that_the_referee_takes() {
             assert!(rules.is_untag_place(field, BLUE, home), "{game}");
             let mut helm = helm(&scenario);
             helm.decide(&alone(&scenario, at));
-            for variable in helm.report().expect("a helm reports").variables {
+            for variable in helm.report().expect("a helm has a report").variables {
                 let got_m: f64 = variable.value.parse().expect("a number");
                 let off_m = got_m - at.distance(home);
-                assert!(off_m.abs() < ROUNDING_M, "{game}, {} from {at:?}: {off_m} m too far", variable.name);
+                assert!(
+                    off_m.abs() < ROUNDING_M,
+                    "{game}, {} from {at:?}: distance too large by {off_m} m",
+                    variable.name
+                );
             }
         }
     }

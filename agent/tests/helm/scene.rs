@@ -11,19 +11,19 @@ use std::path::Path;
 /// The scenario in which all boats follow the program `strategy`: two against two on the test
 /// field.
 pub(crate) fn scenario(strategy: &str) -> Scenario {
-    let folder = tempfile::tempdir().expect("a folder for files");
+    let folder = tempfile::tempdir().expect("a temporary folder");
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios");
     let text = |text: &str| text.replace("SCENARIOS", &scenarios.display().to_string());
     let (game, field) = (include_str!("game.toml"), include_str!("field.toml"));
     for (name, content) in [("game.toml", game), ("field.toml", field), ("strategy.toml", strategy)] {
-        std::fs::write(folder.path().join(name), text(content)).expect("a file in it");
+        std::fs::write(folder.path().join(name), text(content)).expect("the file can be written");
     }
     scenario::load(&folder.path().join("game.toml")).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// The scenario in which all boats follow a program without the mandatory safety behaviours.
 pub(crate) fn without_safety(program: &str) -> Scenario {
-    scenario(&format!("unsafe_i_know = true\nunsafe_because = \"what is tested is alone\"\n{program}"))
+    scenario(&format!("unsafe_i_know = true\nunsafe_because = \"tests a behaviour alone\"\n{program}"))
 }
 
 /// A program with one behaviour and negligible other preferences.
@@ -98,7 +98,7 @@ pub(crate) fn picture(at_s: f64, [one, two]: [Boat; 2], [three, four]: [Boat; 2]
     picture
 }
 
-/// Far from everybody else.
+/// Far from all other boats.
 pub(crate) fn alone(at_s: f64, own: Boat) -> Picture {
     picture(at_s, [own, Boat::at(-75.0, -35.0)], [Boat::at(75.0, 35.0), Boat::at(75.0, -35.0)])
 }
@@ -111,7 +111,7 @@ pub(crate) fn helm(scenario: &Scenario) -> HelmMind {
 /// The helm's report after this picture.
 pub(crate) fn decided(helm: &mut HelmMind, picture: &Picture) -> HelmReport {
     let order = helm.decide(picture);
-    let report = helm.report().expect("a helm reports");
+    let report = helm.report().expect("a helm has a report");
     match (order, report.course_deg.zip(report.speed_m_s)) {
         (Order::Steer { heading_rad, speed_m_s }, Some((course_deg, reported_m_s))) => {
             let off_deg = wrap_180(heading_rad.to_degrees() + report.heading_offset_deg - course_deg);

@@ -8,8 +8,8 @@ use primitives::{TeamId, VehicleId};
 use scenario::Scenario;
 use std::path::Path;
 
-/// The same scene for the other team in this one's place: rotated by half a turn about the datum,
-/// which is the middle of the field.
+/// The same scene with the other team in this one's place: rotated by half a turn about the datum,
+/// the centre of the field.
 fn turned(picture: &Picture) -> Picture {
     let mut other = picture.clone();
     other.team = 1 - picture.team;

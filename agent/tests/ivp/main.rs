@@ -1,4 +1,4 @@
-//! The helm's solver: it must find the best decision.
+//! The helm's solver must find the best decision.
 
 mod exact;
 mod scene;

@@ -9,7 +9,7 @@ use primitives::stream::Stream;
 const TOLERANCE: f64 = 0.01;
 
 fn near(got: f32, want: f64, what: &str) {
-    assert!((f64::from(got) - want).abs() < TOLERANCE, "{what}: {got}, not {want}");
+    assert!((f64::from(got) - want).abs() < TOLERANCE, "{what}: {got}, want {want}");
 }
 
 #[test]
@@ -23,7 +23,7 @@ fn a_peak_falls_to_its_edge_and_then_to_nothing() {
     }
     let low = Peak { height: 20.0, ..Peak::tent(deg(170.0), deg(40.0)) };
     for (k, want) in [(170, 20.0), (180, 15.0), (150, 10.0), (120, 0.0), (0, 0.0)] {
-        near(low.of_course(&grid, k), want, &format!("the low one at {k}"));
+        near(low.of_course(&grid, k), want, &format!("the low peak at {k}"));
     }
     let speed = Peak { peak_width: 1.0, summit_delta: 20.0, ..Peak::tent(2.0, 0.5) };
     for (j, want) in [(20, 100.0), (25, 90.0), (30, 80.0), (32, 48.0), (35, 0.0), (5, 0.0), (10, 80.0)] {

@@ -1,4 +1,4 @@
-//! Observations compared with those of Pyquaticus itself: states of its own games of two and of six
+//! Observations compared with those of Pyquaticus: states of its own games of two and of six
 //! Surveyors, including boats that carry, are tagged, or have recently tagged. The files state the
 //! commit and the names of the values.
 
@@ -123,14 +123,14 @@ fn observations_are_those_of_the_program() {
                 let numbers = got.iter().zip(&boat.observation).zip(&reference.names);
                 numbers.for_each(|((got, want), name)| {
                     let off = off(name, *got, *want);
-                    assert!(off < TOLERANCE, "{file} state {s} boat {i} {name}: {got}, not {want}");
+                    assert!(off < TOLERANCE, "{file} state {s} boat {i} {name}: {got}, want {want}");
                 });
             }
         }
     }
 }
 
-/// The absolute error of a value; half a turn to either side is the same bearing.
+/// The absolute error of a value. Half a turn to either side is the same bearing.
 fn off(name: &str, got: f32, want: f32) -> f32 {
     let off = (got - want).abs();
     if name.ends_with("bearing") || name.ends_with("heading") { off.min((2.0 - off).abs()) } else { off }

@@ -1,4 +1,4 @@
-//! Random numbers for mutations (xorshift64*): of modest quality, but fast and reproducible from
+//! Random numbers for mutations (xorshift64*): of modest quality but fast, and reproducible from
 //! the seed.
 
 /// A random number stream.
@@ -8,12 +8,11 @@ impl Dice {
     /// The stream for this seed.
     #[must_use]
     pub fn new(seed: u64) -> Dice {
-        // Seeds that differ in a few bits must give states that differ in all; a state must not be
-        // 0.
+        // Seeds that differ in a few bits must give very different states, none of them 0.
         Dice(seed.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15).max(1))
     }
 
-    /// A number from 0 to `sides - 1`; 0 if there are no sides.
+    /// A number from 0 to `sides - 1`; 0 without sides.
     pub fn roll(&mut self, sides: usize) -> usize {
         (self.number() >> 33) as usize % sides.max(1)
     }
@@ -31,7 +30,7 @@ impl Dice {
         &all[self.roll(all.len())]
     }
 
-    /// A random range of at most `most` elements within this length.
+    /// A random range of at most `most` of `length` elements.
     pub fn range(&mut self, length: usize, most: usize) -> std::ops::Range<usize> {
         let from = self.roll(length + 1);
         from..(from + 1 + self.roll(most)).min(length).max(from)

@@ -1,7 +1,7 @@
-//! Fuzzing of every reader of external data: checks its guarantees on mutated real inputs.
+//! Fuzzes every reader of external data: checks its guarantees on mutated real inputs.
 //!
-//! A [`Target`] is a kind of input. `soak` runs one on stable Rust with mutations that respect the
-//! input format; libFuzzer runs the same checks.
+//! A [`Target`] is a kind of input. `soak` runs one on stable Rust, with mutations that respect the
+//! format of the input. libFuzzer runs the same checks.
 
 pub mod change;
 mod dice;

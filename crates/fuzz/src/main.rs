@@ -1,4 +1,4 @@
-//! Runs each target for some seconds, or one of them on a file.
+//! Runs targets for some seconds each, or one target on a file.
 
 use squall_fuzz::{TARGETS, Target, named, soak};
 use std::path::{Path, PathBuf};
@@ -7,9 +7,9 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Duration;
 
 const USAGE: &str = "\
-squall-fuzz soak [--seconds N] [--seed N] [--jobs N] [TARGET…]   each target, or these, for N seconds (20), N at a time (1)
-squall-fuzz play TARGET FILE                                     one input
-squall-fuzz seeds FOLDER                                         real inputs, a folder for each target";
+squall-fuzz soak [--seconds N] [--seed N] [--jobs N] [TARGET…]   run all or these targets for N seconds each (20), N at a time (1)
+squall-fuzz play TARGET FILE                                     check one input
+squall-fuzz seeds FOLDER                                         write real inputs, one folder per target";
 
 /// The command that runs this program.
 const COMMAND: &str = "cargo run --manifest-path crates/fuzz/Cargo.toml --target-dir target/outside --";
@@ -19,7 +19,7 @@ fn main() -> ExitCode {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match words.as_slice() {
         ["soak", options @ ..] => soak_all(options),
-        // A child process of `soak`, which an input may crash.
+        // A child process of `soak`, because an input may crash it.
         ["child", target, seconds, seed, current] => child(target, seconds, seed, Path::new(current)),
         ["play", target, file] => {
             soak::check(&target_of(target), &std::fs::read(file).unwrap_or_else(|e| give_up(&format!("{file}: {e}"))));
@@ -63,21 +63,26 @@ fn soak_all(options: &[&str]) -> ExitCode {
     if is_sound.into_inner() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-/// Runs a target in a separate process; returns whether it found no fault.
+/// Runs a target in a separate process. Returns whether it found no fault.
 fn soak_one(target: &Target, seconds: u64, seed: u64) -> bool {
     let folder = failures();
     let current = folder.join(format!("{}-{}-current", target.name, std::process::id()));
-    let program = std::env::current_exe().unwrap_or_else(|e| give_up(&format!("no program: {e}")));
+    let program = std::env::current_exe().unwrap_or_else(|e| give_up(&format!("cannot find this program: {e}")));
     let mut command = Command::new(program);
     command.args(["child", target.name, &seconds.to_string(), &seed.to_string()]).arg(&current);
-    let status = command.status().unwrap_or_else(|e| give_up(&format!("no process: {e}")));
+    let status = command.status().unwrap_or_else(|e| give_up(&format!("cannot start a process: {e}")));
     if !status.success() {
         let input = soak::left_in(&current).unwrap_or_default();
         let file = folder.join(format!("{}-{seed}", target.name));
         std::fs::write(&file, &input).unwrap_or_else(|e| give_up(&format!("{}: {e}", file.display())));
-        println!("{}: FAILED ({status}). Again: {COMMAND} play {} {}", target.name, target.name, file.display());
+        println!(
+            "{}: FAILED ({status}). Reproduce with: {COMMAND} play {} {}",
+            target.name,
+            target.name,
+            file.display()
+        );
     }
-    // The file is missing if the process did not start.
+    // Without a file, the process did not start.
     drop(std::fs::remove_file(&current));
     status.success()
 }
@@ -87,14 +92,14 @@ fn child(target: &str, seconds: &str, seed: &str, current: &Path) -> ExitCode {
     let (target, seconds) = (target_of(target), seconds.parse().expect("seconds"));
     match soak::soak(&target, Duration::from_secs(seconds), seed.parse().expect("a seed"), current) {
         Ok(runs) => {
-            println!("{}: {runs} runs, {} a second, no fault", target.name, runs / seconds.max(1));
+            println!("{}: {runs} runs, {} per second, no fault", target.name, runs / seconds.max(1));
             ExitCode::SUCCESS
         }
         Err(_) => ExitCode::FAILURE,
     }
 }
 
-/// Limits memory to 4 GiB; a process that needs more ends.
+/// Limits memory to 4 GiB, beyond which the process ends.
 fn limit_memory() {
     use rustix::process::{Resource, Rlimit, setrlimit};
     let most = Some(4 << 30);
@@ -113,7 +118,6 @@ fn seeds(folder: &Path) -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// The folder for failing inputs.
 fn failures() -> PathBuf {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("artifacts");
     std::fs::create_dir_all(&folder).unwrap_or_else(|e| give_up(&format!("{}: {e}", folder.display())));
@@ -122,7 +126,7 @@ fn failures() -> PathBuf {
 
 fn target_of(name: &str) -> Target {
     let names = TARGETS.map(|target| target.name).join(", ");
-    named(name).unwrap_or_else(|| give_up(&format!("no target {name}; there are {names}")))
+    named(name).unwrap_or_else(|| give_up(&format!("unknown target {name}, expected one of {names}")))
 }
 
 fn give_up(why: &str) -> ! {

@@ -1,4 +1,4 @@
-//! Real inputs: scenario files of the tree, and a short game with all its messages.
+//! Real inputs: the scenario files in the tree, and a short game with all its messages.
 
 use messages::water::{PlaneWave, Water};
 use messages::{Frame, GameInfo, Message, Orders, Picture, PolicyProposal, Say, Stamp, VehicleOrder, Word};
@@ -9,13 +9,13 @@ use scenario::Scenario;
 use std::io::Cursor;
 use std::path::PathBuf;
 
-/// The folder of the scenario files.
+/// The folder with the scenario files.
 #[must_use]
 pub fn scenarios() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../scenarios")
 }
 
-/// A game of the tree.
+/// A game in the tree.
 ///
 /// # Panics
 /// If no game has this name.
@@ -25,7 +25,7 @@ pub fn scenario(name: &str) -> Scenario {
     scenario::load(&file).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// A game of two teams with two boats each, one of them real.
+/// A game between two teams of two boats, one of them real.
 #[must_use]
 pub fn mixed() -> Scenario {
     scenario("mixed_2v2")
@@ -35,9 +35,9 @@ pub fn mixed() -> Scenario {
 pub struct Played {
     /// The scenario.
     pub scenario: Scenario,
-    /// The decisions, as observers and minds receive them.
+    /// The decisions as observers and minds receive them.
     pub decisions: Vec<Decision>,
-    /// The minds' orders, as one agent sends them.
+    /// The minds' orders as one agent sends them.
     pub orders: Vec<Orders>,
     /// The boats' team messages.
     pub says: Vec<Say>,
@@ -51,7 +51,7 @@ pub struct Played {
 /// If the game cannot be played.
 #[must_use]
 pub fn played(scenario: Scenario, decisions: u64) -> Played {
-    let mut contest = sim::Contest::new(&scenario, scenario.seed).expect("it starts");
+    let mut contest = sim::Contest::new(&scenario, scenario.seed).expect("the game starts");
     let mut runner = arena::runner_of(agent::minds_of(&scenario));
     let (mut cursor, mut kept) = (EventCursor::default(), Vec::new());
     let (mut orders, mut says) = (Vec::new(), Vec::new());
@@ -82,10 +82,10 @@ impl Played {
         }
     }
 
-    /// The recording of the game, with these other entries.
+    /// The game's recording, with additional entries.
     ///
     /// # Panics
-    /// If it cannot be written.
+    /// If the recording cannot be written.
     #[must_use]
     pub fn recording(&self, others: &[Entry]) -> Vec<u8> {
         let wave = PlaneWave { amplitude_m: 0.1, wavenumber_rad_m: 1.0, omega_rad_s: 3.1, ..PlaneWave::default() };

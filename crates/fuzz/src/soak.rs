@@ -1,4 +1,4 @@
-//! Runs one target for some seconds with mutated real inputs; saves a failing input to a file.
+//! Runs one target for some time on mutated real inputs. Saves a failing input to a file.
 
 use crate::{Dice, Target};
 use rustix::time::{ClockId, clock_gettime};
@@ -15,43 +15,43 @@ use std::time::{Duration, Instant};
 #[global_allocator]
 static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-/// CPU time limit of a check: inputs are small.
+/// CPU time limit of a check; inputs are small.
 const CPU_MAX: Duration = Duration::from_secs(5);
-/// Wall-clock limit of a check, on a busy machine.
+/// Wall-clock limit of a check, for busy machines.
 const HUNG: Duration = Duration::from_secs(120);
-/// Size of the length field before the input in the file: 64 bits, little-endian.
+/// Size of the field before the input in the file that holds its length: 64 bits, little-endian.
 const LENGTH: u64 = 8;
 
-/// Checks an input, and the memory and CPU time that checking takes.
+/// Checks an input, and the memory and CPU time that the check takes.
 ///
 /// # Panics
 /// If a guarantee is violated.
 pub fn check(target: &Target, input: &[u8]) {
     let (base, times) = target.allocated_max;
     let is_within = |(allocated, cpu): (usize, Duration)| allocated <= base + times * input.len() && cpu < CPU_MAX;
-    // Data created once and cached do not count against the input: measure again.
+    // Data created once and cached does not count against the input: measure again.
     if !is_within(cost(target, input)) {
         let (allocated, cpu) = cost(target, input);
         assert!(is_within((allocated, cpu)), "{allocated} bytes and {cpu:?} for {} bytes of input", input.len());
     }
 }
 
-/// Total allocations of a check, bytes, and its CPU time.
+/// The bytes allocated by a check in total, and its CPU time.
 fn cost(target: &Target, input: &[u8]) -> (usize, Duration) {
     let (allocated, cpu) = (ALLOCATOR.stats().bytes_allocated, cpu_time());
     (target.check)(input);
     (ALLOCATOR.stats().bytes_allocated - allocated, cpu_time() - cpu)
 }
 
-/// Runs a target for this long; returns the number of inputs. The file `current` contains each
-/// input while it is checked, so that it survives a crash.
+/// Runs a target for this long. Returns the number of inputs. The file `current` holds each input
+/// while it is checked, so that the input survives a crash.
 ///
 /// # Errors
-/// The input that failed.
+/// The failing input.
 ///
 /// # Panics
 /// If the file cannot be written.
-#[expect(clippy::disallowed_methods, reason = "how long it runs is all that the clock decides")]
+#[expect(clippy::disallowed_methods, reason = "the clock only decides how long it runs")]
 pub fn soak(target: &Target, time: Duration, seed: u64, current: &Path) -> Result<u64, Vec<u8>> {
     let seeds = (target.seeds)();
     let file = File::create(current).expect("the file can be written");
@@ -62,7 +62,7 @@ pub fn soak(target: &Target, time: Duration, seed: u64, current: &Path) -> Resul
         runs.fetch_add(1, Ordering::Relaxed);
         catch_unwind(AssertUnwindSafe(|| check(target, &input))).map_err(|_| input)
     };
-    // The unchanged real inputs must pass, too.
+    // The unchanged real inputs must pass too.
     seeds.iter().try_for_each(|seed| run(seed.clone()))?;
     let (change, mut dice, begin) = ((target.change)(seeds), Dice::new(seed), Instant::now());
     while begin.elapsed() < time {
@@ -71,7 +71,7 @@ pub fn soak(target: &Target, time: Duration, seed: u64, current: &Path) -> Resul
     Ok(runs.load(Ordering::Relaxed))
 }
 
-/// The input that was being checked when the process ended.
+/// The input under check when the process ended.
 #[must_use]
 pub fn left_in(current: &Path) -> Option<Vec<u8>> {
     let bytes = std::fs::read(current).ok()?;
@@ -79,7 +79,7 @@ pub fn left_in(current: &Path) -> Option<Vec<u8>> {
     rest.get(..usize::try_from(u64::from_le_bytes(*length)).ok()?).map(<[u8]>::to_vec)
 }
 
-/// A counter of runs; the process ends if it stops for too long.
+/// A counter of runs. The process ends if it does not change for too long.
 fn watch_dog() -> &'static AtomicU64 {
     static RUNS: AtomicU64 = AtomicU64::new(0);
     std::thread::spawn(|| {

@@ -1,5 +1,5 @@
-//! Steps of an environment's games on one core, with random actions; agent steps per second are
-//! four times as many, or twice where helms play the other team. Also a new game within a batch.
+//! Environment steps on one core with random actions, and the start of a new game in a batch.
+//! Each step is four agent steps, or two where helms play the other team.
 
 use agent::{Action, ActionSpace, ObservationSpace, Spaces};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
@@ -9,10 +9,10 @@ use learn::training::CriticInput;
 use primitives::stream::Stream;
 use std::path::Path;
 
-// On one core, with all four boats observed at every decision: 192,000 game decisions per second in
-// calm water, 75,000 with sea and sensors, 26,000 of these against strategy 4. A new game takes
-// 0.03 ms in calm water and 0.41 ms with a sea, including one step: more than half of that is the
-// sea's tables for each boat, a quarter is checking the scenario files again for the drawn numbers.
+// On one core, with all four boats observed at every decision, game decisions per second: 192,000
+// in calm water, 75,000 with sea and sensors, 26,000 with these against strategy 4. A new game
+// takes 0.03 ms in calm water and 0.41 ms with a sea, including one step. More than half of that
+// builds the sea's tables for each boat; a quarter rechecks the scenario for the drawn numbers.
 const GAMES: usize = 64;
 
 fn setup(game: &str, opponent: Player) -> Setup {

@@ -1,10 +1,10 @@
-//! Measures the primitive policies, each of which has a single task: episodes of their trainings
-//! with each and, for comparison, with boats that stop and with boats that take a random action
+//! Measures the primitive policies, which each have a single task. Plays episodes of their
+//! trainings with the policy and, for comparison, with stationary boats and with a random action
 //! every half second.
 //!
-//! `cargo run --release -p squall-learn --example primitives -- [EPISODES] [FOLDER] [NAME…]`; by
-//! default 128 episodes of each of the shipped policies, `scenarios/policies/primitive_NAME.onnx`.
-//! The same arguments give the same games.
+//! `cargo run --release -p squall-learn --example primitives -- [EPISODES] [FOLDER] [NAME…]`. By
+//! default it plays 128 episodes of each shipped policy,
+//! `scenarios/policies/primitive_NAME.onnx`. The same arguments give the same games.
 
 use agent::{Action, ActionSpace};
 use learn::rewards::{BoatProgress, Placed, progress};
@@ -19,12 +19,10 @@ use std::path::{Path, PathBuf};
 
 /// First seed of the games, beyond any training seed.
 const SEED: u64 = 1 << 61;
-/// All primitive policies.
 const NAMES: [&str; 6] = ["pick_up", "guard", "tag", "avoid", "retreat", "shield"];
-/// A boat nearer to home than this is at home, in field widths: 20 m of 160 m.
+/// Maximum distance of a boat "at home", in field widths: 20 m of 160 m.
 const HOME: f64 = 0.125;
 
-/// The source of actions.
 enum Actor {
     Policy(Box<Network>),
     Stops,
@@ -32,7 +30,6 @@ enum Actor {
 }
 
 impl Actor {
-    /// The action for this observation.
     fn act(&mut self, observation: &[f32]) -> Action {
         let count = ActionSpace::Pyquaticus.count().unwrap_or(1);
         match self {
@@ -46,21 +43,18 @@ impl Actor {
     }
 }
 
-/// The results of episodes.
 #[derive(Default)]
 struct Played {
-    /// Sum of rewards per boat and episode.
+    /// Mean sum per boat and episode.
     reward: f64,
-    /// Total time, s.
     time_s: f64,
-    /// Event counts of both teams.
+    /// By team.
     counts: [Counts; 2],
     /// Number of observations of the policy's boats.
     looks: f64,
-    /// The share of observations of a boat at home and untagged.
+    /// Number of observations of untagged boats at home.
     at_home: f64,
-    /// The means of its position among the others: on guard, at the place that shields a mate,
-    /// clear of enemies.
+    /// Sums of three values: on guard, at the place that shields a mate, and clear of enemies.
     among: [f64; 3],
 }
 
@@ -80,7 +74,6 @@ impl Played {
     }
 }
 
-/// The progress of a game's boats.
 fn looked_at(contest: &Contest) -> Vec<BoatProgress> {
     let scenario = contest.scenario();
     let placed = |team| Placed { at: Ned::default(), team, tagged: false, carrying: false };
@@ -94,7 +87,6 @@ fn looked_at(contest: &Contest) -> Vec<BoatProgress> {
     out
 }
 
-/// Plays this many episodes.
 fn played(mut setup: Setup, actor: &mut Actor, episodes: usize) -> Played {
     setup.opponents.iter_mut().for_each(|(weight, _)| *weight = 1.0);
     let step_s = setup.scenario.decision().as_s() * f64::from(setup.decisions_per_step);

@@ -1,4 +1,9 @@
-//! Learning: games as environments, and trainers of policies.
+//! Reinforcement learning of policies.
+//!
+//! [`environment`] offers games as environments, alone or in parallel batches. [`train`] runs the
+//! trainings that [`training`] files define, with PPO ([`ppo`]), TD3 or double DQN
+//! ([`off_policy`]). [`rewards`] files define the rewards. Everything is reproducible to the bit on
+//! any number of threads.
 
 pub mod environment;
 pub mod nn;

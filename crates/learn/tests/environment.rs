@@ -1,4 +1,4 @@
-//! Environments: the same games as everywhere else, for any number of threads.
+//! Environments play the same games as the arena, on any number of threads.
 
 use agent::{Action, ActionSpace, Mind, ObservationSpace, Pilot, Spaces};
 use learn::environment::{Control, Player, Setup, Teacher, VectorEnvironment};
@@ -50,7 +50,6 @@ fn chosen(observation: &[f32]) -> Action {
     Action::Discrete(sum as usize % 17)
 }
 
-/// The results of 300 steps of 6 games.
 fn played(threads: usize) -> (Vec<u32>, Vec<learn::environment::Finished>) {
     let opponents = vec![(1.0, Player::Policy), (1.0, Player::Strategy(strategy("pav01")))];
     let setup = Setup { steps_max: Some(120), ..setup("surveyor_2v2", opponents) };
@@ -84,18 +83,21 @@ fn a_critic_is_given_the_truth_that_sensors_do_not_tell() {
     {
         assert_eq!(&state[..observation], observed);
         let contest = environment.contest(row / 4);
-        // The boats of the learning team come first: in every second game that is the second team,
-        // by the seed.
+        // The learning team's boats come first. In every second game that is the second team.
         let me = VehicleId::at((row + if row / 4 == 0 { 2 } else { 0 }) % 4);
         let scenario = contest.scenario();
         let field = &scenario.field;
         let sign = if scenario.team_of(me).index() == 0 { 1.0 } else { -1.0 };
         let truth = contest.frame(&mut rules::event::EventCursor::default()).vehicles[me.index()].nav;
         let ahead = sign * (truth.at() - field.middle()).dot(field.along) / (0.5 * field.plan.width_m);
-        assert!((f64::from(state[observation]) - ahead).abs() < 1e-6, "row {row}: {}, not {ahead}", state[observation]);
+        assert!(
+            (f64::from(state[observation]) - ahead).abs() < 1e-6,
+            "row {row}: got {}, want {ahead}",
+            state[observation]
+        );
         off_m = off_m.max((f64::from(observed[0]) - ahead).abs() * 0.5 * field.plan.width_m);
     }
-    assert!(off_m > 0.05, "sensors that are off by {off_m} m at most tell the truth");
+    assert!(off_m > 0.05, "the sensors' largest error is {off_m} m");
 }
 
 #[test]
@@ -154,7 +156,7 @@ fn a_game_is_the_one_that_the_arena_plays() {
         };
         let minds = (0..4).map(|i| mind(VehicleId::at(i))).collect();
         let watch = |contest: &mut sim::Contest| {
-            // As the environment has observed the boats after its last step.
+            // The environment has observed the boats after its last step.
             contest.pictures();
             contest.decision() < 1000
         };
@@ -177,14 +179,14 @@ fn a_teacher_plays_as_its_strategy_does_and_shows_actions_that_ask_for_it() {
     let scenario = setup.scenario.of_seed(4).unwrap();
     let mind = |i| agent::mind_by(&scenario, VehicleId::at(i), &strategy("strategy_2"));
     let watch = |contest: &mut sim::Contest| {
-        // As the environment has observed the boats after its last step.
+        // The environment has observed the boats after its last step.
         contest.pictures();
         contest.decision() < 1000
     };
     let outcome = arena::play_watched(&setup.scenario, (0..4).map(mind).collect(), 4, watch).unwrap();
     assert_eq!(environment.contest(0).outcome().digest, outcome.digest);
-    // Nearly always with a set-point: straight on at full speed more often than by chance, and
-    // turns of every kind.
+    // Set-points nearly always; straight ahead at full speed more often than by chance; turns of
+    // every kind.
     let times = |action| taught.iter().filter(|one| **one == Action::Discrete(action)).count();
     let kinds = (0..17).filter(|action| times(*action) > 0).count();
     assert!(taught.len() > 700 && times(4) > 100 && kinds > 10, "{} of {}, {kinds} kinds", times(4), taught.len());
@@ -206,13 +208,13 @@ fn rewards_are_what_events_say_and_potentials_cancel_out() {
         }
         (sum, environment.finished()[0].standing.score)
     };
-    // Points of both teams, as in the rules of the game.
+    // Points of both teams under the rules of the game.
     let points = Worth { grab: 1.0, capture: 2.0, ..Worth::default() };
     let minus = Worth { grab: -1.0, capture: -2.0, ..Worth::default() };
     let (sum, score) = total(Rewards { team: points, enemy: minus, ..Rewards::default() });
     let ahead = f64::from(score[0]) - f64::from(score[1]);
     assert!(score[1] > 0 && sum.iter().all(|sum| (sum - ahead).abs() < 1e-4), "{sum:?}, {score:?}");
-    // Undiscounted, a potential sums up to minus its initial value, whatever the actions.
+    // Undiscounted, a potential sums to minus its initial value, whatever the actions.
     let potential = Potential { attack: 1.0, untag: 0.5 };
     let (sum, _) = total(Rewards { potential, ..Rewards::default() });
     let first: Vec<f64> = {

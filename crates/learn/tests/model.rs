@@ -1,4 +1,4 @@
-//! A trained policy in a strategy acts as it was trained.
+//! A trained policy acts in a strategy as it did in training.
 
 use agent::{Action, ActionSpace, HelmMind, Mind, ObservationSpace, Pilot, Spaces};
 use learn::nn::Perceptron;
@@ -21,7 +21,7 @@ fn file(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(path)
 }
 
-/// A policy with random weights, large enough for varying actions.
+/// A policy with random weights, large enough to vary its actions.
 fn model(spec: PolicySpec) -> PolicyModel {
     let mut stream = primitives::stream::Stream::new(8, "test/model");
     let (inputs, outputs) = (spec.observation.size(1, 2), spec.action.outputs());
@@ -48,7 +48,7 @@ fn program(scenario: &Scenario, strategy: &Strategy, vehicle: VehicleId) -> Prog
     agent::roles::role_in(scenario, vehicle, strategy).clone()
 }
 
-/// A mind controlled by a trainer with the same network.
+/// A mind whose actions come from the same network outside, as in training.
 struct Driven {
     pilot: Pilot,
     network: Network,
@@ -107,11 +107,11 @@ fn what_a_policy_cannot_do_its_helm_says_and_safety_is_left() {
     let for_one = model(PolicySpec { observation: ObservationSpace::Pyquaticus, ..SPEC });
     let large = scenario::load(&file("games/fleet_20v20.toml")).unwrap_or_else(|problems| panic!("{problems}"));
     for (scenario, model, want) in [
-        (&scenario, model_of_nan(), "the model gave a number that is NaN or infinite"),
+        (&scenario, model_of_nan(), "the model output a non-finite value"),
         (
             &large,
             for_one,
-            "the model takes 45 numbers, and a boat of this game has 333: it is for teams of another size",
+            "the model takes 45 values, but a boat of this game has 333: it was trained for another team size",
         ),
     ] {
         let vehicle = VehicleId::at(0);

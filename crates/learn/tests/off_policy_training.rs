@@ -1,5 +1,5 @@
-//! Trainings by TD3 and double DQN: reproducible on any machine, stopped and resumed or not; they
-//! learn; and the file plays the trained policy.
+//! Trainings by TD3 and double DQN are reproducible, with or without an interruption; they learn;
+//! and their files play the trained policy.
 
 use scenario::policy::{PartialSpec, PolicyModel};
 
@@ -20,7 +20,7 @@ fn shipped(name: &str) -> Training {
         .unwrap_or_else(|problems| panic!("{problems}"))
 }
 
-/// Two short stages with strategies, past policies, a helm for the second, and a buffer that
+/// Two short stages with strategies, past policies, a helm in the second, and a buffer that
 /// overflows.
 fn short(algorithm: Algorithm) -> Training {
     let stage = |name: &str, game: &str, helm: Option<&str>| Stage {
@@ -42,7 +42,7 @@ fn short(algorithm: Algorithm) -> Training {
         _ => ("options", shipped("options_dqn")),
     };
     let helm = format!("strategies/{name}.toml");
-    // Options belong to a strategy: a stage with options needs a helm.
+    // Options belong to a strategy, so a stage with options needs a helm.
     let first = matches!(algorithm, Algorithm::Dqn(_)).then_some(helm.as_str());
     let stage =
         vec![stage("first", "games/pav01_afloat.toml", first), stage("helm", "games/surveyor_2v2.toml", Some(&helm))];
@@ -64,7 +64,7 @@ fn short(algorithm: Algorithm) -> Training {
 }
 
 /// Each algorithm with a buffer that overflows. Games restart after a number of optimiser steps
-/// that is not a multiple of 7, so that a resumed training must know that number.
+/// that is not a multiple of 7, so that a resumed training depends on that number.
 fn algorithms() -> [Algorithm; 2] {
     let td3 = Td3 { steps: 8, minibatches: 8, minibatch: 300, buffer: 2_000, warm_up: 500, delay: 7, ..Td3::default() };
     let dqn = Dqn { steps: 8, minibatches: 3, minibatch: 300, buffer: 2_000, warm_up: 500, ..Dqn::default() };
@@ -90,11 +90,11 @@ fn the_same_file_trains_the_same_weights_on_any_number_of_threads_and_resumed() 
         };
         let (state, progress) = run(1);
         let (name, learnt) = (algorithm.name(), progress.iter().filter(|one| one.learnt.epochs.is_some()).count());
-        assert!(learnt > 20 && learnt < progress.len(), "{name}: learnt in {learnt} updates of {}", progress.len());
+        assert!(learnt > 20 && learnt < progress.len(), "{name}: {learnt} of {} updates learnt", progress.len());
         assert!(progress.iter().flat_map(|one| &one.finished).any(|(_, name)| name.starts_with("after ")), "{name}");
-        assert!(run(3) == (state.clone(), progress), "{name}: another on 3 threads");
+        assert!(run(3) == (state.clone(), progress), "{name}: 3 threads gave other results");
 
-        // Resumed at every possible point.
+        // Resumed wherever possible.
         let (mut trainer, mut taken_up) = (begun(2), 0);
         while !trainer.is_over() {
             if updated(&mut trainer).can_be_resumed {
@@ -103,7 +103,7 @@ fn the_same_file_trains_the_same_weights_on_any_number_of_threads_and_resumed() 
                 taken_up += 1;
             }
         }
-        assert!(taken_up > 2 && trainer.state() == state, "{name}: another when it was taken up {taken_up} times");
+        assert!(taken_up > 2 && trainer.state() == state, "{name}: other results after resuming {taken_up} times");
     }
 }
 
@@ -114,7 +114,7 @@ fn a_stage_begins_with_an_empty_buffer_and_statistics_are_those_of_the_algorithm
         let known = |trainer: &Trainer| match trainer.learner() {
             Learner::Td3(of) => of.replay.len(),
             Learner::Dqn(of) => of.replay.len(),
-            Learner::Ppo(_) => panic!("another algorithm"),
+            Learner::Ppo(_) => panic!("expected an off-policy algorithm"),
         };
         let mut last = 0;
         while !trainer.is_over() {
@@ -124,13 +124,13 @@ fn a_stage_begins_with_an_empty_buffer_and_statistics_are_those_of_the_algorithm
             assert_eq!(learnt.value_loss.is_some(), learnt.epochs.is_some());
             assert_eq!(learnt.policy_loss.is_some(), learnt.epochs.is_some() && algorithm.name() == "td3");
             assert_eq!((learnt.entropy, learnt.divergence, learnt.clipped), (None, None, None));
-            // At least twelve rows a step, of which those of tagged boats count for values only.
+            // At least twelve rows per step; those of tagged boats count only for values.
             assert!(progress.samples - before <= 8 * 8 * 4 && known(&trainer) <= 2_000);
             if progress.samples > 5_000 && progress.stage == 0 {
                 last = known(&trainer);
             }
         }
-        assert_eq!(known(&trainer), 0, "{last} before the stage was over");
+        assert_eq!(known(&trainer), 0, "{last} before the end of the stage");
     }
 }
 
@@ -154,8 +154,11 @@ fn a_policy_of_td3_plays_from_its_file_as_it_was_trained() {
             network.evaluate(&observation);
             let (got, want) = (network.output(model.output()), td3::action(trace.output()));
             assert!(got.iter().all(|number| (-1.0..=1.0).contains(number)), "{got:?}");
-            // The sums of a layer are in a different order.
-            assert!(got.iter().zip(want).all(|(got, want)| (got - want).abs() < TOLERANCE), "{got:?}, not {want:?}");
+            // The sums of a layer have another order.
+            assert!(
+                got.iter().zip(want).all(|(got, want)| (got - want).abs() < TOLERANCE),
+                "got {got:?}, want {want:?}"
+            );
         }
     }
 }

@@ -1,5 +1,5 @@
-//! Networks and their training: gradients compared with finite differences, the same bits for any
-//! number of threads, and learning success.
+//! Networks and their training: gradients match finite differences, threads do not affect results,
+//! and policies learn.
 
 use learn::nn::{Adam, AdamSettings, Perceptron, Trace};
 use learn::ppo::{ActorCritic, Batch, Lesson, choice};
@@ -9,7 +9,7 @@ use primitives::stream::Stream;
 #[test]
 fn gradients_are_the_slopes_of_the_output() {
     const STEP: f32 = 1e-2;
-    // For numbers of about 1, from finite differences in single precision.
+    // For values of about 1 from finite differences in single precision.
     const TOLERANCE: f32 = 5e-3;
     let mut stream = Stream::new(3, "gradient");
     let mut network = Perceptron::new(&[5, 7, 6, 3], 1.0, &mut stream);
@@ -32,7 +32,7 @@ fn gradients_are_the_slopes_of_the_output() {
             loss
         };
         let want = (at(STEP) - at(-STEP)) / (2.0 * STEP);
-        assert!((slope - want).abs() < TOLERANCE, "parameter {i}: {slope}, not {want}");
+        assert!((slope - want).abs() < TOLERANCE, "parameter {i}: got {slope}, want {want}");
     }
     for (i, slope) in by_input.iter().enumerate() {
         let at = |by: f32| {
@@ -41,7 +41,7 @@ fn gradients_are_the_slopes_of_the_output() {
             loss(&network, &input)
         };
         let want = (at(STEP) - at(-STEP)) / (2.0 * STEP);
-        assert!((slope - want).abs() < TOLERANCE, "input {i}: {slope}, not {want}");
+        assert!((slope - want).abs() < TOLERANCE, "input {i}: got {slope}, want {want}");
     }
 }
 
@@ -54,14 +54,14 @@ fn first_weights_are_orthogonal_with_their_gain() {
         for (a, b) in (0..outputs).flat_map(|a| (0..outputs).map(move |b| (a, b))) {
             let product: f32 = (0..inputs).map(|row| weights[row * outputs + a] * weights[row * outputs + b]).sum();
             let want = if a == b { gain } else { 0.0 };
-            assert!((product - want).abs() < 1e-5 * gain, "{a} {b}: {product}, not {want}");
+            assert!((product - want).abs() < 1e-5 * gain, "{a} {b}: got {product}, want {want}");
         }
     }
 }
 
 #[test]
 fn adam_goes_as_its_authors_say() {
-    // The first step is the learning rate against the sign, the second as computed by hand.
+    // The first step is the learning rate against the sign; the second was computed by hand.
     let settings = AdamSettings { epsilon: 0.0, norm_max: None, ..AdamSettings::default() };
     let (mut adam, mut parameters) = (Adam::new(2, settings), [1.0_f32, -1.0]);
     let norm = adam.step(&mut parameters, &[3.0, -4.0], 0.1);
@@ -69,15 +69,15 @@ fn adam_goes_as_its_authors_say() {
     adam.step(&mut parameters, &[0.0, -4.0], 0.1);
     // mean 0.9 * 0.3 = 0.27 of 0.19, square 0.999 * 0.009 = 0.008991 of 0.001999.
     let want = 0.9 - 0.1 * (0.27 / 0.19) / libm::sqrtf(0.008_991 / 0.001_999);
-    assert!((parameters[0] - want).abs() < 1e-4, "{parameters:?}, not {want}");
+    assert!((parameters[0] - want).abs() < 1e-4, "got {parameters:?}, want {want}");
     assert!((parameters[1] + 0.8).abs() < 1e-6, "{parameters:?}");
-    // A gradient that is too long is scaled to the limit; the first step changes only in its
-    // reported norm.
+    // A gradient that is too long is scaled to the limit. Of the first step only the reported norm
+    // changes.
     let (mut adam, mut parameters) = (Adam::new(1, AdamSettings::default()), [0.0_f32]);
     assert!((adam.step(&mut parameters, &[1e6], 0.1) - 1e6).abs() < 1.0 && (parameters[0] + 0.1).abs() < 1e-4);
 }
 
-/// Samples of a game of one step: in each of eight pictures one action has a reward of 1.
+/// Samples of a one-step game: in each of eight observations, one action has a reward of 1.
 fn sampled(learner: &ActorCritic, stream: &mut Stream, count: usize) -> (Vec<f32>, Vec<u16>, Vec<f32>, Vec<f32>) {
     let (mut observations, mut actions, mut logs, mut rewards) = (vec![], vec![], vec![], vec![]);
     let (mut trace, mut all) = (Trace::default(), [0.0; 4]);
@@ -99,7 +99,7 @@ fn trained(updates: usize, threads: usize, learner: ActorCritic) -> ActorCritic 
     taught(Lesson::Reinforcement, updates, threads, learner)
 }
 
-/// The same, or with a teacher that takes an action without reward.
+/// A policy trained on these samples, or with a teacher whose action has no reward.
 fn taught(lesson: Lesson, updates: usize, threads: usize, mut learner: ActorCritic) -> ActorCritic {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
     let settings = Ppo { learning_rate: 3e-3, minibatch: 600, divergence_max: 1e9, ..Ppo::default() };
@@ -135,7 +135,7 @@ fn a_policy_learns_which_action_is_worth_most() {
         let observation = [0, 1, 2].map(|bit| if picture >> bit & 1 == 1 { 1.0 } else { -1.0 });
         learner.actor.forward(&observation, &mut trace);
         assert_eq!(choice::likeliest(trace.output()), picture * 3 % 4, "picture {picture}: {:?}", trace.output());
-        // It expects its actual reward, nearly always 1.
+        // The critic expects the actual reward, nearly always 1.
         learner.critic.forward(&observation, &mut value);
         let expected = value.output()[0] * learner.scale.deviation();
         assert!((expected - 1.0).abs() < 0.2, "picture {picture}: {expected}");
@@ -162,6 +162,6 @@ fn training_is_the_same_to_the_bit_on_any_number_of_threads_and_when_it_is_resum
         assert!(trained(4, threads, start.clone()) == want, "{threads} threads");
     }
     let saved = serde_json::to_string(&want).expect("JSON");
-    let resumed: ActorCritic = serde_json::from_str(&saved).expect("what was saved");
+    let resumed: ActorCritic = serde_json::from_str(&saved).expect("the saved state is valid");
     assert!(trained(4, 2, resumed) == trained(4, 1, want));
 }

@@ -1,5 +1,5 @@
-//! Primitive policies, each with a single task: the worth of places, and the actions of the shipped
-//! ones.
+//! Primitive policies, each with a single task: the values of places, and the actions of shipped
+//! policies.
 
 use agent::{Action, ActionSpace};
 use learn::environment::{Player, Setup, VectorEnvironment};
@@ -24,7 +24,6 @@ fn setup(name: &str) -> Setup {
     Setup::of_stage(&training, &training.stage[0]).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The progress of all boats of a game.
 fn looked_at(contest: &Contest) -> Vec<BoatProgress> {
     let scenario = contest.scenario();
     let placed = |team| Placed { at: Ned::default(), team, tagged: false, carrying: false };
@@ -60,7 +59,7 @@ fn the_gains_of_a_place_add_up_to_what_it_is_worth_where_a_boat_has_come_to() {
     }
     for (row, (sum, first)) in sums.iter().zip(first).enumerate() {
         let gain = worth(&environment, row) - first;
-        assert!((sum - gain).abs() < 1e-4, "row {row}: {sum}, not {gain}");
+        assert!((sum - gain).abs() < 1e-4, "row {row}: got {sum}, want {gain}");
         assert!(gain.abs() > 1e-3, "row {row} has not moved");
     }
 }
@@ -87,14 +86,14 @@ fn the_options_of_the_chooser_are_the_shipped_policies() {
             model.network().metadata().get("squall.training").cloned().unwrap_or_default()
         })
         .collect();
-    let options = role.texts(role.options().expect("a policy chooses among options"));
+    let options = role.texts(role.options().expect("the role has options"));
     let mut wanted: Vec<String> = options.iter().map(|option| format!("primitive_{option}")).collect();
     trained.sort();
     wanted.sort();
     assert_eq!(trained, wanted);
 }
 
-/// The share of an episode's time with boats at home and untagged, with actions from `act`.
+/// The share of time that boats spend at home and untagged, with actions from `act`.
 fn at_home(mut act: impl FnMut(&[f32]) -> Action) -> f64 {
     let mut setup = setup("retreat");
     setup.opponents.retain(|(_, player)| matches!(player, Player::Strategy(strategy) if strategy.name == "pav01"));
@@ -127,5 +126,5 @@ fn who_retreats_comes_home() {
         Action::likeliest(network.output(0))
     });
     let stopped = at_home(|_| Action::Discrete(16));
-    assert!(by_policy > 2.0 * stopped, "at home for {by_policy} of the time, stopped for {stopped}");
+    assert!(by_policy > 2.0 * stopped, "at home for {by_policy} of the time, stationary boats for {stopped}");
 }

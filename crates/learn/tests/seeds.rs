@@ -1,4 +1,4 @@
-//! Restarted environments: games of given seeds, one boat of a team, a setup as users give it.
+//! Restarted environments: games with given seeds, one boat of a team, a setup as users write it.
 
 use agent::{Action, ActionSpace};
 use learn::environment::{CriticInput, Games, RawObservation, RawSetup, Rows, SetupError};
@@ -42,10 +42,10 @@ fn step(games: &mut Games, action: usize) {
         rewards: &mut rewards,
         counts: &mut counts,
     };
-    games.step(&vec![Action::Discrete(action); rows], rows_shown).expect("games go on");
+    games.step(&vec![Action::Discrete(action); rows], rows_shown).expect("new games begin");
 }
 
-/// The observations, where only games without a written row are updated.
+/// The observations after updating those of new games.
 fn shown(games: &mut Games) -> Vec<f32> {
     let (rows, numbers) = (games.rows().0, games.rows().0 * games.setup().observation_size());
     let (mut observations, mut rewards, mut counts) = (vec![9.0; numbers], vec![0.0; rows], vec![false; rows]);
@@ -83,7 +83,7 @@ fn seeds_count_up_and_can_be_chosen_anew() {
 fn a_game_restarted_by_its_seed_is_the_same_again() {
     let mut played = games(&raw(), 2, 20);
     (0..14).for_each(|_| step(&mut played, 3));
-    // The second one's second episode, four steps on.
+    // In the second episode of the second game, four steps later.
     let mut again = games(&raw(), 1, 1);
     again.restart_game(0, Some(23)).unwrap();
     (0..4).for_each(|_| step(&mut again, 3));
@@ -129,7 +129,7 @@ fn a_side_that_is_named_learns() {
 #[test]
 fn standings_are_what_the_outcome_says() {
     let mut games = games(&RawSetup { episode_max_s: None, opponents: vec![(1.0, None)], ..raw() }, 1, 3);
-    // Full ahead until all have left the field.
+    // Full ahead until every boat has left the field.
     (0..300).for_each(|_| step(&mut games, 4));
     let (standing, outcome) = (games.standing(0), games.contest(0).outcome());
     assert_eq!(standing.steps, 300);
@@ -145,7 +145,7 @@ fn standings_are_what_the_outcome_says() {
 fn what_is_wrong_with_a_setup_is_said() {
     let nowhere = || Some(scenario("strategies/nowhere.toml"));
     for (raw, message) in [
-        (RawSetup { decision_s: Some(0.25), ..raw() }, "decision_s is 0.25, expected a multiple of the 0.1 s"),
+        (RawSetup { decision_s: Some(0.25), ..raw() }, "decision_s is 0.25, expected a multiple of 0.1 s"),
         (RawSetup { decision_s: Some(-0.5), ..raw() }, "decision_s is -0.5"),
         (RawSetup { episode_max_s: Some(f64::NAN), ..raw() }, "episode_max_s is NaN, expected more than 0"),
         (RawSetup { starts: Some(0), ..raw() }, "starts is 0"),
@@ -154,7 +154,7 @@ fn what_is_wrong_with_a_setup_is_said() {
         (RawSetup { opponents: vec![(-1.0, None)], ..raw() }, "an opponent's weight is -1"),
         (RawSetup { opponents: vec![(1.0, nowhere())], ..raw() }, "nowhere.toml"),
         (RawSetup { mates: nowhere(), ..raw() }, "nowhere.toml"),
-        (RawSetup { helm: Some(scenario("strategies/pav01.toml")), ..raw() }, "has no behaviour of the kind"),
+        (RawSetup { helm: Some(scenario("strategies/pav01.toml")), ..raw() }, "has no behaviour of kind"),
         (RawSetup { game: scenario("games/uneven_3v2.toml"), ..raw() }, "the teams have 3 and 2 boats"),
     ] {
         let error = raw.check().map(|_| ()).map_err(|error: SetupError| error.to_string());

@@ -1,4 +1,4 @@
-//! The shipped policy plays, and plays well.
+//! The shipped policy plays, and wins against strategy 4.
 
 use primitives::{TeamId, VehicleId};
 use scenario::strategy::{Strategy, Task};
@@ -30,7 +30,7 @@ fn the_shipped_policy_scores_more_than_strategy_4() {
             points[1] += score[&scenario.teams[usize::from(1 - side)].name];
         }
     }
-    assert!(points[0] > points[1], "points of the policy and of strategy 4 in eight games: {points:?}");
+    assert!(points[0] > points[1], "points of the policy and strategy 4 in eight games: {points:?}");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Training: learns within a few seconds, and reproducibly on any machine.
+//! Training learns within seconds and is reproducible on any machine.
 
 use learn::environment::{Moment, Watch};
 use learn::train::{Progress, StateError, Trainer};
@@ -28,12 +28,12 @@ fn a_policy_learns_to_beat_an_idle_team_and_to_score_against_pav01() {
     }
     let points: Vec<f64> = seen.iter().map(|evaluated| evaluated.played[0].1.points[0]).collect();
     let [first, .., last] = points[..] else { panic!("{points:?}") };
-    assert!(last > 3.0 && last > first, "points a game against pav01: {points:?}");
+    assert!(last > 3.0 && last > first, "points per game against pav01: {points:?}");
     let idle = seen.last().map_or(0.0, |evaluated| evaluated.played[1].1.won());
-    assert!(idle >= 0.9, "won {idle} of the games against an idle team");
+    assert!(idle >= 0.9, "won a share of {idle} of the games against an idle team");
 }
 
-/// Two short stages with all features: a helm, a strategy, past policies.
+/// Two short stages that use a helm, a strategy and past policies.
 fn short() -> Training {
     let stage = |name: &str, game: &str, helm: Option<&str>| Stage {
         name: name.to_owned(),
@@ -89,7 +89,7 @@ fn the_same_file_trains_the_same_weights_on_any_number_of_threads_and_resumed() 
     assert!(opponents.iter().any(|name| name.starts_with("after ")), "{opponents:?}");
     assert!(run(3) == (state.clone(), progress.clone()));
 
-    // Resumed at every possible point.
+    // Resumed wherever possible.
     let mut trainer = Trainer::new(short(), 2).unwrap_or_else(|error| panic!("{error}"));
     let mut taken_up = 0;
     while !trainer.is_over() {
@@ -113,7 +113,7 @@ fn episodes_that_are_seen_have_the_numbers_that_are_told_and_change_nothing() {
             let kept = Arc::clone(&kept);
             Box::new(move |contest, moment| {
                 if moment == Moment::End {
-                    kept.lock().expect("nobody panics").insert((contest.scenario().seed, number));
+                    kept.lock().expect("no thread has panicked").insert((contest.scenario().seed, number));
                 }
             })
         })
@@ -122,14 +122,14 @@ fn episodes_that_are_seen_have_the_numbers_that_are_told_and_change_nothing() {
     trainer.watch(Arc::new(watches)).unwrap_or_else(|error| panic!("{error}"));
     let mut progress = vec![];
     let trainer = trained(trainer, &mut progress);
-    assert!(trainer.state() == plain.state(), "what is seen is learnt from differently");
+    assert!(trainer.state() == plain.state(), "watching changed the training");
     let told = progress.iter().flat_map(|one| &one.finished).map(|(one, _)| (one.standing.seed, one.number));
     let told: BTreeSet<(u64, u64)> = told.filter(|(_, number)| number.is_multiple_of(3)).collect();
     assert!(told.len() > 10, "{told:?}");
-    assert_eq!(told, *ended.lock().expect("nobody panics"));
+    assert_eq!(told, *ended.lock().expect("no thread has panicked"));
 }
 
-/// Imitates strategy 2 through the options of another strategy.
+/// Imitates strategy 2 with the options of another strategy.
 fn imitation(options: &[(&str, &str)]) -> Training {
     let options = options.iter().map(|(mode, option)| ((*mode).to_owned(), (*option).to_owned())).collect();
     let teacher = Some(Teacher { strategy: file("strategies/strategy_5.toml"), options });
@@ -158,7 +158,7 @@ fn a_policy_learns_to_choose_what_its_teacher_is_at() {
         losses.extend(progress.learnt.policy_loss);
         assert_eq!(progress.learnt.clipped, Some(0.0));
     }
-    // Initially with ten options.
+    // Ten options, initially.
     let (first, last) = (losses[0], losses[losses.len() - 1]);
     assert!(first > 1.5 && last < 0.7, "cross-entropy, nats: {losses:?}");
 }
@@ -172,9 +172,9 @@ fn a_teacher_whose_modes_are_no_options_is_refused() {
     let message = refused(&[("raiding", "fly")]);
     assert!(message.contains("\"fly\", expected attack, rush"), "{message}");
     let message = refused(&[("flying", "attack")]);
-    assert!(message.contains("flying, expected modes of strategy_5: ") && message.contains("raiding"), "{message}");
+    assert!(message.contains("flying, expected a mode of strategy_5: ") && message.contains("raiding"), "{message}");
     let message = refused(&[]);
-    assert!(message.contains("of strategy_5, none of whose modes is an option"), "{message}");
+    assert!(message.contains("strategy_5, whose modes match no option"), "{message}");
 }
 
 #[test]

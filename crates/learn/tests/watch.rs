@@ -1,4 +1,4 @@
-//! Watched games: their inputs suffice to replay them to the last bit.
+//! Watched games: their inputs suffice to replay them to the bit.
 
 use agent::{Action, ActionSpace};
 use learn::environment::{CriticInput, Games, Moment, RawObservation, RawSetup, Rows, Watch};
@@ -10,7 +10,7 @@ use sim::Contest;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
-/// A watched game: every frame, with the game's inputs before it.
+/// A watched game: every frame, with the inputs before it.
 #[derive(Default)]
 struct Seen {
     number: u64,
@@ -32,9 +32,9 @@ impl Seen {
         }
     }
 
-    /// Replays and compares it.
+    /// Replays the game and compares every frame.
     fn check(&self) {
-        let scenario = self.scenario.as_ref().expect("it has begun");
+        let scenario = self.scenario.as_ref().expect("the game has begun");
         let seed = scenario.seed;
         let mut contest = Contest::new(scenario, seed).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
         let mut cursor = EventCursor::default();
@@ -48,8 +48,7 @@ impl Seen {
     }
 }
 
-/// Plays this many steps of games of 2 s in wind and waves, and returns the selected ones as
-/// watched.
+/// Plays this many steps of 2 s games in wind and waves. Returns the watched ones.
 fn seen(starts: Option<u32>, steps: usize, every: u64, play: impl Fn(&mut Games, usize)) -> Vec<Arc<Mutex<Seen>>> {
     let scenario = |file: &str| -> PathBuf { Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(file) };
     let raw = RawSetup {
@@ -72,15 +71,15 @@ fn seen(starts: Option<u32>, steps: usize, every: u64, play: impl Fn(&mut Games,
     let watches = move |number: u64| {
         number.is_multiple_of(every).then(|| -> Watch {
             let seen = Arc::new(Mutex::new(Seen { number, ..Seen::default() }));
-            kept.lock().expect("nobody panics").push(Arc::clone(&seen));
-            Box::new(move |contest, moment| seen.lock().expect("nobody panics").see(contest, moment))
+            kept.lock().expect("no thread has panicked").push(Arc::clone(&seen));
+            Box::new(move |contest, moment| seen.lock().expect("no thread has panicked").see(contest, moment))
         })
     };
     let setup = raw.check().unwrap_or_else(|error| panic!("{error}"));
     let mut games = Games::watched(setup, 2, 2, 5, Some(Arc::new(watches))).unwrap_or_else(|error| panic!("{error}"));
     (0..steps).for_each(|step| play(&mut games, step));
     drop(games);
-    std::mem::take(&mut *all.lock().expect("nobody panics"))
+    std::mem::take(&mut *all.lock().expect("no thread has panicked"))
 }
 
 fn step(games: &mut Games, step: usize) {
@@ -94,16 +93,16 @@ fn step(games: &mut Games, step: usize) {
         counts: &mut counts,
     };
     let actions: Vec<Action> = (0..rows).map(|row| Action::Discrete((3 * step + row) % 17)).collect();
-    games.step(&actions, shown).expect("games go on");
+    games.step(&actions, shown).expect("new games begin");
 }
 
 #[test]
 fn games_are_seen_from_their_first_moment_to_their_end() {
     for starts in [None, Some(3)] {
         let games = seen(starts, 9, 1, step);
-        assert_eq!(games.len(), 6, "two whole games after each other in two places, and two that have begun");
+        assert_eq!(games.len(), 6, "two complete games in each of two slots, and two that have begun");
         for game in &games {
-            let game = game.lock().expect("nobody panics");
+            let game = game.lock().expect("no thread has panicked");
             game.check();
             let is_whole = game.number < 4;
             assert_eq!((game.outcome.is_some(), game.decisions.len()), (is_whole, if is_whole { 21 } else { 6 }));
@@ -114,7 +113,7 @@ fn games_are_seen_from_their_first_moment_to_their_end() {
 #[test]
 fn only_the_chosen_games_are_seen() {
     let numbers = |games: &[Arc<Mutex<Seen>>]| -> Vec<u64> {
-        games.iter().map(|game| game.lock().expect("nobody panics").number).collect()
+        games.iter().map(|game| game.lock().expect("no thread has panicked").number).collect()
     };
     assert_eq!(numbers(&seen(None, 12, 4, step)), [0, 4]);
 }
@@ -124,14 +123,14 @@ fn a_game_that_is_given_up_is_seen_up_to_there_and_nothing_after_the_watches_end
     let games = seen(None, 6, 1, |games, i| {
         step(games, i);
         match i {
-            1 => games.restart(Some(40)).expect("games begin"),
+            1 => games.restart(Some(40)).expect("new games begin"),
             3 => games.end_watches(),
             _ => {}
         }
     });
     assert_eq!(games.len(), 4);
     for game in &games {
-        let game = game.lock().expect("nobody panics");
+        let game = game.lock().expect("no thread has panicked");
         game.check();
         assert_eq!((game.outcome.is_none(), game.decisions.len()), (true, 11), "two steps of five decisions");
     }

@@ -1,4 +1,4 @@
-//! The cost of one row of a policy, for typical sizes.
+//! The cost of one row of a policy of typical size.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use onnx::{Activation, Head, Layer, Network, Perceptron};
@@ -9,16 +9,15 @@ use std::hint::black_box;
 
 const INPUTS: usize = 45;
 const ACTIONS: usize = 17;
-/// Rows evaluated in rotation, so that the branch predictor learns none of them.
+/// Rows evaluated in turn, so that the branch predictor cannot learn them.
 const ROWS: usize = 64;
 
-/// A number from `least` to `most`.
 fn between(random: &mut ChaCha8Rng, least: f32, most: f32) -> f32 {
     least + (most - least) * (random.next_u32() >> 8) as f32 / (1 << 24) as f32
 }
 
 fn layer(random: &mut ChaCha8Rng, inputs: usize, outputs: usize) -> Layer {
-    // Sums of about one, where activations are neither saturated nor linear.
+    // The sums are about one, where activations are neither saturated nor linear.
     let most = (3.0 / inputs as f32).sqrt();
     let weights = (0..inputs * outputs).map(|_| between(random, -most, most)).collect();
     Layer { inputs, outputs, weights, biases: vec![0.1; outputs] }
@@ -29,7 +28,7 @@ fn network(random: &mut ChaCha8Rng, width: usize, activation: Activation) -> Net
     let heads = vec![Head { name: "logits".to_owned(), layer: layer(random, width, ACTIONS) }];
     let (input, metadata) = ("observation".to_owned(), BTreeMap::new());
     let policy = Perceptron { input, normalisation: None, hidden, activation, heads, end: None, metadata };
-    Network::read(&policy.onnx().expect("sizes that fit")).expect("a network")
+    Network::read(&policy.onnx().expect("the sizes match")).expect("a valid network")
 }
 
 fn evaluate(criterion: &mut Criterion) {

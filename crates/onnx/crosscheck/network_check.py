@@ -1,6 +1,6 @@
-"""Checks the files of perceptrons that the tests have written with `onnx`, and compares what they give with ONNX Runtime.
+"""Checks perceptrons written by the tests with `onnx`, and compares their outputs with ONNX Runtime.
 
-Usage: network_check.py FOLDER, which `crates/onnx/tests/network/perceptron.rs` fills.
+Usage: network_check.py FOLDER, with files from `crates/onnx/tests/network/perceptron.rs`.
 """
 
 import json
@@ -11,7 +11,7 @@ import numpy as np
 import onnx
 import onnxruntime
 
-# Both round each sum, in another order.
+# Both round each sum, in different orders.
 ERROR_MAX = 1e-5
 
 
@@ -27,11 +27,11 @@ def main(folder):
         model = onnx.load(file)
         onnx.checker.check_model(model, full_check=True)
         entries = {entry.key: entry.value for entry in model.metadata_props}
-        check(entries == {"layout": "1", "actions": "17"}, f"{file.name}: other metadata: {entries}")
+        check(entries == {"layout": "1", "actions": "17"}, f"{file.name}: unexpected metadata: {entries}")
         session = onnxruntime.InferenceSession(file, providers=["CPUExecutionProvider"])
         cases = json.loads(file.with_suffix(".json").read_text())
         rows = np.array([case["input"] for case in cases], dtype=np.float32)
-        # All rows as one batch: files take any number of them.
+        # All rows as one batch, because files accept any number of rows.
         for port, values in zip(session.get_outputs(), session.run(None, {"observation": rows})):
             ours = np.array([case[port.name] for case in cases])
             error = np.max(np.abs(values - ours) / (1 + np.abs(values)))

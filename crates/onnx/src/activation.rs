@@ -1,20 +1,18 @@
 //! Transcendental functions with the same bits on every machine, in single precision.
 
-/// e to the power `x`.
 pub(super) fn exp(x: f32) -> f32 {
     libm::expf(x)
 }
 
-/// The natural logarithm.
 pub(super) fn ln(x: f32) -> f32 {
     libm::logf(x)
 }
 
-/// The hyperbolic tangent, to about three units in the last place.
+/// The hyperbolic tangent, accurate to about three units in the last place.
 ///
-/// A rational function, that of Eigen (`generic_fast_tanh_float`), also used by ONNX Runtime. It
-/// consists of sums, products and one division only, so that a layer's values vectorise.
-/// `libm::tanhf` takes longer than the layer's sums.
+/// The rational function of Eigen (`generic_fast_tanh_float`), which ONNX Runtime also uses. It has
+/// only sums, products and one division, so that a layer's values vectorise. `libm::tanhf` takes
+/// longer than the layer's sums.
 #[inline]
 #[must_use]
 pub fn tanh(x: f32) -> f32 {
@@ -23,7 +21,7 @@ pub fn tanh(x: f32) -> f32 {
     const EVEN: [f32; 4] = [1.198_258_4e-6, 1.185_347_1e-4, 2.268_434_6e-3, 4.893_525e-3];
     /// From here on the result is 1 in single precision.
     const END: f32 = 7.905_311;
-    /// Up to here the result is `x`; the quotient is less exact.
+    /// Up to here the result is `x`, which is more exact than the quotient.
     const LINEAR: f32 = 0.0004;
     let above = if x < -END { -END } else { x };
     let inside = if above > END { END } else { above };
@@ -47,7 +45,7 @@ mod tests {
     fn the_hyperbolic_tangent_is_that_of_libm_to_four_units_in_the_last_place() {
         const ERROR_MAX: f32 = 4.0 * f32::EPSILON;
         let mut worst = (0.0, 0.0);
-        // From 1e-9 to 30 in steps of a tenth of a percent, and their negatives.
+        // From 1e-9 to 30 in steps of a tenth of a percent, with both signs.
         let numbers = std::iter::successors(Some(1e-9_f32), |x| Some(x * 1.001)).take_while(|x| *x < 30.0);
         for x in numbers.flat_map(|x| [x, -x]) {
             let (got, want) = (tanh(x), libm::tanhf(x));

@@ -1,6 +1,6 @@
-//! Operators that rearrange numbers: reshape, concatenate, slice.
+//! Operators that rearrange numbers, such as reshape, concatenate and slice.
 //!
-//! Reshaping is free: the numbers keep their order, so the output shares the input's place.
+//! Reshaping is free: the output shares the input's place because the order stays the same.
 
 use super::NetworkError;
 use super::error::{shape_text, shown};
@@ -11,12 +11,10 @@ use super::proto::{self, data_type_name};
 use super::step::{Blocks, Step};
 use super::tensor::{Numbers, Tensor, product};
 
-/// Plans `Identity`.
 pub(super) fn identity(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
     planner.value(node, 0)
 }
 
-/// Plans `Constant`.
 pub(super) fn constant(_: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
     let [attribute] = node.proto.attribute.as_slice() else {
         return Err(node.wrong(format!("{} attributes", node.proto.attribute.len()), "one"));
@@ -33,7 +31,7 @@ pub(super) fn constant(_: &mut Planner, node: &Node) -> Result<Value, NetworkErr
         "value_floats" => {
             let numbers = node.floats("value_floats")?.unwrap_or_default();
             if numbers.iter().any(|number| !number.is_finite()) {
-                return Err(node.wrong("a number that is NaN or infinite", "finite ones"));
+                return Err(node.wrong("a number that is NaN or infinite", "finite numbers"));
             }
             Tensor::new(vec![numbers.len()], Numbers::Floats(numbers.to_vec()))
         }
@@ -49,7 +47,7 @@ pub(super) fn constant(_: &mut Planner, node: &Node) -> Result<Value, NetworkErr
 pub(super) fn cast(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
     let to = node.integer("to", 0)?;
     if to != i64::from(proto::FLOAT) {
-        return Err(node.wrong(format!("a Cast to {}", data_type_name(to)), "one to FLOAT numbers"));
+        return Err(node.wrong(format!("a Cast to {}", data_type_name(to)), "a Cast to FLOAT"));
     }
     Ok(match planner.value(node, 0)? {
         Value::Computed(row) => Value::Computed(Row { element: Element::Float, ..row }),
@@ -64,7 +62,6 @@ pub(super) fn cast(planner: &mut Planner, node: &Node) -> Result<Value, NetworkE
     })
 }
 
-/// Plans `Flatten`.
 pub(super) fn flatten(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
     let value = planner.value(node, 0)?;
     let shape = shape_of(&value);
@@ -76,7 +73,6 @@ pub(super) fn flatten(planner: &mut Planner, node: &Node) -> Result<Value, Netwo
     reshaped(node, value, sizes.to_vec())
 }
 
-/// Plans `Reshape`.
 pub(super) fn reshape(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
     let value = planner.value(node, 0)?;
     let asked = planner.integers(node, 1)?.unwrap_or_default();
@@ -84,7 +80,7 @@ pub(super) fn reshape(planner: &mut Planner, node: &Node) -> Result<Value, Netwo
     let before = shape_of(&value);
     let wrong = || {
         let text: Vec<String> = asked.iter().map(i64::to_string).collect();
-        node.wrong(format!("{} to be ({})", shape_text(before), text.join(", ")), "a shape of as many numbers")
+        node.wrong(format!("{} reshaped to ({})", shape_text(before), text.join(", ")), "a shape of the same size")
     };
     let mut shape = vec![];
     let mut left_out = None;
@@ -146,7 +142,6 @@ pub(super) fn unsqueeze(planner: &mut Planner, node: &Node) -> Result<Value, Net
     reshaped(node, value, shape)
 }
 
-/// Plans `Concat`.
 pub(super) fn concat(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
     let rows = (0..node.proto.input.len()).map(|i| planner.row(node, i)).collect::<Result<Vec<Row>, _>>()?;
     let mut shape = rows[0].shape.clone();
@@ -158,8 +153,8 @@ pub(super) fn concat(planner: &mut Planner, node: &Node) -> Result<Value, Networ
     for row in &rows {
         let same = |(i, dim): (usize, &usize)| i == axis || *dim == shape[i];
         if row.shape.len() != shape.len() || !row.shape.iter().enumerate().all(same) {
-            let found = format!("{} beside {}", shape_text(&row.shape), shape_text(&shape));
-            return Err(node.wrong(found, format!("shapes that differ in axis {axis} alone")));
+            let found = format!("{} next to {}", shape_text(&row.shape), shape_text(&shape));
+            return Err(node.wrong(found, format!("shapes that differ only in axis {axis}")));
         }
         sum = sum.and_then(|sum| sum.checked_add(row.shape[axis]));
     }
@@ -177,7 +172,7 @@ pub(super) fn concat(planner: &mut Planner, node: &Node) -> Result<Value, Networ
     Ok(Value::Computed(output))
 }
 
-/// Plans `Slice`, whose bounds are attributes in old files, one axis after the other.
+/// Plans `Slice`, one axis after the other. In old files its bounds are attributes.
 pub(super) fn slice(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
     let mut row = planner.row(node, 0)?;
     let attribute = |name: &str| node.integers(name).map(|integers| integers.map(<[i64]>::to_vec));
@@ -190,7 +185,7 @@ pub(super) fn slice(planner: &mut Planner, node: &Node) -> Result<Value, Network
     if starts.len() > RANK_MAX || [ends.len(), axes.len(), steps.len()].iter().any(|length| *length != starts.len()) {
         let found =
             format!("{} starts, {} ends, {} axes and {} steps", starts.len(), ends.len(), axes.len(), steps.len());
-        return Err(node.wrong(found, "as many of each, one for each axis"));
+        return Err(node.wrong(found, "the same number of each, one per axis"));
     }
     for (i, axis) in axes.iter().enumerate() {
         let axis = node.axis(*axis, row.shape.len())?;
@@ -199,7 +194,7 @@ pub(super) fn slice(planner: &mut Planner, node: &Node) -> Result<Value, Network
     Ok(Value::Computed(row))
 }
 
-/// Selects elements `start` to `end` of an axis, every `step`-th.
+/// Selects every `step`-th element of an axis from `start` to `end`.
 fn slice_axis(
     planner: &mut Planner,
     node: &Node,
@@ -214,15 +209,13 @@ fn slice_axis(
     };
     let (from, to) = (clamped(start), clamped(end));
     if to <= from {
-        let found = format!("numbers {start} to {end} of axis {axis} of {}, which are none", shape_text(&input.shape));
-        return Err(node.wrong(found, "at least one"));
+        let found = format!("the empty range {start} to {end} of axis {axis} of {}", shape_text(&input.shape));
+        return Err(node.wrong(found, "at least one number"));
     }
     let outer = product(&input.shape[..axis]).unwrap_or(0);
     let inner = product(&input.shape[axis + 1..]).unwrap_or(0);
     let Some(step) = usize::try_from(step).ok().filter(|step| *step == 1 || *step > 1 && outer == 1) else {
-        return Err(
-            node.wrong(format!("step {step} of axis {axis}"), "1, or a greater one of the first axis after the batch")
-        );
+        return Err(node.wrong(format!("step {step} of axis {axis}"), "1, or more on the first axis after the batch"));
     };
     let count = (to - from).div_ceil(step);
     let mut shape = input.shape;
@@ -238,7 +231,7 @@ fn slice_axis(
     Ok(output)
 }
 
-/// The axes of a `Squeeze` or `Unsqueeze`: an attribute in old files, an input in others.
+/// The axes of a `Squeeze` or `Unsqueeze`: an attribute in old files, an input in newer ones.
 fn axes(planner: &Planner, node: &Node) -> Result<Option<Vec<i64>>, NetworkError> {
     let axes = match planner.integers(node, 1)? {
         Some(axes) => Some(axes),
@@ -259,7 +252,7 @@ fn shape_of(value: &Value) -> &[usize] {
     }
 }
 
-/// The same numbers in another shape of equal size.
+/// The same numbers in another shape of the same size.
 fn reshaped(node: &Node, value: Value, shape: Vec<usize>) -> Result<Value, NetworkError> {
     if shape.len() > RANK_MAX {
         let (output, found) = (node.proto.output.first(), format!("{} dimensions", shape.len()));

@@ -7,7 +7,7 @@ use super::node::Node;
 use super::plan::{Planner, Row, Value};
 use super::step::Step;
 
-/// A function of one number. NaN stays NaN.
+/// A function of one number. NaN in gives NaN out.
 #[derive(Clone, Copy)]
 pub(super) enum Function {
     Clip { min: f32, max: f32 },
@@ -54,7 +54,7 @@ pub(super) enum Operation {
 }
 
 impl Operation {
-    /// One of the operands may be shorter; it is then repeated.
+    /// A shorter operand is repeated.
     pub(super) fn apply(self, left: &[f32], right: &[f32], output: &mut [f32]) {
         match self {
             Operation::Add => pairs(left, right, output, |a, b| a + b),
@@ -66,7 +66,7 @@ impl Operation {
 }
 
 fn pairs(left: &[f32], right: &[f32], output: &mut [f32], operation: impl Fn(f32, f32) -> f32) {
-    // Without the modulo of `cycle` where neither operand is repeated, so that it vectorises.
+    // No modulo (`cycle`) if neither operand is repeated, so that the loop vectorises.
     if left.len() == right.len() {
         for ((to, a), b) in output.iter_mut().zip(left).zip(right) {
             *to = operation(*a, *b);
@@ -78,7 +78,7 @@ fn pairs(left: &[f32], right: &[f32], output: &mut [f32], operation: impl Fn(f32
     }
 }
 
-/// Plans a function of each number.
+/// Plans a function of single numbers.
 pub(super) fn function(planner: &mut Planner, node: &Node, function: Function) -> Result<Value, NetworkError> {
     let input = planner.row(node, 0)?;
     let output = planner.new_row(input.shape)?;
@@ -86,7 +86,7 @@ pub(super) fn function(planner: &mut Planner, node: &Node, function: Function) -
     Ok(Value::Computed(output))
 }
 
-/// Plans `Clip`, whose bounds are attributes in old files.
+/// Plans `Clip`. In old files its bounds are attributes.
 pub(super) fn clip(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
     let min = planner.scalar(node, 1)?.map_or_else(|| node.float("min", f32::MIN), Ok)?;
     let max = planner.scalar(node, 2)?.map_or_else(|| node.float("max", f32::MAX), Ok)?;
@@ -105,7 +105,7 @@ pub(super) fn binary(planner: &mut Planner, node: &Node, operation: Operation) -
     for operand in [&left, &right] {
         if !repeats(operand, &shape) {
             let found = format!("{} with {}", shape_text(&left.shape), shape_text(&right.shape));
-            return Err(node.wrong(found, "the same shape, or one that is the end of the other, or a single number"));
+            return Err(node.wrong(found, "equal shapes, a shape that ends the other one, or a single number"));
         }
     }
     let output = planner.new_row(shape)?;
@@ -114,7 +114,7 @@ pub(super) fn binary(planner: &mut Planner, node: &Node, operation: Operation) -
     Ok(Value::Computed(output))
 }
 
-/// Whether a repeated row has this shape: its own, without leading ones, is a suffix of it.
+/// Whether the row can be repeated to this shape: without leading ones, its own is a suffix of it.
 fn repeats(row: &Row, shape: &[usize]) -> bool {
     let ones = row.shape.iter().take_while(|dim| **dim == 1).count();
     shape.ends_with(&row.shape[ones..])

@@ -2,15 +2,15 @@
 
 use thiserror::Error;
 
-/// Longest name in a message, characters: files may have names of any length.
+/// Maximum length of a name in a message, characters: names in files can be of any length.
 const NAME_MAX: usize = 80;
 
-/// Why a file cannot be read as a network, or a network cannot be written. Each message gives the
-/// place, the value found and the allowed values.
+/// Why a network cannot be read or written. Each message gives the place, the value found and the
+/// values allowed.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum NetworkError {
     /// A quantity exceeds its limit.
-    #[error("{what}: found {found}, allowed are at most {max}")]
+    #[error("{what}: found {found}, expected at most {max}")]
     TooLarge {
         /// The quantity.
         what: String,
@@ -19,10 +19,10 @@ pub enum NetworkError {
         /// Its limit.
         max: usize,
     },
-    /// The bytes are not an ONNX file, or are truncated or damaged.
+    /// The bytes are not an ONNX file, or the file is truncated or damaged.
     #[error("not an ONNX file, or a damaged one: byte {byte}: {found}")]
     NotOnnx {
-        /// Offset of the fault, from 0.
+        /// Offset of the fault.
         byte: usize,
         /// The fault.
         found: String,
@@ -30,9 +30,9 @@ pub enum NetworkError {
     /// The model as a whole cannot be evaluated.
     #[error("the model: found {found}, expected {expected}")]
     Model {
-        /// What was found.
+        /// The value found.
         found: String,
-        /// What is allowed.
+        /// The values allowed.
         expected: String,
     },
     /// A tensor cannot be used.
@@ -40,9 +40,9 @@ pub enum NetworkError {
     Tensor {
         /// Its name.
         tensor: String,
-        /// What was found.
+        /// The value found.
         found: String,
-        /// What is allowed.
+        /// The values allowed.
         expected: String,
     },
     /// A tensor's numbers are in a second file.
@@ -64,16 +64,16 @@ pub enum NetworkError {
         /// The supported operators.
         allowed: String,
     },
-    /// A supported operator in an unsupported form.
+    /// An unsupported form of a supported operator.
     #[error("node `{node}` ({operator}): found {found}, expected {expected}")]
     Node {
         /// The node's name.
         node: String,
         /// Its operator.
         operator: &'static str,
-        /// What was found.
+        /// The value found.
         found: String,
-        /// What is allowed.
+        /// The values allowed.
         expected: String,
     },
 }
@@ -94,7 +94,7 @@ pub(super) fn shown(name: &str) -> String {
     head.escape_debug().to_string() + if head.len() < name.len() { "…" } else { "" }
 }
 
-/// A shape for a message: `1 x 45`.
+/// A shape in a message: `1 x 45`.
 pub(super) fn shape_text(shape: &[usize]) -> String {
     if shape.is_empty() {
         return "a single number".to_owned();

@@ -1,11 +1,11 @@
-//! A trained policy: a network from an ONNX file, evaluated one row at a time with the same bits on
-//! every machine.
+//! Evaluates a trained policy, an ONNX network, one row at a time with the same bits on every
+//! machine.
 //!
-//! A general runtime chooses the order of its sums by processor and batch size, and a game must
-//! depend on neither. Here the operations and their order are fixed when the file is read. Shapes
-//! are checked then, and [`Network::evaluate`] neither fails nor allocates. `operator.rs` lists the
-//! operators. Files come from PyTorch (`torch.onnx.export(…, external_data=False)`, of the part of
-//! a policy that outputs logits) or from [`Perceptron`].
+//! A general runtime orders its sums by processor and batch size; a game must depend on neither.
+//! Here the operations and their order are fixed when the file is read. Shapes are checked then, so
+//! that [`Network::evaluate`] neither fails nor allocates. `operator.rs` lists the supported
+//! operators. Files come from PyTorch or from [`Perceptron`]. In PyTorch, export the part of a
+//! policy that outputs logits with `torch.onnx.export(…, external_data=False)`.
 
 mod activation;
 mod arrangement;
@@ -39,73 +39,73 @@ use std::sync::Arc;
 pub struct Port {
     /// Its name in the file.
     pub name: String,
-    /// The number of values in a row.
+    /// Values per row.
     pub size: usize,
 }
 
-/// A network that can be evaluated. Clones share their weights.
+/// An evaluable network. Clones share their weights.
 #[derive(Clone)]
 pub struct Network {
     plan: Arc<Plan>,
-    /// Inputs, constants and all computed values, in order of evaluation.
+    /// Inputs, constants and computed values, in evaluation order.
     values: Vec<f32>,
 }
 
 impl Network {
-    /// Reads an ONNX file. A first dimension of 1 or without a size is the batch dimension,
-    /// evaluated as one row.
+    /// Reads an ONNX file. A first dimension of 1 or without a size is the batch dimension, of
+    /// which one row is evaluated.
     ///
     /// # Errors
-    /// If the bytes are not an ONNX file, need too much memory or time, have weights that are not
-    /// finite or not in the file, or have a shape or an operator that is not supported.
+    /// If the bytes are not an ONNX file, exceed the limits on memory or time, or use an
+    /// unsupported shape or operator; or if weights are non-finite or outside the file.
     pub fn read(bytes: &[u8]) -> Result<Network, NetworkError> {
         let (plan, values) = reader::read(bytes)?;
         Ok(Network { plan: Arc::new(plan), values })
     }
 
-    /// The inputs, in the argument order of [`Network::evaluate`].
+    /// The inputs, in the order of [`Network::evaluate`].
     #[must_use]
     pub fn inputs(&self) -> &[Port] {
         &self.plan.inputs
     }
 
-    /// The outputs, in the file's order.
+    /// The outputs, in file order.
     #[must_use]
     pub fn outputs(&self) -> &[Port] {
         &self.plan.outputs
     }
 
-    /// The file's metadata, written by its author: `metadata_props`.
+    /// The author's metadata in the file: `metadata_props`.
     #[must_use]
     pub fn metadata(&self) -> &BTreeMap<String, String> {
         &self.plan.metadata
     }
 
-    /// XXH3 digest, 128 bits, of the file's bytes.
+    /// 128-bit XXH3 digest of the file.
     #[must_use]
     pub fn digest(&self) -> u128 {
         self.plan.digest
     }
 
-    /// The number of values that [`Network::evaluate`] takes for all inputs together.
+    /// The number of values in all inputs together.
     #[must_use]
     pub fn input_size(&self) -> usize {
         self.plan.input_size
     }
 
-    /// Computes all outputs for one row of each input, the inputs concatenated.
+    /// Computes all outputs for one row of each input; `input` concatenates the rows.
     ///
     /// # Panics
     /// If the number of values is not [`Network::input_size`].
     pub fn evaluate(&mut self, input: &[f32]) {
-        assert_eq!(input.len(), self.plan.input_size, "numbers of the network's input");
+        assert_eq!(input.len(), self.plan.input_size, "length of the network's input");
         self.values[..input.len()].copy_from_slice(input);
         for step in &self.plan.steps {
             step.take(&mut self.values);
         }
     }
 
-    /// Output number `index` of the last evaluation.
+    /// Output number `index` in the last evaluation.
     ///
     /// # Panics
     /// If `index` is out of range.
@@ -114,14 +114,14 @@ impl Network {
         &self.values[self.plan.places[index].clone()]
     }
 
-    /// The output with this name in the last evaluation, if it exists.
+    /// The output with this name in the last evaluation, if any.
     #[must_use]
     pub fn output_named(&self, name: &str) -> Option<&[f32]> {
         let index = self.plan.outputs.iter().position(|port| port.name == name)?;
         Some(self.output(index))
     }
 
-    /// Whether all outputs of the last evaluation are finite numbers.
+    /// Whether all outputs of the last evaluation are finite.
     #[must_use]
     pub fn is_finite(&self) -> bool {
         (0..self.plan.places.len()).all(|index| self.output(index).iter().all(|number| number.is_finite()))

@@ -1,25 +1,24 @@
-//! Limits on the memory and time that a file may need, checked before parsing.
+//! Limits on the memory and time that a file may take, checked before parsing.
 //!
-//! The parser can turn two bytes of a file into a struct of some hundred bytes, so fields are
-//! counted first.
+//! Fields are counted first: the parser can turn two bytes into a struct of hundreds of bytes.
 
 use super::NetworkError;
 
-/// Largest file, bytes.
+/// Maximum size of a file, bytes.
 pub(super) const FILE_BYTES_MAX: usize = 64 << 20;
-/// Maximum number of fields in a file, including the elements of shapes and attributes but not
+/// Maximum number of fields in a file, with the elements of shapes and attributes but without
 /// weights.
 pub(super) const FIELDS_MAX: usize = 100_000;
-/// Maximum number of weights as laid out for evaluation.
+/// Maximum number of weights in evaluation layout.
 pub(super) const PARAMETERS_MAX: usize = 10_000_000;
-/// Maximum number of values computed in an evaluation.
+/// Maximum number of values computed per evaluation.
 pub(super) const VALUES_MAX: usize = 1_000_000;
-/// Maximum number of multiplications by weights in an evaluation.
+/// Maximum number of multiplications by weights per evaluation.
 pub(super) const PRODUCTS_MAX: usize = 100_000_000;
 /// Maximum number of dimensions of a tensor.
 pub(super) const RANK_MAX: usize = 8;
 
-/// Returns `found`, unless it is more than `max`.
+/// Returns `found` unless it exceeds `max`.
 pub(super) fn at_most(what: &str, found: Option<usize>, max: usize) -> Result<usize, NetworkError> {
     let found = found.unwrap_or(usize::MAX);
     if found > max {
@@ -28,7 +27,7 @@ pub(super) fn at_most(what: &str, found: Option<usize>, max: usize) -> Result<us
     Ok(found)
 }
 
-/// The messages with repeated fields.
+/// Messages with repeated fields.
 #[derive(Clone, Copy)]
 enum Kind {
     Model,
@@ -42,17 +41,15 @@ enum Kind {
     Shape,
 }
 
-/// The content of a field's bytes.
 enum Content {
-    /// A message with fields of its own.
     Message(Kind),
-    /// Consecutive numbers of at least a byte each.
+    /// Consecutive numbers of at least one byte each.
     Integers,
-    /// Content that takes about the same memory as in the file.
+    /// Takes about the same memory as in the file.
     Plain,
 }
 
-/// The content of field `number` of a message, as in `proto.rs`.
+/// The content of a message's field `number`, as in `proto.rs`.
 fn content(kind: Kind, number: u64) -> Content {
     match (kind, number) {
         (Kind::Model, 7) => Content::Message(Kind::Graph),
@@ -68,14 +65,13 @@ fn content(kind: Kind, number: u64) -> Content {
     }
 }
 
-/// Rejects a file that is too long, has too many fields, or whose fields are not properly nested.
+/// Rejects files that are too long, have too many fields, or have badly nested fields.
 pub(super) fn check(file: &[u8]) -> Result<(), NetworkError> {
     at_most("bytes of the file", Some(file.len()), FILE_BYTES_MAX)?;
     let mut fields = Fields { file, at: 0, count: 0 };
     fields.walk(Kind::Model, file.len())
 }
 
-/// The state of walking through fields.
 struct Fields<'a> {
     file: &'a [u8],
     at: usize,
@@ -83,8 +79,8 @@ struct Fields<'a> {
 }
 
 impl Fields<'_> {
-    /// Walks through a message that ends at `end`. The message tree, and so the recursion, is a few
-    /// levels deep.
+    /// Walks through a message up to `end`. Messages, and so the recursion, nest only a few levels
+    /// deep.
     fn walk(&mut self, kind: Kind, end: usize) -> Result<(), NetworkError> {
         while self.at < end {
             let begin = self.at;
@@ -120,16 +116,15 @@ impl Fields<'_> {
         Ok(())
     }
 
-    /// The end of a field of this length.
     fn end_of(&self, length: u64, end: usize) -> Result<usize, NetworkError> {
         let left = end - self.at;
         match usize::try_from(length) {
             Ok(length) if length <= left => Ok(self.at + length),
-            _ => Err(self.wrong(format!("a field of {length} bytes where {left} are left"))),
+            _ => Err(self.wrong(format!("a field of {length} bytes with {left} bytes remaining"))),
         }
     }
 
-    /// A varint: 7 bits per byte, lowest first, ending with a byte whose highest bit is clear.
+    /// A varint: 7 bits per byte, lowest first. The last byte has its highest bit clear.
     fn varint(&mut self, end: usize) -> Result<u64, NetworkError> {
         let mut number = 0;
         for (i, byte) in self.file[self.at..end].iter().take(10).enumerate() {
@@ -139,7 +134,7 @@ impl Fields<'_> {
                 return Ok(number);
             }
         }
-        Err(self.wrong("a number without an end".to_owned()))
+        Err(self.wrong("an unterminated number".to_owned()))
     }
 
     fn wrong(&self, found: String) -> NetworkError {

@@ -1,4 +1,4 @@
-//! Layers of weights: MatMul and Gemm with constant weights.
+//! MatMul and Gemm with constant weights.
 
 use super::NetworkError;
 use super::error::shape_text;
@@ -6,18 +6,18 @@ use super::node::Node;
 use super::plan::{Planner, Row, Value, floats};
 use super::step::Step;
 
-/// Number of outputs summed in parallel: their sums stay in registers.
+/// Outputs summed in parallel, in registers.
 const LANES: usize = 16;
 
-/// A matrix of weights and a bias, laid out for evaluation.
+/// A weight matrix and a bias, laid out for evaluation.
 ///
-/// Each output is `bias + x[0] w[0] + x[1] w[1] + …`, one product added after the other in this
-/// order, each rounded twice. Only different outputs are computed in parallel, so the register
+/// Each output is `bias + x[0] w[0] + x[1] w[1] + …`. Products are added one by one in this order,
+/// and each is rounded twice. Only different outputs are computed in parallel, so the register
 /// width does not affect the result.
 pub(super) struct Linear {
     inputs: usize,
     outputs: usize,
-    /// By group of outputs and by input, the weights of the group.
+    /// A group's weights, by group of outputs and by input.
     weights: Vec<[f32; LANES]>,
     /// By group of outputs.
     biases: Vec<[f32; LANES]>,
@@ -41,7 +41,6 @@ impl Linear {
         }
     }
 
-    /// Computes each row of the output from the same row of the input.
     pub(super) fn apply(&self, input: &[f32], output: &mut [f32]) {
         for (from, to) in input.chunks_exact(self.inputs).zip(output.chunks_exact_mut(self.outputs)) {
             let groups = self.weights.chunks_exact(self.inputs).zip(&self.biases);
@@ -74,7 +73,7 @@ pub(super) fn mat_mul(planner: &mut Planner, node: &Node) -> Result<Value, Netwo
     add(planner, input, (inputs, outputs), |input, output| weights[input * outputs + output], None)
 }
 
-/// Plans `Gemm`: alpha times the input times constant weights, plus beta times a constant bias.
+/// Plans `Gemm`: alpha · input · weights + beta · bias, with constant weights and bias.
 pub(super) fn gemm(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
     if node.integer("transA", 0)? != 0 {
         return Err(node.wrong("transA = 1", "transA = 0"));
@@ -100,14 +99,14 @@ pub(super) fn gemm(planner: &mut Planner, node: &Node) -> Result<Value, NetworkE
     add(planner, input, (inputs, outputs), weight, bias)
 }
 
-/// The bias of a `Gemm`: one number for each output, or one for all.
+/// The bias of a `Gemm`: one per output, or one for all.
 fn bias(planner: &Planner, node: &Node, outputs: usize, beta: f32) -> Result<Vec<f32>, NetworkError> {
     let tensor = planner.constant(node, 2)?;
     let numbers = floats(node, 2, &tensor)?;
     let last = tensor.shape.last().copied().unwrap_or(1);
     if tensor.shape.len() > 2 || last != numbers.len() || !(numbers.len() == outputs || numbers.len() == 1) {
         let found = format!("{} as input 2", shape_text(&tensor.shape));
-        return Err(node.wrong(found, format!("one bias, or {outputs}: one for each output")));
+        return Err(node.wrong(found, format!("one bias, or {outputs}, one per output")));
     }
     Ok((0..outputs).map(|output| beta * numbers[output % numbers.len()]).collect())
 }
@@ -120,17 +119,16 @@ fn matrix(node: &Node, shape: &[usize]) -> Result<(usize, usize), NetworkError> 
     }
 }
 
-/// Rejects an input whose row size differs from that of the weights.
+/// Rejects an input whose row size does not match the weights.
 fn check_rows(node: &Node, input: &Row, (inputs, outputs): (usize, usize)) -> Result<(), NetworkError> {
     if input.shape.last() == Some(&inputs) {
         return Ok(());
     }
-    let found = format!("{} before {inputs} x {outputs} weights", shape_text(&input.shape));
+    let found = format!("{} with {inputs} x {outputs} weights", shape_text(&input.shape));
     Err(node.wrong(found, format!("rows of {inputs} numbers")))
 }
 
-/// Adds a layer of `inputs` by `outputs` weights to the plan; the rows of its input have `inputs`
-/// values.
+/// Adds a layer of `inputs` by `outputs` weights to the plan.
 fn add(
     planner: &mut Planner,
     input: Row,

@@ -1,4 +1,4 @@
-//! A node of a graph with its attributes and its error messages.
+//! A node of a graph: its attributes and its errors.
 
 use super::NetworkError;
 use super::error::shown;
@@ -11,23 +11,21 @@ const TENSOR: i32 = 4;
 const FLOATS: i32 = 6;
 const INTS: i32 = 7;
 
-/// A node of a graph.
 pub(super) struct Node<'a> {
     pub(super) proto: &'a NodeProto,
-    /// The operator's name in the operator table.
+    /// The operator's name, as in the operator table.
     pub(super) operator: &'static str,
-    /// The version of the operator set that defines its meaning.
+    /// The version of the operator set.
     pub(super) version: i64,
 }
 
 impl<'a> Node<'a> {
-    /// An error about this node.
     pub(super) fn wrong(&self, found: impl Into<String>, expected: impl Into<String>) -> NetworkError {
         let (found, expected) = (found.into(), expected.into());
         NetworkError::Node { node: name(self.proto), operator: self.operator, found, expected }
     }
 
-    /// The name of input `index`, if the node has it.
+    /// The name of input `index`, if any.
     pub(super) fn input(&self, index: usize) -> Option<&'a str> {
         self.proto.input.get(index).map(String::as_str).filter(|name| !name.is_empty())
     }
@@ -61,7 +59,6 @@ impl<'a> Node<'a> {
         Ok(self.attribute(name, FLOATS, "a list of numbers")?.map(|attribute| attribute.floats.as_slice()))
     }
 
-    /// An attribute that holds a tensor.
     pub(super) fn tensor(&self, name: &str) -> Result<Option<&'a AttributeProto>, NetworkError> {
         self.attribute(name, TENSOR, "a tensor")
     }
@@ -72,7 +69,7 @@ impl<'a> Node<'a> {
 
     fn attribute(&self, name: &str, code: i32, expected: &str) -> Result<Option<&'a AttributeProto>, NetworkError> {
         let attribute = self.proto.attribute.iter().find(|attribute| attribute.name == name);
-        // Files of the first version have no codes.
+        // Files of the first version lack type codes.
         match attribute {
             Some(other) if other.r#type != code && other.r#type != 0 => {
                 Err(self.wrong(format!("the attribute {name} of type {}", other.r#type), expected))
@@ -91,7 +88,7 @@ impl<'a> Node<'a> {
     }
 }
 
-/// A node's name, or its output's if it has none.
+/// A node's name or, without one, its output's.
 pub(super) fn name(proto: &NodeProto) -> String {
     let names = [Some(&proto.name), proto.output.first()];
     shown(names.into_iter().flatten().find(|name| !name.is_empty()).map_or("unnamed", String::as_str))

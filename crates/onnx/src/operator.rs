@@ -1,4 +1,4 @@
-//! The supported ONNX operators, with the function that plans each.
+//! The supported ONNX operators and the functions that plan them.
 
 use super::NetworkError;
 use super::arrangement;
@@ -9,18 +9,15 @@ use super::plan::{Planner, Value};
 use super::row;
 use std::ops::RangeInclusive;
 
-/// An operator of ONNX.
 pub(super) struct Operator {
     pub(super) name: &'static str,
-    /// The attributes that are supported, or have no effect here.
+    /// Attributes that are supported or have no effect here.
     pub(super) attributes: &'static [&'static str],
-    /// The allowed number of inputs.
     pub(super) inputs: RangeInclusive<usize>,
-    /// Plans a node with this operator.
     pub(super) plan: fn(&mut Planner, &Node) -> Result<Value, NetworkError>,
 }
 
-/// All operators, by name. <https://onnx.ai/onnx/operators/> defines each.
+/// All supported operators, by name; defined at <https://onnx.ai/onnx/operators/>.
 pub(super) const OPERATORS: [Operator; 25] = [
     operator("Add", &[], 2..=2, |planner, node| elementwise::binary(planner, node, Operation::Add)),
     operator("ArgMax", &["axis", "keepdims", "select_last_index"], 1..=1, row::arg_max),

@@ -1,4 +1,4 @@
-//! A multilayer perceptron from a trainer, written as an ONNX file.
+//! Writes a multilayer perceptron from a trainer as an ONNX file.
 
 use super::proto::{
     AttributeProto, DimensionProto, FLOAT, GraphProto, ModelProto, NodeProto, OperatorSetIdProto,
@@ -8,23 +8,22 @@ use super::{Network, NetworkError};
 use prost::Message;
 use std::collections::BTreeMap;
 
-/// The versions of the format and of the operators in written files: those of ONNX 1.12, which all
-/// runtimes read.
+/// Format and operator set versions of written files: those of ONNX 1.12, which all runtimes read.
 const IR_VERSION: i64 = 8;
 const OPERATORS_VERSION: i64 = 17;
 
-/// Dense layers with one activation between them, and one or more outputs.
+/// Dense layers with one activation between them and at least one output.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Perceptron {
     /// The input's name.
     pub input: String,
-    /// Normalisation of the input before the first layer, if any.
+    /// Normalisation of the input, if any.
     pub normalisation: Option<Normalisation>,
     /// The hidden layers, each followed by the activation.
     pub hidden: Vec<Layer>,
     /// The activation after each hidden layer.
     pub activation: Activation,
-    /// The outputs, each a layer after the last hidden one.
+    /// The outputs, each a layer after the last hidden layer.
     pub heads: Vec<Head>,
     /// The activation after each output, if any.
     pub end: Option<Activation>,
@@ -35,22 +34,22 @@ pub struct Perceptron {
 /// Subtracts a mean from each input value and multiplies by a scale.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Normalisation {
-    /// The means, one for each input value.
+    /// One mean per input value.
     pub mean: Vec<f32>,
-    /// The scales: reciprocal standard deviations.
+    /// One scale per input value: the reciprocal standard deviation.
     pub scale: Vec<f32>,
 }
 
-/// A dense layer: each output is its bias plus the weighted sum of all inputs.
+/// A dense layer: each output is a bias plus a weighted sum of the inputs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layer {
-    /// The number of inputs.
+    /// Number of inputs.
     pub inputs: usize,
-    /// The number of outputs.
+    /// Number of outputs.
     pub outputs: usize,
     /// `outputs` rows of `inputs` weights, as in PyTorch.
     pub weights: Vec<f32>,
-    /// One bias for each output.
+    /// One bias per output.
     pub biases: Vec<f32>,
 }
 
@@ -82,10 +81,10 @@ impl Activation {
 }
 
 impl Perceptron {
-    /// The bytes of an ONNX file. The same perceptron always gives the same bytes.
+    /// This perceptron as an ONNX file; always the same bytes for the same perceptron.
     ///
     /// # Errors
-    /// If sizes do not match, a number is not finite, or [`Network::read`] would reject the file
+    /// If sizes do not match, a number is non-finite, or [`Network::read`] would reject the file
     /// for another reason.
     pub fn onnx(&self) -> Result<Vec<u8>, NetworkError> {
         let first = self.hidden.first().or_else(|| self.heads.first().map(|head| &head.layer));
@@ -122,13 +121,12 @@ impl Perceptron {
             metadata_props: self.metadata.iter().map(entry).collect(),
         };
         let bytes = model.encode_to_vec();
-        // All faults of a file are checked in one place.
+        // A single place checks files for all faults.
         Network::read(&bytes)?;
         Ok(bytes)
     }
 }
 
-/// Adds a dense layer to a graph.
 fn dense(graph: &mut GraphProto, name: &str, layer: &Layer, input: &str, output: &str) {
     let [weight, bias] = ["weight", "bias"].map(|part| format!("{name}.{part}"));
     graph.initializer.push(tensor(&weight, &[layer.outputs, layer.inputs], &layer.weights));

@@ -1,4 +1,4 @@
-//! The plan of a network: the place of each number, and the steps that compute them.
+//! The plan of a network: the place of every number, and the steps that compute them.
 
 use super::NetworkError;
 use super::Port;
@@ -10,27 +10,25 @@ use super::tensor::{Numbers, Tensor, product};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// The constant parts of a network.
+/// The constant part of a network.
 pub(super) struct Plan {
     pub(super) inputs: Vec<Port>,
     pub(super) outputs: Vec<Port>,
     pub(super) input_size: usize,
-    /// The places of the outputs.
     pub(super) places: Vec<Range<usize>>,
     pub(super) steps: Vec<Step>,
     pub(super) metadata: BTreeMap<String, String>,
     pub(super) digest: u128,
 }
 
-/// The type of a value's numbers.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Element {
     Float,
-    /// An integer of up to 24 bits, stored as a float: indices.
+    /// An integer of up to 24 bits stored as a float: an index.
     Integer,
 }
 
-/// Computed numbers and their place.
+/// Computed numbers, with their place among all values.
 #[derive(Clone)]
 pub(super) struct Row {
     pub(super) place: Range<usize>,
@@ -38,14 +36,14 @@ pub(super) struct Row {
     pub(super) element: Element,
 }
 
-/// The value of a name in the graph.
+/// The value of a name in a graph.
 #[derive(Clone)]
 pub(super) enum Value {
     Constant(Tensor),
     Computed(Row),
 }
 
-/// A plan under construction, node by node.
+/// A plan under construction.
 #[derive(Default)]
 pub(super) struct Planner {
     known: BTreeMap<String, Value>,
@@ -58,7 +56,7 @@ pub(super) struct Planner {
 }
 
 impl Planner {
-    /// Assigns a name its value. Each name has one.
+    /// Assigns a value to a name that has none yet.
     pub(super) fn define(&mut self, name: &str, value: Value) -> Result<(), NetworkError> {
         if self.known.contains_key(name) {
             return Err(NetworkError::tensor(name, "a second definition", "each name defined once"));
@@ -67,23 +65,21 @@ impl Planner {
         Ok(())
     }
 
-    /// Input `index` of a node.
     pub(super) fn value(&self, node: &Node, index: usize) -> Result<Value, NetworkError> {
         let Some(name) = node.input(index) else {
-            return Err(node.wrong(format!("no input {index}"), "one"));
+            return Err(node.wrong(format!("no input {index}"), "an input"));
         };
         let value = self.known.get(name).cloned();
-        // In a valid file, nodes come after those whose outputs they use, so this also rejects
-        // cycles.
+        // Valid files list nodes after those whose outputs they use, so this also rejects cycles.
         let expected = "an input of the graph, an initializer, or the output of an earlier node";
-        value.ok_or_else(|| node.wrong(format!("the input `{}`, which is none of these", shown(name)), expected))
+        value.ok_or_else(|| node.wrong(format!("the undefined input `{}`", shown(name)), expected))
     }
 
-    /// Input `index` of a node, as floats that steps can read.
+    /// Input `index` of a node as floats that steps can read.
     pub(super) fn row(&mut self, node: &Node, index: usize) -> Result<Row, NetworkError> {
         let tensor = match self.value(node, index)? {
             Value::Computed(Row { element: Element::Integer, .. }) => {
-                return Err(node.wrong(format!("integers as input {index}"), "FLOAT numbers: a Cast before it"));
+                return Err(node.wrong(format!("integers as input {index}"), "FLOAT numbers; add a Cast before it"));
             }
             Value::Computed(row) => return Ok(row),
             Value::Constant(tensor) => tensor,
@@ -92,7 +88,7 @@ impl Planner {
         Ok(Row { place, shape: tensor.shape, element: Element::Float })
     }
 
-    /// The place of the constant with this name among the values.
+    /// The place of this constant among the values.
     pub(super) fn place(&mut self, name: &str, floats: &[f32]) -> Result<Range<usize>, NetworkError> {
         if let Some(place) = self.placed.get(name) {
             return Ok(place.clone());
@@ -103,17 +99,15 @@ impl Planner {
         Ok(place)
     }
 
-    /// Input `index` of a node, which must be constant: weights.
+    /// Input `index` of a node, which must be constant.
     pub(super) fn constant(&self, node: &Node, index: usize) -> Result<Tensor, NetworkError> {
         match self.value(node, index)? {
             Value::Constant(tensor) => Ok(tensor),
-            Value::Computed(_) => {
-                Err(node.wrong(format!("input {index} worked out by the network"), "a constant: an initializer"))
-            }
+            Value::Computed(_) => Err(node.wrong(format!("a computed input {index}"), "a constant (initializer)")),
         }
     }
 
-    /// Input `index` of a node as constant integers, if it has that input.
+    /// Input `index` of a node as constant integers, if any.
     pub(super) fn integers(&self, node: &Node, index: usize) -> Result<Option<Vec<i64>>, NetworkError> {
         if node.input(index).is_none() {
             return Ok(None);
@@ -128,7 +122,7 @@ impl Planner {
         }
     }
 
-    /// Input `index` of a node as a single constant number, if it has that input.
+    /// Input `index` of a node as a single constant number, if any.
     pub(super) fn scalar(&self, node: &Node, index: usize) -> Result<Option<f32>, NetworkError> {
         if node.input(index).is_none() {
             return Ok(None);
@@ -136,7 +130,7 @@ impl Planner {
         let tensor = self.constant(node, index)?;
         match floats(node, index, &tensor)? {
             [number] => Ok(Some(*number)),
-            several => Err(node.wrong(format!("{} numbers as input {index}", several.len()), "a single one")),
+            several => Err(node.wrong(format!("{} numbers as input {index}", several.len()), "a single number")),
         }
     }
 
@@ -154,7 +148,7 @@ impl Planner {
         Ok(start..end)
     }
 
-    /// Counts weights, each of which is multiplied by `rows` numbers.
+    /// Counts weights, each multiplied by `rows` numbers.
     pub(super) fn count_weights(&mut self, weights: Option<usize>, rows: usize) -> Result<(), NetworkError> {
         let parameters = weights.and_then(|weights| weights.checked_add(self.parameters));
         self.parameters = at_most("weights", parameters, PARAMETERS_MAX)?;
@@ -163,7 +157,7 @@ impl Planner {
         Ok(())
     }
 
-    /// The value of an output's name, as readable numbers.
+    /// The value of an output as numbers that can be read.
     pub(super) fn output(&mut self, name: &str) -> Result<Row, NetworkError> {
         match self.known.get(name).cloned() {
             Some(Value::Computed(row)) => Ok(row),
@@ -171,7 +165,7 @@ impl Planner {
                 Numbers::Floats(floats) => Ok(Row { place: self.place(name, floats)?, shape, element: Element::Float }),
                 Numbers::Integers(_) => Err(NetworkError::tensor(name, "constant integers as an output", "floats")),
             },
-            None => Err(NetworkError::tensor(name, "an output that no node has", "the output of a node")),
+            None => Err(NetworkError::tensor(name, "an output that no node computes", "the output of a node")),
         }
     }
 }

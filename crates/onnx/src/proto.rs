@@ -1,11 +1,11 @@
-//! The messages of an ONNX file, as far as a network needs them.
+//! The messages of an ONNX file that a network needs.
 //!
-//! Names and numbers of fields are those of `onnx.proto` (ONNX 1.16; they never change). Undeclared
-//! fields are skipped when reading. `limit.rs` has the same tree.
+//! Names and numbers of fields are from `onnx.proto` (ONNX 1.16) and never change. Readers skip
+//! undeclared fields. `limit.rs` has the same tree.
 
 use prost::Message;
 
-/// The element type of evaluated numbers: `TensorProto.DataType.FLOAT`.
+/// `TensorProto.DataType.FLOAT`, the only element type evaluated.
 pub(super) const FLOAT: i32 = 1;
 /// `TensorProto.DataType.INT32`.
 pub(super) const INT32: i32 = 6;
@@ -16,7 +16,7 @@ pub(super) const DOUBLE: i32 = 11;
 /// `TensorProto.DataLocation.EXTERNAL`.
 pub(super) const EXTERNAL: i32 = 1;
 
-/// The names of `TensorProto.DataType`, by number.
+/// Names by `TensorProto.DataType` number.
 const DATA_TYPES: [&str; 17] = [
     "UNDEFINED",
     "FLOAT",
@@ -37,7 +37,7 @@ const DATA_TYPES: [&str; 17] = [
     "BFLOAT16",
 ];
 
-/// The name of an element type, or its number.
+/// The name of an element type or, for unknown types, its number.
 pub(super) fn data_type_name(data_type: i64) -> String {
     let known = usize::try_from(data_type).ok().and_then(|i| DATA_TYPES.get(i));
     known.map_or_else(|| format!("element type {data_type}"), |name| format!("{name} numbers"))
@@ -123,7 +123,7 @@ pub(super) struct AttributeProto {
 
 #[derive(Clone, PartialEq, Message)]
 pub(super) struct TensorProto {
-    // Not packed, according to the specification.
+    // The specification forbids packing here.
     #[prost(int64, repeated, packed = "false", tag = "1")]
     pub(super) dims: Vec<i64>,
     #[prost(int32, tag = "2")]

@@ -1,4 +1,4 @@
-//! Converts the bytes of an ONNX file to the plan of a network.
+//! Converts an ONNX file to the plan of a network.
 
 use super::error::{shape_text, shown};
 use super::limit::{self, PARAMETERS_MAX, RANK_MAX, at_most};
@@ -13,20 +13,18 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::{Range, RangeInclusive};
 use xxhash_rust::xxh3::xxh3_128;
 
-/// The operator set versions with the semantics implemented here. Before 7, attributes controlled
-/// broadcasting. The last is that of ONNX 1.23; later ones are unknown.
+/// Operator set versions with the semantics implemented here. Before 7, attributes controlled
+/// broadcasting. The last is from ONNX 1.23; later semantics are unknown.
 const VERSIONS: RangeInclusive<i64> = 7..=28;
 
-/// The types that outputs may declare. Indices are output as floats regardless.
+/// Allowed types of outputs. Indices are output as floats regardless.
 const OUTPUT_TYPES: [i32; 3] = [proto::FLOAT, proto::INT32, proto::INT64];
 
-/// Reads a file. Returns its plan, and the values before the first evaluation.
+/// Reads a file. Returns its plan and the values before the first evaluation.
 pub(super) fn read(file: &[u8]) -> Result<(Plan, Vec<f32>), NetworkError> {
     limit::check(file)?;
-    let model = ModelProto::decode(file).map_err(|_| NetworkError::NotOnnx {
-        byte: 0,
-        found: "a message whose fields are not those of a ModelProto".to_owned(),
-    })?;
+    let model = ModelProto::decode(file)
+        .map_err(|_| NetworkError::NotOnnx { byte: 0, found: "a message that is not a ModelProto".to_owned() })?;
     let Some(graph) = &model.graph else {
         return Err(NetworkError::NotOnnx { byte: 0, found: "a message without a graph".to_owned() });
     };
@@ -44,7 +42,7 @@ pub(super) fn read(file: &[u8]) -> Result<(Plan, Vec<f32>), NetworkError> {
     Ok((Plan { inputs, outputs, input_size, places, steps, metadata, digest: xxh3_128(file) }, values))
 }
 
-/// The version of ONNX's own operators.
+/// The version of ONNX's own operator set.
 fn version(model: &ModelProto) -> Result<i64, NetworkError> {
     let own = model.opset_import.iter().find(|set| is_own(&set.domain));
     let allowed = format!("version {} to {}", VERSIONS.start(), VERSIONS.end());
@@ -64,14 +62,14 @@ fn metadata(model: &ModelProto) -> Result<BTreeMap<String, String>, NetworkError
     let mut metadata = BTreeMap::new();
     for entry in &model.metadata_props {
         if metadata.insert(entry.key.clone(), entry.value.clone()).is_some() {
-            let found = format!("two entries `{}` in its metadata", shown(&entry.key));
-            return Err(NetworkError::model(found, "one of each key"));
+            let found = format!("two metadata entries `{}`", shown(&entry.key));
+            return Err(NetworkError::model(found, "unique keys"));
         }
     }
     Ok(metadata)
 }
 
-/// Lays out the inputs of the graph. Files of the first versions also list initializers there.
+/// Lays out the graph's inputs. Files of early versions list initializers among them.
 fn inputs(planner: &mut Planner, graph: &GraphProto) -> Result<Vec<Port>, NetworkError> {
     let constants: BTreeSet<&str> = graph.initializer.iter().map(|tensor| tensor.name.as_str()).collect();
     let mut ports = vec![];
@@ -84,7 +82,7 @@ fn inputs(planner: &mut Planner, graph: &GraphProto) -> Result<Vec<Port>, Networ
             return Err(NetworkError::tensor(&info.name, shape_text(&shape), "dimensions of 1 or more"));
         }
         if shape.len() > 1 && shape[0] != 1 {
-            let expected = "a first dimension (the batch) of 1, or without a number";
+            let expected = "a first dimension (the batch) of 1 or without a size";
             return Err(NetworkError::tensor(&info.name, shape_text(&shape), expected));
         }
         let row = planner.new_row(shape)?;
@@ -97,11 +95,11 @@ fn inputs(planner: &mut Planner, graph: &GraphProto) -> Result<Vec<Port>, Networ
     Ok(ports)
 }
 
-/// The dimensions that a file declares, if any; the first one may lack a size.
+/// The declared dimensions, if any. The first may lack a size.
 fn shape(info: &ValueInfoProto, allowed: &[i32]) -> Result<Option<Vec<Option<usize>>>, NetworkError> {
     let wrong = |found: String, expected: &str| Err(NetworkError::tensor(&info.name, found, expected));
     let Some(tensor) = info.r#type.as_ref().and_then(|r#type| r#type.tensor_type.as_ref()) else {
-        return wrong("something without the type of a tensor".to_owned(), "a tensor of FLOAT numbers");
+        return wrong("something that is not a tensor".to_owned(), "a tensor of FLOAT numbers");
     };
     if !allowed.contains(&tensor.elem_type) {
         return wrong(data_type_name(tensor.elem_type.into()), "FLOAT numbers");
@@ -119,8 +117,8 @@ fn shape(info: &ValueInfoProto, allowed: &[i32]) -> Result<Option<Vec<Option<usi
             },
             None if i == 0 => dims.push(None),
             None => {
-                let found = format!("dimension {i} without a number (`{}`)", shown(dim.dim_param()));
-                return wrong(found, "a number in each dimension but the first");
+                let found = format!("dimension {i} without a size (`{}`)", shown(dim.dim_param()));
+                return wrong(found, "a size for every dimension except the first");
             }
         }
     }
@@ -138,7 +136,6 @@ fn constants(planner: &mut Planner, graph: &GraphProto) -> Result<(), NetworkErr
     Ok(())
 }
 
-/// Adds a node to the plan.
 fn add(planner: &mut Planner, proto: &NodeProto, version: i64) -> Result<(), NetworkError> {
     let known = OPERATORS.iter().find(|operator| operator.name == proto.op_type && is_own(&proto.domain));
     let Some(operator) = known else {
@@ -154,7 +151,8 @@ fn add(planner: &mut Planner, proto: &NodeProto, version: i64) -> Result<(), Net
     node.check_attributes(operator.attributes)?;
     if !operator.inputs.contains(&proto.input.len()) {
         let (least, most) = (operator.inputs.start(), operator.inputs.end());
-        return Err(node.wrong(format!("{} inputs", proto.input.len()), format!("{least} to {most}")));
+        let expected = if least == most { least.to_string() } else { format!("{least} to {most}") };
+        return Err(node.wrong(format!("{} inputs", proto.input.len()), expected));
     }
     let [output] = proto.output.as_slice() else {
         return Err(node.wrong(format!("{} outputs", proto.output.len()), "one"));
@@ -163,7 +161,7 @@ fn add(planner: &mut Planner, proto: &NodeProto, version: i64) -> Result<(), Net
     planner.define(output, value)
 }
 
-/// The outputs of the graph and their places.
+/// The graph's outputs and their places.
 fn outputs(planner: &mut Planner, graph: &GraphProto) -> Result<Vec<(Port, Range<usize>)>, NetworkError> {
     let mut names = BTreeSet::new();
     let mut outputs = vec![];

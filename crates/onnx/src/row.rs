@@ -8,14 +8,13 @@ use super::plan::{Element, Planner, Value};
 use super::step::Step;
 use super::tensor::product;
 
-/// The form of probabilities.
 #[derive(Clone, Copy)]
 pub(super) enum Scale {
     Linear,
     Logarithmic,
 }
 
-/// Which of several equal maxima counts.
+/// Which one of several equal maxima is chosen.
 #[derive(Clone, Copy)]
 pub(super) enum Tie {
     First,
@@ -25,7 +24,7 @@ pub(super) enum Tie {
 /// Plans `Softmax` and `LogSoftmax`.
 pub(super) fn softmax(planner: &mut Planner, node: &Node, scale: Scale) -> Result<Value, NetworkError> {
     let input = planner.row(node, 0)?;
-    // Before version 13 the dimensions from the axis on are merged into one.
+    // Before version 13, the dimensions from the axis on count as one.
     let (default, is_flattened) = if node.version < 13 { (1, true) } else { (-1, false) };
     let axis = node.axis(node.integer("axis", default)?, input.shape.len())?;
     if !is_flattened {
@@ -37,7 +36,6 @@ pub(super) fn softmax(planner: &mut Planner, node: &Node, scale: Scale) -> Resul
     Ok(Value::Computed(output))
 }
 
-/// Plans `ArgMax`.
 pub(super) fn arg_max(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
     let input = planner.row(node, 0)?;
     let axis = node.axis(node.integer("axis", 0)?, input.shape.len())?;
@@ -64,7 +62,7 @@ fn check_is_last(node: &Node, shape: &[usize], axis: usize) -> Result<(), Networ
 }
 
 impl Scale {
-    /// Softmax of each row's logits. The maximum is subtracted first, to prevent overflow.
+    /// Softmax of each row. The maximum is subtracted first to prevent overflow.
     pub(super) fn apply(self, row_size: usize, input: &[f32], output: &mut [f32]) {
         for (to, from) in output.chunks_exact_mut(row_size).zip(input.chunks_exact(row_size)) {
             let greatest = from.iter().fold(f32::NEG_INFINITY, |greatest, x| if *x > greatest { *x } else { greatest });
@@ -85,7 +83,7 @@ impl Scale {
 }
 
 impl Tie {
-    /// The index of the maximum of each row, as a float. NaN is never the maximum.
+    /// The index of each row's maximum, as a float. NaN is never the maximum.
     pub(super) fn apply(self, row_size: usize, input: &[f32], output: &mut [f32]) {
         for (to, from) in output.iter_mut().zip(input.chunks_exact(row_size)) {
             let mut best = (f32::NEG_INFINITY, 0);

@@ -1,11 +1,11 @@
-//! One step of an evaluation: reads some of the values, and writes others after them.
+//! One step of an evaluation: reads some values and writes others after them.
 
 use super::elementwise::{Function, Operation};
 use super::linear::Linear;
 use super::row::{Scale, Tie};
 use std::ops::Range;
 
-/// A step. Its output comes after all its inputs.
+/// The output always comes after the inputs.
 pub(super) enum Step {
     Function { function: Function, input: Range<usize>, output: Range<usize> },
     Binary { operation: Operation, left: Range<usize>, right: Range<usize>, output: Range<usize> },
@@ -17,11 +17,9 @@ pub(super) enum Step {
 
 /// Blocks of numbers at regular intervals.
 pub(super) struct Blocks {
-    /// The number of blocks.
     pub(super) count: usize,
-    /// Numbers per block.
     pub(super) size: usize,
-    /// Offset of the first block and distance between blocks, in the input.
+    /// Offset of the first block, and distance between blocks, in the input.
     pub(super) from: (usize, usize),
     /// The same in the output.
     pub(super) to: (usize, usize),

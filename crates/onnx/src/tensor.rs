@@ -1,4 +1,4 @@
-//! A constant of a network: weights, or integers such as shapes.
+//! A constant of a network: weights, or integers such as a shape.
 
 use super::error::shape_text;
 use super::limit::{PARAMETERS_MAX, RANK_MAX, at_most};
@@ -6,15 +6,14 @@ use super::proto::{DOUBLE, EXTERNAL, FLOAT, INT32, INT64, TensorProto, data_type
 use super::{NetworkError, error};
 use std::rc::Rc;
 
-/// Numbers with a shape, the last dimension varying fastest.
+/// Numbers with a shape; the last dimension varies fastest.
 #[derive(Clone)]
 pub(super) struct Tensor {
     pub(super) shape: Vec<usize>,
-    /// Shared between tensors with the same numbers in different shapes.
+    /// Shared by tensors with the same numbers in other shapes.
     pub(super) numbers: Rc<Numbers>,
 }
 
-/// The numbers of a tensor.
 pub(super) enum Numbers {
     /// Finite floats.
     Floats(Vec<f32>),
@@ -26,7 +25,7 @@ impl Tensor {
         Tensor { shape, numbers: Rc::new(numbers) }
     }
 
-    /// Reads a tensor of a file; messages use `name`.
+    /// Reads a tensor. `name` appears in errors.
     pub(super) fn read(proto: &TensorProto, name: &str) -> Result<Tensor, NetworkError> {
         if proto.data_location == EXTERNAL || !proto.external_data.is_empty() {
             return Err(NetworkError::ExternalData { tensor: error::shown(name) });
@@ -66,7 +65,7 @@ impl Tensor {
             return Err(NetworkError::tensor(
                 name,
                 "a number that is NaN or infinite in single precision",
-                "finite ones",
+                "finite numbers",
             ));
         }
         Ok(Tensor::new(shape, numbers))
@@ -79,19 +78,19 @@ impl Tensor {
         }
     }
 
-    /// The same numbers in another shape of equal size.
+    /// The same numbers in another shape of the same size.
     pub(super) fn reshaped(&self, shape: Vec<usize>) -> Tensor {
         Tensor { shape, numbers: Rc::clone(&self.numbers) }
     }
 }
 
-/// The number of elements of a shape, if it does not overflow.
+/// The size of a shape, unless it overflows.
 pub(super) fn product(shape: &[usize]) -> Option<usize> {
     // A zero dimension makes the product zero, however large the others are.
     if shape.contains(&0) { Some(0) } else { shape.iter().try_fold(1_usize, |all, dim| all.checked_mul(*dim)) }
 }
 
-/// The numbers of a tensor, from the raw data or else from the field of their type.
+/// The numbers of a tensor: its raw data, or the field of their type.
 fn listed<T: Copy, const SIZE: usize>(proto: &TensorProto, field: &[T], read: fn([u8; SIZE]) -> T) -> Vec<T> {
     match &proto.raw_data {
         Some(raw) => raw.as_chunks().0.iter().map(|bytes| read(*bytes)).collect(),
@@ -99,7 +98,7 @@ fn listed<T: Copy, const SIZE: usize>(proto: &TensorProto, field: &[T], read: fn
     }
 }
 
-/// Whether the raw data is a whole number of elements.
+/// Whether the raw data divides into whole elements.
 fn whole(proto: &TensorProto) -> bool {
     let size = if matches!(proto.data_type, DOUBLE | INT64) { 8 } else { 4 };
     proto.raw_data.as_ref().is_none_or(|raw| raw.len() % size == 0)

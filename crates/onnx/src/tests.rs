@@ -1,4 +1,4 @@
-//! Rejected files, each with its reason.
+//! Rejected files and the reasons reported.
 
 use super::Network;
 use super::proto::{
@@ -8,7 +8,7 @@ use super::proto::{
 };
 use prost::Message;
 
-/// The codes of `AttributeProto.AttributeType`.
+/// `AttributeProto.AttributeType`.
 const OF_FLOAT: i32 = 1;
 const OF_INTEGER: i32 = 2;
 
@@ -27,7 +27,7 @@ fn integer(name: &str, i: i64) -> AttributeProto {
     AttributeProto { name: name.to_owned(), i: Some(i), r#type: OF_INTEGER, ..AttributeProto::default() }
 }
 
-/// An input or output; a dimension of 0 has no size.
+/// An input or output. A dimension of 0 has no size.
 fn port(name: &str, dims: &[i64]) -> ValueInfoProto {
     let dim = |dim: &i64| DimensionProto { dim_value: Some(*dim).filter(|dim| *dim != 0), dim_param: None };
     let shape = Some(TensorShapeProto { dim: dims.iter().map(dim).collect() });
@@ -35,9 +35,8 @@ fn port(name: &str, dims: &[i64]) -> ValueInfoProto {
     ValueInfoProto { name: name.to_owned(), r#type: Some(TypeProto { tensor_type }) }
 }
 
-/// The graph of a model.
 fn graph(model: &mut ModelProto) -> &mut GraphProto {
-    model.graph.as_mut().expect("it has one")
+    model.graph.as_mut().expect("the model has a graph")
 }
 
 /// Two inputs, three outputs: `y = relu(x w + b)`.
@@ -69,7 +68,7 @@ fn with_node(model: &mut ModelProto, node: NodeProto) {
 
 #[test]
 fn the_sound_model_is_read() {
-    let mut network = Network::read(&sound().encode_to_vec()).expect("it is sound");
+    let mut network = Network::read(&sound().encode_to_vec()).expect("the model is valid");
     network.evaluate(&[1.0, 10.0]);
     assert_eq!(network.output(0), [0.0, 52.0, 163.0]);
 }
@@ -81,7 +80,7 @@ fn refuse(cases: &[(Change, &str)]) {
         let mut model = sound();
         change(&mut model);
         match Network::read(&model.encode_to_vec()) {
-            Ok(_) => panic!("read, expected {want:?}"),
+            Ok(_) => panic!("the file was read, expected {want:?}"),
             Err(error) => assert!(error.to_string().contains(want), "{error}\nexpected {want:?}"),
         }
     }
@@ -95,11 +94,11 @@ fn bytes_that_are_no_model_are_refused() {
         (b"", "not an ONNX file, or a damaged one: byte 0: a message without a graph"),
         (b"\x89HDF\r\n\x1a\n", "not an ONNX file"),
         (b"PK\x03\x04", "byte 2: a field of wire type 3"),
-        (&sound[..sound.len() - 1], "are left"),
-        (b"\xff\xff\xff\xff\xff\xff\xff\xff\xff\xff\xff", "byte 0: a number without an end"),
-        (b"\x3a\xff\xff\xff\xff\xff\xff\xff\xff\x7f", "a field of 9223372036854775807 bytes where 0 are left"),
+        (&sound[..sound.len() - 1], "bytes remaining"),
+        (b"\xff\xff\xff\xff\xff\xff\xff\xff\xff\xff\xff", "byte 0: an unterminated number"),
+        (b"\x3a\xff\xff\xff\xff\xff\xff\xff\xff\x7f", "a field of 9223372036854775807 bytes with 0 bytes remaining"),
         (b"\x3a\x00", "the model: found no version of the operators"),
-        (&too_long, "bytes of the file: found 67108865, allowed are at most 67108864"),
+        (&too_long, "bytes of the file: found 67108865, expected at most 67108864"),
     ];
     for (bytes, want) in cases {
         let error = Network::read(bytes).expect_err(want).to_string();
@@ -119,7 +118,7 @@ fn models_that_cannot_be_evaluated_are_refused() {
         (|m| graph(m).input.clear(), "the model: found no input, expected at least one"),
         (|m| graph(m).output.clear(), "the model: found no output, expected at least one"),
         (|m| graph(m).input[0] = port("x", &[4, 2]), "tensor `x`: found the shape 4 x 2, expected a first dimension"),
-        (|m| graph(m).input[0] = port("x", &[1, 0]), "tensor `x`: found dimension 1 without a number"),
+        (|m| graph(m).input[0] = port("x", &[1, 0]), "tensor `x`: found dimension 1 without a size"),
         (|m| graph(m).input[0] = port("x", &[1, -2]), "tensor `x`: found dimension 1 of -2"),
         (|m| graph(m).input[0] = port("x", &[1; 9]), "tensor `x`: found 9 dimensions, expected at most 8"),
         (|m| graph(m).input[0] = port("x", &[1, 1 << 40]), "numbers in an evaluation: found 1099511627776"),
@@ -127,8 +126,8 @@ fn models_that_cannot_be_evaluated_are_refused() {
             |m| graph(m).input[0] = port("x", &[1, i64::MAX, i64::MAX]),
             "numbers in an evaluation: found 18446744073709551615",
         ),
-        (|m| graph(m).input[0].r#type = None, "tensor `x`: found something without the type of a tensor"),
-        (|m| graph(m).output.push(port("z", &[0, 3])), "tensor `z`: found an output that no node has"),
+        (|m| graph(m).input[0].r#type = None, "tensor `x`: found something that is not a tensor"),
+        (|m| graph(m).output.push(port("z", &[0, 3])), "tensor `z`: found an output that no node computes"),
         (|m| graph(m).output.push(port("y", &[0, 3])), "tensor `y`: found an output named twice"),
         (
             |m| graph(m).output[0] = port("y", &[0, 4]),
@@ -136,7 +135,7 @@ fn models_that_cannot_be_evaluated_are_refused() {
         ),
         (
             |m| m.metadata_props = vec![StringStringEntryProto { key: "a\nb".to_owned(), value: String::new() }; 2],
-            "the model: found two entries `a\\nb` in its metadata",
+            "the model: found two metadata entries `a\\nb`",
         ),
     ]);
 }
@@ -175,7 +174,7 @@ fn tensors_that_cannot_be_used_are_refused() {
             |m| graph(m).initializer[0].data_location = EXTERNAL,
             "tensor `w`: found a reference to another file, expected its numbers: export the model with external_data=False",
         ),
-        (|m| graph(m).initializer[0].name = "x".repeat(300), "` (Gemm): found the input `w`, which is none of these"),
+        (|m| graph(m).initializer[0].name = "x".repeat(300), "` (Gemm): found the undefined input `w`"),
         (
             |m| {
                 let again = graph(m).initializer[0].clone();
@@ -194,14 +193,14 @@ fn nodes_that_cannot_be_evaluated_are_refused_by_name() {
             "node `y node`: found the operator Conv, expected one of Add,",
         ),
         (|m| graph(m).node[1].domain = "com.microsoft".to_owned(), "found the operator com.microsoft.Relu"),
-        (|m| graph(m).node.swap(0, 1), "node `y node` (Relu): found the input `sums`, which is none of these"),
-        (|m| graph(m).node[0].input[0] = "y".to_owned(), "node `sums node` (Gemm): found the input `y`"),
+        (|m| graph(m).node.swap(0, 1), "node `y node` (Relu): found the undefined input `sums`"),
+        (|m| graph(m).node[0].input[0] = "y".to_owned(), "node `sums node` (Gemm): found the undefined input `y`"),
         (|m| graph(m).node[0].output[0] = "w".to_owned(), "tensor `w`: found a second definition"),
         (|m| graph(m).node[0].output.push("z".to_owned()), "node `sums node` (Gemm): found 2 outputs, expected one"),
-        (|m| _ = graph(m).node[1].input.pop(), "node `y node` (Relu): found 0 inputs, expected 1 to 1"),
+        (|m| _ = graph(m).node[1].input.pop(), "node `y node` (Relu): found 0 inputs, expected 1"),
         (|m| graph(m).node[1].attribute.push(integer("axis", 1)), "(Relu): found the attribute axis, expected none"),
         (|m| graph(m).node[0].attribute.push(integer("transA", 1)), "(Gemm): found transA = 1, expected transA = 0"),
-        (|m| graph(m).node[0].attribute.push(integer("transB", 1)), "found the shape 1 x 2 before 3 x 2 weights"),
+        (|m| graph(m).node[0].attribute.push(integer("transB", 1)), "found the shape 1 x 2 with 3 x 2 weights"),
         (
             |m| graph(m).node[0].attribute.push(AttributeProto { r#type: OF_FLOAT, ..integer("transB", 1) }),
             "(Gemm): found the attribute transB of type 1, expected an integer",
@@ -210,7 +209,7 @@ fn nodes_that_cannot_be_evaluated_are_refused_by_name() {
             |m| graph(m).initializer[1] = tensor("b", &[2], &[1.0, 2.0]),
             "found the shape 2 as input 2, expected one bias, or 3",
         ),
-        (|m| graph(m).node[0].input[1] = "x".to_owned(), "(Gemm): found input 1 worked out by the network"),
+        (|m| graph(m).node[0].input[1] = "x".to_owned(), "(Gemm): found a computed input 1"),
         (|m| with_node(m, node("Add", &["sums", "x"], "z")), "(Add): found the shape 1 x 3 with the shape 1 x 2"),
         (|m| with_node(m, node("Concat", &["sums", "x"], "z")), "(Concat): found no axis, expected an axis"),
         (|m| with_node(m, node("Unsqueeze", &["sums"], "z")), "(Unsqueeze): found no axes"),
@@ -220,7 +219,7 @@ fn nodes_that_cannot_be_evaluated_are_refused_by_name() {
         ),
         (
             |m| with_node(m, node("Clip", &["sums", "b"], "z")),
-            "(Clip): found 3 numbers as input 1, expected a single one",
+            "(Clip): found 3 numbers as input 1, expected a single number",
         ),
     ]);
 }
@@ -241,19 +240,22 @@ fn arrangements_that_do_not_fit_are_refused() {
     refuse(&[
         (
             |m| with_integers(m, "Reshape", &[&[1, 4]]),
-            "(Reshape): found the shape 1 x 3 to be (1, 4), expected a shape",
+            "(Reshape): found the shape 1 x 3 reshaped to (1, 4), expected a shape",
         ),
-        (|m| with_integers(m, "Reshape", &[&[-1, -1]]), "to be (-1, -1)"),
-        (|m| with_integers(m, "Reshape", &[&[-1, 2]]), "to be (-1, 2)"),
-        (|m| with_integers(m, "Reshape", &[&[0, 0, 0]]), "to be (0, 0, 0)"),
-        (|m| with_integers(m, "Reshape", &[&[i64::MAX, i64::MAX, 4]]), "to be (9223372036854775807"),
+        (|m| with_integers(m, "Reshape", &[&[-1, -1]]), "reshaped to (-1, -1)"),
+        (|m| with_integers(m, "Reshape", &[&[-1, 2]]), "reshaped to (-1, 2)"),
+        (|m| with_integers(m, "Reshape", &[&[0, 0, 0]]), "reshaped to (0, 0, 0)"),
+        (|m| with_integers(m, "Reshape", &[&[i64::MAX, i64::MAX, 4]]), "reshaped to (9223372036854775807"),
         (|m| with_integers(m, "Reshape", &[&[1; 9]]), "found 9 integers as input 1, expected at most 8"),
         (|m| with_integers(m, "Squeeze", &[&[1]]), "(Squeeze): found axes of the shape 1 x 3 that are not 1"),
         (|m| with_integers(m, "Squeeze", &[&[-3]]), "(Squeeze): found axis -3, expected an axis of 2 dimensions"),
         (|m| with_integers(m, "Unsqueeze", &[&[1, 1]]), "(Unsqueeze): found axis 1 twice"),
         (|m| with_integers(m, "Unsqueeze", &[&[0, 1, 2, 3, 4, 5, 6]]), "found 9 dimensions of `z`, expected at most 8"),
         (|m| with_integers(m, "Slice", &[&[0], &[2], &[1], &[-1]]), "(Slice): found step -1 of axis 1, expected 1"),
-        (|m| with_integers(m, "Slice", &[&[2], &[1], &[1]]), "found numbers 2 to 1 of axis 1 of the shape 1 x 3"),
+        (
+            |m| with_integers(m, "Slice", &[&[2], &[1], &[1]]),
+            "found the empty range 2 to 1 of axis 1 of the shape 1 x 3",
+        ),
         (|m| with_integers(m, "Slice", &[&[0], &[2, 3]]), "found 1 starts, 2 ends, 1 axes and 1 steps"),
         (|m| with_integers(m, "Slice", &[&[i64::MIN], &[i64::MAX], &[i64::MIN]]), "found axis -9223372036854775808"),
         (
@@ -264,7 +266,7 @@ fn arrangements_that_do_not_fit_are_refused() {
     ]);
 }
 
-/// Ten names for the same weights take ten times the work.
+/// Ten names for the same weights cost ten times the work.
 #[test]
 fn weights_are_counted_wherever_they_are_used() {
     let mut model = sound();

@@ -1,7 +1,7 @@
-//! Heap use of networks: none in an evaluation, and within the limits when reading a file.
+//! Networks allocate nothing in an evaluation, and little when reading a file.
 //!
-//! `stats_alloc` does the counting, see `sim/tests/allocation.rs`; a single test, since it counts
-//! the whole process.
+//! `stats_alloc` counts; see `sim/tests/allocation.rs`. There is a single test because it counts the
+//! whole process.
 
 use onnx::Network;
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
@@ -10,10 +10,9 @@ use std::alloc::System;
 #[global_allocator]
 static HEAP: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-/// Maximum memory for any file of a megabyte, bytes.
+/// Maximum memory for reading any file of 1 MiB, bytes.
 const FILE_COST_MAX: usize = 50 << 20;
 
-/// A field of a message with a bytes value.
 fn field(number: u8, content: &[u8]) -> Vec<u8> {
     let mut length = content.len();
     let mut bytes = vec![number << 3 | 2];
@@ -29,15 +28,15 @@ fn field(number: u8, content: &[u8]) -> Vec<u8> {
 #[test]
 fn an_evaluation_takes_nothing_from_the_heap_and_a_hostile_file_little() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/network/operators.onnx");
-    let mut network = Network::read(&std::fs::read(path).expect("the model")).expect("a network");
-    // The test harness must have finished starting this thread.
+    let mut network = Network::read(&std::fs::read(path).expect("the model can be read")).expect("a valid network");
+    // The test harness must have started this thread completely.
     (0..1_000).for_each(|i| network.evaluate(&[i as f32; 6]));
     let heap = Region::new(HEAP);
     (0..1_000).for_each(|i| network.evaluate(&[i as f32; 6]));
     let used = heap.change();
     assert_eq!(used.allocations + used.reallocations, 0, "{used:?}");
 
-    // A megabyte of empty messages: nodes, tensors, and attributes of one node.
+    // A megabyte of empty messages: nodes, tensors, or attributes of one node.
     for file in [[0x0a, 0x00], [0x2a, 0x00], [0x2a, 0x00]].map(|pair| pair.repeat(1 << 19)).into_iter().enumerate() {
         let (i, messages) = file;
         let graph = if i == 2 { field(1, &messages) } else { messages };

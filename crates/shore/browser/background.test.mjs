@@ -1,4 +1,4 @@
-// An image or a shoreline of the site, drawn below the field.
+// The background of the chart: an image or a shoreline of the site.
 
 import assert from 'node:assert/strict';
 import { copyFileSync, readdirSync, writeFileSync } from 'node:fs';
@@ -12,11 +12,11 @@ before(async () => { browser = await openBrowser(); });
 after(() => browser.close());
 
 const GAME = scenario('games/pav01_vs_pav01.toml');
-/** What the browser advises while a test looks at single pixels. */
+/** The browser's advice when a test reads single pixels. */
 const allows = /willReadFrequently/;
 const live = async (t, chart) => new Program(t, 'run', GAME, '--view', '--speed', '2x', '--no-record', '--listen', '127.0.0.1:0', '--chart', chart).url();
 
-/** The colour of the field's layer at a place, m: red, green, blue, opacity. */
+/** The colour of the field's layer at a position, m: red, green, blue, opacity. */
 const colour = (sight, x, y) => sight.get(([x, y]) => {
   const canvas = document.getElementById('layer-field');
   const ratio = canvas.width / canvas.clientWidth;
@@ -39,12 +39,12 @@ test('a shoreline lies where its latitudes and longitudes are, light and dark, i
   for (const url of [await live(t, geojson), `${replay}#t=0`]) {
     for (const colorScheme of ['light', 'dark']) {
       const sight = await Sight.open(t, browser, url, { colorScheme, allows });
-      await sight.until('it is drawn', () => squall.background);
+      await sight.until('the background is drawn', () => squall.background);
       await sight.get(() => new Promise(requestAnimationFrame));
       assert(isNear(await colour(sight, ...within), await land(sight)), `land at ${within}: ${await colour(sight, ...within)} (${colorScheme})`);
       assert.equal((await colour(sight, ...beside))[3], 0, 'water beside it');
       await sight.press('#show-chart');
-      await sight.until('it is switched off', () => document.getElementById('show-chart').getAttribute('aria-pressed') === 'false');
+      await sight.until('the chart is switched off', () => document.getElementById('show-chart').getAttribute('aria-pressed') === 'false');
       await sight.get(() => new Promise(requestAnimationFrame));
       assert.equal((await colour(sight, ...within))[3], 0);
       await sight.close();
@@ -55,7 +55,7 @@ test('a shoreline lies where its latitudes and longitudes are, light and dark, i
 test('an image lies where its world file says', async (t) => {
   const { image, red, green } = site(folder(t));
   const sight = await Sight.open(t, browser, await live(t, image), { colorScheme: 'light', allows });
-  await sight.until('it is drawn', () => squall.background);
+  await sight.until('the background is drawn', () => squall.background);
   await sight.get(() => new Promise(requestAnimationFrame));
   const [at, other] = [await colour(sight, ...red), await colour(sight, ...green)];
   assert(at[0] > 200 && at[1] < 60, `red to the west: ${at}`);
@@ -65,7 +65,7 @@ test('an image lies where its world file says', async (t) => {
 test('a chart of another site is not drawn, and its place is told', async (t) => {
   const { geojson } = site(folder(t), [51.5, -0.1]);
   const sight = await Sight.open(t, browser, await live(t, geojson));
-  await sight.until('it says where it is', () => /is not drawn: it lies around 51\.\d+° N .*\skm from the field at 41/.test(document.getElementById('notices').textContent));
+  await sight.until('the notice gives its position', () => /is not drawn: it is at 51\.\d+° N .*\skm from the field at 41/.test(document.getElementById('notices').textContent));
   assert(!(await sight.get(() => squall.background)) && !(await sight.page.isVisible('#show-chart')));
 });
 
@@ -76,7 +76,7 @@ test('what is no chart is refused before anything begins', async (t) => {
   copyFileSync(image, lone);
   const bad = join(place, 'bad.geojson');
   writeFileSync(bad, '{"type":"LineString","coordinates":[[0,0],[712345,4512345]]}');
-  for (const [chart, want] of [[join(place, 'none.geojson'), /none\.geojson: No such file/], [GAME, /of no known kind, expected PNG or JPEG/],
+  for (const [chart, want] of [[join(place, 'none.geojson'), /none\.geojson: No such file/], [GAME, /has an unknown format, expected PNG or JPEG/],
     [lone, /lone\.png: has no world file beside it/], [bad, /bad\.geojson: coordinates\[1\] is at \[712345, 4512345\], expected \[longitude/]]) {
     const run = new Program(t, 'run', GAME, '--view', '--no-record', '--chart', chart);
     assert.equal(await run.ended, 1, run.said);

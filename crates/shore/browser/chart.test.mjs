@@ -1,4 +1,4 @@
-// The chart: selecting brings a boat into it, keys zoom at it, ranges are measured, and it has coordinates, a legend and the dark.
+// The chart: selecting a boat moves the chart to it, keys zoom at it, ranges are measured, and there are coordinates, a legend and dark mode.
 
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
@@ -8,23 +8,23 @@ let browser;
 before(async () => { browser = await openBrowser(); });
 after(() => browser.close());
 
-/** Metres to a degree of latitude, mean of the ellipsoid WGS 84. */
+/** Metres per degree of latitude, mean of the ellipsoid WGS 84. */
 const DEGREE_M = 111_132.95;
-/** How far coordinates may be off, m: places are written to a decimetre, degrees to a metre. */
+/** Tolerance of coordinates, m: positions are written to a decimetre, degrees to a metre. */
 const WRITTEN_M = 1.2;
 
-/** A game that stands at its beginning. */
+/** A game paused at its start. */
 async function paused(t, more = {}) {
   const run = new Program(t, 'run', scenario('games/pav01_vs_pav01.toml'), '--view', '--speed', '5x', '--no-record', '--listen', '127.0.0.1:0');
   const sight = await Sight.open(t, browser, await run.url(), { size: { width: 1400, height: 900 }, ...more });
   await sight.goesOn();
   await sight.press('#pause');
   await sight.phase('paused');
-  await sight.until('it stands', () => Math.abs(squall.state.now_s - squall.t_s) < 1e-6);
+  await sight.until('the game is paused', () => Math.abs(squall.state.now_s - squall.t_s) < 1e-6);
   return sight;
 }
 
-/** Where a boat is on the chart, px from its middle, as the page's view has it. */
+/** A boat's position on the chart, px from its centre, according to the page's view. */
 const OFF = (name) => {
   const { x, y } = squall.frame.boats.find((boat) => boat.name === name);
   return [(x - squall.view.x) * squall.view.scale, (squall.view.y - y) * squall.view.scale];
@@ -73,13 +73,13 @@ test('ranges are measured between boats and places, by hand and by keys', async 
   await sight.page.mouse.click(...await at('blue_one'));
   await sight.page.mouse.click(...await at('red_two'));
   same(await sight.until('both ends are chosen', () => squall.measured), want('blue_one', 'red_two'));
-  await sight.until('it is written', (range) => document.getElementById('measured').textContent.startsWith('blue one to red two')
+  await sight.until('the measurement is shown', (range) => document.getElementById('measured').textContent.startsWith('blue one to red two')
     && document.getElementById('measured').textContent.includes(range), want('blue_one', 'red_two').range_m.toFixed(1));
-  assert.equal(await sight.get(() => squall.selected), null, 'to measure selects nobody');
+  assert.equal(await sight.get(() => squall.selected), null, 'measuring selects no boat');
   await sight.page.focus('#sheet');
   await sight.keys('Escape');
   assert.equal(await sight.get(() => squall.measured), null);
-  await sight.until('nothing is measured', () => !document.getElementById('measured').checkVisibility());
+  await sight.until('the measurement is hidden', () => !document.getElementById('measured').checkVisibility());
   // By keys alone.
   await sight.keys('m', ']', 'Enter', ']', ']', 'Enter');
   same(await sight.until('both ends are chosen', () => squall.measured), want('blue_one', 'red_one'));
@@ -92,13 +92,13 @@ test('coordinates of what is pointed at are those of the field', async (t) => {
   await sight.page.mouse.move(box.x + 600, box.y + 200);
   const { view, width, height } = await sight.get(() => ({ view: squall.view, width: document.getElementById('sheet').clientWidth, height: document.getElementById('sheet').clientHeight }));
   const [x, y] = [view.x + (600 - width / 2) / view.scale, view.y - (200 - height / 2) / view.scale];
-  const text = await sight.until('the place is told', () => document.getElementById('place').checkVisibility() && document.getElementById('place').textContent);
+  const text = await sight.until('the position is shown', () => document.getElementById('place').checkVisibility() && document.getElementById('place').textContent);
   const [, east, north, northDeg, eastDeg] = text.match(/x (\S+) y (\S+) m · (\S+)° N (\S+)° W/).map((each) => Number(each.replace('−', '-')));
   assert(Math.abs(east - x) < 0.06 && Math.abs(north - y) < 0.06, `${text}, expected ${x} ${y}`);
   assert(Math.abs((northDeg - lat) * DEGREE_M - y) < WRITTEN_M, text);
   assert(Math.abs((-eastDeg - lon) * DEGREE_M * Math.cos((lat * Math.PI) / 180) - x) < WRITTEN_M, text);
   await sight.page.mouse.move(5, 5);
-  await sight.until('nothing is pointed at', () => !document.getElementById('place').checkVisibility());
+  await sight.until('the position is hidden', () => !document.getElementById('place').checkVisibility());
 });
 
 test('a legend tells what marks are, and the dark is a switch that stays', async (t) => {
@@ -112,10 +112,10 @@ test('a legend tells what marks are, and the dark is a switch that stays', async
   assert(!(await sight.page.isVisible('#chart-legend')));
   await sight.page.focus('#sheet');
   await sight.keys('l');
-  await sight.until('there is a legend', () => document.querySelectorAll('#chart-legend li canvas').length > 8);
+  await sight.until('the legend is shown', () => document.querySelectorAll('#chart-legend li canvas').length > 8);
   assert((await sight.text('#chart-legend')).includes('tagged'));
   await sight.press('#dark');
-  await sight.until('it is dark', (paper) => getComputedStyle(document.documentElement).getPropertyValue('--paper').trim() !== paper, light[0]);
+  await sight.until('the page is dark', (paper) => getComputedStyle(document.documentElement).getPropertyValue('--paper').trim() !== paper, light[0]);
   const dark = await colours();
   assert.deepEqual(dark.slice(1), ['dark', 'true']);
   await sight.until('the chart is dark too', () => {
@@ -123,12 +123,12 @@ test('a legend tells what marks are, and the dark is a switch that stays', async
     return data[3] > 0 && data[0] + data[1] + data[2] < 300;
   });
   await sight.page.reload();
-  await sight.until('it is back', () => squall.drawn > 0);
-  assert.deepEqual(await colours(), dark, 'the page keeps it');
+  await sight.until('the page has reloaded', () => squall.drawn > 0);
+  assert.deepEqual(await colours(), dark, 'the setting survives a reload');
   await sight.press('#dark');
-  await sight.until('it is light', (paper) => getComputedStyle(document.documentElement).getPropertyValue('--paper').trim() === paper, light[0]);
+  await sight.until('the page is light', (paper) => getComputedStyle(document.documentElement).getPropertyValue('--paper').trim() === paper, light[0]);
   assert.deepEqual(await colours(), light);
-  assert.equal(await sight.get(() => localStorage.getItem('squall.theme')), null, 'it follows the system again');
+  assert.equal(await sight.get(() => localStorage.getItem('squall.theme')), null, 'the page follows the system again');
   await sight.until('the chart is light too', () => {
     const { data } = document.getElementById('layer-sea').getContext('2d').getImageData(2, 2, 1, 1);
     return data[0] + data[1] + data[2] > 300;

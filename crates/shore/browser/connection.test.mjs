@@ -1,4 +1,4 @@
-// Pages and servers that come and go.
+// Pages and servers that end and restart.
 
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
@@ -8,10 +8,10 @@ let browser;
 before(async () => { browser = await openBrowser(); });
 after(() => browser.close());
 
-/** A connection on which nothing comes for so long is given up, s. */
+/** A connection that is silent for this long is given up, s. */
 const SILENCE_S = 4;
 
-/** Lets a test cut the newest connection as a phone does that leaves a network: nothing comes, goes or ends. */
+/** Lets a test cut the newest connection like a phone that leaves a network: nothing arrives, leaves or closes. */
 const CUTTABLE = () => {
   const Real = window.WebSocket;
   window.sockets = [];
@@ -32,14 +32,14 @@ const CUTTABLE = () => {
   };
 };
 
-/** Notes what the page says of its connection, since it may say so for a moment only. */
+/** Records the page's messages about its connection, which may be brief. */
 const NOTE = () => {
   window.noted = [];
   const box = document.getElementById('connection');
   new MutationObserver(() => window.noted.push(box.hidden ? '' : box.textContent)).observe(box, { attributes: true });
 };
 
-/** A browser says it, whatever the page does, when nobody listens. */
+/** A browser reports this itself when no server listens. */
 const NOBODY = /WebSocket connection to .* failed/;
 
 test('a page that is loaded again, or whose server is, goes on by itself', async (t) => {
@@ -55,26 +55,26 @@ test('a page that is loaded again, or whose server is, goes on by itself', async
   const sight = await Sight.open(t, browser, await view.url(), { allows: NOBODY });
   await sight.goesOn();
   await sight.page.reload();
-  await sight.until('the page is there again', () => squall.frame !== null && squall.state?.phase === 'playing');
+  await sight.until('the page is back', () => squall.frame !== null && squall.state?.phase === 'playing');
   await sight.press('[data-vehicle=red_one]');
   const before_s = await sight.goesOn();
 
   await sight.greetedAnew(async () => {
     await view.kill();
-    await sight.until('the page says that nobody answers', () => !squall.connected
+    await sight.until('the page reports the lost connection', () => !squall.connected
       && /Connection lost/.test(document.getElementById('connection').textContent) && !document.getElementById('connection').hidden);
-    await sight.until('it says so beside the name', () => document.getElementById('phase').textContent.trim() === 'no connection');
+    await sight.until('the chip reports it', () => document.getElementById('phase').textContent.trim() === 'no connection');
     view = new Program(t, 'view', ...place, '--listen', listen);
   });
-  assert((await sight.goesOn()) > before_s, 'it is the same game');
+  assert((await sight.goesOn()) > before_s, 'the game is the same');
   assert(await sight.get(() => document.getElementById('connection').hidden));
   assert.equal(await sight.get(() => squall.selected), 'red_one', 'the boat stays selected');
-  await sight.until('its helm is told again', () => squall.helm?.report?.collective);
+  await sight.until('its helm is received again', () => squall.helm?.report?.collective);
 
   await sim.kill();
   await sight.until('the game is gone', () => squall.state.phase === 'gone' && /gone/.test(document.getElementById('over').textContent));
   assert(await sight.get(() => squall.connected));
-  assert.equal(view.code, undefined, 'the server stays');
+  assert.equal(view.code, undefined, 'the server still runs');
   new Program(t, 'sim', file, '--speed', '5x', '--game', name, '--listen', endpoint);
   new Program(t, 'agent', ...place, '--vehicle', 'blue_one', 'blue_two', 'red_one', 'red_two');
   await sight.until('the next game is shown', () => squall.state?.phase === 'playing' && squall.t_s > 1 && document.getElementById('over').hidden);
@@ -90,7 +90,7 @@ test('a connection that dies in silence is given up; one on which nothing has to
   await sight.phase('paused');
   const stands_s = await sight.get(() => squall.t_s);
   await sight.page.waitForTimeout((SILENCE_S + 3) * 1000);
-  assert.equal(await sight.get(() => window.sockets.length), 1, 'a game that stands is no dead connection');
+  assert.equal(await sight.get(() => window.sockets.length), 1, 'a paused game is not a dead connection');
   await sight.get(NOTE);
   await sight.greetedAnew(async () => {
     await sight.get(() => { window.sockets.at(-1).isCut = true; });
@@ -98,10 +98,10 @@ test('a connection that dies in silence is given up; one on which nothing has to
   });
   const { noted, notices } = await sight.get(() => ({ noted: window.noted, notices: document.getElementById('notices').textContent }));
   assert(noted.some((text) => /Connection lost/.test(text)), `the page says so: ${noted}`);
-  assert.match(notices, /may not have heard/);
+  assert.match(notices, /may not have arrived/);
   assert(await sight.get(() => document.getElementById('connection').hidden));
   await sight.phase('paused');
-  assert.equal(await sight.get(() => squall.t_s), stands_s, 'it was not heard');
+  assert.equal(await sight.get(() => squall.t_s), stands_s, 'the command was lost');
   await sight.press('#pause');
   await sight.phase('playing');
   await sight.goesOn();

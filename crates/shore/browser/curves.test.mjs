@@ -1,4 +1,4 @@
-// A replay over time: it begins to play, its address carries the moment, and its score and curves are in step with the chart.
+// A replay over time: it plays by itself, its address contains the moment, and score and curves match the chart.
 
 import assert from 'node:assert/strict';
 import { readFileSync, readdirSync } from 'node:fs';
@@ -12,7 +12,7 @@ after(() => browser.close());
 
 const SIZE = { size: { width: 1400, height: 900 } };
 
-/** Plays a game, records it, and gives the address of its replay. */
+/** Plays and records a game. Returns the address of its replay. */
 async function replay(t) {
   const place = folder(t);
   await squall(t, 'run', scenario('games/pav01_vs_pav01.toml'), '--in-process', '--record', place);
@@ -23,17 +23,17 @@ async function replay(t) {
 test('a replay begins to play, and its address carries time and boat', async (t) => {
   const url = await replay(t);
   const sight = await Sight.open(t, browser, url, SIZE);
-  await sight.until('it plays by itself', () => squall.player.playing && squall.t_s > 0.3);
+  await sight.until('the replay plays by itself', () => squall.player.playing && squall.t_s > 0.3);
   await sight.page.focus('#sheet');
   await sight.keys(' ', 'n');
   await sight.press('[data-vehicle=red_two]');
-  await sight.until('it stands at an event', () => !squall.player.playing && squall.t_s > 10);
+  await sight.until('the replay is paused at an event', () => !squall.player.playing && squall.t_s > 10);
   const before_s = await sight.get(() => squall.t_s);
   await sight.press('#share');
-  const address = await sight.until('the address says so', () => /boat=red_two/.test(location.hash) && location.href);
+  const address = await sight.until('the address is updated', () => /boat=red_two/.test(location.hash) && location.href);
   const again = await Sight.open(t, browser, address, SIZE);
-  await again.until('another page shows the same', (before_s) => squall.selected === 'red_two' && Math.abs(squall.t_s - before_s) < 0.11, before_s);
-  assert.equal(await again.get(() => squall.player.playing), false, 'the moment that was meant stays');
+  await again.until('a second page shows the same moment', (before_s) => squall.selected === 'red_two' && Math.abs(squall.t_s - before_s) < 0.11, before_s);
+  assert.equal(await again.get(() => squall.player.playing), false, 'the linked moment stays');
   for (const [odd, want_s] of [['t=9e99', 600], ['t=whale', null], ['boat=whale&t=5', 5]]) {
     const other = await Sight.open(t, browser, `${url}#${odd}`, SIZE);
     await other.until(`#${odd} is taken as it can be`, (want_s) => (want_s === null ? squall.player.playing : Math.abs(squall.t_s - want_s) < 0.11), want_s);
@@ -44,7 +44,7 @@ test('a replay begins to play, and its address carries time and boat', async (t)
 test('curves are those of the boats, in step with the chart, and a press on them goes there', async (t) => {
   const sight = await Sight.open(t, browser, `${await replay(t)}#t=0`, SIZE);
   await sight.press('#show-plots');
-  await sight.until('it says what is missing', () => /Select a boat/.test(document.getElementById('plots').textContent));
+  await sight.until('a text asks for a boat', () => /Select a boat/.test(document.getElementById('plots').textContent));
   await sight.press('[data-vehicle=red_two]');
   await sight.page.selectOption('#plot-other', 'blue_one');
   const told = () => sight.get(() => [...document.querySelectorAll('.plot .value')].map((each) => each.textContent));
@@ -56,7 +56,7 @@ test('curves are those of the boats, in step with the chart, and a press on them
       const [red, blue] = ['red_two', 'blue_one'].map((name) => squall.frame.boats.find((boat) => boat.name === name));
       const range = Math.hypot(red.x - blue.x, red.y - blue.y).toFixed(1);
       const [speed, , , , apart] = [...document.querySelectorAll('.plot .value')].map((each) => parseFloat(each.textContent));
-      // A long game is thinned out: a sample may be half a second old.
+      // A long game is thinned out, so a sample may be half a second old.
       return Math.abs(speed - red.speed_m_s) < 1 && Math.abs(apart - range) < 3.2;
     });
     const [, heading, flag, error] = await told();
@@ -65,7 +65,7 @@ test('curves are those of the boats, in step with the chart, and a press on them
   const label = await sight.get(() => document.querySelector('.plot canvas').getAttribute('aria-label'));
   assert(/^Speed of red two over the game; at \d\d:\d\d\.\d: [\d.]+\sm\/s$/.test(label), label);
   await sight.press('#deselect');
-  await sight.until('no curves of nobody', () => !document.querySelector('.plot').checkVisibility());
+  await sight.until('no curves without a boat', () => !document.querySelector('.plot').checkVisibility());
 });
 
 test('the chart is kept as PNG, and a stretch of it as a film', async (t) => {
@@ -79,10 +79,10 @@ test('the chart is kept as PNG, and a stretch of it as a film', async (t) => {
   await sight.press('#film');
   await sight.page.focus('#sheet');
   await sight.keys(' ');
-  await sight.until('it plays on', () => squall.t_s > 32);
+  await sight.until('the replay continues', () => squall.t_s > 32);
   const [film] = await Promise.all([sight.page.waitForEvent('download'), sight.press('#film')]);
   const webm = readFileSync(await film.path());
-  assert.deepEqual([...webm.subarray(0, 4)], [0x1a, 0x45, 0xdf, 0xa3], 'it is EBML');
+  assert.deepEqual([...webm.subarray(0, 4)], [0x1a, 0x45, 0xdf, 0xa3], 'the file is EBML');
   assert(webm.includes('webm') && webm.length > 20_000, `${webm.length} bytes`);
-  await sight.until('the button films anew', () => document.getElementById('film').textContent === 'Film');
+  await sight.until('the button can start a new film', () => document.getElementById('film').textContent === 'Film');
 });

@@ -1,4 +1,4 @@
-// Geofences of real boats: drawn on the chart by hand or keys, copied for the gateway file, and shown as the gateways have them.
+// Geofences of real boats: drawn on the chart by pointer or keys, copied for the gateway file, and shown as the gateways have them.
 
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
@@ -11,7 +11,7 @@ let browser;
 before(async () => { browser = await openBrowser(); });
 after(() => browser.close());
 
-/** Presses the chart at a place, m. */
+/** Presses the chart at a position, m. */
 const press = async (sight, x, y) => {
   const [right, down] = await sight.get(([x, y]) => {
     const { view } = squall;
@@ -31,7 +31,7 @@ test('a geofence is drawn by hand and by keys, and copied as the gateway file ha
   await sight.press('#draw-fence');
   for (const [x, y] of [[10, 10], [100, 10], [100, 70]]) await press(sight, x, y);
   assert.match(await sight.text('#fence-editor'), /3 corners/);
-  // By keys the fourth is taken in the middle of the chart; it makes no crossing.
+  // By keys, the fourth corner is at the centre of the chart; it causes no crossing.
   await sight.page.focus('#sheet');
   await sight.keys('Enter');
   assert.match(await sight.text('#fence-editor'), /4 corners/);
@@ -48,13 +48,13 @@ test('a geofence is drawn by hand and by keys, and copied as the gateway file ha
   assert.match(await text(sight), /^\[geofence\]\npolygon = \[\n( {2}\[[^\]]+\],\n){4}\]\nkeep_out = \[\n {2}\[\n( {4}\[[^\]]+\],\n){3} {2}\],\n\]\n$/);
   await sight.press('#fence-copy');
   assert.equal(await sight.get(() => navigator.clipboard.readText()), await text(sight));
-  // Two sides that cross are no polygon.
+  // Two sides that cross are not a polygon.
   await sight.page.selectOption('#fence-part', { label: 'Outline' });
   await sight.press('#fence-undo');
   await press(sight, 60, -5);
   await press(sight, 110, 40);
-  await sight.until('it says so', () => /Two sides cross/.test(document.getElementById('fence-editor').textContent));
-  assert.equal(await sight.get(() => squall.selected), null, 'no boat is chosen meanwhile');
+  await sight.until('the page says so', () => /Two sides cross/.test(document.getElementById('fence-editor').textContent));
+  assert.equal(await sight.get(() => squall.selected), null, 'no boat is selected meanwhile');
   await sight.keys('Escape');
   assert(!(await sight.page.isVisible('#fence-editor')));
 });
@@ -71,15 +71,15 @@ test('what is drawn is what gateways then keep to, and show', async (t) => {
   writeFileSync(file, await by.get(async ([datum, polygons]) => (await import('/fence_editor.js')).toml(datum, polygons), [datum, [drawn, inside]]));
   const boats = await realBoats(t, { gateway: ['--config', file] });
   const sight = await Sight.open(t, browser, boats.url);
-  const fence = await sight.until('it is shown', () => squall.fences.length === 1 && squall.fences[0].keepOuts.length === 1 && squall.fences[0]);
+  const fence = await sight.until('the fence is shown', () => squall.fences.length === 1 && squall.fences[0].keepOuts.length === 1 && squall.fences[0]);
   for (const [found, want] of [[fence.outline, drawn], [fence.keepOuts[0], inside]]) {
     assert.equal(found.length, want.length);
     want.forEach(([east, north]) => assert(found.some(([x, y]) => Math.hypot(x - east, y - north) < 0.1), `${east}, ${north} among ${JSON.stringify(found)}`));
   }
-  await sight.until('and how far a boat is from it', () => squall.stops.length === 2 && squall.stops.every(({ clearance_m }) => clearance_m > 1));
+  await sight.until('the boats\' distances from it are shown', () => squall.stops.length === 2 && squall.stops.every(({ clearance_m }) => clearance_m > 1));
 });
 
-/** Geofences and stopping distances in the status of each boat, in place of those that its gateway tells. */
+/** Replaces geofences and stopping distances in the status of each boat. */
 const FENCED = () => {
   const places = (corners) => corners.map(([east, north]) => ({ east, north }));
   window.WebSocket = class extends WebSocket {
@@ -101,14 +101,14 @@ test('the geofence that gateways tell is drawn with its keep-outs, and who is to
   const boats = await realBoats(t);
   const sight = await Sight.open(t, browser, boats.url, { before: FENCED, allows: /willReadFrequently/, colorScheme: 'light' });
   await badge(sight, 'blue_one', 'disarmed');
-  await sight.until('there is a fence', () => squall.fences.length === 1 && squall.stops.length === 2);
+  await sight.until('a fence is shown', () => squall.fences.length === 1 && squall.stops.length === 2);
   // All of it is on the chart.
   const { x, y, scale } = await sight.get(() => squall.view);
   const { width, height } = await sight.page.locator('#sheet').boundingBox();
   for (const [east, north] of [[-30, -20], [190, 100]]) {
     assert(Math.abs(east - x) * scale < width / 2 && Math.abs(north - y) * scale < height / 2, `${east}, ${north} is on the chart`);
   }
-  /** How many pixels about a place are of the colour of danger. */
+  /** The number of danger-coloured pixels around a position. */
   const red = (east, north) => sight.get(([east, north]) => {
     const canvas = document.getElementById('layer-boats');
     const { view } = squall;
@@ -126,10 +126,10 @@ test('the geofence that gateways tell is drawn with its keep-outs, and who is to
   const near = await sight.get(() => squall.frame.boats.find(({ name }) => name === 'red_one'));
   const clear = await sight.get(() => squall.frame.boats.find(({ name }) => name === 'blue_one'));
   assert(await red(near.x, near.y + 14) > 3, 'the circle of the boat that cannot stop in time is red');
-  assert.equal(await red(clear.x, clear.y + 4), 0, 'that of the other is not');
+  assert.equal(await red(clear.x, clear.y + 4), 0, 'the other boat\'s circle is not red');
   await sight.press('[data-vehicle=red_one]');
   assert.match(await sight.text('#gateway'), /Geofence6\.3\sm to its edge, stops in 14\.0\sm/);
-  // What is drawn can begin with it.
+  // A drawing can start from it.
   await sight.press('#draw-fence');
   await sight.press('#fence-present');
   assert.equal(corners(await text(sight)).length, 7);

@@ -1,4 +1,4 @@
-// What the tests of the page stand on: the program in processes of its own, a browser, and waiting for things with a limit.
+// The basis of the page's tests: the program in its own processes, a browser, and waits with a limit.
 
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
@@ -9,9 +9,9 @@ import { delimiter, join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { chromium } from 'playwright-core';
 
-/** The limit of every wait, ms: machines are slow. Shorter ones are for those who write tests. */
+/** Limit of every wait, ms, for slow machines. A shorter one is for writing tests. */
 export const LIMIT_MS = Number(process.env.LIMIT_MS ?? 60_000);
-/** How often a condition is looked at, ms. */
+/** Interval at which a condition is checked, ms. */
 const LOOK_MS = 40;
 /** How long a program has to end by itself, ms. */
 const LEAVE_MS = 10_000;
@@ -19,14 +19,14 @@ const LEAVE_MS = 10_000;
 /** The repository. */
 export const ROOT = resolve(fileURLToPath(import.meta.url), '../../../..');
 const SQUALL = resolve(process.env.SQUALL ?? join(ROOT, 'target/release/squall'));
-/** To work on the page without building the program: its files are taken from this folder. */
+/** Serves the page's files from this folder, to work on the page without building the program. */
 const WEB = process.env.SQUALL_WEB && resolve(process.env.SQUALL_WEB);
 const FLAGS = ['--headless', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
   '--disable-component-update', '--disable-sync',
-  // A browser trusts no page from elsewhere to talk to this machine, and takes one from the folder for such a page.
+  // Browsers keep foreign pages from connecting to this machine, and treat pages from the folder as foreign.
   ...(WEB ? ['--disable-features=LocalNetworkAccessChecks'] : [])];
 
-/** A file of the folder scenarios. */
+/** A file in the folder scenarios. */
 export const scenario = (path) => join(ROOT, 'scenarios', path);
 
 function browserPath() {
@@ -41,21 +41,21 @@ function browserPath() {
       return false;
     }
   });
-  assert(found, 'no chromium on PATH: install it, or say in CHROMIUM where it is');
+  assert(found, 'no chromium on PATH: install it, or set CHROMIUM to its path');
   return found;
 }
 
-/** A browser without a window. */
+/** A headless browser. */
 export const openBrowser = () => chromium.launch({ executablePath: browserPath(), args: FLAGS });
 
-/** Another browser, as another person has, for one test. */
+/** A second browser, as for another person, for one test. */
 export async function openAnother(t) {
   const browser = await openBrowser();
   afterwards(t, () => browser.close());
   return browser;
 }
 
-/** Waits until `condition` gives something true, and gives it. */
+/** Waits until `condition` returns something true, and returns that. */
 export async function until(what, condition, limit_ms = LIMIT_MS) {
   const end_ms = Date.now() + limit_ms;
   for (;;) {
@@ -68,7 +68,7 @@ export async function until(what, condition, limit_ms = LIMIT_MS) {
 
 const left = new WeakMap();
 
-/** Does this once the test is over: what was begun last ends first. */
+/** Runs this at the end of the test, in reverse order. */
 function afterwards(t, end) {
   if (!left.has(t)) {
     const ends = [];
@@ -80,14 +80,14 @@ function afterwards(t, end) {
   left.get(t).push(end);
 }
 
-/** A folder that goes with the test. */
+/** A folder that is removed with the test. */
 export function folder(t) {
   const path = mkdtempSync(join(tmpdir(), 'squall-page-'));
   afterwards(t, () => rmSync(path, { recursive: true, force: true }));
   return path;
 }
 
-/** A game file in a folder of its own: `base` is one of ours, `text` what is different. */
+/** A game file in its own folder: `base` is a shipped game, `text` the differences. */
 export function gameFile(t, name, base, text) {
   const path = join(folder(t), `${name}.toml`);
   writeFileSync(path, `# A game of a test.\nbase = "${scenario(`games/${base}`)}"\n${text}\n`);
@@ -96,7 +96,7 @@ export function gameFile(t, name, base, text) {
 
 export const readJson = (path) => JSON.parse(readFileSync(path, 'utf8'));
 
-/** A port of this machine that nobody listens on. */
+/** A free port of this machine. */
 export const freePort = () => new Promise((done, fail) => {
   const server = createServer();
   server.on('error', fail);
@@ -106,7 +106,7 @@ export const freePort = () => new Promise((done, fail) => {
   });
 });
 
-/** The program at work. It ends with the test. */
+/** A running program. It ends with the test. */
 export class Program {
   constructor(t, ...args) {
     this.args = args;
@@ -122,7 +122,7 @@ export class Program {
     afterwards(t, () => this.end());
   }
 
-  /** Waits until it has said something, and gives that. */
+  /** Waits for a match in its output, and returns it. */
   hears(pattern) {
     return until(`squall ${this.args.join(' ')} says ${pattern}`, () => {
       const found = this.said.match(pattern);
@@ -131,12 +131,12 @@ export class Program {
     });
   }
 
-  /** Where its page is. */
+  /** The address of its page. */
   async url() {
     return (await this.hears(/at it on (http:\S+)|at (http:\S+) \(Ctrl-C/)).slice(1).find(Boolean);
   }
 
-  /** Ends it as Ctrl-C does, by force if it does not listen; its exit status. */
+  /** Ends it like Ctrl-C, by force if necessary. Returns its exit status. */
   async end() {
     if (this.code !== undefined) return this.code;
     this.child.kill('SIGINT');
@@ -146,23 +146,23 @@ export class Program {
     return code;
   }
 
-  /** Ends it as a power cut does. */
+  /** Ends it like a power cut. */
   async kill() {
     this.child.kill('SIGKILL');
     await this.ended;
   }
 }
 
-/** Runs the program to its end, and gives what it said. */
+/** Runs the program to its end. Returns its output. */
 export async function squall(t, ...args) {
   const program = new Program(t, ...args);
   assert.equal(await program.ended, 0, `squall ${args.join(' ')}:\n${program.said}`);
   return program.said;
 }
 
-/** A page in a browser. A test with it fails on any error that the page's console shows, but for those it `allows`. */
+/** A page in a browser. A test with it fails on any error on the page's console, except those that it `allows`. */
 export class Sight {
-  /** A page with a game on it, once it is drawn. */
+  /** Opens a page with a game, and waits until it is drawn. */
   static async open(t, browser, url, how = {}) {
     const sight = await Sight.load(t, browser, url, how);
     await sight.until('a picture is drawn', () => squall.drawn > 0 && squall.frame !== null);
@@ -201,10 +201,10 @@ export class Sight {
 
   async close() {
     await this.context.close();
-    assert.deepEqual(this.errors, [], 'errors in the page');
+    assert.deepEqual(this.errors, [], 'errors on the page\'s console');
   }
 
-  /** Waits until `condition`, which runs in the page, gives something true; gives it. */
+  /** Waits until `condition`, which runs in the page, returns something true, and returns that. */
   async until(what, condition, arg = undefined) {
     try {
       const handle = await this.page.waitForFunction(condition, arg, { polling: LOOK_MS, timeout: LIMIT_MS });
@@ -217,7 +217,7 @@ export class Sight {
     }
   }
 
-  /** What a function that runs in the page gives. */
+  /** The result of a function that runs in the page. */
   get(read, arg = undefined) {
     return this.page.evaluate(read, arg);
   }
@@ -226,33 +226,32 @@ export class Sight {
     return this.page.textContent(selector);
   }
 
-  /** Presses something. */
   press(selector) {
     return this.page.click(selector);
   }
 
-  /** Strikes keys, one after another. */
+  /** Presses keys, one after another. */
   async keys(...keys) {
     for (const key of keys) await this.page.keyboard.press(key);
   }
 
-  /** What is done to the connection meanwhile: waits until the page was greeted on another one. */
+  /** Does something to the connection, and waits until the page has been greeted on another one. */
   async greetedAnew(act) {
     const hello = await this.page.evaluateHandle(() => squall.hello);
     await act();
-    await this.until('the page is greeted anew', (before) => squall.connected && squall.hello !== before, hello);
-    await this.until('it shows a picture', () => squall.frame !== null);
+    await this.until('the page is greeted again', (before) => squall.connected && squall.hello !== before, hello);
+    await this.until('the page shows a picture', () => squall.frame !== null);
   }
 
-  /** Waits until the chip beside the game's name says this. */
+  /** Waits until the chip beside the game's name shows this. */
   phase(word) {
     return this.until(`the phase is ${word}`, (want) => document.getElementById('phase').textContent === want, word);
   }
 
-  /** Waits for a picture of a later time than now. */
+  /** Waits for a picture later than the current one. */
   async goesOn() {
-    // A page that was greeted a moment ago shows no time yet.
-    const { t_s } = await this.until('there is a picture', () => Number.isFinite(squall.t_s) && { t_s: squall.t_s });
+    // A page that has just been greeted shows no time yet.
+    const { t_s } = await this.until('a picture is shown', () => Number.isFinite(squall.t_s) && { t_s: squall.t_s });
     return this.until(`the clock runs on from ${t_s}`, (before) => squall.t_s > before && squall.t_s, t_s);
   }
 }

@@ -1,4 +1,4 @@
-// A game that is played: what the page shows of it, and what its buttons do to it.
+// A running game: what the page shows, and what its buttons do.
 
 import assert from 'node:assert/strict';
 import { join } from 'node:path';
@@ -9,12 +9,12 @@ let browser;
 before(async () => { browser = await openBrowser(); });
 after(() => browser.close());
 
-/** Slower than this a boat stands, m/s. */
+/** A boat slower than this stands still, m/s. */
 const STANDS_M_S = 0.15;
-/** Faster than this it goes, m/s. */
+/** A boat faster than this is moving, m/s. */
 const GOES_M_S = 0.5;
 
-/** Whether the game runs at a speed; a busy machine may not keep it up, but none goes faster. */
+/** Whether the game runs at a speed. A busy machine may not reach it, but none exceeds it. */
 const SPEED = (want) => squall.state.speed === want && squall.state.rate > want / 2 && squall.state.rate < want * 1.2 && squall.state.rate;
 
 const pav01 = scenario('games/pav01_vs_pav01.toml');
@@ -31,13 +31,13 @@ test('a game is shown as it is played, up to its result', async (t) => {
   await sight.goesOn();
   const clock = await sight.text('#clock');
   await sight.until('the clock on the page runs', (before) => document.getElementById('clock').textContent !== before, clock);
-  const rate = await sight.until('it runs at the speed asked for', SPEED, 20);
+  const rate = await sight.until('the game runs at the requested speed', SPEED, 20);
   await sight.until('the game is over', () => squall.frame.over);
   const shown = await sight.get(() => ({ score: squall.score, t_s: squall.t_s, events: squall.events.map(({ text, ...event }) => event) }));
   await run.end();
   const told = readJson(result);
   assert.deepEqual(shown.score, [told.score.teams.blue, told.score.teams.red]);
-  assert(shown.score[0] > 0, 'a game without points shows little');
+  assert(shown.score[0] > 0, 'the game must have points');
   assert.deepEqual(await Promise.all([sight.text('#score-blue'), sight.text('#score-red')]), shown.score.map(String));
   assert(Math.abs(shown.t_s - told.duration_s) < 1e-6, `${shown.t_s} s, told: ${told.duration_s} s`);
   assert.deepEqual(shown.events, told.events);
@@ -50,22 +50,22 @@ test('pause, one decision, speed and going on', async (t) => {
   await sight.goesOn();
   await sight.press('#pause');
   await sight.phase('paused');
-  const before = await sight.until('it stands', () => Math.abs(squall.state.now_s - squall.t_s) < 1e-6 && { t_s: squall.t_s, tick: squall.frame.tick });
+  const before = await sight.until('the game is paused', () => Math.abs(squall.state.now_s - squall.t_s) < 1e-6 && { t_s: squall.t_s, tick: squall.frame.tick });
   await sight.press('#step');
   const after = await sight.until('a decision is made', (then) => squall.t_s > then.t_s && { t_s: squall.t_s, tick: squall.frame.tick }, before);
   const decision_s = await sight.get(() => squall.hello.chart.decision_s);
   assert(Math.abs(after.t_s - before.t_s - decision_s) < 1e-6, `from ${before.t_s} to ${after.t_s}, by ${decision_s}`);
   await sight.page.focus('#sheet');
   await sight.keys('s', 's', 's');
-  await sight.until('three more', (want) => squall.t_s > want - 1e-6, before.t_s + 4 * decision_s);
-  assert(Math.abs((await sight.get(() => squall.t_s)) - before.t_s - 4 * decision_s) < 1e-6, 'three more and none besides');
+  await sight.until('three more decisions are made', (want) => squall.t_s > want - 1e-6, before.t_s + 4 * decision_s);
+  assert(Math.abs((await sight.get(() => squall.t_s)) - before.t_s - 4 * decision_s) < 1e-6, 'exactly three more decisions');
   await sight.phase('paused');
   await sight.keys(' ');
   await sight.phase('playing');
   await sight.goesOn();
   await sight.keys('s');
   await sight.phase('paused');
-  await sight.until('a step stands', () => Math.abs(squall.state.now_s - squall.t_s) < 1e-6);
+  await sight.until('the game is paused after the step', () => Math.abs(squall.state.now_s - squall.t_s) < 1e-6);
   await sight.keys(' ');
   await sight.phase('playing');
   await sight.goesOn();
@@ -74,22 +74,22 @@ test('pause, one decision, speed and going on', async (t) => {
   await sight.page.selectOption('#speed', '10');
   await sight.until('ten times real time', SPEED, 10);
   await sight.page.selectOption('#speed', 'max');
-  await sight.until('as fast as can be', () => squall.state.speed === null && squall.state.rate > 12);
+  await sight.until('unlimited speed', () => squall.state.speed === null && squall.state.rate > 12);
 });
 
 test('a helm that nobody looked at before the pause says so, and shows its rose after a step', async (t) => {
   const run = new Program(t, 'run', pav01, '--view', '--speed', '5x', '--no-record', '--listen', '127.0.0.1:0');
   const sight = await Sight.open(t, browser, await run.url());
-  // A helm without a fix of its position weighs nothing yet.
-  await sight.until('every boat goes', (least) => squall.frame?.boats.every((boat) => boat.speed_m_s > least), GOES_M_S);
+  // A helm without a position fix weighs nothing yet.
+  await sight.until('every boat moves', (least) => squall.frame?.boats.every((boat) => boat.speed_m_s > least), GOES_M_S);
   await sight.press('#pause');
   await sight.phase('paused');
   await sight.press('[data-vehicle=blue_two]');
-  await sight.until('it says so', () => /before anybody looked/.test(document.getElementById('helm-reason').textContent));
+  await sight.until('the page says so', () => /No utilities yet/.test(document.getElementById('helm-reason').textContent));
   assert(!(await sight.page.isVisible('#rose')));
   assert(await sight.page.isVisible('#behaviours'));
   await sight.press('#step');
-  await sight.until('it is seen', () => squall.helm?.report?.collective && document.getElementById('helm-reason').hidden);
+  await sight.until('the rose is shown', () => squall.helm?.report?.collective && document.getElementById('helm-reason').hidden);
   assert(await sight.page.isVisible('#rose'));
 });
 
@@ -97,8 +97,8 @@ test('an E-stop takes one press and holds every boat until it is released, which
   const game = gameFile(t, 'long', 'pav01_vs_pav01.toml', 'duration_s = 3600');
   const run = new Program(t, 'run', game, '--view', '--speed', '5x', '--no-record', '--listen', '127.0.0.1:0');
   const sight = await Sight.open(t, browser, await run.url());
-  const stand = () => sight.until('every boat stands', (most) => squall.frame.boats.every((boat) => boat.speed_m_s < most), STANDS_M_S);
-  const go = () => sight.until('some boat goes', (least) => squall.frame.boats.some((boat) => boat.speed_m_s > least), GOES_M_S);
+  const stand = () => sight.until('every boat stands still', (most) => squall.frame.boats.every((boat) => boat.speed_m_s < most), STANDS_M_S);
+  const go = () => sight.until('a boat moves', (least) => squall.frame.boats.some((boat) => boat.speed_m_s > least), GOES_M_S);
   const stay = async () => {
     const from_s = await sight.get(() => squall.t_s);
     const fastest = await sight.get(([from_s, most]) => new Promise((done) => {
@@ -114,18 +114,18 @@ test('an E-stop takes one press and holds every boat until it is released, which
   };
   await go();
   await sight.press('#estop');
-  assert(!(await sight.page.isVisible('#estop-confirm')), 'one press stops, and nothing is asked');
+  assert(!(await sight.page.isVisible('#estop-confirm')), 'one press stops without a question');
   await sight.phase('E-STOPPED');
-  await sight.until('the event is told', () => squall.events.some((each) => each.event === 'e_stopped')
+  await sight.until('the event is listed', () => squall.events.some((each) => each.event === 'e_stopped')
     && /stop/i.test(document.querySelector('#events li')?.textContent));
   await sight.page.focus('#sheet');
   await sight.keys('h');
-  assert(!(await sight.page.isVisible('#halt-ask')), 'a key does no more than its button, which is off');
+  assert(!(await sight.page.isVisible('#halt-ask')), 'a key has no effect while its button is disabled');
   await stand();
   await stay();
   await sight.press('#estop');
   assert(await sight.page.isVisible('#estop-confirm'));
-  assert.equal(await sight.get(() => squall.frame.stopped), true, 'the question alone releases nobody');
+  assert.equal(await sight.get(() => squall.frame.stopped), true, 'the question alone releases no boat');
   await sight.press('#estop-cancel');
   assert(!(await sight.page.isVisible('#estop-confirm')));
   await sight.press('#estop');

@@ -1,4 +1,4 @@
-// The side of the page: the helm's picture is whole, events fold, lists tell.
+// The side of the page: the rose is fully visible, events fold, and the lists are correct.
 
 import assert from 'node:assert/strict';
 import { readdirSync } from 'node:fs';
@@ -22,7 +22,7 @@ async function replay(t, game, ...words) {
   return `${await new Program(t, 'replay', join(place, file), '--listen', '127.0.0.1:0').url()}#t=0`;
 }
 
-/** Whether all of an element is within what its pane shows. */
+/** Whether an element is fully visible within its pane. */
 const WHOLE = (selector) => {
   const box = document.querySelector(selector).getBoundingClientRect();
   const pane = document.querySelector(selector).closest('.pane').getBoundingClientRect();
@@ -38,9 +38,9 @@ test("the helm's picture is whole at once, in a game and in a replay, on each sc
     for (const at of [url, live]) {
       const sight = await Sight.open(t, browser, at, { size, deviceScaleFactor: size === PHONE ? 2 : 1 });
       await sight.press('[data-vehicle=red_two]');
-      await sight.until('the picture is whole', WHOLE, '#rose');
+      await sight.until('the rose is fully visible', WHOLE, '#rose');
       const [width, height] = await sight.get(() => [document.getElementById('rose').width, document.getElementById('rose').height]);
-      assert.equal(width, height, 'it is round');
+      assert.equal(width, height, 'the rose is round');
       const head = await sight.get(() => ['h2', '#follow', '#deselect'].map((each) => {
         const box = document.querySelector(`#pane-boat ${each}`).getBoundingClientRect();
         return [box.top, box.bottom];
@@ -58,11 +58,11 @@ test('events fold and open again, below each tab by itself, and stay so', async 
   const open = () => sight.get(() => [document.getElementById('events-fold').getAttribute('aria-expanded') === 'true',
     document.getElementById('events').offsetParent !== null]);
   await sight.until('there are events', () => document.querySelectorAll('#events li').length > 0);
-  assert.deepEqual(await open(), [true, true], 'below the list of boats they are open');
+  assert.deepEqual(await open(), [true, true], 'the events are open below the list of boats');
   await sight.press('[data-vehicle=red_two]');
-  assert.deepEqual(await open(), [false, false], 'a helm needs the room');
+  assert.deepEqual(await open(), [false, false], 'a helm needs the space');
   await sight.keys('n');
-  await sight.until('the newest is told', () => {
+  await sight.until('the newest event is shown', () => {
     const event = squall.events.findLast((each) => each.at_s <= squall.t_s + 1e-6);
     return event && document.getElementById('events-newest').textContent.endsWith(event.text.replaceAll('_', ' '));
   });
@@ -73,13 +73,13 @@ test('events fold and open again, below each tab by itself, and stay so', async 
   await sight.press('#events-fold');
   assert.deepEqual(await open(), [false, false]);
   await sight.page.reload();
-  await sight.until('it is back', () => squall.drawn > 0 && squall.frame !== null);
-  assert.deepEqual(await open(), [false, false], 'the page keeps it');
+  await sight.until('the page has reloaded', () => squall.drawn > 0 && squall.frame !== null);
+  assert.deepEqual(await open(), [false, false], 'the setting survives a reload');
   await sight.press('[data-vehicle=red_two]');
   assert.deepEqual(await open(), [true, true]);
 });
 
-/** What stands in a line of the list of boats. */
+/** The contents of a line in the list of boats. */
 const LINE = (name) => {
   const [what, carries, heading, curve, speed] = document.querySelector(`[data-vehicle=${name}]`).children;
   const { data } = curve.getContext('2d').getImageData(0, 0, curve.width, curve.height);
@@ -93,7 +93,7 @@ test('a line of the list tells heading, speed and its curve, mode, and what is c
   await sight.page.selectOption('#event-kind', { label: 'grabs' });
   await sight.press('#event-next');
   await sight.until('a flag is carried', () => squall.flags.some((each) => each.carrier !== null));
-  await sight.until('every boat has told its mode', () => squall.modes?.length === 4 && squall.modes.every(Boolean));
+  await sight.until('every boat\'s mode is known', () => squall.modes?.length === 4 && squall.modes.every(Boolean));
   const { boats, flags } = await sight.get(() => ({ boats: squall.frame.boats, flags: squall.flags }));
   const teams = await sight.get(() => squall.hello.chart.teams.map(({ name }) => name));
   const modes = await sight.get(() => squall.modes);
@@ -111,11 +111,11 @@ test('a line of the list tells heading, speed and its curve, mode, and what is c
   }
   const live = new Program(t, 'run', scenario('games/pav01_vs_pav01.toml'), '--view', '--speed', '5x', '--no-record', '--listen', '127.0.0.1:0');
   const game = await Sight.open(t, browser, await live.url(), { size: DESK });
-  await game.until('modes are told in a game too', () => squall.modes?.length === 4 && squall.modes.every(Boolean));
-  await game.until('and written', () => [...document.querySelectorAll('.boat-row .state')].every((each) => each.textContent !== ''));
+  await game.until('modes are received in a live game too', () => squall.modes?.length === 4 && squall.modes.every(Boolean));
+  await game.until('modes are shown', () => [...document.querySelectorAll('.boat-row .state')].every((each) => each.textContent !== ''));
 });
 
-/** How dark a team's ink is about a boat: the sum over a small square of the layer with the boats. */
+/** How dark a team's ink is around a boat: the sum over a small square of the boats' layer. */
 const INK = (name) => {
   const hull = squall.hulls.find((each) => each.name === name);
   const ratio = Math.min(2, devicePixelRatio);
@@ -130,7 +130,7 @@ const INK = (name) => {
 test('among twenty a side names cover no boat, tagged boats fade, and circles come when they are pointed at', async (t) => {
   const url = await replay(t, 'swarm_20v20', '--set', 'game.duration_s=120');
   const sight = await Sight.open(t, browser, url, { size: DESK, allows: /willReadFrequently/ });
-  assert(!(await sight.page.isVisible('#weather')), 'an empty sea takes no box');
+  assert(!(await sight.page.isVisible('#weather')), 'calm weather takes no space');
   const overlaps = () => sight.get(() => {
     const cross = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
     const { labels, hulls } = squall;
@@ -154,16 +154,16 @@ test('among twenty a side names cover no boat, tagged boats fade, and circles co
     assert(labels > 12, `only ${labels} names at ${t_s} s`);
   }
   await sight.page.hover('#game-name');
-  const [tagged, free] = await sight.until('one is tagged and one is not', () => {
+  const [tagged, free] = await sight.until('one boat is tagged and one is not', () => {
     const found = [true, false].map((tagged) => squall.frame.boats.find((boat) => boat.tagged === tagged)?.name);
     return found.every(Boolean) && found;
   });
   await sight.page.focus('#sheet');
-  await sight.until('nobody is pointed at', (name) => !squall.labels.some((label) => label.name === name), tagged);
+  await sight.until('no boat is pointed at', (name) => !squall.labels.some((label) => label.name === name), tagged);
   const [faded, plain] = [await sight.get(INK, tagged), await sight.get(INK, free)];
   assert(faded < 0.7 * plain, `a tagged boat is drawn with ${faded}, another with ${plain}`);
   await sight.page.hover(`[data-vehicle=${tagged}]`);
-  await sight.until('pointed at, it is as clear as others', (name) => squall.labels.some((label) => label.name === name), tagged);
+  await sight.until('pointed at, it is drawn like others', (name) => squall.labels.some((label) => label.name === name), tagged);
   assert((await sight.get(INK, tagged)) > 0.9 * plain);
 });
 
@@ -171,7 +171,7 @@ test('names are written one way', async (t) => {
   const url = await replay(t, 'pav01_vs_pav01');
   const sight = await Sight.open(t, browser, url, { size: DESK });
   await sight.press('[data-vehicle=red_two]');
-  await sight.until('it is selected', () => document.querySelector('#pane-boat h2').textContent !== '');
+  await sight.until('the boat is selected', () => document.querySelector('#pane-boat h2').textContent !== '');
   const changed = await sight.get(() => [...document.querySelectorAll('h2, h3, .name, .event, #score *')]
     .filter((each) => getComputedStyle(each).textTransform !== 'none').map((each) => each.outerHTML));
   assert.deepEqual(changed, []);

@@ -1,4 +1,4 @@
-// A game with real boats for tests of the page: two emulated ones, each with its gateway, beside two that are simulated.
+// A game with real boats for tests of the page: two emulated ones with their gateways, and two simulated ones.
 
 import { Program, freePort } from './harness.mjs';
 
@@ -6,7 +6,7 @@ const BOATS = ['blue_one', 'red_one'];
 
 const hub = async () => ['--listen', `tcp/127.0.0.1:${await freePort()}`];
 
-/** Begins the game; gives its programs, and the page's address. `page` are more words for `squall view`, `gateway` for each gateway. */
+/** Starts the game. Returns its programs and the page's address. `page` has further arguments for `squall view`, `gateway` for each gateway. */
 export async function realBoats(t, { page = ['--token', 'operators'], gateway = [] } = {}) {
   const mark = `${process.pid}_${Math.floor(performance.now())}`;
   const [water, game] = [`water_${mark}`, `match_${mark}`];
@@ -24,11 +24,11 @@ export async function realBoats(t, { page = ['--token', 'operators'], gateway = 
   return { ...boats, url: await boats.view.url() };
 }
 
-/** Waits until the badge of a boat is of this kind; gives it. */
+/** Waits until a boat's badge is of this kind, and returns it. */
 export const badge = (sight, name, kind) => sight.until(`${name} is ${kind}`, ([name, kind]) =>
   squall.badges.find((each) => each.name === name && each.kind === kind), [name, kind]);
 
-/** Waits until the gateway of a boat misses nothing for arming, and arms it from its panel. */
+/** Waits until a boat's gateway is ready to arm, and arms the boat from its panel. */
 export async function arm(sight, name) {
   await sight.page.press('body', '1');
   await sight.press(`[data-vehicle=${name}]`);

@@ -1,4 +1,4 @@
-// Recordings on the page: what is shown at which moment, against the result that the program wrote down.
+// Recordings on the page: what is shown at each moment, compared with the result written by the program.
 
 import assert from 'node:assert/strict';
 import { readdirSync } from 'node:fs';
@@ -10,14 +10,14 @@ let browser;
 before(async () => { browser = await openBrowser(); });
 after(() => browser.close());
 
-/** A moment after an event, before the next one, s. */
+/** A time after an event, and before the next one, s. */
 const JUST_AFTER_S = 0.3;
-/** How far a time may be off that somebody chose by a pixel of the time line, s. */
+/** Tolerance of a time chosen by a pixel of the time line, s. */
 const PIXEL_S = 0.6;
 
 const pav01 = scenario('games/pav01_vs_pav01.toml');
 
-/** Plays a game, records it, and gives the recording and the result. */
+/** Plays and records a game. Returns the recording and the result. */
 async function record(t) {
   const place = folder(t);
   await squall(t, 'run', pav01, '--in-process', '--record', place, '--json', join(place, 'result.json'));
@@ -25,7 +25,7 @@ async function record(t) {
   return { file: join(place, file), result: readJson(join(place, 'result.json')) };
 }
 
-/** Who carries which team's flag at a time, and the score by then, as the events say. */
+/** Which team's flag each boat carries at a time, and the score by then, according to the events. */
 function standing(result, rules, t_s) {
   const carrier = { blue: null, red: null };
   const score = { blue: 0, red: 0 };
@@ -38,7 +38,7 @@ function standing(result, rules, t_s) {
   return { carrier, score };
 }
 
-/** Presses the time line where a time is. */
+/** Presses the time line at a time. */
 async function scrub(sight, t_s) {
   const box = await sight.page.locator('#timeline').boundingBox();
   const { from_s, to_s } = await sight.get(() => squall.player);
@@ -70,7 +70,7 @@ test('a recording shows at every moment what the events say', async (t) => {
   const kinds = new Set();
   for (const event of result.events.filter(({ event }) => ['grabbed', 'captured', 'flag_returned'].includes(event)).slice(0, 8)) {
     await scrub(sight, event.at_s + JUST_AFTER_S);
-    await check('where somebody pressed');
+    await check('at the pressed position');
     kinds.add(event.event);
   }
   assert(kinds.size === 3, `the game has grabs, captures and lost flags, but only ${[...kinds]} were looked at`);
@@ -83,18 +83,18 @@ test('the buttons of a replay: on, back, to events, faster', async (t) => {
   const { file, result } = await record(t);
   const replay = new Program(t, 'replay', file, '--listen', '127.0.0.1:0');
   const sight = await Sight.open(t, browser, `${await replay.url()}#t=0`);
-  // A replay that stands says nothing for as long as it does, and is not taken for dead.
+  // A paused replay is silent, and must not count as dead.
   const hello = await sight.page.evaluateHandle(() => squall.hello);
   await sight.page.waitForTimeout(7000);
   assert(await sight.get((hello) => squall.connected && squall.hello === hello, hello));
-  // An event is shown with the first picture in which it has happened.
+  // The first picture after an event shows it.
   const at = (t_s) => sight.until(`it is ${t_s} s`, (want) => squall.t_s > want - 1e-6 && squall.t_s < want + 0.1 && squall.t_s, t_s);
   const times = (kind) => [...new Set(result.events.filter(({ event }) => event === kind).map(({ at_s }) => at_s))];
   const [first, second] = times('captured');
   await sight.page.selectOption('#event-kind', { label: 'captures' });
   await sight.press('#event-next');
   await at(first);
-  await sight.until('the capture counts', () => squall.score.some((points) => points > 0));
+  await sight.until('the capture is scored', () => squall.score.some((points) => points > 0));
   await sight.press('#event-next');
   await at(second);
   await sight.press('#event-back');
@@ -104,7 +104,7 @@ test('the buttons of a replay: on, back, to events, faster', async (t) => {
   await at(times('grabbed').find((at_s) => at_s > first + 0.1));
   await sight.keys('Shift+G');
   await at(times('grabbed').findLast((at_s) => at_s < first));
-  await sight.until('the flag is on the boat', () => squall.flags.some((flag) => flag.carrier !== null));
+  await sight.until('the boat carries the flag', () => squall.flags.some((flag) => flag.carrier !== null));
 
   const before = await sight.get(() => ({ t_s: squall.t_s, decision_s: squall.hello.chart.decision_s }));
   await sight.press('#step');
@@ -115,12 +115,12 @@ test('the buttons of a replay: on, back, to events, faster', async (t) => {
   await at(before.t_s - before.decision_s);
 
   await sight.press('#pause');
-  await sight.until('it plays', (from_s) => squall.player.playing && squall.t_s > from_s + 0.5, before.t_s);
+  await sight.until('the replay plays', (from_s) => squall.player.playing && squall.t_s > from_s + 0.5, before.t_s);
   await sight.page.selectOption('#speed', '50');
-  await sight.until('it plays faster', (from_s) => squall.player.speed === 50 && squall.t_s > from_s + 60, before.t_s);
+  await sight.until('the replay plays faster', (from_s) => squall.player.speed === 50 && squall.t_s > from_s + 60, before.t_s);
   await sight.press('#pause');
-  await sight.until('it stands', () => !squall.player.playing && squall.t_s === Math.max(squall.t_s, squall.player.t_s - 0.2));
-  // The first event stands last in the list.
+  await sight.until('the game is paused', () => !squall.player.playing && squall.t_s === Math.max(squall.t_s, squall.player.t_s - 0.2));
+  // The first event is last in the list.
   const [event] = result.events;
   await sight.press('#events li:last-child button');
   await at(event.at_s);
@@ -144,10 +144,10 @@ test('a helm that thinks again agrees with what is recorded', async (t) => {
     assert.equal(collective.length, courses * speeds);
     assert(functions.length > 0 && functions.every((each) => each.utilities.length === collective.length));
     modes.add(mode);
-    await sight.until('the page says so', () => /agrees with the order recorded/.test(document.getElementById('helm-reason').textContent));
+    await sight.until('the page says so', () => /matches the recorded order/.test(document.getElementById('helm-reason').textContent));
     const facts = await sight.text('#boat-facts');
     assert(facts.includes('Mode'), facts);
-    // What is chosen is wanted: no bare disc.
+    // The chosen decision has a high utility, and the disc is not bare.
     const painted = await sight.get(() => {
       const { width, height } = document.getElementById('rose');
       const copy = Object.assign(document.createElement('canvas'), { width, height }).getContext('2d', { willReadFrequently: true });
@@ -177,7 +177,7 @@ test('a game that is over becomes its replay', async (t) => {
   await scrub(sight, grab + JUST_AFTER_S);
   assert(await sight.get(() => squall.flags.some((flag) => flag.carrier !== null)));
   await sight.page.reload();
-  await sight.until('a page that comes later sees it as well', () => squall.mode === 'replay' && squall.frame !== null);
+  await sight.until('a later page sees it too', () => squall.mode === 'replay' && squall.frame !== null);
   await sight.close();
   await run.end();
   const { teams } = readJson(join(place, 'result.json')).score;

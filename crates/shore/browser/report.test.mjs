@@ -1,4 +1,4 @@
-// Reports on the page: a tournament, a league, a sweep and a training, and from their tables to the games behind them.
+// Reports on the page: a tournament, a league, a sweep and a training, and the games behind their tables.
 
 import assert from 'node:assert/strict';
 import { copyFileSync, mkdirSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
@@ -10,12 +10,12 @@ let browser;
 before(async () => { browser = await openBrowser(); });
 after(() => browser.close());
 
-/** What would change the title of the page if it ever ran. */
+/** Would change the page's title if it ever ran. */
 const HOSTILE = '</script><script>document.title = "owned"</script><img src=x onerror="document.title=\'owned\'">';
 
 const entry = (name) => `[[entry]]\nname = "${name}"\nstrategy = "${scenario(`strategies/${name}.toml`)}"\n`;
 
-/** Plays a tournament of short games, and gives its report and the file with it. */
+/** Plays a tournament of short games. Returns its report and the file. */
 async function tournament(t, ...words) {
   const place = folder(t);
   const game = gameFile(t, 'short', 'pav01_vs_pav01.toml', 'duration_s = 60');
@@ -28,10 +28,10 @@ async function tournament(t, ...words) {
 
 const view = async (t, path) => (await new Program(t, 'view', path, '--listen', '127.0.0.1:0')).url();
 
-/** Whether nothing of a text was taken for more than text. */
+/** Whether a text was inserted only as text. */
 const isText = (sight) => sight.get(() => document.title !== 'owned' && document.querySelector('img') === null);
 
-/** Texts whose contrast to what is behind them is less than 4.5, by WCAG 2.1, 1.4.3. */
+/** Texts with a contrast below 4.5 (WCAG 2.1, 1.4.3). */
 function faint() {
   const numbers = (colour) => {
     const found = colour.match(/[\d.]+/g).map(Number);
@@ -85,10 +85,10 @@ test('from a cell of the win matrix to its games, to a replay of one, and back',
   const about = await sight.text('#about');
   assert.match(about, new RegExp(`seed ${want[1].seed}; played again, as in the report$`), about);
   await sight.page.press('#timeline', 'End');
-  await sight.until('it is at its end', () => squall.t_s > 59.9);
+  await sight.until('the replay is at its end', () => squall.t_s > 59.9);
   assert.deepEqual(await sight.get(() => squall.score), want[1].score);
   await sight.press('#back');
-  await sight.until('the report is as it was', () => document.querySelector('.matrix [aria-pressed="true"]') !== null);
+  await sight.until('the report is unchanged', () => document.querySelector('.matrix [aria-pressed="true"]') !== null);
   assert.equal(await sight.get(() => document.querySelectorAll('#games tbody tr').length), want.length);
   await sight.page.selectOption('#games-filter', 'won');
   const won = want.filter((game) => result(game, game.blue === row ? 0 : 1) === 'won').length;
@@ -97,7 +97,7 @@ test('from a cell of the win matrix to its games, to a replay of one, and back',
 
 test('what is wrong with a report or a game is said in words', async (t) => {
   const { place, path, report } = await tournament(t);
-  // Texts from elsewhere, a game that went otherwise, and a seed with more digits than the page's numbers.
+  // Foreign texts, a game with a different result, and a seed with more digits than a JavaScript number holds.
   const seed = '9007199254740993';
   report.tournament = HOSTILE;
   report.game = HOSTILE;
@@ -107,7 +107,7 @@ test('what is wrong with a report or a game is said in words', async (t) => {
   writeFileSync(changed, JSON.stringify(report).replaceAll('"seed":2,', `"seed":${seed},`));
   const url = await view(t, changed);
   const sight = await Sight.load(t, browser, url);
-  await sight.until('the failure is told', () => document.getElementById('remarks').textContent.includes('Could not start'));
+  await sight.until('the failure is shown', () => document.getElementById('remarks').textContent.includes('Could not start'));
   assert.equal(await sight.text('#name'), HOSTILE.replaceAll('_', ' '));
   assert(await isText(sight));
   await sight.page.evaluate(() => { location.hash = '#row=strategy_4&column=pav01'; });
@@ -117,16 +117,16 @@ test('what is wrong with a report or a game is said in words', async (t) => {
   assert.match(await other.text('#about'), /NOT as in the report/);
   for (const [name, why] of [['999', /there is no game "999", expected a number from 0 to 11/], [HOSTILE, /there is no game .*expected a number/]]) {
     const none = await Sight.load(t, browser, `${url}?game=${encodeURIComponent(name)}`);
-    await none.until('it is refused', () => document.getElementById('about').textContent !== '');
+    await none.until('the game is refused', () => document.getElementById('about').textContent !== '');
     assert.match(await none.text('#about'), why);
     assert.equal(await none.text('#phase'), 'no game');
     assert(await isText(none));
   }
-  // A report without its plan is shown, and nothing can be watched.
+  // A report without its plan is shown, but its games cannot be watched.
   delete report.plan;
   writeFileSync(path, JSON.stringify(report));
   const bare = await Sight.load(t, browser, `${await view(t, path)}#row=strategy_4&column=pav01`);
-  await bare.until('it says so', () => /No game of it can be watched/.test(document.getElementById('remarks').textContent));
+  await bare.until('the page says so', () => /Games cannot be watched/.test(document.getElementById('remarks').textContent));
   assert.equal(await bare.get(() => document.querySelectorAll('.watch').length), 0);
 });
 
@@ -144,7 +144,7 @@ test('who joins a league plays its own games alone, and the folder is shown', as
   await sight.until('all three are rated', () => document.querySelectorAll('.ratings tbody tr').length === 3);
 });
 
-/** Plays a sweep of short games at two winds, two seeds each, and gives its folder. */
+/** Plays a sweep of short games at two winds with two seeds each. Returns its folder. */
 async function sweep(t) {
   const place = folder(t);
   const game = gameFile(t, 'short', 'surveyor_2v2.toml', 'duration_s = 60');
@@ -163,18 +163,18 @@ test('the worst games of a sweep are watched from its page', async (t) => {
   await sight.page.waitForSelector('#worst-list .watch');
   assert(await isText(sight));
   assert.equal(await sight.text('#about'), HOSTILE);
-  assert.equal(await sight.get(() => getComputedStyle(document.querySelector('.tornado .bar')).position), 'absolute', 'its style is served');
+  assert.equal(await sight.get(() => getComputedStyle(document.querySelector('.tornado .bar')).position), 'absolute', 'the style sheet is served');
   await sight.press('#worst-list .watch');
   await sight.until('the game is shown', () => window.squall?.mode === 'replay' && squall.frame !== null);
   assert.match(await sight.text('#about'), /strategy_4 \(\w+\) at sea.wind.speed_m_s \d+, seed \d+; played again, as in the report/);
   await sight.page.press('#timeline', 'End');
-  await sight.until('it is at its end', () => squall.t_s > 59.9);
+  await sight.until('the replay is at its end', () => squall.t_s > 59.9);
   assert.deepEqual((await sight.get(() => squall.score)).sort(), [...worst.score].sort());
 });
 
 test('from a point of a sweep to all its games, to a replay of one, and back', async (t) => {
   const out = await sweep(t);
-  // Lines of `games.csv`: what came of each game, by its columns.
+  // Lines of `games.csv`: each game's result, by its columns.
   const [heads, ...lines] = readFileSync(join(out, 'games.csv'), 'utf8').trim().split('\n').map((line) => line.split(','));
   const games = lines.map((line) => Object.fromEntries(heads.map((head, i) => [head, line[i]])));
   const url = await view(t, out);
@@ -195,25 +195,25 @@ test('from a point of a sweep to all its games, to a replay of one, and back', a
   assert.deepEqual(await listed(), rows(own.filter((game) => result(game) === 'won')));
   await sight.page.selectOption('#games-filter', 'all');
   await sight.press('#legend button >> nth=1');
-  assert.deepEqual(await listed(), rows(own.filter((game) => game.entry === 'strategy_4')), 'an entry that is hidden');
+  assert.deepEqual(await listed(), rows(own.filter((game) => game.entry === 'strategy_4')), 'a hidden entry');
 
-  // The last one's seed and side are others than those of the command of the point.
+  // The last game has another seed and side than the point's command.
   await sight.press('#games-table tbody tr:last-child .watch');
   await sight.until('the game is shown', () => window.squall?.mode === 'replay' && squall.frame !== null);
   const last = own.findLast((game) => game.entry === 'strategy_4');
   assert.equal(await sight.text('#about'), `strategy_4 (${last.side}) at sea.wind.speed_m_s 12, seed ${last.seed}; played again, as in the report`);
   await sight.page.press('#timeline', 'End');
-  await sight.until('it is at its end', () => squall.t_s > 59.9);
+  await sight.until('the replay is at its end', () => squall.t_s > 59.9);
   assert.deepEqual((await sight.get(() => squall.score)).sort(), [last.score, last.opponent_score].map(Number).sort());
   await sight.press('#back');
   await sight.page.waitForSelector('#games-table tbody tr');
-  assert.deepEqual(await listed(), rows(own), 'the list is as it was');
+  assert.deepEqual(await listed(), rows(own), 'the list is unchanged');
 
   for (const none of ['2', '-1', 'x', '']) {
     const answer = await fetch(new URL(`/sweep_games/${none}.json`, url));
     assert.equal(answer.status, 404, none);
   }
-  // Without its table the games are there, and nothing is known of them; without its plan there are none.
+  // Without its table the games exist without results; without its plan there are no games.
   rmSync(join(out, 'games.csv'));
   const bare = await Sight.load(t, browser, `${await view(t, out)}#point=0`);
   await bare.page.waitForSelector('#games-table .watch');
@@ -251,13 +251,13 @@ test('a training shows curves that follow its tables, and its recorded episodes'
     return new Set(new Uint32Array(canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.buffer)).size;
   });
   assert(painted > 6, `the curves have only ${painted} colours`);
-  assert.equal(await sight.get(() => document.querySelector('b:not(.legend b)')), null, 'a name is text');
+  assert.equal(await sight.get(() => document.querySelector('b:not(.legend b)')), null, 'names are inserted as text');
   assert.deepEqual(await sight.get(() => [...document.querySelectorAll('section:last-child tbody td')].map((each) => each.textContent)),
     ['Watch', '0.04 M', 'alone', 'pav01', '9007199254740993', '3 : 2', '300']);
   await sight.press('section:last-child .watch');
   await sight.until('the episode is shown', () => window.squall?.mode === 'replay' && squall.frame !== null);
   for (const escape of ['../7_1.mcap', '..%2fupdates.csv', 'none.mcap', '/etc/passwd', 'games/7_1.mcap']) {
     const none = await Sight.load(t, browser, `${url}?game=${encodeURIComponent(escape)}`);
-    await none.until('it is refused', () => /there is no recording/.test(document.getElementById('about').textContent));
+    await none.until('the game is refused', () => /there is no recording/.test(document.getElementById('about').textContent));
   }
 });

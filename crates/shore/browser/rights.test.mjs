@@ -1,4 +1,4 @@
-// Who may act: a page with the token, and nobody else.
+// Access: only a page with the token may act.
 
 import assert from 'node:assert/strict';
 import { networkInterfaces } from 'node:os';
@@ -9,7 +9,7 @@ let browser;
 before(async () => { browser = await openBrowser(); });
 after(() => browser.close());
 
-/** What a forged page hears back that sends this message over a websocket of its own. */
+/** The reply to a forged page that sends this message over its own WebSocket. */
 const forge = (sight, message) => sight.get((message) => new Promise((done, fail) => {
   const socket = new WebSocket(`ws://${location.host}/ws`);
   socket.onopen = () => socket.send(JSON.stringify(message));
@@ -25,7 +25,7 @@ const forge = (sight, message) => sight.get((message) => new Promise((done, fail
 
 test('a page without the token looks on, and one with it acts', async (t) => {
   const port = await freePort();
-  // With a boat that whoever has rights may steer.
+  // The game has a boat that any page with the token may drive.
   const run = new Program(t, 'run', scenario('games/person_2v2.toml'), '--view', '--speed', '2x', '--no-record', '--listen', `0.0.0.0:${port}`,
     '--token', 'secret');
   const url = await run.url();
@@ -39,7 +39,7 @@ test('a page without the token looks on, and one with it acts', async (t) => {
   assert(await watching.page.isDisabled('#stop'));
   await watching.press('#tab-boats');
   await watching.press('[data-vehicle=blue_two]');
-  await watching.until('it may look into a helm', () => squall.helm?.report?.mode);
+  await watching.until('the helm is visible', () => squall.helm?.report?.mode);
   await watching.page.focus('#sheet');
   await watching.keys(' ', 's', 'h', 'e', 'Enter', '.');
   for (const message of [{ do: 'control', what: 'pause' }, { do: 'control', what: 'e_stop' }, { do: 'control', what: 'stop' },
@@ -57,14 +57,14 @@ test('a page without the token looks on, and one with it acts', async (t) => {
   assert.deepEqual(still, { phase: 'playing', speed: 2, stopped: false, over: false });
 
   const wrong = await Sight.open(t, browser, `http://127.0.0.1:${port}/#token=secre`);
-  assert.equal(await wrong.get(() => squall.hello.rights), false, 'a wrong token is none');
+  assert.equal(await wrong.get(() => squall.hello.rights), false, 'a wrong token grants no rights');
 
   const acting = await Sight.open(t, browser, `http://127.0.0.1:${port}/#token=secret`);
   assert.equal(await acting.get(() => squall.hello.rights), true);
   assert(!(await acting.page.isVisible('#rights')));
   await acting.press('[data-vehicle=blue_one]');
   await acting.press('#drive');
-  await acting.until('it steers', () => /You steer this boat/.test(document.getElementById('pane-boat').textContent));
+  await acting.until('the page drives the boat', () => /You are driving this boat/.test(document.getElementById('pane-boat').textContent));
   await acting.press('#let-go');
   await acting.press('#pause');
   await acting.phase('paused');
@@ -92,7 +92,7 @@ test('a token that is pasted into the open page counts at once', async (t) => {
   assert.equal(await sight.get(() => squall.hello.rights), false);
   await sight.get(() => { window.same = true; });
   await sight.greetedAnew(() => sight.page.goto(`http://127.0.0.1:${port}/#token=secret`));
-  assert(await sight.get(() => squall.hello.rights && window.same), 'on the same page');
+  assert(await sight.get(() => squall.hello.rights && window.same), 'without a reload');
   await sight.press('#pause');
   await sight.phase('paused');
 });

@@ -1,4 +1,4 @@
-// Pictures of the page for people to look at: node shots.mjs FOLDER [NAME …]
+// Takes pictures of the page for people: node shots.mjs FOLDER [NAME …]
 
 import { copyFileSync, mkdirSync, readdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -14,7 +14,7 @@ const PHONE = { size: { width: 390, height: 844 }, deviceScaleFactor: 2, hasTouc
 const WAVES = ['--sea', scenario('seas/fresh_breeze.toml')];
 const PAV01 = scenario('games/pav01_vs_pav01.toml');
 
-/** Ends what `t.after` was told of, as a test does. */
+/** Runs what was registered with `t.after`, like the end of a test. */
 class Scene {
   ends = [];
 
@@ -39,11 +39,11 @@ const replay = (...words) => async (t) => {
   return `${await new Program(t, 'replay', join(into, file), '--listen', '127.0.0.1:0').url()}#t=0`;
 };
 
-const at = (t_s) => (sight) => sight.until('it is time', (t_s) => squall.t_s > t_s, t_s);
+const at = (t_s) => (sight) => sight.until('the time is reached', (t_s) => squall.t_s > t_s, t_s);
 const select = (name) => async (sight) => {
   await sight.page.press('body', '1');
   await sight.press(`[data-vehicle=${name}]`);
-  await sight.until('its helm is known', () => squall.helm?.report?.collective || squall.helm?.reason);
+  await sight.until('the helm is known', () => squall.helm?.report?.collective || squall.helm?.reason);
 };
 const toGrab = async (sight) => {
   await sight.page.selectOption('#event-kind', { label: 'grabs' });
@@ -59,7 +59,7 @@ const plots = async (sight) => {
 const measure = async (sight) => {
   await sight.page.focus('#sheet');
   await sight.keys('[', 'm', 'Enter', '[', 'Enter', 'l');
-  await sight.until('it is measured', () => squall.measured);
+  await sight.until('the range is measured', () => squall.measured);
 };
 
 const entry = (name) => `[[entry]]\nname = "${name}"\nstrategy = "${scenario(`strategies/${name}.toml`)}"\n`;
@@ -82,7 +82,7 @@ const sweep = async (t) => {
   await squall(t, 'sweep', file, '--out', join(place, 'out'));
   return view(t, join(place, 'out'));
 };
-/** A training as its folder holds it, of made-up numbers: a real one takes minutes. */
+/** A training's folder with invented numbers; a real one takes minutes. */
 const training = async (t) => {
   const place = join(folder(t), 'first');
   mkdirSync(join(place, 'games'), { recursive: true });
@@ -101,14 +101,14 @@ const training = async (t) => {
 const chosen = async (sight) => {
   await sight.page.waitForSelector('.matrix button');
   await sight.press('.matrix tbody tr:nth-child(2) td:nth-child(4) button');
-  // The pointer's colours are not those of the cell.
+  // The colours under the pointer differ from those of the cell.
   await sight.page.mouse.move(2, 2);
 };
 const shown = (selector) => (sight) => sight.page.waitForSelector(selector);
 const worst = (sight) => sight.page.evaluate(() => document.getElementById('worst').scrollIntoView());
 const lower = (sight) => sight.page.evaluate(() => scrollTo(0, document.body.scrollHeight));
 
-/** With a shoreline, or an image, below the field. */
+/** With a shoreline or an image below the field. */
 const withChart = (kind) => async (t) => live(PAV01, '--speed', '10x', '--chart', site(folder(t))[kind])(t);
 const fence = async (sight) => {
   await badge(sight, 'red_one', 'disarmed');
@@ -125,7 +125,7 @@ const armed = async (sight) => {
   for (const name of ['red_one', 'blue_one']) await arm(sight, name);
   await sight.page.waitForTimeout(4000);
 };
-/** A boat has lost its agent; the other goes on by itself. */
+/** One boat has lost its agent; the other continues. */
 const alarm = async (sight) => {
   await armed(sight);
   await sight.press('#operate-station_keep');
@@ -133,7 +133,7 @@ const alarm = async (sight) => {
   await badge(sight, 'blue_one', 'delegated');
   await boats.agents.kill();
   await badge(sight, 'red_one', 'failsafe');
-  await sight.until('it is told', () => squall.alarms.length > 0);
+  await sight.until('the alarm is shown', () => squall.alarms.length > 0);
 };
 
 const fast = live(PAV01, ...WAVES, '--speed', '10x');
@@ -197,7 +197,7 @@ for (const [name, [begin, { size, ...device }, colorScheme, ...acts]] of Object.
     await sight.page.focus('#sheet');
     for (const act of acts) await act(sight);
     const drawn = await sight.get(() => squall.drawn);
-    if ((await sight.get(() => squall.mode)) === 'live') await sight.until('it is drawn', (before) => squall.drawn > before + 20, drawn);
+    if ((await sight.get(() => squall.mode)) === 'live') await sight.until('the background is drawn', (before) => squall.drawn > before + 20, drawn);
     await sight.page.screenshot({ path: join(place, `${name}.png`) });
     const wide = await sight.get(() => document.documentElement.scrollWidth > innerWidth);
     const boats = await sight.get(() => squall.frame.boats.map(({ name, x, y, heading_deg }) => `${name} ${x.toFixed(1)} E ${y.toFixed(1)} N ${heading_deg.toFixed(0)}°`));

@@ -1,4 +1,4 @@
-// Made-up charts of the site of the shipped fields.
+// Invented charts of the site of the shipped fields.
 
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -7,7 +7,7 @@ import { deflateSync } from 'node:zlib';
 /** The datum of the shipped fields: latitude and longitude, degrees. */
 const DATUM = [41.3548, -74.0551];
 
-/** CRC-32, as PNG has it. */
+/** CRC-32 as in PNG. */
 function crc(bytes) {
   let sum = ~0;
   for (const byte of bytes) {
@@ -25,7 +25,7 @@ function chunk(kind, data) {
   return Buffer.concat([length, body, sum]);
 }
 
-/** A PNG of these pixels: `colour(x, y)` gives red, green and blue. */
+/** A PNG of these pixels; `colour(x, y)` returns red, green and blue. */
 function png(width, height, colour) {
   const head = Buffer.alloc(13);
   head.writeUInt32BE(width, 0);
@@ -36,10 +36,10 @@ function png(width, height, colour) {
   return Buffer.concat([Buffer.from([0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a]), chunk('IHDR', head), chunk('IDAT', deflateSync(rows)), chunk('IEND', Buffer.alloc(0))]);
 }
 
-/** Writes charts into a folder: shorelines south and north of the field, and an image around the field, red in the west and green in the east. Gives
- * their files, and places, m east and north of the datum, that are known to be of a colour. */
+/** Writes charts to a folder: shorelines south and north of the field, and an image around the field, red in the west and green in the east. Returns
+ * their files, and positions with known colours, m east and north of the datum. */
 export function site(folder, [lat, lon] = DATUM) {
-  // Metres to a degree of WGS 84, by the usual series: another way than the page's.
+  // Metres per degree of WGS 84 by the usual series, unlike the page's formula.
   const cos = (times) => Math.cos((times * lat * Math.PI) / 180);
   const north = 1 / (111_132.92 - 559.82 * cos(2) + 1.175 * cos(4));
   const east = 1 / (111_412.84 * cos(1) - 93.5 * cos(3) + 0.118 * cos(5));
@@ -54,7 +54,7 @@ export function site(folder, [lat, lon] = DATUM) {
   const geojson = join(folder, 'harbour.geojson');
   writeFileSync(geojson, JSON.stringify({ type: 'FeatureCollection', features }));
   const image = join(folder, 'harbour.png');
-  // 400 m by 200 m, of which the first pixel's corner is 120 m west of the datum and 140 m north.
+  // 400 m by 200 m; the first pixel's corner is 120 m west and 140 m north of the datum.
   const [width, height, metres] = [200, 100, 2];
   writeFileSync(image, png(width, height, (x) => (x < width / 2 ? [230, 40, 40] : [40, 230, 40])));
   const [left, top] = at([-120 + metres / 2, 140 - metres / 2]);

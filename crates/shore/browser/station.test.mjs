@@ -1,4 +1,4 @@
-// The page as the station of the operators of real boats: emulated ones, with their gateways.
+// The page as the operators' station for real boats: emulated ones with their gateways.
 
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
@@ -14,7 +14,7 @@ after(() => browser.close());
 /** A sentence with its checksum. */
 const sentence = (body) => `$${body}*${[...body].reduce((sum, letter) => sum ^ letter.charCodeAt(0), 0).toString(16).toUpperCase().padStart(2, '0')}`;
 
-/** Asks for something as a page that is not ours does, over a connection of its own, so many times; gives what is refused first. */
+/** Sends a request this many times over its own connection, like a foreign page. Returns the first refusal. */
 const forge = (sight, message, times = 1) => sight.get(([message, times]) => new Promise((done, fail) => {
   const socket = new WebSocket(`ws://${location.host}/ws${location.hash.replace('#', '?')}`);
   socket.onopen = () => { for (let i = 0; i < times; i++) socket.send(JSON.stringify(message)); };
@@ -22,7 +22,7 @@ const forge = (sight, message, times = 1) => sight.get(([message, times]) => new
     const heard = typeof data === 'string' ? JSON.parse(data) : {};
     if (heard.kind === 'refused') done(heard);
   };
-  setTimeout(() => fail(new Error('nothing was refused')), 20_000);
+  setTimeout(() => fail(new Error('no refusal arrived')), 20_000);
 }), [message, times]);
 
 const enabled = (sight, id) => sight.page.isEnabled(`#${id}`);
@@ -36,19 +36,19 @@ test('an operator arms, delegates and disarms a boat from the page, and everybod
   await badge(theirs, 'blue_one', 'disarmed');
   await theirs.press('[data-vehicle=blue_one]');
   for (const id of ['operate', 'mission', 'operate-station_keep', 'operate-go_to_erp']) assert(!(await enabled(theirs, id)), `#${id} is off`);
-  assert.match((await forge(theirs, { do: 'operate', vehicle: 'blue_one', command: 'arm' })).reason, /may only look/);
+  assert.match((await forge(theirs, { do: 'operate', vehicle: 'blue_one', command: 'arm' })).reason, /may only watch/);
 
   await mine.press('[data-vehicle=blue_one]');
-  await mine.until('it is ready', () => document.querySelector('#checks .good'));
+  await mine.until('the boat is ready to arm', () => document.querySelector('#checks .good'));
   await mine.press('#operate');
   await mine.press('#operate-cancel');
-  assert.equal((await badge(mine, 'blue_one', 'disarmed')).label, 'Disarmed', 'a no is a no');
+  assert.equal((await badge(mine, 'blue_one', 'disarmed')).label, 'Disarmed', 'Cancel does not arm the boat');
   await arm(mine, 'blue_one');
   assert.match(await mine.text('#operated'), /blue one is armed/);
   await badge(theirs, 'blue_one', 'armed');
   assert.match(await mine.text('#gateway'), /Link.*up.*Fix.*s ago.*Battery.*V, .*s ago.*In control.*secondary/s);
   await mine.press('#tab-boats');
-  await mine.until('the list shows it', () => /Armed.*link.*fix [\d.]+\ss.*V/s.test(document.querySelector('[data-vehicle=blue_one] .badge-line').textContent));
+  await mine.until('the list shows the state', () => /Armed.*link.*fix [\d.]+\ss.*V/s.test(document.querySelector('[data-vehicle=blue_one] .badge-line').textContent));
   assert(await mine.get(() => document.querySelector('#boat-list [data-vehicle=blue_two] .badge-line') === null), 'a simulated boat has no badge');
 
   await mine.press('#tab-boat');
@@ -57,7 +57,7 @@ test('an operator arms, delegates and disarms a boat from the page, and everybod
   assert.equal((await badge(mine, 'blue_one', 'delegated')).detail, 'station keeping');
   await mine.press('#operate-go_to_erp');
   await mine.press('#operate-confirm');
-  await mine.until('it says why it does not', () => /refuses: missing: a recovery point/.test(document.getElementById('operated').textContent));
+  await mine.until('the refusal is shown', () => /refuses: missing: a recovery point/.test(document.getElementById('operated').textContent));
 
   const place = folder(t);
   const { datum } = await mine.get(() => squall.hello.chart.field);
@@ -78,7 +78,7 @@ test('an operator arms, delegates and disarms a boat from the page, and everybod
   await mine.until('a bad file is refused', () => /Not done: .*no sentence/.test(document.getElementById('operated').textContent));
   const settings = sentence('PSEAR,0,000,40,0,000');
   await send(write('good.sea', [settings, waypoint(0, 20, 30), waypoint(1, 40, 60), waypoint(2, 60, 60)]));
-  await mine.until('it sails', () => squall.badges.find(({ name }) => name === 'blue_one').detail.startsWith('mission'));
+  await mine.until('the mission runs', () => squall.badges.find(({ name }) => name === 'blue_one').detail.startsWith('mission'));
 
   await mine.press('#operate-disarm');
   await badge(theirs, 'blue_one', 'disarmed');
@@ -98,21 +98,21 @@ test('without a token of its own a page may stop real boats, and operates them w
   assert.match((await forge(sight, { do: 'mission', vehicle: 'blue_one', lines: '' })).reason, /operator's token/);
   await sight.page.fill('#operator-token', 'no');
   await sight.greetedAnew(() => sight.page.press('#operator-token', 'Enter'));
-  assert(!(await sight.get(() => squall.hello.operates)), 'a wrong one is none');
+  assert(!(await sight.get(() => squall.hello.operates)), 'a wrong token grants no rights');
   await sight.page.fill('#operator-token', token);
   await sight.greetedAnew(() => sight.page.press('#operator-token', 'Enter'));
   assert(await sight.get(() => squall.hello.operates));
   assert(!(await sight.page.isVisible('#operator-token')));
   assert.equal(new URL(await sight.get(() => location.href)).hash, new URL(address).hash);
   await arm(sight, 'blue_one');
-  // Who lost the token may still stop the boat, and all of them, and release none.
+  // Without the token, a page may still stop one boat or all, but release none.
   const looking = await Sight.open(t, browser, boats.url);
   await looking.press('[data-vehicle=blue_one]');
   await looking.press('#operate-disarm');
   await badge(sight, 'blue_one', 'disarmed');
   await looking.press('#estop');
   await badge(sight, 'blue_one', 'stopped');
-  await looking.until('it cannot release them', () => document.getElementById('estop').disabled);
+  await looking.until('the page cannot release them', () => document.getElementById('estop').disabled);
   await sight.press('#estop');
   await sight.press('#estop-confirm');
   await badge(sight, 'blue_one', 'disarmed');
@@ -121,31 +121,31 @@ test('without a token of its own a page may stop real boats, and operates them w
 test('a failsafe is seen and heard until it is acknowledged, and no flood keeps the E-stop waiting', async (t) => {
   const boats = await realBoats(t);
   const sight = await Sight.open(t, browser, boats.url);
-  assert.match(await sight.text('#mute'), /Press for sound/, 'before anything is pressed browsers allow none');
+  assert.match(await sight.text('#mute'), /Enable sound/, 'browsers play no sound before the first press');
   await badge(sight, 'blue_one', 'disarmed');
   await arm(sight, 'blue_one');
   await arm(sight, 'red_one');
-  await sight.until('alarms can be heard', () => document.getElementById('mute').textContent === 'Alarms on');
-  assert.deepEqual(await sight.get(() => [squall.alarms, squall.sounded]), [[], 0], 'nothing is wrong');
+  await sight.until('alarms are audible', () => document.getElementById('mute').textContent === 'Alarms on');
+  assert.deepEqual(await sight.get(() => [squall.alarms, squall.sounded]), [[], 0], 'there are no alarms');
 
-  // Without its agents a boat gets no orders.
+  // Without its agents a boat receives no orders.
   await boats.agents.kill();
   for (const name of ['blue_one', 'red_one']) {
     const failed = await badge(sight, name, 'failsafe');
     assert.match(failed.detail, /order/);
   }
-  await sight.until('two alarms', () => squall.alarms.length === 2 && squall.alarms.every(({ active, text }) => active && /^Failsafe: .*order/.test(text)));
+  await sight.until('two alarms are shown', () => squall.alarms.length === 2 && squall.alarms.every(({ active, text }) => active && /^Failsafe: .*order/.test(text)));
   const before = await sight.get(() => squall.sounded);
-  await sight.until('it is heard, again and again', (before) => squall.sounded >= before + 6, before);
+  await sight.until('the alarm sounds repeatedly', (before) => squall.sounded >= before + 6, before);
   assert(await sight.page.isVisible('#alarms'));
   await sight.press('#mute');
   const muted = await sight.get(() => squall.sounded);
   assert.equal(await sight.text('#mute'), 'Alarms muted');
   await sight.page.waitForTimeout(2500);
-  assert.equal(await sight.get(() => squall.sounded), muted, 'muted it is silent');
-  assert(await sight.page.isVisible('#alarms'), 'and seen all the same');
+  assert.equal(await sight.get(() => squall.sounded), muted, 'muted alarms are silent');
+  assert(await sight.page.isVisible('#alarms'), 'muted alarms are still visible');
   await sight.press('#mute');
-  await sight.until('it is heard again', (muted) => squall.sounded > muted, muted);
+  await sight.until('the alarm sounds again', (muted) => squall.sounded > muted, muted);
 
   // Reset elsewhere, it stays until it is acknowledged here.
   const theirs = await Sight.open(t, browser, boats.url);
@@ -153,29 +153,29 @@ test('a failsafe is seen and heard until it is acknowledged, and no flood keeps 
   assert.equal(await theirs.text('#operate-disarm'), 'Reset failsafe');
   await theirs.press('#operate-disarm');
   await badge(sight, 'red_one', 'disarmed');
-  await sight.until('it is over and still there', () => squall.alarms.some(({ boat, active }) => boat === 'red_one' && !active));
+  await sight.until('the alarm is over but still shown', () => squall.alarms.some(({ boat, active }) => boat === 'red_one' && !active));
   await sight.press('#alarm-list li:has-text("red one") >> text=Acknowledge');
-  await sight.until('the other waits', () => squall.alarms.length === 1 && squall.alarms[0].boat === 'blue_one');
+  await sight.until('the other alarm is still shown', () => squall.alarms.length === 1 && squall.alarms[0].boat === 'blue_one');
   await sight.press('#alarm-list li:has-text("blue one") .alarm-words');
-  assert.equal(await sight.get(() => squall.selected), 'blue_one', 'an alarm leads to its boat');
+  assert.equal(await sight.get(() => squall.selected), 'blue_one', 'pressing an alarm selects its boat');
   await sight.press('#operate-disarm');
-  await sight.until('to reset it is to acknowledge it', () => squall.alarms.length === 0);
+  await sight.until('resetting acknowledges the alarm', () => squall.alarms.length === 0);
   assert(!(await sight.page.isVisible('#alarms')));
 
-  // A page floods the server with commands; one press on another stops all boats.
+  // One page floods the server with commands; one press on another stops all boats.
   const flood = forge(theirs, { do: 'operate', vehicle: 'blue_one', command: 'arm' }, 5000);
   await sight.press('#estop');
   const pressed_ms = Date.now();
   await badge(sight, 'blue_one', 'stopped');
   await badge(sight, 'red_one', 'stopped');
   t.diagnostic(`stopped and seen ${Date.now() - pressed_ms} ms after the press`);
-  assert.match((await flood).reason, /has not answered the command before/);
+  assert.match((await flood).reason, /has not answered the previous command/);
   assert(Date.now() - pressed_ms < 5000);
 
-  // A gateway that is gone says nothing.
+  // A gateway that has ended is silent.
   await boats.gateways.red_one.kill();
-  assert.match((await badge(sight, 'red_one', 'silent')).detail, /silent since/);
-  await sight.until('that is an alarm', () => squall.alarms.some(({ boat, text }) => boat === 'red_one' && /silent/.test(text)));
+  assert.match((await badge(sight, 'red_one', 'silent')).detail, /no report from its gateway for/);
+  await sight.until('the silent gateway raises an alarm', () => squall.alarms.some(({ boat, text }) => boat === 'red_one' && /silent/.test(text)));
 });
 
 test('a boat holds a heading and goes into other modes at an operator’s wish, and what is wrong in it is an alarm', async (t) => {
@@ -185,28 +185,28 @@ test('a boat holds a heading and goes into other modes at an operator’s wish, 
   const sight = await Sight.open(t, browser, boats.url);
   await badge(sight, 'blue_one', 'disarmed');
   await sight.press('[data-vehicle=blue_one]');
-  await sight.until('it knows where it is', () => !/navigation|link/.test(document.getElementById('checks').textContent));
+  await sight.until('the boat has a position', () => !/navigation|link/.test(document.getElementById('checks').textContent));
   await sight.press('#modes summary');
   await sight.page.fill('#mode-heading', '0');
   await sight.page.fill('#mode-thrust', '71');
   await sight.press('#mode-set');
   await sight.press('#operate-confirm');
-  await sight.until('too much is refused', () => /refuses: the thrust is 71, expected 0 to 70 %/.test(document.getElementById('operated').textContent));
+  await sight.until('excessive thrust is refused', () => /refuses: the thrust is 71, expected 0 to 70 %/.test(document.getElementById('operated').textContent));
   await sight.page.fill('#mode-thrust', '20');
   await sight.press('#mode-set');
-  assert.match(await sight.text('#operate-question'), /Let blue one hold heading 0° at 20 % by its own controller/);
+  assert.match(await sight.text('#operate-question'), /Let blue one’s own controller hold heading 0° at 20 %/);
   await sight.press('#operate-confirm');
   assert.equal((await badge(sight, 'blue_one', 'delegated')).detail, 'heading 000 at 20 %');
   // Its thrusters draw more than the file allows.
-  await sight.until('an alarm of each thruster', () => squall.alarms.length === 2 && squall.alarms.every(({ active, text }) => active && /thruster draws too much, 1\.\d A/.test(text)));
+  await sight.until('each thruster raises an alarm', () => squall.alarms.length === 2 && squall.alarms.every(({ active, text }) => active && /thruster draws too much, 1\.\d A/.test(text)));
   assert.match(await sight.text('#gateway'), /Alarm.*thruster draws too much/s);
   await sight.page.selectOption('#mode', 'autopilot');
   assert(!(await sight.page.isVisible('#mode-heading')));
   await sight.press('#mode-set');
   await sight.press('#operate-confirm');
-  await sight.until('it is in that mode', () => squall.badges.find(({ name }) => name === 'blue_one').detail === 'autopilot');
-  // An emulated boat does nothing there.
-  await sight.until('the alarms are over and stay', () => squall.alarms.length === 2 && squall.alarms.every(({ active }) => !active));
+  await sight.until('the boat has changed its mode', () => squall.badges.find(({ name }) => name === 'blue_one').detail === 'autopilot');
+  // An emulated boat does nothing in that mode.
+  await sight.until('the alarms are over but still shown', () => squall.alarms.length === 2 && squall.alarms.every(({ active }) => !active));
   assert(!/Alarm/.test(await sight.text('#gateway')));
   await sight.press('#operate-disarm');
   await badge(sight, 'blue_one', 'disarmed');
@@ -219,6 +219,6 @@ test('the E-stop is large only where it stops real boats', async (t) => {
     const sight = await Sight.open(t, browser, boats.url, { size });
     const { height } = await sight.page.locator('#estop').boundingBox();
     assert(height >= least, `${height} px high at ${size.width}`);
-    assert(await sight.get(() => document.documentElement.scrollWidth <= innerWidth), 'nothing is wider than the screen');
+    assert(await sight.get(() => document.documentElement.scrollWidth <= innerWidth), 'the page fits the screen');
   }
 });

@@ -1,4 +1,4 @@
-// A boat that people steer: two pages show one game, and one of them steers.
+// A boat that people drive: two pages show one game, and one of them drives.
 
 import assert from 'node:assert/strict';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
@@ -11,13 +11,13 @@ let browser;
 before(async () => { browser = await openBrowser(); });
 after(() => browser.close());
 
-/** How far a boat may be off the course and the speed it is ordered, in calm water. */
+/** Tolerances of the ordered course and speed in calm water. */
 const OFF_DEG = 8;
 const OFF_M_S = 0.25;
 
 const BOAT = 'blue_one';
 
-/** Waits until the boat goes as ordered. */
+/** Waits until the boat moves as ordered. */
 const goes = (sight, course_deg, speed_m_s) => sight.until(`${BOAT} goes ${course_deg}° at ${speed_m_s} m/s`,
   ([name, course_deg, speed_m_s, off_deg, off_m_s]) => {
     const boat = squall.frame.boats.find((each) => each.name === name);
@@ -25,29 +25,29 @@ const goes = (sight, course_deg, speed_m_s) => sight.until(`${BOAT} goes ${cours
     return off < off_deg && Math.abs(boat.speed_m_s - speed_m_s) < off_m_s && { course_deg: boat.course_deg, speed_m_s: boat.speed_m_s };
   }, [BOAT, course_deg, speed_m_s, OFF_DEG, OFF_M_S]);
 
-/** Course and speed that are ordered, as the page says them. */
+/** The ordered course and speed, as shown on the page. */
 const ordered = async (sight) => (await sight.text('#steering-text')).match(/(\d+)°\s+([\d.]+)/).slice(1).map(Number);
 
-/** Waits until these are ordered. */
+/** Waits until this course and speed are ordered. */
 const orders = (sight, course_deg, speed_m_s) => sight.until(`${course_deg}° at ${speed_m_s} m/s are ordered`, ([course_deg, speed_m_s]) => {
   const [, deg, m_s] = document.getElementById('steering-text').textContent.match(/(\d+)°\s+([\d.]+)/).map(Number);
   return deg === course_deg && m_s === speed_m_s;
 }, [course_deg, speed_m_s]);
 
-/** Waits until the boat stands. */
+/** Waits until the boat stands still. */
 const stands = (sight) => sight.until(`${BOAT} stands`, (name) => squall.frame.boats.find((boat) => boat.name === name).speed_m_s < 0.2, BOAT);
 
-/** Waits until nobody steers it, as the server says. */
-const isFree = (sight) => sight.until('nobody steers it', () => squall.driving === null
+/** Waits until no page drives it, according to the server. */
+const isFree = (sight) => sight.until('no page drives the boat', () => squall.driving === null
   && document.querySelector('#pane-boat .note').hidden);
 
-/** Begins to steer the boat. */
+/** Starts to drive the boat. */
 async function take(sight) {
   await sight.press(`[data-vehicle=${BOAT}]`);
   await sight.press('#drive');
 }
 
-/** The game in which nobody but the person goes anywhere, the mate included. */
+/** A game in which only the driven boat moves. */
 function alone(t) {
   const folder = mkdtempSync(join(tmpdir(), 'squall-'));
   t.after(() => rmSync(folder, { recursive: true, force: true }));
@@ -59,10 +59,10 @@ function alone(t) {
 }
 
 test('two pages see one game; a boat goes as one of them says, and the other is told who steers', async (t) => {
-  // Among boats that lie still: on a slow machine there is time to sail among those that do not, and safety moves the boat.
+  // The others lie still, because safety moves the boat when others come near, and a slow machine needs time.
   const run = new Program(t, 'run', alone(t), '--view', '--pace', 'realtime', '--no-record', '--listen', '127.0.0.1:0');
   const url = await run.url();
-  // Two browsers, as two people have: a page that is not in front is shown nothing.
+  // Two browsers, as for two people: a page in the background draws nothing.
   const other = await openAnother(t);
   const [mine, theirs] = [await Sight.open(t, browser, url), await Sight.open(t, other, url)];
   const look = (sight) => sight.get(() => ({ t_s: squall.t_s, places: squall.frame.boats.map(({ name, x, y }) => [name, x, y]) }));
@@ -76,8 +76,8 @@ test('two pages see one game; a boat goes as one of them says, and the other is 
   });
   await theirs.press(`[data-vehicle=${BOAT}]`);
   await take(mine);
-  await mine.until('we steer', () => /You steer this boat/.test(document.getElementById('pane-boat').textContent));
-  await theirs.until('they are told', () => /Somebody else steers/.test(document.getElementById('pane-boat').textContent));
+  await mine.until('this page drives the boat', () => /You are driving this boat/.test(document.getElementById('pane-boat').textContent));
+  await theirs.until('the other page is informed', () => /Another page is driving/.test(document.getElementById('pane-boat').textContent));
   const start = await mine.get((name) => squall.frame.boats.find((boat) => boat.name === name), BOAT);
   const course_deg = 90;
   const begun_deg = await mine.get(() => Number(document.getElementById('steering-text').textContent.match(/\d+/)[0]));
@@ -87,26 +87,26 @@ test('two pages see one game; a boat goes as one of them says, and the other is 
   assert(Math.abs(ordered_deg - course_deg) <= 3 && ordered_m_s === 1, `${ordered_deg}° at ${ordered_m_s} m/s`);
   const went = await goes(mine, ordered_deg, ordered_m_s);
   const { x, y } = await mine.get((name) => squall.frame.boats.find((boat) => boat.name === name), BOAT);
-  await mine.until('it gets on eastward', ([name, x]) => squall.frame.boats.find((boat) => boat.name === name).x > x + 3, [BOAT, x]);
+  await mine.until('the boat moves eastward', ([name, x]) => squall.frame.boats.find((boat) => boat.name === name).x > x + 3, [BOAT, x]);
   t.diagnostic(`from ${start.x.toFixed(1)}, ${start.y.toFixed(1)} to ${x.toFixed(1)}, ${y.toFixed(1)}; ordered ${ordered_deg}° at ${ordered_m_s} m/s, went ${JSON.stringify(went)}`);
   await theirs.press('#drive');
-  await theirs.until('they are refused', () => squall.driving === null
-    && /Somebody else/.test(document.getElementById('notices').textContent));
-  assert.equal(await mine.get(() => squall.driving), BOAT, 'and it stays ours');
+  await theirs.until('the other page is refused', () => squall.driving === null
+    && /Another page/.test(document.getElementById('notices').textContent));
+  assert.equal(await mine.get(() => squall.driving), BOAT, 'this page still drives the boat');
   await mine.page.focus('#steering');
   await mine.keys(...Array(6).fill('ArrowDown'));
   await stands(mine);
   await mine.keys('Escape');
   assert.equal(await mine.get(() => squall.driving), null);
-  await theirs.until('nobody steers it', () => !/Somebody else steers/.test(document.querySelector('.note:not([hidden])')?.textContent ?? ''));
+  await theirs.until('no page drives the boat', () => !/Another page is driving/.test(document.querySelector('.note:not([hidden])')?.textContent ?? ''));
   await theirs.press('#drive');
-  await theirs.until('it is theirs', () => /You steer this boat/.test(document.getElementById('pane-boat').textContent));
-  await mine.until('and we are told', () => /Somebody else steers/.test(document.getElementById('pane-boat').textContent));
+  await theirs.until('the other page drives the boat', () => /You are driving this boat/.test(document.getElementById('pane-boat').textContent));
+  await mine.until('this page is informed', () => /Another page is driving/.test(document.getElementById('pane-boat').textContent));
 });
 
 const person = (t, ...words) => new Program(t, 'run', scenario('games/person_2v2.toml'), '--view', '--no-record', '--listen', '127.0.0.1:0', ...words);
 
-/** Gamepads of a test: what is in `pads` is what there is. */
+/** Gamepads of a test: those in `pads` exist. */
 const PADS = () => {
   window.pads = [];
   navigator.getGamepads = () => window.pads;
@@ -135,20 +135,20 @@ test('a gamepad steers once its stick was seen at rest; the boat stops when it i
   await take(sight);
   const [start_deg] = await ordered(sight);
   await read(sight);
-  assert.deepEqual(await ordered(sight), [start_deg, 0], 'a stick that was out from the start steers nothing');
+  assert.deepEqual(await ordered(sight), [start_deg, 0], 'a stick deflected from the start has no effect');
   await plug(leans, rests);
   await read(sight);
-  assert.deepEqual(await ordered(sight), [start_deg, 0], 'nor does one at rest, nor what is no gamepad');
+  assert.deepEqual(await ordered(sight), [start_deg, 0], 'neither a stick at rest nor another device has an effect');
   await plug(leans, out);
   await orders(sight, 90, 3);
   await goes(sight, 90, 3);
   await plug(leans);
   await orders(sight, 90, 0);
-  assert.match(await sight.text('#notices'), /gamepad is gone/);
+  assert.match(await sight.text('#notices'), /gamepad is disconnected/);
   await stands(sight);
   await plug(out);
   await read(sight);
-  assert.deepEqual(await ordered(sight), [90, 0], 'one that comes back must be seen at rest again');
+  assert.deepEqual(await ordered(sight), [90, 0], 'a reconnected stick must be at rest first');
   await plug(rests);
   await read(sight);
   await plug([[0, 0.5, 0, 0], 'standard']);
@@ -169,9 +169,9 @@ test('whoever looks elsewhere lets go, and the boat stops', async (t) => {
   };
   for (const [why, go] of Object.entries(away)) {
     await take(sight);
-    await sight.until('it steers', () => /You steer this boat/.test(document.getElementById('pane-boat').textContent));
+    await sight.until('the page drives the boat', () => /You are driving this boat/.test(document.getElementById('pane-boat').textContent));
     await sight.keys(...Array(8).fill('w'));
-    await sight.until('it goes', (name) => squall.frame.boats.find((boat) => boat.name === name).speed_m_s > 0.8, BOAT);
+    await sight.until('the boat moves', (name) => squall.frame.boats.find((boat) => boat.name === name).speed_m_s > 0.8, BOAT);
     await sight.get(go);
     assert.equal(await sight.get(() => squall.driving), null, why);
     await isFree(sight);
@@ -180,10 +180,10 @@ test('whoever looks elsewhere lets go, and the boat stops', async (t) => {
   }
 });
 
-/** So long a helm heeds what a person said, simulated s. */
+/** How long a helm uses a set-point, simulated s. */
 const HEEDED_S = 1.5;
 
-/** Runs in the page before its own scripts: notes the simulated times at which it says where a boat is to go. */
+/** Runs in the page before its own scripts: records the simulated times at which it sends set-points. */
 const NOTED = () => {
   window.driveSent_s = [];
   const { send } = WebSocket.prototype;
@@ -196,14 +196,14 @@ const NOTED = () => {
 test('a fast game is steered without gaps, and one as fast as can be is said to be too fast', async (t) => {
   const sight = await Sight.open(t, browser, await person(t, '--speed', '10x').url(), { before: NOTED });
   await take(sight);
-  // Whatever has the focus: a list would take the arrow keys for itself.
+  // Whatever has the focus: a list would take the arrow keys.
   await sight.page.focus('#speed');
   await sight.keys(...Array(4).fill('ArrowUp'));
   const [course_deg, speed_m_s] = await ordered(sight);
   assert.equal(speed_m_s, 1);
   assert.equal(await sight.get(() => squall.state.speed), 10);
   await goes(sight, course_deg, speed_m_s);
-  // A machine may well stall for a while, and then the boat stops as it should: one stretch in ten must be steered.
+  // A machine may stall for a while, and then the boat stops as it should: one stretch in ten must be driven.
   const stretch = () => sight.get((name) => new Promise((done) => {
     const middle = (values) => values.sort((one, other) => one - other)[Math.floor(values.length / 2)];
     const from_s = squall.t_s;
@@ -222,6 +222,6 @@ test('a fast game is steered without gaps, and one as fast as can be is said to 
   assert(seen.some(isSteered), `the page says where to every so many s, and the boat goes: ${JSON.stringify(seen)}`);
   assert(!(await sight.page.isVisible('#steering-note')));
   await sight.page.selectOption('#speed', 'max');
-  await sight.until('the page says that nobody can', () => /Too fast/.test(document.getElementById('steering-note').textContent)
+  await sight.until('the page says that the game is too fast', () => /Too fast/.test(document.getElementById('steering-note').textContent)
     && !document.getElementById('steering-note').hidden);
 });

@@ -8,9 +8,9 @@ let browser;
 before(async () => { browser = await openBrowser(); });
 after(() => browser.close());
 
-/** How long the page may be busy with one picture, ms: a screen shows sixty a second. */
+/** Maximum time per picture, ms: a screen shows sixty per second. */
 const PICTURE_MS = 16;
-/** How many pictures are measured. */
+/** Number of pictures measured. */
 const PICTURES = 120;
 
 const FLEETS = ['blue', 'red'].map((team) => `
@@ -20,7 +20,7 @@ count = 100
 spawn = { along_m = [10, 350], across_m = [10, 390], gap_m = 10 }
 `).join('');
 
-/** Measures each callback of a picture. */
+/** Measures each drawing callback. */
 const MEASURE = () => {
   const ask = window.requestAnimationFrame.bind(window);
   window.pictures_ms = [];
@@ -44,7 +44,7 @@ test('two hundred boats are drawn in time', async (t) => {
   assert.equal(await sight.get(() => squall.frame.boats.length), 200);
   await sight.until('the game runs', () => squall.state.phase === 'playing' && squall.t_s > 0);
   const drawn = await sight.get(() => squall.drawn);
-  await sight.until('pictures come', (before) => squall.drawn > before + 20, drawn);
+  await sight.until('pictures are drawn', (before) => squall.drawn > before + 20, drawn);
   const all_ms = await median(sight);
   const said = [`all: ${all_ms.toFixed(1)} ms`];
   await sight.press('[data-vehicle]');

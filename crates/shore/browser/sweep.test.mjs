@@ -12,10 +12,10 @@ let browser;
 before(async () => { browser = await openBrowser(); });
 after(() => browser.close());
 
-/** What would change the title of the page if it ever ran. */
+/** Would change the page's title if it ever ran. */
 const HOSTILE = '</script><script>document.title = "owned"</script><img src=x onerror="document.title=\'owned\'">';
 
-/** Plays a sweep of short games: two entries, and two axes of two and three levels unless `more` has others. */
+/** Plays a sweep of short games: two entries, and two axes with two and three levels unless `more` has others. */
 async function sweep(t, more = '') {
   const place = folder(t);
   const game = gameFile(t, 'short', 'surveyor_2v2.toml', 'duration_s = 60');
@@ -29,11 +29,11 @@ async function sweep(t, more = '') {
   await squall(t, 'sweep', file, '--out', out, '--jobs', '2');
   const report = readJson(join(out, 'report.json'));
   const page = join(out, 'report.html');
-  // To work on the page without building the program, as on the live page.
+  // To work on the page without building the program, as for the live page.
   return { out, report, page: process.env.SQUALL_WEB ? writePage(report, page) : pathToFileURL(page).href };
 }
 
-/** Opens a page without a network. The test fails on whatever its console says and on whatever it asks for. */
+/** Opens a page without a network. The test fails on console output and on requests. */
 async function open(t, address, more = {}) {
   const permissions = ['clipboard-read', 'clipboard-write'];
   const context = await browser.newContext({ viewport: { width: 1400, height: 900 }, offline: true, permissions, ...more });
@@ -44,14 +44,14 @@ async function open(t, address, more = {}) {
   page.on('request', (request) => /^(file|http|ws)/.test(request.url()) && asked.push(request.url()));
   t.after(async () => {
     await context.close();
-    assert.deepEqual(said, [], 'the console of the page');
-    assert.deepEqual(asked.filter((url) => url.split('#')[0] !== address.split('#')[0]), [], 'what the page asks for but itself');
+    assert.deepEqual(said, [], 'output on the page\'s console');
+    assert.deepEqual(asked.filter((url) => url.split('#')[0] !== address.split('#')[0]), [], 'requests other than for the page');
   });
   await page.goto(address);
   return page;
 }
 
-/** The index of a metric, and what the page makes of a number of it. */
+/** The index of a metric, and how the page writes a value of it. */
 const metric = (report, name) => report.metrics.findIndex((each) => each.name === name);
 const percent = (mean) => `${Number((100 * mean).toPrecision(3))}`.replace('-', '−');
 
@@ -105,7 +105,7 @@ test('the metric that is chosen changes every chart, and an entry that is hidden
   await page.click('#legend button >> nth=0');
   assert.equal(await page.locator('#curve-charts .card >> nth=0 >> path.line').count(), report.entries.length - 1);
   assert.equal(await page.locator('#tornado-charts .card').count(), report.entries.length - 1);
-  // No metric makes an error: that the console stays empty is seen at the end.
+  // No metric causes an error: at the end the console must be empty.
   for (const { name } of report.metrics) await page.selectOption('#metric', name);
 });
 
@@ -197,7 +197,7 @@ test('a sweep that is not finished says so, and shows what there is', async (t) 
   assert.match(await page.textContent('#chips'), new RegExp(`not finished: ${report.games / 2} of ${report.games} games`));
   assert.equal(await page.locator('#heat-charts .card >> nth=0 >> td.none').count(), report.points.length - 3);
   assert.equal(await page.locator('#tornado-charts .bar').count(), 0);
-  assert(!/NaN|undefined|null|Infinity/.test(await page.innerText('body')), 'a number that is none');
+  assert(!/NaN|undefined|null|Infinity/.test(await page.innerText('body')), 'an invalid number');
 });
 
 test('the page fits screens from a phone to a desk', async (t) => {

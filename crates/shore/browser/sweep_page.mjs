@@ -1,11 +1,11 @@
-// The page of a sweep as the program makes it, of a report that somebody changed.
+// The page of a sweep as the program creates it, from a modified report.
 
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { ROOT } from './harness.mjs';
 
-/** Writes the page of a report into a file, and gives its address. What ends a script is escaped as `crates/experiment/src/sweep/html.rs` does. */
+/** Writes the page of a report to a file, and returns its address. The end of a script is escaped as in `crates/experiment/src/sweep/html.rs`. */
 export function writePage(report, path) {
   const json = JSON.stringify(report).replaceAll('</', '<\\/').replaceAll('<!--', '<\\!--');
   const page = readFileSync(join(ROOT, 'crates/experiment/src/sweep/report.html'), 'utf8');

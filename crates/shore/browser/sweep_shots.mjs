@@ -1,4 +1,4 @@
-// Pictures of sweeps' pages for people to look at: node sweep_shots.mjs FOLDER REPORT.json … [metric=NAME]
+// Takes pictures of sweep pages for people: node sweep_shots.mjs FOLDER REPORT.json … [metric=NAME]
 
 import { mkdirSync } from 'node:fs';
 import { basename, dirname, join, resolve } from 'node:path';
@@ -14,7 +14,7 @@ const SIZES = {
   phone: { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, hasTouch: true },
 };
 
-/** Pairs of texts in charts that lie over one another. */
+/** Pairs of overlapping texts in charts. */
 const overlaps = () => [...document.querySelectorAll('.chart svg')].flatMap((picture) => {
   const texts = [...picture.querySelectorAll('text')].filter((text) => !text.hasAttribute('transform'));
   const boxes = texts.map((text) => [text.textContent, text.getBoundingClientRect()]);

@@ -1,3 +1,5 @@
-//! The page on which people ashore watch games, live or recorded.
+//! The web page on which people watch, steer and operate games, live or recorded.
+//!
+//! [`page::Page`] is the server. `PROTOCOL.md` describes how it talks to browsers.
 
 pub mod page;

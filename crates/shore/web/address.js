@@ -1,15 +1,15 @@
-// What the page's address says of the moment and the boat to be shown: `#t=83.2&boat=blue_one`.
+// The moment and the boat in the page's address: `#t=83.2&boat=blue_one`.
 
 const words = () => new URLSearchParams(location.hash.slice(1));
 
-/** The time, s, and the boat that the address names; null for what it does not. */
+/** The time, s, and the boat in the address; null where missing. */
 export function wanted() {
   const given = words();
   const t_s = given.has('t') && given.get('t') !== '' ? Number(given.get('t')) : NaN;
   return { t_s: Number.isFinite(t_s) ? t_s : null, boat: given.get('boat') };
 }
 
-/** Puts a moment and a boat into the address; what else it carries stays. Gives the address for others: without the token. */
+/** Puts a moment and a boat into the address and keeps its other parts. Returns an address to share, without the token. */
 export function name(t_s, boat) {
   const given = words();
   given.set('t', t_s.toFixed(1));
@@ -20,21 +20,21 @@ export function name(t_s, boat) {
   return `${location.href.split('#')[0]}#${given}`;
 }
 
-/** The game of a report that the address names, or null. */
+/** The game of a report in the address, or null. */
 export const gameOfReport = () => new URLSearchParams(location.search).get('game');
 
 const KEPT = 'squall.report';
 
-/** Keeps what the address says of a report, for the way back from one of its games. */
+/** Stores the address of a report, for the way back from one of its games. */
 export function keepAddress() {
   try {
     sessionStorage.setItem(KEPT, location.hash);
   } catch {
-    // Then the way back leads to its beginning.
+    // Without it, the way back leads to the start of the report.
   }
 }
 
-/** The address of the report from which a game was opened, as it was left. */
+/** The address of the report from which a game was opened. */
 export function addressOfReport() {
   try {
     return `/${sessionStorage.getItem(KEPT) ?? ''}`;
@@ -43,5 +43,5 @@ export function addressOfReport() {
   }
 }
 
-/** The address of a game of a report. */
+/** The address of a game in a report. */
 export const addressOfGame = (game) => `/?game=${encodeURIComponent(game)}${location.hash.includes('token=') ? `#token=${encodeURIComponent(words().get('token'))}` : ''}`;

@@ -1,15 +1,15 @@
-// Alarms of real boats: they are seen and heard until somebody acknowledges them.
+// Alarms of real boats: visible and audible until someone acknowledges them.
 
 import { fill, make, plain, show, write } from './words.js';
 
 const MUTED_KEY = 'squall.muted';
-/** An alarm sounds again after so long, ms. */
+/** Interval between sounds of an alarm, ms. */
 const AGAIN_MS = 1500;
-/** Tones of an alarm: frequency, Hz, and when it begins, s. */
+/** Tones of an alarm: frequency, Hz, and start, s. */
 const TONES = [[880, 0], [660, 0.22], [880, 0.44]];
 const TONE_S = 0.18;
 const LOUDNESS = 0.25;
-/** The most alarms that are shown one by one. */
+/** Maximum number of alarms shown one by one. */
 const SHOWN_MAX = 4;
 
 function remembered() {
@@ -20,7 +20,7 @@ function remembered() {
   }
 }
 
-/** The sound. Browsers allow it once somebody has pressed something on the page. */
+/** The sound. Browsers allow it after the first press on the page. */
 class Sound {
   constructor() {
     this.context = null;
@@ -37,7 +37,7 @@ class Sound {
 
   allow() {
     this.context ??= new AudioContext();
-    // A refusal leaves it as it is, which is shown.
+    // If refused, the state stays as it is, and is shown.
     if (this.context.state === 'suspended') this.context.resume().catch(() => {});
   }
 
@@ -46,11 +46,11 @@ class Sound {
     try {
       localStorage.setItem(MUTED_KEY, muted ? 'yes' : 'no');
     } catch {
-      // Then it is forgotten with the page.
+      // Not stored: it lasts as long as the page.
     }
   }
 
-  /** Plays the tones, unless they were a moment ago. */
+  /** Plays the tones unless they have just been played. */
   play(now_ms) {
     if (this.muted || !this.allowed || now_ms - this.last_ms < AGAIN_MS) return;
     this.last_ms = now_ms;
@@ -60,7 +60,7 @@ class Sound {
       const [from, to] = [context.currentTime + at_s, context.currentTime + at_s + TONE_S];
       tone.type = 'square';
       tone.frequency.value = frequency;
-      // Without edges that click.
+      // Soft edges prevent clicks.
       gain.gain.setValueAtTime(0, from);
       gain.gain.linearRampToValueAtTime(LOUDNESS, from + 0.02);
       gain.gain.setValueAtTime(LOUDNESS, to - 0.02);
@@ -74,7 +74,7 @@ class Sound {
 }
 
 export class Alarms {
-  /** `on` has `choose(name)`, for the boat of an alarm that somebody presses. */
+  /** `on` has `choose(name)`, called when someone presses the boat of an alarm. */
   constructor(on) {
     this.on = on;
     this.place = document.getElementById('alarms');
@@ -88,7 +88,7 @@ export class Alarms {
     this.forget();
   }
 
-  /** What was wrong in another game is not known of this; in the same one, which was lost meanwhile, it stays. */
+  /** Forgets alarms of another game; those of the same game, found again after a loss, stay. */
   greet({ game }) {
     if (game !== this.game) this.forget();
     this.game = game;
@@ -97,7 +97,7 @@ export class Alarms {
   forget() {
     /** By boat and kind: `{ boat, text, at, active, acknowledged }`. */
     this.alarms = new Map();
-    /** By boat how many failsafes its gateway had counted, and whether its link was up. */
+    /** By boat: the number of failsafes of its gateway, and whether its link was up. */
     this.known = new Map();
   }
 
@@ -106,7 +106,7 @@ export class Alarms {
   }
 
   toggleMuted() {
-    // A press that has only now allowed the sound is no wish for silence.
+    // The press that first allows the sound must not mute it.
     if (!this.sound.muted && !this.heard) return;
     this.sound.setMuted(!this.sound.muted);
     this.tellMute();
@@ -121,13 +121,13 @@ export class Alarms {
     this.show();
   }
 
-  /** Takes how real boats are now, and whether the server can be heard. */
+  /** Takes the states of real boats, and whether the server is connected. */
   tell(readings, { live, connected }, now_ms) {
     show(this.button, live && readings.length > 0);
     if (live) {
       for (const reading of readings) this.look(reading, connected);
       const driven = readings.some(({ said }) => said === 'armed' || said === 'delegated');
-      this.set('', 'connection', !connected && driven, 'This page has lost its server. Boats may be under way.');
+      this.set('', 'connection', !connected && driven, 'Connection to the server lost. Boats may be moving.');
     }
     this.show();
     this.tellMute();
@@ -140,15 +140,15 @@ export class Alarms {
     if (kind === 'unknown') return;
     const failed = kind === 'failsafe';
     this.set(name, 'failsafe', failed, `Failsafe: ${detail}`);
-    // One that was over before this page looked again.
+    // A failsafe that was over before this page looked again.
     if (before && failsafes > before.failsafes && !failed) {
       this.set(name, 'failsafe', true, `Failsafe: ${reading.facts.at(-1)?.words ?? ''}`);
       this.set(name, 'failsafe', false, '');
     }
-    // Where the server is not heard, no gateway is.
-    this.set(name, 'silent', kind === 'silent' && connected, 'Its gateway is silent.');
+    // Without the server, no gateway can be heard.
+    this.set(name, 'silent', kind === 'silent' && connected, 'The gateway is silent.');
     this.set(name, 'link', kind !== 'silent' && !link && (before?.link ?? false), 'The link to the boat is lost.', !link && kind !== 'silent');
-    // The current that an alarm tells changes; what is wrong is told before it.
+    // The current in the text changes; the text before it says what is wrong.
     const wrong = new Map(reading.alarms.map((words) => [`boat: ${words.split(',')[0]}`, words]));
     for (const [kind, words] of wrong) this.set(name, kind, true, words);
     for (const key of this.alarms.keys()) {
@@ -158,7 +158,7 @@ export class Alarms {
     this.known.set(name, { failsafes, link: link || (before?.link ?? false) });
   }
 
-  /** An alarm begins, goes on or is over; one that nobody has acknowledged stays. */
+  /** An alarm begins, continues or ends. It stays until acknowledged. */
   set(boat, kind, begins, text, goesOn = begins) {
     const key = `${boat} ${kind}`;
     const alarm = this.alarms.get(key);
@@ -198,13 +198,13 @@ export class Alarms {
     return row;
   }
 
-  /** Says whether alarms can be heard. */
+  /** Shows whether alarms are audible. */
   tellMute() {
     const { muted, allowed } = this.sound;
     this.heard = allowed && !muted;
-    write(this.button, muted ? 'Alarms muted' : allowed ? 'Alarms on' : 'Press for sound');
-    const title = muted ? 'Alarms are shown and not heard. Press to hear them.'
-      : allowed ? 'Alarms are heard. Press to mute them.' : 'Browsers allow sound once you press something here.';
+    write(this.button, muted ? 'Alarms muted' : allowed ? 'Alarms on' : 'Enable sound');
+    const title = muted ? 'Alarms are silent. Click to unmute them.'
+      : allowed ? 'Alarms are audible. Click to mute them.' : 'Browsers play no sound before the first click on the page.';
     if (this.button.title !== title) this.button.title = title;
     this.button.setAttribute('aria-pressed', String(muted));
     this.button.dataset.heard = String(this.heard);

@@ -1,8 +1,8 @@
-// A question that is asked once before something grave is done: a small box of our own beside the button.
+// A confirmation before a serious action: a small box beside the button.
 
 let open = null;
 
-/** Closes the question that is open. Whether there was one. */
+/** Closes the open question. Returns whether there was one. */
 export function closeAsk() {
   if (!open) return false;
   open.close(true);
@@ -10,7 +10,7 @@ export function closeAsk() {
 }
 
 export class Ask {
-  /** The elements are called `<name>`, `<name>-ask`, `-question`, `-confirm` and `-cancel`. */
+  /** The elements are `<name>`, `<name>-ask`, `-question`, `-confirm` and `-cancel`. */
   constructor(name) {
     const element = (part) => document.getElementById(`${name}${part}`);
     this.button = element('');
@@ -21,7 +21,7 @@ export class Ask {
     this.button.setAttribute('aria-controls', this.box.id);
     this.cancel = element('-cancel');
     this.confirm.addEventListener('click', () => {
-      // Not back to the button: a second Enter would ask for the opposite.
+      // Not back to the button, where a second Enter would request the opposite.
       this.close(false);
       document.getElementById('sheet').focus({ preventScroll: true });
       this.act?.();
@@ -32,7 +32,7 @@ export class Ask {
     });
   }
 
-  /** Asks; `act` is called once somebody says yes. `slow` waits on the no, for what is not to be done by a second Enter. */
+  /** Asks; calls `act` after a yes. With `slow` the focus is on Cancel, so that a second Enter cannot confirm. */
   ask(question, yes, act, slow = false) {
     if (open !== this) closeAsk();
     open = this;

@@ -1,4 +1,4 @@
-// The background of the chart: an image of the site, or its shoreline, drawn below the field where its latitudes and longitudes are.
+// The background of the chart: an image of the site or its shoreline, placed below the field by latitude and longitude.
 
 import { latLonOf, latLonWords, placeOf } from './datum.js';
 import { haloText } from './field.js';
@@ -6,20 +6,20 @@ import { palette } from './palette.js';
 import { notice } from './status.js';
 import { number, show } from './words.js';
 
-/** What lies farther from the field's datum than this is of another site, m. */
+/** A background farther from the field's datum than this belongs to another site, m. */
 const FAR_M = 50_000;
-/** How strongly an image is drawn: the field and its boats must be seen on it. In the dark it dazzles otherwise. */
+/** Opacity of images: field and boats must stay visible, and in dark mode images must not dazzle. */
 const IMAGE_LIGHT = 0.85;
 const IMAGE_DARK = 0.45;
-/** Names of places are drawn from this scale on, pixels to a metre. */
+/** Place names are drawn from this scale on, pixels per metre. */
 const NAMES_SCALE = 0.2;
 
 export class Background {
-  /** `on` has `changed()`, once there is another picture. */
+  /** `on` has `changed()`, called when the image changes. */
   constructor(on) {
     this.on = on;
     this.button = document.getElementById('show-chart');
-    /** As the server sends it; null without one. */
+    /** As received from the server; null without one. */
     this.given = null;
     this.image = null;
     this.datum = null;
@@ -27,7 +27,7 @@ export class Background {
   }
 
   forget() {
-    /** From pixels of the image to metres: as of a canvas. */
+    /** Transform from image pixels to metres, for a canvas. */
     this.matrix = null;
     this.areas = null;
     this.lines = null;
@@ -48,15 +48,14 @@ export class Background {
         await image.decode();
         this.image = image;
       }
-      // Once all of it is there: the game may have come before.
+      // Only when complete: the game may have arrived first.
       this.given = given;
     } catch (error) {
-      notice(`The chart below the field cannot be shown: ${error.message}`);
+      notice(`Cannot show the chart below the field: ${error.message}`);
     }
     this.lay();
   }
 
-  /** The field is where its datum is. */
   greet(chart) {
     const { datum } = chart.field ?? {};
     if (JSON.stringify(datum) === JSON.stringify(this.datum)) return;
@@ -64,7 +63,7 @@ export class Background {
     this.lay();
   }
 
-  /** Lays it on the field. */
+  /** Aligns it with the field. */
   lay() {
     this.forget();
     if (this.given && this.datum && !this.isFar()) {
@@ -75,12 +74,12 @@ export class Background {
     this.on.changed();
   }
 
-  /** A place, longitude first, in metres from the datum. */
+  /** Converts a position, longitude first, to metres from the datum. */
   at([lon, lat]) {
     return placeOf(this.datum, lat, lon);
   }
 
-  /** Corners of the image, or all positions. */
+  /** The corners of the image, or all positions. */
   positions() {
     const { image, areas = [], lines = [], points = [] } = this.given;
     if (!image) return [...areas.flat(2), ...lines.flat(1), ...points];
@@ -89,7 +88,7 @@ export class Background {
       [a * (right - 0.5) + b * (down - 0.5) + c, d * (right - 0.5) + e * (down - 0.5) + f]);
   }
 
-  /** Whether it is of another site; then people are told where it is. */
+  /** Whether it belongs to another site; if so, a notice says where it is. */
   isFar() {
     const box = { left: Infinity, right: -Infinity, bottom: Infinity, top: -Infinity };
     for (const position of this.positions()) {
@@ -100,12 +99,12 @@ export class Background {
     const far_m = Math.hypot(off(box.left, box.right), off(box.bottom, box.top));
     if (far_m <= FAR_M) return false;
     const middle = latLonOf(this.datum, (box.left + box.right) / 2, (box.bottom + box.top) / 2);
-    notice(`${this.given.name} is not drawn: it lies around ${latLonWords(middle, 0, 0)}, some ${number(far_m / 1000, 0, 'km')} from the field at ${latLonWords(this.datum, 0, 0)}. Its longitudes and latitudes may be exchanged.`);
+    notice(`${this.given.name} is not drawn: it is at ${latLonWords(middle, 0, 0)}, about ${number(far_m / 1000, 0, 'km')} from the field at ${latLonWords(this.datum, 0, 0)}. Its longitudes and latitudes may be swapped.`);
     return true;
   }
 
   layImage([a, d, b, e, c, f]) {
-    // World files place the middle of the first pixel, canvases its corner.
+    // World files refer to the centre of the first pixel, canvases to its corner.
     const [x, y] = this.at([c - (a + b) / 2, f - (d + e) / 2]);
     const [acrossX, acrossY] = this.at([c - (a + b) / 2 + a, f - (d + e) / 2 + d]);
     const [downX, downY] = this.at([c - (a + b) / 2 + b, f - (d + e) / 2 + e]);
@@ -129,7 +128,7 @@ export class Background {
     if (closed) path.closePath();
   }
 
-  /** Draws it, below everything else of the field. */
+  /** Draws it below the rest of the field. */
   draw(context, view) {
     if (!this.drawn) return;
     context.save();

@@ -1,4 +1,4 @@
-// The badge of a real boat: what its gateway says, on the chart and in the list.
+// The badge of a real boat: its state according to the gateway, on the chart and in the list.
 
 import { palette } from './palette.js';
 import { make, show, write } from './words.js';
@@ -6,12 +6,12 @@ import { make, show, write } from './words.js';
 const FONT = '700 11px system-ui, sans-serif';
 const HEIGHT = 17;
 const PAD = 6;
-/** Longest words on the chart, px: causes are told whole in the list. */
+/** Maximum length of text on the chart, px; the list shows causes in full. */
 const WIDTH_MAX = 220;
-/** On a chart that is narrower than this causes would cover other boats, px. */
+/** On a chart narrower than this, causes would cover other boats, px. */
 const NARROW = 600;
 
-/** Fill, letters and rim of each tone. */
+/** Fill, text and border of each tone. */
 const LOOKS = {
   good: () => [palette.good, palette.paper, palette.paper],
   bad: () => [palette.danger, palette['on-danger'], palette.halo],
@@ -29,7 +29,7 @@ function fitted(context, text) {
   return `${text.slice(0, length)}…`;
 }
 
-/** Draws the badge below a boat, inside of the chart. Gives what it takes there: left, top, right, bottom, px. */
+/** Draws the badge below a boat, within the chart. Returns the area taken: left, top, right, bottom, px. */
 export function drawBadge(context, view, reading, x, y, room) {
   context.font = FONT;
   const text = view.width < NARROW ? reading.label : fitted(context, said(reading));
@@ -52,16 +52,16 @@ export function drawBadge(context, view, reading, x, y, room) {
   return [left, top, left + width, top + HEIGHT];
 }
 
-/** An element for a badge. */
+/** Creates an element for a badge. */
 export const makeBadge = () => make('span', 'badge');
 
-/** Writes a badge, with its cause or task. */
+/** Writes a badge with its cause or task. */
 export function tellBadge(element, reading) {
   write(element, reading.label);
   if (element.dataset.tone !== reading.tone) element.dataset.tone = reading.tone;
 }
 
-/** The line below a boat's name in the list: badge, cause, and link, fix and battery with their ages. */
+/** The line below a boat's name in the list: badge, cause, link, fix and battery, with their ages. */
 export class BadgeLine {
   constructor() {
     this.badge = makeBadge();

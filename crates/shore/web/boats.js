@@ -1,4 +1,4 @@
-// The boats: hulls, marks, names, carried flags, and the circles within which they may tag.
+// The boats: hulls, marks, names, carried flags, and tag circles.
 
 import { DISABLED, MARKS, NAV_LOST, TAGGED } from './game.js';
 import { drawBadge } from './badge.js';
@@ -6,24 +6,24 @@ import { drawFences, drawStops } from './fence.js';
 import { Labels } from './label.js';
 import { palette, teamColour } from './palette.js';
 
-/** A hull of length 1, bow first: ahead, to starboard. */
+/** A hull of length 1, bow first: forward, starboard. */
 const HULL = [[0.5, 0], [0.22, 0.42], [-0.15, 0.5], [-0.5, 0.4], [-0.5, -0.4], [-0.15, -0.5], [0.22, -0.42]];
 /** The second team's stripe across the hull. */
 const STRIPE = [[0.12, 0.62], [-0.12, 0.62], [-0.12, -0.62], [0.12, -0.62]];
-/** Least length of a hull, px: of few boats and of many. */
+/** Minimum length of a hull, px: with few boats and with many. */
 const LENGTH_FEW_PX = 20;
 const LENGTH_MANY_PX = 13;
 const MANY = 60;
-/** How far ahead the line at the bow reaches, s. */
+/** Length of the line at the bow, s. */
 const AHEAD_S = 3;
-/** What a carried flag takes, px. */
+/** Size of a carried flag, px. */
 const FLAG_ROOM_PX = 24;
-/** Among more boats than this those that are tagged fade, and circles come only of those that are pointed at or selected. */
+/** With more boats than this, tagged boats fade, and only boats that are selected or pointed at show circles. */
 const CROWD = 24;
-/** How strongly boats are drawn that are out of play in a crowd. */
+/** Opacity in a crowd of boats that are out of play. */
 const FADED = 0.4;
 
-/** Traces `shape` at a place: length and width in pixels. */
+/** Traces `shape` at a position; length and width are in pixels. */
 function trace(context, shape, x, y, heading, length, width) {
   const ahead = Math.sin(heading);
   const up = -Math.cos(heading);
@@ -38,7 +38,7 @@ function trace(context, shape, x, y, heading, length, width) {
   context.closePath();
 }
 
-/** Draws a hull of a size, px. `look` has `team`, `idle` (out of play), `disabled`, or `ghost`: where a boat takes itself to be. */
+/** Draws a hull, size in px. `look` has `team`, `idle` (out of play), `disabled`, or `ghost`: the boat's own estimated position. */
 export function drawHullAt(context, x, y, heading, length, width, { team, idle = false, disabled = false, ghost = false }) {
   context.beginPath();
   trace(context, HULL, x, y, heading, length, width);
@@ -76,7 +76,7 @@ function drawCross(context, x, y, half) {
   context.stroke();
 }
 
-/** A flag on its pole, foot at the place. The second team's has a stripe. */
+/** A flag on its pole, with the foot at the position. The second team's has a stripe. */
 export function drawFlag(context, x, y, team, size) {
   context.beginPath();
   context.moveTo(x, y);
@@ -102,7 +102,7 @@ export function drawFlag(context, x, y, team, size) {
   context.stroke();
 }
 
-/** Whether a place is within corners. */
+/** Whether a position is within these corners. */
 export function inside(corners, x, y) {
   let odd = false;
   for (let i = 0, j = corners.length - 1; i < corners.length; j = i++) {
@@ -120,15 +120,15 @@ export class Boats {
     this.labels = new Labels();
     this.lengths = new Float32Array(0);
     this.hovered = -1;
-    /** What gateways say of real boats. */
+    /** The gateways' reports on real boats. */
     this.readings = [];
     /** Their geofences. */
     this.fences = [];
-    /** What their badges take on the chart: left, top, right, bottom, px. */
+    /** The areas of their badges on the chart: left, top, right, bottom, px. */
     this.badges = [];
   }
 
-  /** Draws all boats as posed. */
+  /** Draws all boats at their current poses. */
   draw(game, view, shown, ratio) {
     const { context } = this;
     const selected = game.indexOf.get(game.selected) ?? -1;
@@ -163,7 +163,7 @@ export class Boats {
     return this.lengths[index] * Math.min(0.62, Math.max(0.42, beam_m / length_m || 0.5));
   }
 
-  /** Whether a boat is one of many, and out of play. */
+  /** Whether a boat is out of play in a crowd. */
   isFaded(game, index) {
     return game.count > CROWD && index !== this.selected && index !== this.hovered && (game.marks[index] & (TAGGED | DISABLED)) !== 0;
   }
@@ -190,7 +190,7 @@ export class Boats {
     }
   }
 
-  /** Lines from the bows over the ground, as far as the boats get in a few seconds. */
+  /** Lines from the bows along the course over the ground, a few seconds long. */
   drawLeads(game, view) {
     const { context } = this;
     for (let team = 0; team < palette.teams.length; team++) {
@@ -209,7 +209,7 @@ export class Boats {
     }
   }
 
-  /** Where boats may tag: those in play, in their own zone. */
+  /** Tag circles of boats in play in their own zone. */
   drawCircles(game, view) {
     const radius = game.chart.radii?.tag_m * view.scale;
     const zones = game.chart.field?.zones;
@@ -244,7 +244,7 @@ export class Boats {
     }
   }
 
-  /** The selected boat's own opinion of where it is. */
+  /** The selected boat's own estimated position. */
   drawGhost(game, view, index) {
     const { context } = this;
     const ghost = game.estimate;
@@ -270,7 +270,7 @@ export class Boats {
     }
   }
 
-  /** Letters above boats with which something is the matter. */
+  /** Letters above boats with a fault or penalty. */
   drawMarks(game, view) {
     const { context } = this;
     context.font = '700 11px system-ui, sans-serif';
@@ -316,14 +316,14 @@ export class Boats {
     context.setLineDash([]);
   }
 
-  /** How strongly names are drawn: they fade as boats get crowded. */
+  /** Opacity of names; falls as boats get crowded. */
   nameStrength(game, view) {
     const { left, right, bottom, top } = view.bounds;
     const room = Math.sqrt(((right - left) * (top - bottom)) / Math.max(1, game.count)) * view.scale;
     return Math.min(1, Math.max(0, (room - 56) / 24));
   }
 
-  /** Half of what a hull takes on the chart to each side, and up and down, px. */
+  /** Half the extent of a hull on the chart, horizontally and vertically, px. */
   extent(game, index) {
     const across = Math.abs(Math.sin(game.heading[index]));
     const along = Math.abs(Math.cos(game.heading[index]));
@@ -331,7 +331,7 @@ export class Boats {
     return [across * length + along * width, along * length + across * width];
   }
 
-  /** What all hulls take, for tests. */
+  /** The areas of all hulls, for tests. */
   hulls(game, view) {
     return game.vehicles.map(({ name }, i) => {
       const [right, down] = this.extent(game, i);
@@ -361,7 +361,7 @@ export class Boats {
     context.globalAlpha = 1;
   }
 
-  /** Keeps names off boats, and what they carry. */
+  /** Keeps names clear of boats and carried flags. */
   blockHulls(game, view) {
     const { labels } = this;
     for (const badge of this.badges) labels.block(...badge);

@@ -1,15 +1,15 @@
-// Pictures of the chart to keep: a PNG of now, or a film of a stretch.
+// Saves the chart as a PNG image, or a section of the game as a film.
 
 import { palette } from './palette.js';
 import { clock, plain } from './words.js';
 import { notice } from './status.js';
 
 const FRAMES_PER_S = 25;
-/** A film ends after so long, ms: a browser keeps it in memory. */
+/** Maximum length of a film, ms: browsers keep it in memory. */
 const FILM_MAX_MS = 10 * 60 * 1000;
 const HEAD_PX = 34;
 
-/** Gives the browser a file to keep. */
+/** Offers the user a file to save. */
 function save(blob, name) {
   const link = document.createElement('a');
   link.href = URL.createObjectURL(blob);
@@ -19,7 +19,7 @@ function save(blob, name) {
 }
 
 export class Capture {
-  /** `layers` are the canvases of the chart, lowest first. */
+  /** `layers` are the chart's canvases, lowest first. */
   constructor(layers, game) {
     this.layers = layers;
     this.game = game;
@@ -34,7 +34,7 @@ export class Capture {
     return `${this.game.hello?.game ?? 'squall'}_${clock(this.game.t_s).replaceAll(':', '-')}`;
   }
 
-  /** Lays the chart's layers over each other, below a line with the game, the score and the time. */
+  /** Combines the chart's layers below a line with the game, the score and the time. */
   compose() {
     const { layers, game, canvas } = this;
     const ratio = layers[3].width / Math.max(1, layers[3].clientWidth);
@@ -56,18 +56,18 @@ export class Capture {
     this.compose();
     this.canvas.toBlob((blob) => {
       if (blob) save(blob, `${this.name}.png`);
-      else notice('The browser made no picture.');
+      else notice('The browser could not create the image.');
     });
   }
 
-  /** Begins a film, or ends it and keeps it. */
+  /** Starts a film, or ends and saves it. */
   film() {
     if (this.recorder) {
       this.recorder.stop();
       return;
     }
     if (typeof MediaRecorder === 'undefined' || !MediaRecorder.isTypeSupported('video/webm')) {
-      notice('This browser makes no films (WebM).');
+      notice('This browser cannot record films (WebM).');
       return;
     }
     this.compose();
@@ -92,7 +92,7 @@ export class Capture {
     this.button.setAttribute('aria-pressed', String(this.recorder !== null));
   }
 
-  /** To be called after each picture. */
+  /** Call after each drawn picture. */
   drawn() {
     if (this.recorder) this.compose();
   }

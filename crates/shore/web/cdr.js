@@ -1,9 +1,9 @@
-// Reads CDR messages by their .msg definitions: each definition is parsed once and becomes a reader.
+// Reads CDR messages by their .msg definitions. Each definition is parsed once and becomes a reader.
 
-/** 2^32: whole numbers of 64 bits are read as two halves; simulated nanoseconds stay exact for a hundred days. */
+/** 2^32: 64-bit integers are read as two halves. Simulated nanoseconds stay exact for a hundred days. */
 const HALF = 4294967296;
 
-/** Size in bytes, and how to read one at an offset. */
+/** Size in bytes, and the reader at an offset. */
 const PRIMITIVES = {
   bool: [1, (view, at) => view.getUint8(at) !== 0],
   byte: [1, (view, at) => view.getUint8(at)],
@@ -22,7 +22,7 @@ const PRIMITIVES = {
     view.getInt32(at + (little ? 4 : 0), little) * HALF + view.getUint32(at + (little ? 0 : 4), little)],
 };
 
-/** Where in a message the next value stands. Alignment counts from the end of the encapsulation. */
+/** Position of the next value in a message. Alignment counts from the end of the encapsulation. */
 class Cursor {
   constructor(buffer, offset) {
     this.view = new DataView(buffer);
@@ -37,7 +37,7 @@ class Cursor {
   }
 }
 
-/** The last part of a name: `squall_msgs/msg/Nav` and `Nav` are the same. */
+/** The last part of a name: `squall_msgs/msg/Nav` and `Nav` are equal. */
 const short = (name) => name.slice(name.lastIndexOf('/') + 1);
 
 /** The fields and constants of a definition. */
@@ -54,7 +54,7 @@ export function parse(text) {
       continue;
     }
     const field = /^([\w/]+)(?:<=\d+)?(\[(<=)?(\d*)\])?\s+(\w+)/.exec(bare);
-    if (!field) throw new Error(`not a line of a message: ${bare}`);
+    if (!field) throw new Error(`invalid line in a message definition: ${bare}`);
     const [, type, list, bound, count] = field;
     const fixed = list && !bound && count !== '' ? Number(count) : null;
     fields.push({ type, name: field[5], list: Boolean(list), fixed });
@@ -67,8 +67,8 @@ function readString(cursor) {
   const length = cursor.view.getUint32(cursor.at, cursor.little);
   const from = cursor.at + 4;
   cursor.at = from + length;
-  if (cursor.at > cursor.view.byteLength) throw new RangeError('a text runs past the end');
-  // The terminating zero counts in the length.
+  if (cursor.at > cursor.view.byteLength) throw new RangeError('a string extends past the end');
+  // The length includes the terminating zero.
   const bytes = new Uint8Array(cursor.view.buffer, from, Math.max(0, length - 1));
   return new TextDecoder().decode(bytes);
 }
@@ -89,7 +89,7 @@ function listReader(read, fixed) {
       cursor.align(4);
       length = cursor.view.getUint32(cursor.at, cursor.little);
       cursor.at += 4;
-      if (length > cursor.view.byteLength - cursor.at) throw new RangeError('a list runs past the end');
+      if (length > cursor.view.byteLength - cursor.at) throw new RangeError('a list extends past the end');
     }
     const list = Array.isArray(old) ? old : [];
     for (let i = 0; i < length; i++) list[i] = read(cursor, list[i]);
@@ -112,8 +112,8 @@ function structReader(definition, readerFor) {
 }
 
 /**
- * A function that reads a message called `name` from `(buffer, offset, old)`, beginning with its encapsulation. With
- * `old`, a message read before, its objects and lists are written over rather than made anew.
+ * Returns a function that reads a message `name` from `(buffer, offset, old)`, with its encapsulation. If `old`, an
+ * earlier message, is given, its objects and lists are overwritten instead of created anew.
  */
 export function readerOf(definitions, name) {
   const texts = new Map(Object.entries(definitions).map(([known, text]) => [short(known), text]));
@@ -123,7 +123,7 @@ export function readerOf(definitions, name) {
     if (type in PRIMITIVES) return primitiveReader(PRIMITIVES[type]);
     const key = short(type);
     if (!made.has(key)) {
-      if (!texts.has(key)) throw new Error(`nobody says what a ${type} is`);
+      if (!texts.has(key)) throw new Error(`no definition of ${type}`);
       made.set(key, structReader(parse(texts.get(key)), readerFor));
     }
     return made.get(key);

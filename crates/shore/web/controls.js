@@ -6,12 +6,12 @@ import { options, show, write } from './words.js';
 const SPEEDS = [0.5, 1, 2, 5, 10, 50];
 const FASTEST = 'max';
 const SHOWN_KEY = 'squall.shown';
-const WATCHING = 'This page may only watch. Open it at the address with a token to act.';
-const REAL = 'Real boats play: the game goes by the clock.';
+const WATCHING = 'This page may only watch. To control the game, open it with the token.';
+const REAL = 'The game has real boats, so its speed is fixed.';
 
 const byId = (id) => document.getElementById(id);
 
-/** What the chart showed last time; some browsers keep nothing. */
+/** What the chart showed last time; some browsers store nothing. */
 function remembered() {
   const all = { names: true, trails: true, circles: true, waves: true, chart: true, legend: false };
   try {
@@ -50,7 +50,7 @@ export class Controls {
     select.addEventListener('keydown', () => { byHand = false; });
     select.addEventListener('change', () => {
       this.setSpeed(select.value);
-      // Arrow keys are for steering and the chart again; who chooses by keys goes on choosing.
+      // Return arrow keys to steering and the chart, unless the list is used by keyboard.
       if (byHand) byId(document.body.classList.contains('driving') ? 'steering' : 'sheet').focus({ preventScroll: true });
     });
   }
@@ -69,7 +69,7 @@ export class Controls {
     try {
       localStorage.setItem(SHOWN_KEY, JSON.stringify(this.shown));
     } catch {
-      // Then it is forgotten with the page.
+      // Not stored: it lasts as long as the page.
     }
   }
 
@@ -81,7 +81,7 @@ export class Controls {
     return this.mode === 'replay' || (this.mode === 'live' && this.rights);
   }
 
-  /** Whether what a button does may be done: keys do no more than buttons. */
+  /** Whether a button is enabled; keys do no more than buttons. */
   may(id) {
     return this.mayAct && !byId(id).disabled;
   }
@@ -90,7 +90,7 @@ export class Controls {
     if (this.may('pause')) this.control(this.paused ? 'resume' : 'pause');
   }
 
-  /** One decision on or back; a game or replay that goes on stands then. */
+  /** Steps one decision forward or back, and pauses. */
   step(by) {
     if (!this.may('step')) return;
     if (this.mode === 'replay') this.send({ do: 'step', by });
@@ -99,7 +99,7 @@ export class Controls {
 
   stepGame() {
     if (!this.paused) this.control('pause');
-    // Word of it is on its way; to pause again would undo steps that are still to come.
+    // The pause is already requested; requesting it again would cancel steps still to come.
     this.paused = true;
     this.control('step');
   }
@@ -108,7 +108,7 @@ export class Controls {
     if (this.may('speed')) this.send({ do: 'speed', factor: value === FASTEST ? null : Number(value) });
   }
 
-  /** To the next speed up or down. */
+  /** Selects the next higher or lower speed. */
   shiftSpeed(by) {
     const select = byId('speed');
     const at = select.selectedIndex + by;
@@ -118,7 +118,7 @@ export class Controls {
 
   halt() {
     if (this.mode !== 'live' || !this.may('halt')) return;
-    if (this.stopped) this.asks.halt.ask('Let all boats go on?', 'Yes, go on', () => this.control('go_on'));
+    if (this.stopped) this.asks.halt.ask('End the halt and let all boats move?', 'Yes, end halt', () => this.control('go_on'));
     else this.asks.halt.ask('Make all boats hold?', 'Yes, halt all', () => this.control('halt'));
   }
 
@@ -127,7 +127,7 @@ export class Controls {
     if (this.eStopped) {
       this.asks.estop.ask('Release the E-stop? Real boats must then be armed again.', 'Yes, release', () => this.control('release'), true);
     } else {
-      // At once: a question may be the second too many, and to stop does no harm that releasing does not mend.
+      // At once: a question may cost the decisive second, and a stop can always be released.
       closeAsk();
       this.control('e_stop');
     }
@@ -135,14 +135,14 @@ export class Controls {
 
   stop() {
     if (this.mode !== 'live' || !this.may('stop')) return;
-    this.asks.stop.ask('End this game for good?', 'Yes, end it', () => this.control('stop'), true);
+    this.asks.stop.ask('End this game? It cannot be resumed.', 'Yes, end it', () => this.control('stop'), true);
   }
 
   greet(hello) {
     closeAsk();
     this.mode = hello.mode;
     this.rights = Boolean(hello.rights);
-    /** Whether it may release boats: real ones need an operator. */
+    /** Whether it may release boats: for real ones the page needs the operator's token. */
     this.releases = this.rights && (hello.operates || !hello.chart.vehicles.some(({ external }) => external));
     this.stopped = false;
     this.eStopped = false;
@@ -155,7 +155,7 @@ export class Controls {
     byId('rights').title = WATCHING;
   }
 
-  /** Takes what the events say of halts and E-stops; the newest event counts. */
+  /** Takes halts and E-stops from events; the newest event counts. */
   tellEvents(events, reset) {
     if (reset) this.eStopped = false;
     for (const { event } of events) {
@@ -164,20 +164,20 @@ export class Controls {
     }
   }
 
-  /** Shows how the game stands. */
+  /** Shows the state of the game. */
   tell(game) {
     const { state, player } = game;
     const live = this.mode === 'live';
     const phase = state?.phase;
     this.paused = live ? phase === 'paused' : player ? !player.playing : false;
-    // An E-stop holds all boats as well; going on is only for a halt.
+    // An E-stop also makes all boats hold; ending a halt does not release it.
     this.stopped = live && game.stopped && !this.eStopped;
     const act = live ? this.rights : this.mode === 'replay';
     const going = !live || phase === 'playing' || phase === 'paused' || phase === undefined;
-    this.button('pause', live ? (this.paused ? 'Go on' : 'Pause') : this.paused ? 'Play' : 'Pause', act && going, 'Pause or go on (space)');
-    this.button('step', live ? 'Step' : 'Step +', act && going, 'One decision, then stand (s)');
-    this.button('halt', this.stopped ? 'Go on' : 'Halt all', act && !this.eStopped, 'All boats hold, or go on (h)');
-    const release = this.releases ? 'Release the E-stop (e)' : 'Real boats are released by who opens the page with the operator’s token.';
+    this.button('pause', live ? (this.paused ? 'Resume' : 'Pause') : this.paused ? 'Play' : 'Pause', act && going, 'Pause or resume (space)');
+    this.button('step', live ? 'Step' : 'Step +', act && going, 'One decision, then pause (s)');
+    this.button('halt', this.stopped ? 'End halt' : 'Halt all', act && !this.eStopped, 'Make all boats hold, or end the halt (h)');
+    const release = this.releases ? 'Release the E-stop (e)' : 'Only a page with the operator’s token can release real boats.';
     this.button('estop', this.eStopped ? 'Release E-stop' : 'E-stop', act && (!this.eStopped || this.releases), this.eStopped ? release : 'Stop every boat now (e)');
     this.button('stop', 'End game', act && phase !== 'over' && phase !== 'gone', 'End the game now');
     byId('estop').classList.toggle('released', this.eStopped);

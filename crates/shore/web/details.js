@@ -1,4 +1,4 @@
-// What is to be known of the selected boat: what it does, why, how it steers, and how well it knows where it is.
+// The details of the selected boat: its mode, its decision and the reasons, its steering and its navigation error.
 
 import { MARKS } from './game.js';
 import { Operate } from './operate.js';
@@ -6,13 +6,13 @@ import { Rose } from './rose.js';
 import { bearing, fill, make, number, options, plain, show, write } from './words.js';
 
 const COLLECTIVE = 'all together';
-const UNSEEN = 'Weighed before anybody looked: step once to see what courses are worth.';
+const UNSEEN = 'No utilities yet for this decision. Step once to compute them.';
 
-/** Whether a report has functions, but not what courses and speeds are worth to them. */
+/** Whether a report has functions without their utilities. */
 export const isBare = (report) => report?.functions?.length > 0 && !report.functions.some((each) => each.utilities?.length > 0);
 
 export class Details {
-  /** `on` has `follow()`, `drive()` and `close()`, and what `Operate` wants. */
+  /** `on` has `follow()`, `drive()` and `close()`, and what `Operate` needs. */
   constructor(on) {
     this.operate = new Operate(on);
     this.pane = document.getElementById('pane-boat');
@@ -23,12 +23,12 @@ export class Details {
   }
 
   build(on) {
-    this.none = make('p', 'faint', 'No boat is selected. Press one on the chart or in the list.');
+    this.none = make('p', 'faint', 'No boat selected. Click one on the chart or in the list.');
     this.name = make('h2');
     this.about = make('p', 'faint');
-    this.follow = this.button('follow', 'Follow', 'Keep this boat in the middle of the chart (o)', on.follow);
-    this.drive = this.button('drive', 'Drive', 'Steer this boat yourself (d)', on.drive);
-    this.close = this.button('deselect', '×', 'Select no boat (Escape)', on.close);
+    this.follow = this.button('follow', 'Follow', 'Keep this boat at the centre of the chart (o)', on.follow);
+    this.drive = this.button('drive', 'Drive', 'Drive this boat yourself (d)', on.drive);
+    this.close = this.button('deselect', '×', 'Deselect the boat (Escape)', on.close);
     this.close.setAttribute('aria-label', 'Close');
     this.matter = make('p', 'trouble');
     const head = make('div', 'boat-head', '', make('div', 'boat-name', '', this.name, this.about, this.matter), this.follow, this.drive, this.close);
@@ -44,18 +44,18 @@ export class Details {
     this.chooser.setAttribute('aria-label', 'Objective function');
     this.reason = make('p', 'faint');
     this.reason.id = 'helm-reason';
-    this.key = make('p', 'rose-key faint', 'Course around, speed outward. Bright is wanted. Ring: chosen. Diamond: the boat now.');
+    this.key = make('p', 'rose-key faint', 'Angle: course. Distance: speed. Bright: high utility. Ring: chosen. Diamond: the boat now.');
     this.behaviours = make('div', 'behaviours');
     this.behaviours.id = 'behaviours';
     this.policy = make('dl', 'facts');
     this.policy.id = 'policy';
     this.observed = make('dl', 'facts');
     this.observed.id = 'observed';
-    this.observedBox = make('details', '', '', make('summary', '', 'What it was given'), this.observed);
+    this.observedBox = make('details', '', '', make('summary', '', 'Observation'), this.observed);
     this.policyBox = make('div', '', '', make('h3', '', 'Policy'), this.policy, this.observedBox);
     this.variables = make('dl', 'facts');
     this.variables.id = 'variables';
-    // The helm's picture stands first: it is what people come for, and is to be seen whole.
+    // The rose comes first: people look for it most, and it must be visible as a whole.
     this.picture = make('div', 'helm-picture', '', this.chooser, this.canvas, this.key);
     this.helmBox = make('div', '', '', this.policyBox, this.behaviourHead = make('h3', '', 'Behaviours'), this.behaviours, this.variableHead = make('h3', '', 'Variables'), this.variables);
     this.body = make('div', 'boat', '', head, this.steeringNote, this.operate.element, this.picture, this.reason, this.facts,
@@ -75,12 +75,12 @@ export class Details {
     return make('div', 'bar-row', '', make('span', '', side), make('span', 'bar middle', '', make('span', 'fill')), make('span', 'value'));
   }
 
-  /** Whether the rose can be seen, so that its functions are worth asking for. */
+  /** Whether the rose is visible, so that its functions are needed. */
   get visible() {
     return this.pane.offsetParent !== null;
   }
 
-  /** `readings` is what gateways say of real boats. */
+  /** `readings` are the gateways' reports on real boats. */
   tell(game, following, driver, readings) {
     const index = game.indexOf.get(game.selected) ?? -1;
     show(this.none, index < 0);
@@ -95,9 +95,9 @@ export class Details {
     this.follow.setAttribute('aria-pressed', String(following));
     show(this.drive, Boolean(vehicle.teleop) && game.mode === 'live');
     this.drive.disabled = !game.hello.rights;
-    this.drive.title = game.hello.rights ? 'Steer this boat yourself (d)' : 'This page may only watch.';
+    this.drive.title = game.hello.rights ? 'Drive this boat yourself (d)' : 'This page may only watch.';
     this.drive.setAttribute('aria-pressed', String(driver === 'you'));
-    const steering = { you: 'You steer this boat. Escape stops steering.', other: 'Somebody else steers this boat.' }[driver] ?? '';
+    const steering = { you: 'You are driving this boat. Press Escape to stop.', other: 'Another page is driving this boat.' }[driver] ?? '';
     write(this.steeringNote, steering);
     show(this.steeringNote, steering !== '');
     this.tellFacts(game, index);
@@ -110,7 +110,7 @@ export class Details {
     const matter = MARKS.filter(([bit]) => game.marks[index] & bit).map(([, , text]) => text);
     write(this.matter, matter.join(', '));
     this.matter.title = matter.join(', ');
-    // One line for both, so that the picture below stays where it is.
+    // A single line for both, so that the rose below stays in place.
     show(this.matter, matter.length > 0);
     show(this.about, matter.length === 0);
     const report = game.helm?.report;
@@ -124,11 +124,11 @@ export class Details {
     if (game.estimate) {
       const fix_age_s = game.estimate.fix_age_s;
       const fix = Number.isFinite(fix_age_s) ? `; fix ${number(fix_age_s, 1, 's')} old` : '';
-      facts.push(['Own estimate', error === null ? `–${fix}` : `off by ${number(error, 2, 'm')}${fix}`]);
+      facts.push(['Navigation error', error === null ? `–${fix}` : `${number(error, 2, 'm')}${fix}`]);
     }
     if (report) {
       facts.push(['Mode', plain(report.mode || '–').replaceAll(':', ' › ')]);
-      facts.push(['Decision', report.hold ? `holds: ${report.hold}` : `${bearing(report.course_deg)} at ${number(report.speed_m_s, 2, 'm/s')}`]);
+      facts.push(['Decision', report.hold ? `hold: ${report.hold}` : `${bearing(report.course_deg)} at ${number(report.speed_m_s, 2, 'm/s')}`]);
     }
     this.tellPairs(this.facts, facts);
   }
@@ -157,9 +157,9 @@ export class Details {
   tellHelm(game, index) {
     const helm = game.helm;
     const report = helm?.report;
-    // A helm keeps what it weighed only while somebody looks; a game that stands weighs nothing again.
+    // A helm keeps utilities only while someone looks; a paused game computes none.
     const unseen = isBare(report) && game.state?.phase === 'paused';
-    const words = unseen ? UNSEEN : report ? this.computedWords(helm) : helm?.reason ?? 'Asking its helm …';
+    const words = unseen ? UNSEEN : report ? this.computedWords(helm) : helm?.reason ?? 'Waiting for its helm …';
     write(this.reason, words);
     show(this.reason, words !== '');
     show(this.helmBox, Boolean(report));
@@ -168,7 +168,7 @@ export class Details {
     const functions = report.functions ?? [];
     const named = functions.map((each) => [each.contact ? `${each.behaviour} · ${each.contact}` : each.behaviour, each]);
     const known = new Map(named);
-    options(this.chooser, [[COLLECTIVE, 'All together'], ...[...known.keys()].map((name) => [name, plain(name)])]);
+    options(this.chooser, [[COLLECTIVE, 'Weighted sum'], ...[...known.keys()].map((name) => [name, plain(name)])]);
     const chosen = known.get(this.wanted);
     const value = chosen ? this.wanted : COLLECTIVE;
     if (this.chooser.value !== value) this.chooser.value = value;
@@ -179,7 +179,7 @@ export class Details {
       speed_max_m_s: game.vehicles[index].speed_max_m_s || 1,
     });
     this.canvas.setAttribute('aria-label',
-      `Rose: chosen course ${bearing(report.course_deg)}, speed ${number(report.speed_m_s, 1)} metres a second`);
+      `Rose: chosen course ${bearing(report.course_deg)}, speed ${number(report.speed_m_s, 1)} metres per second`);
     this.tellBehaviours(report);
     this.tellPolicies(report.policies ?? []);
     const variables = (report.variables ?? []).map((each) => [plain(each.name), String(each.value)]);
@@ -202,8 +202,8 @@ export class Details {
 
   computedWords(helm) {
     if (!helm.computed) return '';
-    if (helm.agrees === false) return 'Worked out again from the recording. It does NOT agree with the order recorded.';
-    return `Worked out again from the recording${helm.agrees ? '; it agrees with the order recorded.' : '.'}`;
+    if (helm.agrees === false) return 'Recomputed from the recording. It does NOT match the recorded order.';
+    return `Recomputed from the recording${helm.agrees ? '; it matches the recorded order.' : '.'}`;
   }
 
   tellBehaviours(report) {

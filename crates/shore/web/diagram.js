@@ -1,10 +1,10 @@
-// Lines over one axis on a canvas: curves of boats over a game, and of a policy over its training.
+// Line charts on a canvas: of boats over a game, and of a policy over its training.
 
 import { palette } from './palette.js';
 
 const FONT = '11px system-ui, sans-serif';
 
-/** About `count` round numbers from `low` to `high`. */
+/** About `count` round numbers between `low` and `high`. */
 export function ticksOf(low, high, count) {
   const raw = (high - low) / count;
   if (!(raw > 0) || !Number.isFinite(raw)) return [low];
@@ -15,7 +15,7 @@ export function ticksOf(low, high, count) {
   return ticks;
 }
 
-/** The sample at a place of the axis: the last that is not beyond it. */
+/** The sample at a position on the axis: the last one up to it. */
 export function sampleAt(xs, x) {
   let low = 0;
   let high = xs.length;
@@ -27,13 +27,13 @@ export function sampleAt(xs, x) {
   return Math.max(0, low - 1);
 }
 
-/** Which part of a canvas' axis is under the pointer, 0 to 1. */
+/** The pointer's position along the axis, 0 to 1. */
 export function partAt(event, canvas, { left, right }) {
   const box = canvas.getBoundingClientRect();
   return Math.min(1, Math.max(0, (event.clientX - box.left - left) / Math.max(1, box.width - left - right)));
 }
 
-/** A line with gaps where nothing is known, and where a compass course goes through north. */
+/** A line with gaps for missing values and where a compass course passes north. */
 function trace(context, { xs, values }, x, y, round) {
   context.beginPath();
   let before = null;
@@ -50,9 +50,9 @@ function trace(context, { xs, values }, x, y, round) {
 }
 
 /**
- * Draws lines `{ xs, values, colour, width, dash }` from `from` to `to` and from `low` to `high` into a canvas, inside of `margin`
- * `{ left, right, top, bottom }`; `at` is a place of the axis that is marked, `corner` a text in the corner, `columns` and `rows` are ticks
- * `[where, text]`, and `steps` places that are marked faintly. `round` says that values are compass courses.
+ * Draws lines `{ xs, values, colour, width, dash }` from `from` to `to` and from `low` to `high` on a canvas, within `margin`
+ * `{ left, right, top, bottom }`. `at` marks a position on the axis, and `corner` is a text. `columns` and `rows` are ticks
+ * `[where, text]`, and `steps` are faintly marked positions. `round` marks values as compass courses.
  */
 export function drawDiagram(canvas, { lines, from, to, low, high, margin, at = null, corner = '', columns = [], rows = [], steps = [], round = false }) {
   const { clientWidth: width, clientHeight: height } = canvas;

@@ -1,16 +1,16 @@
-// Steering: drives a boat by keys, by a point dragged on a rose, or by a gamepad's stick.
+// Driving: steers a boat by keys, by a point dragged on a dial, or by a gamepad's stick.
 
 import { notice } from './status.js';
 import { palette } from './palette.js';
 import { Stick } from './stick.js';
 import { bearing, number, plain, show, wrapDeg, write } from './words.js';
 
-/** A set-point is sent twice in a simulated second: its helm uses a set-point for 1.5 of them. */
+/** A set-point is sent twice per simulated second: the helm uses it for 1.5 of them. */
 const SEND_SIMULATED_MS = 500;
-/** No more and no less often than this, whatever the speed of the game, ms. */
+/** Limits of the interval, whatever the speed of the game, ms. */
 const SEND_MIN_MS = 20;
 const SEND_MAX_MS = 200;
-/** In a game that may go faster than this a set-point expires before the next can arrive, times real time. */
+/** Above this speed, a set-point expires before the next one can arrive, times real time. */
 const STEERED_MAX = 50;
 const TURN_DEG = 5;
 const SPEED_STEP_M_S = 0.25;
@@ -49,7 +49,7 @@ export class Drive {
     return this.vehicle !== null;
   }
 
-  /** Begins to steer a boat, at its heading and at rest. */
+  /** Starts to drive a boat, at its heading and at rest. */
   take(vehicle, heading_deg) {
     this.letGo();
     this.vehicle = vehicle.name;
@@ -73,34 +73,34 @@ export class Drive {
     document.body.classList.remove('driving');
   }
 
-  /** The server says who steers a boat. */
+  /** The server reports who drives a boat. */
   hear({ vehicle, by }) {
     if (vehicle !== this.vehicle) return;
     if (by === 'you') this.had = true;
     else if (by === 'other' || this.had) {
       this.letGo();
-      notice(by === 'other' ? `Somebody else steers ${plain(vehicle)}.` : `You no longer steer ${plain(vehicle)}.`);
+      notice(by === 'other' ? `Another page is driving ${plain(vehicle)}.` : `You are no longer driving ${plain(vehicle)}.`);
     }
   }
 
-  /** Takes how the game goes: the faster, the more often the boat must hear from us. */
+  /** Takes the speed of the game: the faster it is, the more often the boat needs set-points. */
   hearState(state) {
     const rates = [state?.speed, state?.rate].filter((each) => each > 0);
     this.wait_ms = Math.min(SEND_MAX_MS, Math.max(SEND_MIN_MS, SEND_SIMULATED_MS / Math.max(1, ...rates)));
     const wild = Boolean(state) && (state.speed ?? Infinity) > STEERED_MAX;
-    write(this.note, wild ? 'Too fast to be steered by hand. Choose 1×.' : '');
+    write(this.note, wild ? 'Too fast to drive by hand. Choose 1×.' : '');
     show(this.note, wild);
   }
 
   tick() {
-    // First, so that a picture that fails does not end the steering.
+    // First, so that an error in drawing does not end the driving.
     this.timer = setTimeout(() => this.tick(), this.wait_ms);
     this.readStick();
     this.send({ do: 'drive', vehicle: this.vehicle, course_deg: this.course_deg, speed_m_s: this.speed_m_s });
     this.draw();
   }
 
-  /** Whether the key steers. */
+  /** Whether the key is used for driving. */
   key(event) {
     const change = KEYS[event.key.toLowerCase()];
     if (!this.driving || !change || event.ctrlKey || event.metaKey || event.altKey) return false;
@@ -120,7 +120,7 @@ export class Drive {
     const right = event.clientX - box.left - box.width / 2;
     const up = box.height / 2 - (event.clientY - box.top);
     const out = Math.min(1, Math.hypot(right, up) / (box.width / 2 - RIM));
-    // Near the middle a finger's tremble would turn the boat about.
+    // Near the centre, a trembling finger would turn the boat around.
     if (out < 0.08) this.set(this.course_deg, 0);
     else this.set(Math.round((Math.atan2(right, up) * 180) / Math.PI), out * this.speedMax);
   }
@@ -129,7 +129,7 @@ export class Drive {
     const wish = this.stick.read();
     if (!wish) return;
     this.set(wish.course_deg ?? this.course_deg, wish.out * this.speedMax);
-    if (wish.gone) notice(`The gamepad is gone: ${plain(this.vehicle)} is to stop.`);
+    if (wish.gone) notice(`The gamepad is disconnected. Stopping ${plain(this.vehicle)}.`);
   }
 
   draw() {
@@ -160,7 +160,7 @@ export class Drive {
     context.arc(x, y, 11, 0, 2 * Math.PI);
     context.fillStyle = palette.accent;
     context.fill();
-    // Where the bow would point stays to be seen at rest.
+    // The commanded heading stays visible at rest.
     context.beginPath();
     context.arc(middle + Math.sin(angle) * radius, middle - Math.cos(angle) * radius, 4, 0, 2 * Math.PI);
     context.fill();

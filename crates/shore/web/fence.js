@@ -1,10 +1,10 @@
-// The geofences of real boats, their keep-outs, and how far each boat would go if it were stopped now.
+// The geofences of real boats, their keep-outs, and the stopping distance of each boat.
 
 import { haloText } from './field.js';
 import { palette } from './palette.js';
 
 const FONT = '600 11px system-ui, sans-serif';
-/** The mark where a boat would come to rest, px. */
+/** Size of the mark where a boat would come to rest, px. */
 const REST_PX = 4;
 
 /** Traces corners `[x, y]`, m. */
@@ -19,7 +19,7 @@ export function traceCorners(context, view, corners) {
 
 const places = (corners) => corners.map(({ east, north }) => [east, north]);
 
-/** The fences that gateways tell, those of several boats once: `{ outline, keepOuts }`, corners `[x, y]` in m. */
+/** The gateways' geofences, equal ones only once: `{ outline, keepOuts }`, corners `[x, y]` in m. */
 export function fencesOf(readings) {
   const fences = new Map();
   for (const { fence } of readings) {
@@ -31,7 +31,7 @@ export function fencesOf(readings) {
   return [...fences.values()];
 }
 
-/** A line that can be seen on water, land and images. */
+/** A line that is visible on water, land and images. */
 function rim(context, dash) {
   context.lineWidth = 4;
   context.strokeStyle = palette.halo;
@@ -69,7 +69,7 @@ function drawKeepOut(context, view, corners) {
   context.textAlign = 'left';
 }
 
-/** The circle within which each real boat can stop, and where it would come to rest. */
+/** The stopping circle of each real boat, and the point where it would come to rest. */
 export function drawStops(context, view, readings, game) {
   for (const { fence, index, kind } of readings) {
     if (kind === 'silent' || !(fence?.stopping_m > 0) || game.frames === 0) continue;

@@ -1,4 +1,4 @@
-// Draws a geofence on the chart, corner by corner, and writes it as a gateway file has it.
+// Draws a geofence on the chart corner by corner, and writes it as a table of a gateway file.
 
 import { latLonOf } from './datum.js';
 import { traceCorners } from './fence.js';
@@ -6,16 +6,16 @@ import { palette } from './palette.js';
 import { notice } from './status.js';
 import { make, options, show, write } from './words.js';
 
-/** As many as a gateway file takes. */
+/** The maximum in a gateway file. */
 const CORNERS_MAX = 100;
 const KEEP_OUTS_MAX = 50;
 const CORNER_PX = 5;
 const OUTLINE = '0';
 
-/** Which side of the line from a to b a place is on. */
+/** The side of the line from a to b on which a point lies. */
 const side = (a, b, at) => Math.sign((b[0] - a[0]) * (at[1] - a[1]) - (b[1] - a[1]) * (at[0] - a[0]));
 
-/** Whether two sides of a polygon that have no corner in common cross. */
+/** Whether two sides of a polygon cross that share no corner. */
 export function crosses(corners) {
   const count = corners.length;
   for (let i = 0; i < count; i++) {
@@ -31,7 +31,7 @@ export function crosses(corners) {
 const pair = (datum, [x, y]) => `[${latLonOf(datum, x, y).map((deg) => deg.toFixed(7)).join(', ')}]`;
 const list = (datum, corners, indent) => `[\n${corners.map((corner) => `${indent}  ${pair(datum, corner)},\n`).join('')}${indent}]`;
 
-/** The table of a gateway file: corners are latitude and longitude, degrees. */
+/** The table of a gateway file; corners are latitude and longitude, degrees. */
 export function toml(datum, [outline, ...keepOuts]) {
   const whole = keepOuts.filter((corners) => corners.length >= 3);
   const fence = outline.length >= 3 ? `polygon = ${list(datum, outline, '')}\n` : '';
@@ -40,14 +40,14 @@ export function toml(datum, [outline, ...keepOuts]) {
 }
 
 export class FenceEditor {
-  /** `on` has `changed()`, when it is to be drawn anew. */
+  /** `on` has `changed()`, called when it must be redrawn. */
   constructor(on) {
     this.on = on;
     this.button = document.getElementById('draw-fence');
     this.place = document.getElementById('fence-editor');
     this.sheet = document.getElementById('sheet');
     this.active = false;
-    /** The outline, then keep-outs: corners `[x, y]`, m. */
+    /** The outline, then the keep-outs: corners `[x, y]`, m. */
     this.polygons = [[]];
     this.at = 0;
     this.datum = null;
@@ -59,14 +59,14 @@ export class FenceEditor {
   build() {
     this.chooser = make('select');
     this.chooser.id = 'fence-part';
-    this.chooser.setAttribute('aria-label', 'What is drawn');
+    this.chooser.setAttribute('aria-label', 'Part to draw');
     this.chooser.addEventListener('change', () => this.choose(Number(this.chooser.value)));
     this.words = make('p', 'fence-words');
     this.words.setAttribute('role', 'status');
     this.text = make('textarea');
     Object.assign(this.text, { id: 'fence-toml', readOnly: true, rows: 4, spellcheck: false });
     this.text.setAttribute('aria-label', 'Geofence for the gateway file');
-    this.present = this.action('fence-present', 'Begin with the present one', () => this.takePresent());
+    this.present = this.action('fence-present', 'Start from the current one', () => this.takePresent());
     this.place.replaceChildren(
       make('div', 'fence-row', '', this.chooser, this.action('fence-undo', 'Undo', () => this.undo()), this.action('fence-clear', 'Clear', () => this.clear())),
       this.words, this.present, this.text,
@@ -80,7 +80,7 @@ export class FenceEditor {
     return button;
   }
 
-  /** Another game: what was drawn stays, if the field is where it was. */
+  /** Takes another game: the drawing stays if the field has not moved. */
   greet(chart) {
     const datum = chart.field?.datum ?? null;
     if (JSON.stringify(datum) !== JSON.stringify(this.datum)) this.clear();
@@ -105,7 +105,7 @@ export class FenceEditor {
     this.sheet.focus({ preventScroll: true });
   }
 
-  /** Takes a corner, m. */
+  /** Adds a corner, m. */
   take(x, y) {
     const corners = this.polygons[this.at];
     if (corners.length >= CORNERS_MAX) return notice(`A geofence has at most ${CORNERS_MAX} corners.`);
@@ -124,7 +124,7 @@ export class FenceEditor {
     this.changed();
   }
 
-  /** Begins with the fence that a gateway has now. */
+  /** Starts from the gateway's current fence. */
   takePresent() {
     const [{ outline, keepOuts }] = this.fences;
     this.polygons = [outline, ...keepOuts].map((corners) => corners.map((corner) => [...corner]));
@@ -135,11 +135,11 @@ export class FenceEditor {
   async copy() {
     try {
       await navigator.clipboard.writeText(this.text.value);
-      notice('The geofence is copied: put it into the gateway file.');
+      notice('Geofence copied. Paste it into the gateway file.');
     } catch {
       this.text.focus();
       this.text.select();
-      notice('Copy the text that is selected now.');
+      notice('Copy the selected text.');
     }
   }
 
@@ -156,10 +156,10 @@ export class FenceEditor {
   }
 
   said(corners) {
-    if (crosses(corners)) return 'Two sides cross: undo, or clear.';
+    if (crosses(corners)) return 'Two sides cross: undo or clear.';
     const more = Math.max(0, 3 - corners.length);
-    const how = 'Press on the chart, or Enter for its middle; Backspace takes one back.';
-    return more > 0 ? `${corners.length} corners, ${more} more at least. ${how}` : `${corners.length} corners.`;
+    const how = 'Click the chart, or press Enter for its centre. Backspace removes a corner.';
+    return more > 0 ? `${corners.length} corners; at least ${more} more needed. ${how}` : `${corners.length} corners.`;
   }
 
   tell(fences) {
@@ -167,7 +167,7 @@ export class FenceEditor {
     show(this.present, fences.length > 0);
   }
 
-  /** Draws it, over the boats. */
+  /** Draws it above the boats. */
   draw(context, view) {
     if (!this.active) return;
     this.polygons.forEach((corners, at) => {
@@ -187,7 +187,7 @@ export class FenceEditor {
     if (document.activeElement === this.sheet && this.sheet.matches(':focus-visible')) this.cross(context, view.width / 2, view.height / 2);
   }
 
-  /** Where Enter takes a corner. */
+  /** Where Enter adds a corner. */
   cross(context, x, y) {
     context.beginPath();
     context.moveTo(x - 9, y);

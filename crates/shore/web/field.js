@@ -1,19 +1,19 @@
-// The chart itself: grid, field, zones, scrimmage line, flags' homes, obstacles, circles, scale and north.
+// The chart itself: grid, field, zones, scrimmage line, home flags, obstacles, circles, scale and north arrow.
 
 import { inside } from './boats.js';
 import { palette, teamColour } from './palette.js';
 import { number, plain } from './words.js';
 
 const FONT = '12px system-ui, sans-serif';
-/** Circles about a flag: key of the radius, what it is for, dash. */
+/** Circles around a flag: key of the radius, label, dash. */
 const CIRCLES = [
   ['grab_m', 'grab', []], ['capture_m', 'capture', [7, 4]], ['untag_m', 'untag', [7, 4]], ['keepout_m', 'keep out', [2, 4]],
 ];
 
-/** With more boats than this circles are not said to be what they are. */
+/** With more boats than this, circles have no labels. */
 const WORDS_MAX = 12;
 
-/** A step of 1, 2 or 5 times a power of ten that is at least `least`. */
+/** The smallest step of 1, 2 or 5 times a power of ten that is at least `least`. */
 function niceStep(least) {
   const power = 10 ** Math.floor(Math.log10(least));
   return [1, 2, 5, 10].map((times) => times * power).find((step) => step >= least * 0.999);
@@ -28,7 +28,7 @@ function trace(context, view, points, closed) {
   if (closed) context.closePath();
 }
 
-/** Text with a rim of the water's colour, so that it can be read over anything. */
+/** Text with an outline in the colour of water, readable on any background. */
 export function haloText(context, text, x, y, colour = palette.ink) {
   context.lineJoin = 'round';
   context.lineWidth = 3;
@@ -38,7 +38,7 @@ export function haloText(context, text, x, y, colour = palette.ink) {
   context.fillText(text, x, y);
 }
 
-/** Draws all that stands still, over the background. */
+/** Draws everything static, above the background. */
 export function drawField(context, view, chart, shown, background) {
   context.clearRect(0, 0, view.width, view.height);
   context.font = FONT;
@@ -96,7 +96,7 @@ function drawGridNumbers(context, view, step, left, bottom) {
   context.textBaseline = 'bottom';
   for (let x = left; x <= view.eastOf(view.width); x += step) {
     const at = view.xOf(x);
-    // The corners belong to the scale and to the buttons.
+    // The corners are reserved for the scale and the buttons.
     if (at > 150 && at < view.width - 170) haloText(context, number(x, places), at, view.height - 3, palette.faint);
   }
   context.textAlign = 'left';
@@ -127,7 +127,7 @@ function drawEdge(context, view, field) {
   context.setLineDash([]);
 }
 
-/** Radii about a flag's home, those that are the same drawn once: `[metres, words, dash]`. */
+/** Radii around a home flag, equal ones drawn once: `[metres, label, dash]`. */
 function ringsOf(radii) {
   const rings = [];
   for (const [key, word, dash] of CIRCLES) {
@@ -157,7 +157,7 @@ function drawCircles(context, view, chart) {
       context.stroke();
       context.setLineDash([]);
       context.globalAlpha = 1;
-      // Among many boats they would only be in the way.
+      // With many boats they would clutter the chart.
       if (px < 55 || chart.vehicles.length > WORDS_MAX) continue;
       context.font = '11px system-ui, sans-serif';
       haloText(context, `${word} ${number(metres, metres % 1 ? 1 : 0)} m`, view.xOf(flag.x), view.yOf(flag.y) - px - 2, palette.faint);
@@ -183,7 +183,7 @@ function drawObstacle(context, view, obstacle) {
   context.stroke();
 }
 
-/** Where a flag belongs: a foot that stays when the flag is gone. */
+/** A flag's home: the foot stays when the flag is gone. */
 function drawHome(context, view, flag) {
   const x = view.xOf(flag.x);
   const y = view.yOf(flag.y);
@@ -209,7 +209,7 @@ function drawZoneNames(context, view, chart) {
     const ys = zone.corners.map((corner) => corner[1]);
     const middle = ys.reduce((sum, each) => sum + each, 0) / ys.length;
     const east = (Math.min(...xs) + Math.max(...xs)) / 2;
-    // Near the upper edge it is out of the way of the boats.
+    // Near the upper edge, clear of the boats.
     const high = Math.max(...ys) - 26 / view.scale;
     const y = view.yOf(inside(zone.corners, east, high) ? high : middle);
     const across = (Math.max(...xs) - Math.min(...xs)) * view.scale;

@@ -1,9 +1,9 @@
-// What is known of the game that is shown: its boats as numbers in arrays, its events, and what the server says of it.
+// The game as shown: boats as arrays of numbers, events, and the server's reports.
 
 import { readerOf } from './cdr.js';
 import { Trails } from './trail.js';
 
-/** Marks of a boat, as bits. */
+/** Marks of a boat, as bit flags. */
 export const TAGGED = 1;
 export const DISABLED = 2;
 export const OUTSIDE = 4;
@@ -11,28 +11,28 @@ export const AGENT_LOST = 8;
 export const QUARANTINED = 16;
 export const NAV_LOST = 32;
 
-/** Bit, letter and words of each mark. */
+/** Bit, letter and meaning of each mark. */
 export const MARKS = [
   [TAGGED, 'T', 'tagged'],
   [DISABLED, 'X', 'out of action'],
   [OUTSIDE, 'O', 'outside the field'],
   [AGENT_LOST, 'M', 'agent lost'],
   [QUARANTINED, 'Q', 'quarantined'],
-  [NAV_LOST, 'N', 'nobody knows where it is'],
+  [NAV_LOST, 'N', 'navigation lost'],
 ];
 
-/** Frames farther apart than this are not joined by smooth motion, ms. */
+/** Frames farther apart than this are not interpolated, ms. */
 const GAP_MAX_MS = 600;
-/** Motion takes this much longer than a gap, so that a frame that comes a little late finds the boats under way. */
+/** Interpolation takes this much longer than the interval, so that a slightly late frame finds the boats still moving. */
 const STRETCH = 1.15;
-/** Frames closer together than this need none, ms. */
+/** Frames closer together than this are not interpolated, ms. */
 const GAP_MIN_MS = 22;
-/** How far a boat may get beyond its speed before it has jumped, m. */
+/** A boat that moves this much farther than its speed allows has jumped, m. */
 const JUMP_M = 4;
-/** How many past places of the selected boat are kept, to compare estimates with. */
+/** Number of past positions of the selected boat kept for comparison with estimates. */
 const WAKE = 64;
 
-/** How many of the newest events of a game are kept: some games go on for days. */
+/** Number of newest events kept; some games run for days. */
 const EVENTS_MAX = 20_000;
 
 const floats = (count) => new Float64Array(count);
@@ -40,12 +40,12 @@ const floats = (count) => new Float64Array(count);
 export class Game {
   constructor() {
     this.hello = null;
-    /** Counts the games that were shown. */
+    /** Counts games shown. */
     this.greeted = 0;
     this.clear({ vehicles: [], teams: [], field: null });
   }
 
-  /** Begins anew with another game. */
+  /** Starts over with another game. */
   greet(hello) {
     this.hello = hello;
     this.greeted += 1;
@@ -102,17 +102,17 @@ export class Game {
     return this.hello?.mode ?? null;
   }
 
-  /** Forgets what belonged to the boat selected before. */
+  /** Forgets data of the boat selected before. */
   select(name) {
     this.selected = name;
     this.helm = null;
     this.estimate = null;
     this.wake = { t: floats(WAKE), x: floats(WAKE), y: floats(WAKE), at: 0, count: 0 };
-    // A replay that stands has no other frame to compare an estimate with.
+    // A paused replay has no other frame to compare an estimate with.
     if (this.frames > 0) this.keepWake();
   }
 
-  /** Takes a frame: `kind` is 1 for one to show and 2 for one of the past. */
+  /** Takes a frame: `kind` is 1 for one to show and 2 for a past one. */
   takeFrame(kind, buffer, now_ms) {
     if (!this.read) return;
     try {
@@ -201,7 +201,7 @@ export class Game {
     wake.count = Math.min(WAKE, wake.count + 1);
   }
 
-  /** How far the estimate is from where the boat truly was then, m; null without either. */
+  /** Distance of the estimate from the boat's true position at that time, m; null if either is missing. */
   estimateError() {
     const { estimate, wake } = this;
     if (!estimate || wake.count === 0) return null;
@@ -213,9 +213,9 @@ export class Game {
     return Math.hypot(estimate.x - wake.x[best], estimate.y - wake.y[best]);
   }
 
-  /** Moves the boats to where they are shown at this time: one gap behind the newest frame. Whether they still move. */
+  /** Moves the boats to their interpolated positions, one interval behind the newest frame. Returns whether they still move. */
   pose(now_ms) {
-    // Where motion begins was shown in the picture before, not when the frame came.
+    // The interpolation starts from the picture shown before, not from the frame's arrival.
     if (this.posedFrames !== this.frames) this.begun_ms = this.posed_ms;
     this.posedFrames = this.frames;
     this.posed_ms = now_ms;
@@ -230,7 +230,7 @@ export class Game {
     return done < 1;
   }
 
-  /** Takes what a gateway tells. */
+  /** Takes a gateway's status. */
   takeStatus({ vehicle, status }, now_ms) {
     this.statuses.set(vehicle, status);
     this.heard_ms.set(vehicle, now_ms);
@@ -239,7 +239,7 @@ export class Game {
   takeEvents(message) {
     if (message.reset) this.events = [];
     for (const event of message.events ?? []) this.events.push(event);
-    // The time line of a replay needs them all, and there they are given once.
+    // The time line of a replay needs all of them, and gets them only once.
     if (this.mode === 'live' && this.events.length > EVENTS_MAX) this.events.splice(0, this.events.length - EVENTS_MAX);
     this.eventVersion += 1;
   }

@@ -1,15 +1,15 @@
-// What the gateway of a real boat tells, in words: what the boat may do, how urgent that is, and how old everything is.
+// The status of a real boat's gateway in words: the boat's state, its urgency, and the age of every value.
 
 import { number } from './words.js';
 
-/** A gateway tells its status twice a second. After so long without a word it is silent, s. */
+/** Gateways report twice per second. After this time without a report a gateway is silent, s. */
 const SILENT_S = 3;
-/** From these ages on a value is marked as old, s. */
+/** Values older than this are marked as old, s. */
 const FIX_OLD_S = 2;
 const CONTROL_OLD_S = 2;
 const BATTERY_OLD_S = 10;
 
-/** How a state begins, what it is called, and how it looks; the rest of it is the cause or the task. */
+/** How each state begins, its label and its style. The rest of the text is the cause or the task. */
 const STATES = [
   ['e-stopped', 'stopped', 'E-stopped', 'bad'], ['failsafe', 'failsafe', 'Failsafe', 'bad'], ['armed', 'armed', 'Armed', 'good'],
   ['delegated', 'delegated', 'Delegated', 'task'], ['safed', 'disarmed', 'Disarmed', 'plain'],
@@ -17,34 +17,34 @@ const STATES = [
 
 const age = (seconds) => `${number(seconds, 1, 's')} ago`;
 
-/** What is known of a real boat: `kind`, `label`, `detail` (cause or task), `tone`, `silent_s`, `facts` and `missing`; null of a simulated one. */
+/** The state of a real boat: `kind`, `label`, `detail` (cause or task), `tone`, `silent_s`, `facts` and `missing`; null for a simulated one. */
 export function readStatus(game, index, now_ms) {
   const { name, external } = game.vehicles[index];
   if (!external) return null;
   const status = game.statuses.get(name);
   if (!status) return { name, kind: 'unknown', label: 'No gateway', detail: '', tone: 'warn', facts: [], missing: [], alarms: [], failsafes: 0, silent_s: 0, link: false };
-  // A recording tells what was told then.
+  // A recording shows ages at the time of the report.
   const waited_s = game.mode === 'live' ? Math.max(0, (now_ms - game.heard_ms.get(name)) / 1000) : 0;
   const silent = waited_s > SILENT_S;
   const state = status.state ?? '';
   const [begins, kind, label, tone] = STATES.find(([word]) => state.startsWith(word)) ?? [state, 'other', state || '–', 'warn'];
-  const detail = silent ? `its gateway is silent since ${number(waited_s, 0, 's')}; before: ${state}` : state.slice(begins.length).replace(/^[:,\s]+/, '');
+  const detail = silent ? `no report from its gateway for ${number(waited_s, 0, 's')}; last state: ${state}` : state.slice(begins.length).replace(/^[:,\s]+/, '');
   return {
     name, kind: silent ? 'silent' : kind, label: silent ? 'Silent' : label, detail, tone: silent ? 'bad' : tone, silent_s: silent ? waited_s : 0,
     said: kind, facts: factsOf(status, waited_s), fence: status.geofence ?? null, missing: status.missing ?? [], alarms: status.alarms ?? [], failsafes: status.failsafes?.length ?? 0, link: status.link === 'up' && !silent,
   };
 }
 
-/** Names, words and whether the value is old or bad. Short ones come first: they stand in the list. */
+/** Names and texts, and whether the value is old or bad. Short texts are for the list. */
 function factsOf(status, waited_s) {
   const later = (seconds) => (Number.isFinite(seconds) ? seconds + waited_s : NaN);
   const [fix_s, battery_s, mode_s] = [later(status.nav_age_s), later(status.battery_age_s), later(status.mode_age_s)];
   const facts = [{ name: 'Link', short: status.link === 'up' ? 'link up' : 'no link', words: status.link ?? '–', bad: status.link !== 'up' }];
-  // What is wrong in the boat itself stops nothing, and comes first.
+  // Faults of the boat itself stop nothing, but come first.
   for (const words of status.alarms ?? []) facts.unshift({ name: 'Alarm', short: words.split(',')[0], words, bad: true });
-  // A rehearsal on the water: the boat is sent standby, whatever its state says.
+  // In a dry run the boat is only sent standby, whatever its state.
   if (typeof status.would_send === 'string') {
-    facts.unshift({ name: 'Dry run', short: 'DRY RUN', words: `only standby is sent${status.would_send ? `, in place of ${status.would_send}` : ''}`, bad: true });
+    facts.unshift({ name: 'Dry run', short: 'DRY RUN', words: `sends only standby${status.would_send ? `, instead of ${status.would_send}` : ''}`, bad: true });
   }
   facts.push(Number.isFinite(fix_s)
     ? { name: 'Fix', short: `fix ${number(fix_s, 1, 's')}`, words: age(fix_s), bad: fix_s > FIX_OLD_S }
@@ -63,11 +63,11 @@ function factsOf(status, waited_s) {
   if (status.operator) facts.push({ name: 'In control', words: `${status.operator}${told}`, bad: mode_s > CONTROL_OLD_S });
   if (status.mode) facts.push({ name: 'Mode', words: `${status.mode}${told}`, bad: mode_s > CONTROL_OLD_S });
   const last = status.failsafes?.at(-1);
-  if (last) facts.push({ name: 'Failsafes', words: `${status.failsafes.length}, the last: ${last.cause ?? last}`, bad: false });
+  if (last) facts.push({ name: 'Failsafes', words: `${status.failsafes.length}; latest: ${last.cause ?? last}`, bad: false });
   return facts;
 }
 
-/** What is known of all real boats. */
+/** The states of all real boats. */
 export function readStatuses(game, now_ms) {
   const readings = [];
   for (let index = 0; index < game.count; index++) {

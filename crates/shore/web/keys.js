@@ -1,4 +1,4 @@
-// The keyboard: what each key does, and the help that says so.
+// The keyboard: the action of each key, and the help that lists them.
 
 import { closeAsk } from './ask.js';
 import { MARKS } from './game.js';
@@ -8,28 +8,28 @@ import { make } from './words.js';
 const PAN_PX = 60;
 const ZOOM = 1.3;
 
-const PAD = `its left stick, once you have pressed one of its buttons${isSecureContext ? '' : '. Not here: browsers give gamepads only to pages of this machine or with TLS'}`;
+const PAD = `left stick, after you press one of its buttons${isSecureContext ? '' : '. Unavailable here: browsers allow gamepads only on this machine or over TLS'}`;
 
 const HELP = [
-  ['The chart', [['+  −', 'zoom'], ['arrows', 'move the chart'], ['f  0', 'fit the field'], ['[  ]', 'choose the boat before or after'],
-    ['o', 'follow the boat'], ['m', 'measure; then Enter takes the selected boat, or the middle of the chart'], ['l', 'legend'], ['Geofence', 'draws one: Enter takes a corner, Backspace takes it back'], ['Escape', 'close, let go, or select no boat'], ['1 to 4', 'boats, details, events, game']]],
-  ['The game', [['space', 'pause or go on'], ['s', 'pause, and one decision'], [',  .', 'slower, faster'], ['h', 'halt all boats, or let them go on'],
-    ['e', 'E-stop at once, or ask to release it']]],
-  ['Driving', [['d', 'steer a boat that can be steered'], ['arrows, w a s d', 'course and speed'], ['Escape', 'let go'],
+  ['The chart', [['+  −', 'zoom'], ['arrows', 'move the chart'], ['f  0', 'fit the field'], ['[  ]', 'select the previous or next boat'],
+    ['o', 'follow the boat'], ['m', 'measure; Enter chooses the selected boat or the centre of the chart'], ['l', 'legend'], ['Geofence', 'draw one: Enter adds a corner, Backspace removes it'], ['Escape', 'close, stop driving, or deselect the boat'], ['1 to 4', 'boats, details, events, game']]],
+  ['The game', [['space', 'pause or resume'], ['s', 'pause and step one decision'], [',  .', 'slower, faster'], ['h', 'halt all boats, or end the halt'],
+    ['e', 'E-stop without confirmation, or release it']]],
+  ['Driving', [['d', 'drive the selected boat, if possible'], ['arrows, w a s d', 'course and speed'], ['Escape', 'stop driving'],
     ['gamepad', PAD]]],
-  ['A replay', [['n  p', 'next event, event before'], [KINDS.map(([, key]) => key).join('  '),
-    `next of the ${KINDS.map(([name]) => name.toLowerCase()).join(', ')}; with Shift before`],
-    ['Shift+s', 'one decision back'], ['left, right', 'a second back or on (with Shift: ten)']]],
+  ['A replay', [['n  p', 'next or previous event'], [KINDS.map(([, key]) => key).join('  '),
+    `next among ${KINDS.map(([name]) => name.toLowerCase()).join(', ')}; with Shift: previous`],
+    ['Shift+s', 'step one decision back'], ['left, right', 'one second back or forward (with Shift: ten)']]],
 ];
 
-/** Whether the keyboard belongs to the element: fields and lists to choose from. */
+/** Whether the element takes keys: fields and lists. */
 const takesKeys = (element) => element.closest('input, select, textarea') !== null;
 
-/** Whether the element is pressed by space and Enter. */
+/** Whether space and Enter press the element. */
 const isPressed = (element) => element.closest('button, summary, a, label') !== null;
 
 export class Keys {
-  /** `page` has the parts: view, controls, drive, timeline, and what they do together. */
+  /** `page` has the parts (view, controls, drive, timeline) and their joint actions. */
   constructor(page) {
     this.page = page;
     this.help = document.getElementById('help-box');
@@ -49,7 +49,7 @@ export class Keys {
   key(event) {
     if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
     if (event.key === 'Escape') this.escape();
-    // Whoever steers does so wherever the focus was left: lists are changed by arrow keys, too.
+    // While driving, keys steer regardless of the focus: arrow keys would also change lists.
     else if (this.page.drive.key(event)) event.preventDefault();
     else if (takesKeys(event.target) || event.key === 'Tab') return;
     else if (event.key === ' ' && !isPressed(event.target)) {
@@ -61,7 +61,7 @@ export class Keys {
     } else if (event.key === 'Enter' && event.target.id === 'sheet' && this.page.takeHere()) event.preventDefault();
     else if (this.arrow(event) || this.replay(event)) event.preventDefault();
     else if (this.plain[event.key]) {
-      // Held keys zoom, but they ask nothing twice.
+      // A held key zooms, but does not repeat questions.
       if (!event.repeat || '+=-_[]s'.includes(event.key)) this.plain[event.key]();
       event.preventDefault();
     }
@@ -104,7 +104,7 @@ export class Keys {
   toggleHelp() {
     if (this.help.open) this.help.close();
     else {
-      // Not modal: the E-stop stays in reach.
+      // Not modal: the E-stop stays reachable.
       this.help.show();
       this.help.querySelector('button').focus();
     }
@@ -118,9 +118,9 @@ export class Keys {
     title.id = 'help-title';
     const groups = HELP.map(([name, keys]) => group(name, keys));
     const marks = group('Letters on boats', [...MARKS.map(([, letter, text]) => [letter, text])]);
-    const hulls = group('Boats', [['solid hull', 'the first team'], ['hull with a band', 'the second team'],
-      ['hollow hull', 'tagged or out of action'], ['flag on a boat', 'it carries that flag'], ['dotted circle', 'where a boat may tag'],
-      ['line at the bow', 'its way in 3 s'], ['dashed hull', 'where the boat takes itself to be']]);
+    const hulls = group('Boats', [['solid hull', 'the first team'], ['hull with a stripe', 'the second team'],
+      ['hollow hull', 'tagged or out of action'], ['flag on a hull', 'carries that flag'], ['dotted circle', 'tag range'],
+      ['line at the bow', 'its path in the next 3 s'], ['dashed hull', 'the boat’s own estimated position']]);
     this.help.replaceChildren(make('div', 'help-head', '', title, close), make('div', 'help-groups', '', ...groups, hulls, marks));
   }
 }

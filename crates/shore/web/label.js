@@ -1,30 +1,30 @@
-// Names beside boats: each is drawn once and then copied, and put where no other name stands.
+// Names beside boats: drawn once and then copied, placed where no other name is.
 
 import { palette } from './palette.js';
 import { plain } from './words.js';
 
 const FONT = '600 12px system-ui, sans-serif';
 const HEIGHT = 18;
-/** Cells in which room is counted, px. */
+/** Size of a cell for checking free space, px. */
 const CELL = 4;
-/** Places of a name about its boat: beside, below, above, and at its corners; parts of its width, of its height, and of the room it keeps. */
+/** Positions of a name around its boat: beside, below, above and at the corners, as parts of its width, its height and its clearance. */
 const PLACES = [[0, -0.5, 1, 0], [-1, -0.5, -1, 0], [-0.5, 0, 0, 1], [-0.5, -1, 0, -1],
   [0, 0, 0.7, 0.7], [-1, 0, -0.7, 0.7], [0, -1, 0.7, -0.7], [-1, -1, -0.7, -0.7]];
-/** A name that is wanted may stand as far off as this, in rooms, with a line to its boat. */
+/** A wanted name may be this far away, in clearances, with a line to its boat. */
 const FAR = [2.5, 4, 6, 9, 13];
 
 export class Labels {
   constructor() {
     this.sprites = [];
     this.vehicles = [];
-    /** Of the last picture: index, left, top, right and bottom of each name, one after the other. */
+    /** In the last picture: index, left, top, right and bottom of each name, one after the other. */
     this.drawn = [];
     this.key = '';
     this.taken = new Uint8Array(0);
     this.place = new Uint8Array(0);
   }
 
-  /** To be called before the labels of a picture; `ratio` is device pixels to a pixel. */
+  /** Call before the labels of a picture; `ratio` is device pixels per pixel. */
   begin(vehicles, view, ratio) {
     const key = `${palette.version} ${ratio} ${vehicles.length} ${vehicles[0]?.name}`;
     if (key !== this.key) {
@@ -67,7 +67,7 @@ export class Labels {
     return made;
   }
 
-  /** Takes a box, so that no name stands there. */
+  /** Reserves a box, so that no name is placed there. */
   block(left, top, right, bottom) {
     this.each(left, top, right, bottom, (cell) => {
       this.taken[cell] = 1;
@@ -75,14 +75,14 @@ export class Labels {
     });
   }
 
-  /** Whether a box is free; takes it if so. */
+  /** Reserves a box if it is free. Returns whether it was. */
   claim(left, top, right, bottom) {
     if (!this.each(left, top, right, bottom, (cell) => this.taken[cell] === 0)) return false;
     this.block(left, top, right, bottom);
     return true;
   }
 
-  /** Whether `visit` is content with each cell of a box. */
+  /** Whether `visit` accepts every cell of a box. */
   each(left, top, right, bottom, visit) {
     const first = Math.max(0, Math.floor(left / CELL));
     const last = Math.min(this.across - 1, Math.floor(right / CELL));
@@ -93,8 +93,8 @@ export class Labels {
     return true;
   }
 
-  /** Draws a name at least `room` pixels from its boat's middle, where it stood before if there is room; else not, unless it is
-   * `wanted`: then farther off. No name covers a boat or another name. */
+  /** Draws a name at least `room` pixels from its boat's centre, at its last position if that is free. Without free space it is left
+   * out, unless `wanted`: then it is placed farther away. No name covers a boat or another name. */
   draw(context, index, x, y, room, wanted) {
     if (this.put(context, index, x, y, room, this.place[index])) return;
     for (let place = 0; place < PLACES.length; place++) {
@@ -107,7 +107,7 @@ export class Labels {
     }
   }
 
-  /** Draws a name at one of the places about a boat, if it is free; with a line that begins `lead` pixels from the boat. */
+  /** Draws a name at a position around its boat if that is free, with a line that starts `lead` pixels from the boat. */
   put(context, index, x, y, room, place, lead = 0) {
     const { canvas, width } = this.sprite(index);
     const [alongX, alongY, outX, outY] = PLACES[place];
@@ -130,7 +130,7 @@ export class Labels {
     return true;
   }
 
-  /** The names that were drawn last, and where. */
+  /** The names in the last picture and their areas. */
   boxes() {
     const boxes = [];
     for (let i = 0; i < this.drawn.length; i += 5) {

@@ -1,4 +1,4 @@
-// The legend: what the marks on the chart are, each drawn as the chart draws it.
+// The legend: the marks on the chart, each as the chart draws it.
 
 import { drawFlag, drawHullAt } from './boats.js';
 import { palette, teamColour } from './palette.js';
@@ -30,27 +30,27 @@ function line(context, dash, colour, width = 1.75) {
 
 const hull = (look) => (context) => drawHullAt(context, WIDTH / 2, HEIGHT / 2, Math.PI / 2, 24, 12, look);
 
-/** What a chart shows: words, and how it is drawn. */
+/** The entries of a chart: text and drawing. */
 function entriesOf(chart) {
   const { radii = {}, field } = chart;
   const entries = chart.teams.map((team, index) => [`boat of ${plain(team.name)}`, hull({ team: index })]);
-  entries.push(['tagged: out of play until it is home', hull({ team: 0, idle: true })]);
+  entries.push(['tagged: out of play until home', hull({ team: 0, idle: true })]);
   entries.push(['out of action', hull({ team: 0, idle: true, disabled: true })]);
-  entries.push(['where the selected boat takes itself to be', hull({ ghost: true })]);
-  entries.push(['its way in 3 s', (context) => line(context, [], teamColour(0), 1.25)]);
-  entries.push(['its track of the last minute', (context) => {
+  entries.push(['the selected boat’s own estimated position', hull({ ghost: true })]);
+  entries.push(['path in the next 3 s', (context) => line(context, [], teamColour(0), 1.25)]);
+  entries.push(['track of the last minute', (context) => {
     context.globalAlpha = 0.5;
     line(context, [], teamColour(0), 2);
     context.globalAlpha = 1;
   }]);
-  entries.push(['a flag; on a boat, carried by it', (context) => drawFlag(context, WIDTH / 2 - 5, HEIGHT - 3, 0, 12)]);
-  if (radii.tag_m > 0) entries.push([`where a boat may tag, ${radii.tag_m} m`, (context) => ring(context, 10, [3, 4], teamColour(0))]);
-  if (radii.grab_m > 0) entries.push([`where a flag is taken, ${radii.grab_m} m`, (context) => ring(context, 10, [], teamColour(0))]);
+  entries.push(['flag; on a hull, carried', (context) => drawFlag(context, WIDTH / 2 - 5, HEIGHT - 3, 0, 12)]);
+  if (radii.tag_m > 0) entries.push([`tag range, ${radii.tag_m} m`, (context) => ring(context, 10, [3, 4], teamColour(0))]);
+  if (radii.grab_m > 0) entries.push([`grab range, ${radii.grab_m} m`, (context) => ring(context, 10, [], teamColour(0))]);
   if (radii.keepout_m > 0) entries.push([`keep out, ${radii.keepout_m} m`, (context) => ring(context, 10, [2, 4], teamColour(0))]);
   if (field?.scrimmage) entries.push(['scrimmage line', (context) => line(context, [12, 5, 2, 5], palette.edge)]);
   if (chart.vehicles.some(({ external }) => external)) {
-    entries.push(['geofence of real boats; dotted, keep out', (context) => line(context, [12, 5], palette.danger, 2)]);
-    entries.push(['within which a real boat can stop', (context) => ring(context, 10, [2, 3], palette.ink)]);
+    entries.push(['geofence of real boats (dotted: keep-out)', (context) => line(context, [12, 5], palette.danger, 2)]);
+    entries.push(['stopping distance of a real boat', (context) => ring(context, 10, [2, 3], palette.ink)]);
   }
   if (field?.obstacles?.length > 0) {
     entries.push(['obstacle', (context) => {
@@ -63,7 +63,7 @@ function entriesOf(chart) {
     }]);
   }
   if (chart.waves?.length > 0) {
-    entries.push(['crest and trough of waves', (context) => {
+    entries.push(['wave crest and trough', (context) => {
       context.fillStyle = palette.crest;
       context.fillRect(4, 5, WIDTH / 2 - 4, 16);
       context.fillStyle = palette.trough;
@@ -81,7 +81,7 @@ export class Legend {
     this.drawn = '';
   }
 
-  /** Shows it, or not; drawn anew if colours or the game have changed. */
+  /** Shows or hides it; redrawn if colours or the game have changed. */
   tell(game, visible) {
     show(this.place, visible && Boolean(game.hello));
     const key = `${palette.version} ${game.greeted}`;

@@ -1,31 +1,31 @@
-// The websocket to the server: it comes back by itself, and tells the server when a frame is drawn.
+// The WebSocket to the server: reconnects automatically and acknowledges drawn frames.
 
 import { gameOfReport } from './address.js';
 
-/** Waits between two tries, s. */
+/** Waits between attempts, s. */
 const WAITS_S = [0.3, 0.6, 1, 2, 3, 5];
-/** While nobody looks at the page frames are acknowledged this often, s. */
+/** Interval of acknowledgements while the page is hidden, s. */
 const HIDDEN_ACK_S = 1;
-/** The server has closed the connection with this code, since it needed the room for another page. */
+/** Close code with which the server frees the slot of this page for another one. */
 const DISPLACED = 1013;
-/** A page that was displaced comes back after so long, and takes the room of another, s. */
+/** Time after which a displaced page reconnects and displaces another one, s. */
 const DISPLACED_WAIT_S = 30;
-/** A connection that has not opened after this time is given up, s. */
+/** Timeout of opening a connection, s. */
 const OPEN_S = 8;
-/** One on which nothing comes for so long, though something should, is dead, s. NoRecorder else says so for minutes. */
+/** A connection silent for this long, though messages are due, is dead, s. Browsers notice only after minutes. */
 const SILENCE_S = 4;
-/** How often to look whether it is, s. */
+/** Interval of checks for this, s. */
 const WATCH_S = 1;
 
-/** What the server answers, with how the game or the replay stands or what came of it. */
+/** Replies from the server: the state of the game or replay, or a result. */
 const ANSWERED = ['control', 'operate', 'mission'];
 
-/** The token in the page's address, kept over a reload since it stays in the address. */
+/** The token in the page's address, where it survives a reload. */
 function token() {
   return new URLSearchParams(location.hash.slice(1)).get('token');
 }
 
-/** What the server is to show: the game of a report that the page's address names, else what it shows to all. */
+/** What the server must show: the game of a report in the page's address, or else the default. */
 function query(secret) {
   const words = new URLSearchParams();
   const game = gameOfReport();
@@ -35,7 +35,7 @@ function query(secret) {
 }
 
 export class Link {
-  /** `on` has `lost(unheard, displaced)`: whether something asked for may not have arrived, and whether another page has the room; `message(object)` and `frame(kind, buffer)`. */
+  /** `on` has `lost(unheard, displaced)`: whether a command may be lost, and whether another page took the slot; `message(object)` and `frame(kind, buffer)`. */
   constructor(on) {
     this.on = on;
     this.connected = false;
@@ -50,11 +50,11 @@ export class Link {
     this.forget();
     setInterval(() => this.drawnUnseen(), HIDDEN_ACK_S * 1000);
     setInterval(() => this.watch(performance.now()), WATCH_S * 1000);
-    // An address that is pasted into the open page, with another token, loads nothing.
+    // Pasting an address with another token into the open page reloads nothing.
     addEventListener('hashchange', () => token() !== this.secret && this.restart());
   }
 
-  /** Nothing is known yet of what the server will say. */
+  /** Nothing received yet. */
   forget() {
     this.mode = null;
     this.playing = false;
@@ -78,7 +78,7 @@ export class Link {
     socket.onclose = (event) => this.again(event.code === DISPLACED);
   }
 
-  /** Heeds the socket no longer, whatever comes of it. */
+  /** Ignores the socket from now on. */
   drop() {
     clearTimeout(this.late);
     clearTimeout(this.retry);
@@ -91,7 +91,7 @@ export class Link {
     this.forget();
   }
 
-  /** Tries again, after ever longer waits. */
+  /** Retries after increasing waits. */
   again(displaced = false) {
     const { unheard } = this;
     this.drop();
@@ -101,35 +101,35 @@ export class Link {
     this.on.lost(unheard, displaced);
   }
 
-  /** Connects anew at once. */
+  /** Reconnects immediately. */
   restart() {
     this.drop();
     this.tries = 0;
     this.start();
   }
 
-  /** Gives up a connection that is silent when it should not be. */
+  /** Gives up a connection that is silent although messages are due. */
   watch(now_ms) {
-    // A page that slept, or was busy for long, heard nothing either.
+    // A page that slept or was busy received nothing either.
     const slept = now_ms - this.watched_ms > 2 * WATCH_S * 1000;
     this.watched_ms = now_ms;
     if (slept) this.heard_ms = now_ms;
     if (this.connected && this.expects && now_ms - this.heard_ms > SILENCE_S * 1000) this.again();
   }
 
-  /** Whether the server has something to say at least five times a second. A replay that stands says nothing, until it is told to play. */
+  /** Whether the server must send at least five times per second. A paused replay sends nothing until it is played. */
   get expects() {
     return this.mode === 'live' || this.playing || this.unheard;
   }
 
-  /** Lets a hidden page have a frame now and then. */
+  /** Acknowledges a frame of a hidden page from time to time. */
   drawnUnseen() {
     if (!document.hidden || performance.now() - this.acked_ms < HIDDEN_ACK_S * 900) return;
     this.drawn();
   }
 
   take(data) {
-    // Browsers let the timers of hidden pages sleep for a minute; messages wake us.
+    // Browsers may suspend timers of hidden pages for a minute; messages wake the page.
     this.drawnUnseen();
     this.heard_ms = performance.now();
     this.unheard = false;
@@ -145,7 +145,7 @@ export class Link {
     } catch {
       return;
     }
-    // Only a server that speaks is one: others may open and close at once.
+    // Only a server that sends messages counts: others may open and close at once.
     if (message.kind === 'hello') {
       this.tries = 0;
       this.mode = message.mode;
@@ -155,18 +155,18 @@ export class Link {
     this.on.message(message);
   }
 
-  /** To be called once what has come is on the screen. */
+  /** Call once the received data has been drawn. */
   drawn() {
     if (this.owed > 0) this.acked_ms = performance.now();
     for (; this.owed > 0; this.owed--) this.send({ do: 'ack' });
   }
 
-  /** Whether it went out; not whether it arrived. */
+  /** Returns whether the message was sent, not whether it arrived. */
   send(message) {
     if (!this.connected || this.socket.readyState !== WebSocket.OPEN) return false;
     this.socket.send(JSON.stringify(message));
     if (!ANSWERED.includes(message.do) || this.unheard) return true;
-    // A replay that stands was silent until now: the time counts from the question.
+    // A paused replay was silent until now: measure from the request.
     if (!this.expects) this.heard_ms = performance.now();
     this.unheard = true;
     return true;

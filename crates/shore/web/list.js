@@ -1,4 +1,4 @@
-// The list of boats: one line each, by team, with mode, flag, heading, speed and its curve, and what is the matter with it.
+// The list of boats by team, one line each: mode, flag, heading, speed with its curve, and faults.
 
 import { BadgeLine } from './badge.js';
 import { MARKS } from './game.js';
@@ -9,7 +9,7 @@ const SVG = 'http://www.w3.org/2000/svg';
 const ARROW = 'M0-9 6 8 0 4-6 8z';
 const FLAG = 'M-6 9V-9L7-4-4 1V9z';
 
-/** A small drawing of one path. */
+/** A small drawing with a single path. */
 function glyph(classes, path) {
   const svg = document.createElementNS(SVG, 'svg');
   svg.setAttribute('viewBox', '-10 -10 20 20');
@@ -22,12 +22,12 @@ function glyph(classes, path) {
 }
 
 export class BoatList {
-  /** `on` has `choose(name)`, for the boat that somebody presses, and `hover(index)`, for the one pointed at; -1 is none. */
+  /** `on` has `choose(name)`, for a pressed boat, and `hover(index)`, for the boat pointed at; -1 is none. */
   constructor(on) {
     this.place = document.getElementById('boat-list');
     this.on = on;
     this.rows = [];
-    /** The rows that can be seen: curves of others are not drawn. */
+    /** The visible rows; others' curves are not drawn. */
     this.seen = new Set();
     this.watch = new IntersectionObserver((entries) => {
       for (const { target, isIntersecting } of entries) {
@@ -51,7 +51,7 @@ export class BoatList {
     this.on.hover(this.rows.find((row) => row.button === button)?.at ?? -1);
   }
 
-  /** Up and down go through the list. */
+  /** Up and down move through the list. */
   key(event) {
     const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
     const at = this.rows.findIndex((row) => row.button === document.activeElement);
@@ -61,7 +61,7 @@ export class BoatList {
     this.rows[Math.min(this.rows.length - 1, Math.max(0, at + step))].button.focus();
   }
 
-  /** Whether it can be seen, so that modes are worth asking for. */
+  /** Whether it is visible, so that modes are needed. */
   get visible() {
     return this.place.offsetParent !== null;
   }
@@ -103,7 +103,7 @@ export class BoatList {
     this.rows.push({ button, at, state: what.lastElementChild, carries, heading, canvas, speed, line });
   }
 
-  /** `readings` is what gateways say of real boats. */
+  /** `readings` are the gateways' reports on real boats. */
   tell(game, readings) {
     this.selected = game.selected;
     if (!this.visible) return;
@@ -124,7 +124,7 @@ export class BoatList {
     }
   }
 
-  /** What is the matter with a boat, else its mode. */
+  /** A boat's faults, or else its mode. */
   tellState({ at, state }, game) {
     const matter = MARKS.filter(([bit]) => game.marks[at] & bit).map(([, , text]) => text);
     const mode = plain(game.modes?.[at] ?? '').replaceAll(':', ' › ');
@@ -146,7 +146,7 @@ export class BoatList {
     carries.firstElementChild.style.visibility = flag ? 'visible' : 'hidden';
   }
 
-  /** The speed over the last minute, from rest to the boat's greatest. */
+  /** The speed over the last minute, from zero to the boat's maximum. */
   drawCurve(canvas, game, at, chosen) {
     const { clientWidth: width, clientHeight: height } = canvas;
     if (width === 0) return;

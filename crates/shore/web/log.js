@@ -1,11 +1,11 @@
-// The list of events, newest first: a press goes to the boat, and in a replay to the moment.
+// The event list, newest first. Pressing an event selects its boat and, in a replay, its moment.
 
 import { clock, clockShort, fill, make, plain, show, write } from './words.js';
 
-/** Lines on the page; there may be thousands of events. */
+/** Maximum number of lines; there may be thousands of events. */
 const LINES_MAX = 300;
 
-/** What each filter lets through. */
+/** The events of each filter. */
 const KINDS = {
   flags: ['grabbed', 'captured', 'flag_returned', 'ended'],
   tags: ['tagged', 'tagged_by_boundary', 'untagged'],
@@ -16,7 +16,7 @@ const KINDS = {
 
 const FOLDED_KEY = 'squall.events-folded';
 
-/** Below which tabs somebody folded the events, or opened them. */
+/** Whether the events are folded, by tab. */
 function remembered() {
   try {
     return JSON.parse(localStorage.getItem(FOLDED_KEY)) ?? {};
@@ -25,11 +25,11 @@ function remembered() {
   }
 }
 
-/** Events that are said more loudly. */
+/** Highlighted events. */
 const LOUD = ['captured', 'grabbed', 'ended', 'e_stopped', 'agent_lost', 'quarantined', 'nav_lost', 'failsafe', 'collided'];
 
 export class Log {
-  /** `go(event)` is called for the event that somebody presses. */
+  /** `go(event)` is called when an event is pressed. */
   constructor(go) {
     this.place = document.getElementById('events');
     this.none = document.getElementById('events-none');
@@ -51,7 +51,7 @@ export class Log {
     this.box = document.getElementById('events-box');
     this.chosen = remembered();
     this.tab = 'boats';
-    // A low page has no room for both the events and the whole helm of a boat.
+    // A low page has no space for both the events and a boat's helm.
     this.low = matchMedia('(max-height: 999px)');
     this.low.addEventListener('change', () => this.showFold());
     this.fold.addEventListener('click', () => {
@@ -59,7 +59,7 @@ export class Log {
       try {
         localStorage.setItem(FOLDED_KEY, JSON.stringify(this.chosen));
       } catch {
-        // Then it is forgotten with the page.
+        // Not stored: it lasts as long as the page.
       }
       this.showFold();
     });
@@ -70,7 +70,7 @@ export class Log {
     return this.wide && (this.chosen[this.tab] ?? (this.tab === 'boat' && this.low.matches));
   }
 
-  /** Which tab the events are below; on a page that is not `wide` they have one of their own. */
+  /** The tab above the events; on narrow pages the events have a tab of their own. */
   under(tab, wide) {
     this.tab = tab;
     this.wide = wide;
@@ -97,7 +97,7 @@ export class Log {
     const key = `${game.eventVersion} ${this.filter.value} ${past}`;
     if (key === this.drawn) return;
     this.drawn = key;
-    // In a replay what is yet to come stands above, so far as there is room.
+    // In a replay, future events are above, as far as there is space.
     const last = replay ? Math.min(known.length, past + LINES_MAX / 2) : known.length;
     const first = Math.max(0, last - LINES_MAX);
     this.lines = known.slice(first, last).reverse();
@@ -123,7 +123,7 @@ export class Log {
     write(button.children[2], plain(event.text ?? event.event));
   }
 
-  /** Scrolls so that the newest event of a replay can be seen, unless somebody reads the list. */
+  /** Scrolls to the newest event of a replay, unless someone is reading the list. */
   keepInSight(at) {
     const row = this.place.children[Math.max(0, at)];
     if (!row || this.folded || this.place.matches(':hover, :focus-within')) return;
@@ -134,7 +134,7 @@ export class Log {
   }
 }
 
-/** How many events have happened by a time; they come in order. */
+/** The number of events up to a time; they are in order. */
 export function upTo(events, t_s) {
   let low = 0;
   let high = events.length;

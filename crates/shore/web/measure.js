@@ -1,4 +1,4 @@
-// The measure tool: range and bearing between two places or boats on the chart, and the coordinates of what is pointed at.
+// The measure tool: range and bearing between two positions or boats on the chart, and the coordinates under the pointer.
 
 import { latLonWords } from './datum.js';
 import { haloText } from './field.js';
@@ -16,9 +16,9 @@ export class Measure {
     this.place = document.getElementById('place');
     this.sheet = document.getElementById('sheet');
     this.active = false;
-    /** Two ends at most: `{ boat }`, its number, or `{ x, y }`. */
+    /** At most two ends: `{ boat }` with its index, or `{ x, y }`. */
     this.ends = [];
-    /** Where the pointer is, px; null elsewhere. */
+    /** Position of the pointer, px; null outside. */
     this.pointed = null;
     this.button.addEventListener('click', () => this.toggle());
   }
@@ -36,13 +36,13 @@ export class Measure {
     if (this.active) this.toggle();
   }
 
-  /** The pointer is here, px; far off the chart it is nowhere. */
+  /** Moves the pointer, px; far outside the chart it is null. */
   point(x, y) {
     this.pointed = x < -1e8 ? null : { x, y };
     if (this.active && this.ends.length === 1) this.on.changed();
   }
 
-  /** Takes an end, a boat's number or a place; the third begins anew. */
+  /** Takes an end, a boat's index or a position; the third one starts over. */
   take(end) {
     if (this.ends.length === 2) this.ends = [];
     this.ends.push(end);
@@ -53,7 +53,7 @@ export class Measure {
     return end.boat === undefined ? [end.x, end.y] : [game.x[end.boat], game.y[end.boat]];
   }
 
-  /** The range, m, and bearing, degrees, of the second end from the first, and both places; null without two. */
+  /** Range, m, and bearing, degrees, from the first end to the second, and both positions; null without two ends. */
   reading(game, view) {
     if (!this.active || this.ends.length === 0) return null;
     const from = this.placeOf(game, this.ends[0]);
@@ -65,7 +65,7 @@ export class Measure {
     return { from, to, range_m: Math.hypot(east, north), bearing_deg: (Math.atan2(east, north) * 180) / Math.PI };
   }
 
-  /** Draws the line, over the boats. */
+  /** Draws the line above the boats. */
   draw(context, game, view) {
     if (!this.active) return;
     if (!this.pointed && this.ends.length < 2) this.cross(context, view.width / 2, view.height / 2);
@@ -94,7 +94,7 @@ export class Measure {
     haloText(context, this.short(reading), (fromX + toX) / 2, (fromY + toY) / 2 - 6);
   }
 
-  /** Where Enter takes an end: the middle of the chart. */
+  /** Where Enter takes an end: the centre of the chart. */
   cross(context, x, y) {
     context.beginPath();
     context.moveTo(x - CROSS_PX, y);
@@ -115,7 +115,7 @@ export class Measure {
     return end.boat === undefined ? `${number(end.x, 1)}, ${number(end.y, 1)}` : plain(game.vehicles[end.boat].name);
   }
 
-  /** Writes what is measured, and where the pointer is; without one, the middle of the chart for those who use keys. */
+  /** Writes the measurement and the position of the pointer or, without one, of the chart's centre for keyboard users. */
   tell(game, view) {
     show(this.words, this.active);
     if (this.active) write(this.words, this.told(game, view));
@@ -129,9 +129,9 @@ export class Measure {
   }
 
   told(game, view) {
-    if (this.ends.length === 0) return 'Measure: choose a boat or a place to begin at.';
+    if (this.ends.length === 0) return 'Measure: choose the first boat or place.';
     const from = this.name(game, this.ends[0]);
-    if (this.ends.length === 1) return `Measure from ${from}: choose where to.`;
+    if (this.ends.length === 1) return `Measure from ${from}: choose the second boat or place.`;
     return `${from} to ${this.name(game, this.ends[1])}: ${this.short(this.reading(game, view))}`;
   }
 }

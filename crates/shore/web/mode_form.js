@@ -1,19 +1,19 @@
-// Other modes of a real boat's own controller: a choice, and for a heading its numbers.
+// Other modes of a real boat's own controller: a choice, with numbers for a heading.
 
 import { make, show } from './words.js';
 
-/** The modes: their word, name, and what is asked of NAME. The first takes a heading and a thrust. */
+/** The modes: protocol word, label, and action in the question. The first takes a heading and a thrust. */
 const MODES = [
   ['heading', 'Hold a heading', 'hold this heading'],
-  ['river_nav', 'River navigation', 'go into river navigation'],
-  ['autopilot', 'Autopilot', 'go into its autopilot'],
+  ['river_nav', 'River navigation', 'start river navigation'],
+  ['autopilot', 'Autopilot', 'start its autopilot'],
   ['compass_calibration', 'Calibrate compass', 'calibrate its compass'],
-  ['depth', 'Depth', 'go into its mode for depth'],
-  ['gravity_vector', 'Direction of gravity', 'go into its mode for the direction of gravity'],
+  ['depth', 'Depth', 'start its depth mode'],
+  ['gravity_vector', 'Gravity vector', 'start its gravity vector mode'],
 ];
 
 export class ModeForm {
-  /** `ask(what, command)` gets what is asked of NAME, and the command. */
+  /** `ask(what, command)` receives the action in the question, and the command. */
   constructor(ask) {
     this.choice = make('select');
     this.choice.id = 'mode';

@@ -1,4 +1,4 @@
-// The operator's part of a real boat: its state, what is missing for arming, and the commands of its gateway.
+// Operator controls of a real boat: its state, what is missing before it can be armed, and its gateway's commands.
 
 import { Ask } from './ask.js';
 import { makeBadge, tellBadge } from './badge.js';
@@ -6,22 +6,22 @@ import { ModeForm } from './mode_form.js';
 import { notice } from './status.js';
 import { fill, make, plain, show, write } from './words.js';
 
-/** The longest message that the server takes, bytes. */
+/** Maximum size of a message to the server, bytes. */
 const MESSAGE_MAX = 16 * 1024;
 
-/** Commands: its word, the button, the question (null: at once), and in which states there is none. */
+/** Commands: protocol word, label, question (null: none), and the states without this command. */
 const COMMANDS = [
-  ['arm', 'Arm', 'Arm NAME? It then does what its agent orders.', ['armed', 'stopped']],
+  ['arm', 'Arm', 'Arm NAME? It will then follow its agent’s orders.', ['armed', 'stopped']],
   ['disarm', 'Disarm', null, ['disarmed', 'stopped']],
-  ['station_keep', 'Keep station', 'Let NAME keep its station by its own controller?', ['stopped']],
-  ['go_to_erp', 'To recovery point', 'Send NAME to its recovery point by its own controller?', ['stopped']],
-  ['release', 'Release', 'Release the E-stop of NAME? It must then be armed again.', ['disarmed', 'armed', 'failsafe', 'delegated']],
+  ['station_keep', 'Keep station', 'Let NAME’s own controller keep station?', ['stopped']],
+  ['go_to_erp', 'To recovery point', 'Let NAME’s own controller drive it to its recovery point?', ['stopped']],
+  ['release', 'Release', 'Release NAME’s E-stop? It must then be armed again.', ['disarmed', 'armed', 'failsafe', 'delegated']],
 ];
-/** The commands that stop a boat: whoever may stop all of them may stop one. */
+/** The commands that stop a boat: a page that may stop all boats may stop one. */
 const STOPS = ['disarm'];
 const DONE = {
   arm: 'is armed', disarm: 'is disarmed', station_keep: 'keeps its station', go_to_erp: 'goes to its recovery point',
-  release: 'is released', mission: 'takes its mission', mode: 'is in that mode',
+  release: 'is released', mission: 'has accepted its mission', mode: 'has changed its mode',
 };
 
 export class Operate {
@@ -32,7 +32,7 @@ export class Operate {
     this.build();
   }
 
-  /** To be called once the element is on the page. */
+  /** Call once the element is on the page. */
   bind() {
     this.asked = new Ask('operate');
   }
@@ -47,7 +47,7 @@ export class Operate {
     this.file.setAttribute('aria-label', 'Mission file');
     this.file.addEventListener('change', () => this.mission());
     this.missionButton = make('button', '', 'Mission …');
-    Object.assign(this.missionButton, { type: 'button', id: 'mission', title: 'Upload a .sea file and let the boat sail it by its own controller' });
+    Object.assign(this.missionButton, { type: 'button', id: 'mission', title: 'Upload a .sea file for the boat’s own controller to follow' });
     this.missionButton.addEventListener('click', () => this.file.click());
     this.modes = new ModeForm((what, command) => this.mode(what, command));
     const row = make('div', 'operate-row asking', '', ...Object.values(this.buttons), this.missionButton, this.file, this.modes.element, this.box());
@@ -72,7 +72,7 @@ export class Operate {
     return button;
   }
 
-  /** The question: its parts are called as `Ask` wants them. */
+  /** The question, with element ids as `Ask` expects. */
   box() {
     const [question, confirm, cancel] = [make('p'), make('button', 'danger'), make('button', '', 'Cancel')];
     question.id = 'operate-question';
@@ -85,7 +85,7 @@ export class Operate {
     return box;
   }
 
-  /** For whoever came without the operator's token: it goes into the page's address, where it is kept over a reload. */
+  /** Enters the operator's token. It goes into the page's address, where it survives a reload. */
   tokenForm() {
     const field = make('input');
     Object.assign(field, { type: 'password', id: 'operator-token', autocomplete: 'off' });
@@ -114,7 +114,7 @@ export class Operate {
 
   mode(what, command) {
     const { name } = this;
-    this.asked.ask(`Let ${plain(name)} ${what} by its own controller?`, 'Yes', () => this.command(name, command));
+    this.asked.ask(`Let ${plain(name)}’s own controller ${what}?`, 'Yes', () => this.command(name, command));
   }
 
   command(vehicle, command) {
@@ -130,23 +130,23 @@ export class Operate {
     const message = { do: 'mission', vehicle: name, lines: file.size > MESSAGE_MAX ? '' : await file.text() };
     this.file.value = '';
     if (file.size > MESSAGE_MAX || new Blob([JSON.stringify(message)]).size > MESSAGE_MAX) {
-      notice(`${file.name} is too long: a mission has at most ${MESSAGE_MAX / 1024} kB here.`);
+      notice(`${file.name} is too long: a mission may have at most ${MESSAGE_MAX / 1024} kB.`);
       return;
     }
-    this.asked.ask(`Upload ${file.name} to ${plain(name)} and let it sail that by its own controller?`, 'Yes, sail it', () => {
+    this.asked.ask(`Upload ${file.name} and let ${plain(name)}’s own controller follow it?`, 'Yes, start it', () => {
       this.tellAnswer('…');
       this.on.send(message);
     });
   }
 
-  /** What came of a command. */
+  /** Shows the result of a command. */
   hear({ vehicle, command, refused }) {
     const words = refused === null ? `${plain(vehicle)} ${DONE[command] ?? `did ${plain(command)}`}.` : `${plain(vehicle)} refuses: ${refused}`;
     if (vehicle === this.name) this.tellAnswer(words);
     else notice(words);
   }
 
-  /** A message about a boat that never reached its gateway. */
+  /** Shows why a message about a boat never reached its gateway. */
   refuse(reason) {
     this.tellAnswer(`Not done: ${reason}`);
   }
@@ -156,7 +156,7 @@ export class Operate {
     show(this.answer, words !== '');
   }
 
-  /** Shows a real boat; null is none. */
+  /** Shows a real boat, or nothing for null. */
   tell(game, reading) {
     show(this.element, reading !== null);
     if (reading?.name !== this.name) {
@@ -176,7 +176,7 @@ export class Operate {
       const wanted = word === 'release' ? reading.kind === 'stopped' && /this boat/.test(reading.detail) : !never.includes(reading.said);
       show(button, wanted);
       button.disabled = !(operates || (rights && STOPS.includes(word)));
-      // To disarm after a failsafe is to reset it.
+      // Disarming after a failsafe resets it.
       write(button, word === 'disarm' && reading.said === 'failsafe' ? 'Reset failsafe' : text);
     }
     show(this.missionButton, reading.said !== 'stopped');
@@ -191,14 +191,14 @@ export class Operate {
     });
   }
 
-  /** What is missing for arming, as the gateway says it now. */
+  /** What is currently missing before the boat can be armed, according to the gateway. */
   tellChecks(live, { missing, said, kind }) {
     const wanted = live && said !== undefined && said !== 'armed';
     show(this.checkHead, wanted);
     show(this.checks, wanted);
     if (!wanted) return;
     const known = kind !== 'silent';
-    const lines = !known ? ['not known: its gateway is silent'] : missing.length > 0 ? missing : ['Ready to arm.'];
+    const lines = !known ? ['unknown: the gateway is silent'] : missing.length > 0 ? missing : ['Ready to arm.'];
     const good = known && missing.length === 0;
     fill(this.checks, lines, () => make('li', '', '', make('span', 'mark'), make('span')), (line, words) => {
       line.className = good ? 'good' : 'missing';

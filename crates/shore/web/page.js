@@ -1,26 +1,26 @@
-// The page: joins the link, the game and everything that shows it, and draws.
+// The page: connects the link, the game and all views, and draws.
 //
-// For tests and the curious, `window.squall` can be read (nothing in it can be set):
-//   mode, hello, state, player    as the server sent them last; null before
+// `window.squall` is readable for tests and debugging (nothing in it can be set):
+//   mode, hello, state, player    as last sent by the server; null before
 //   connected, t_s, score         score by team
 //   frame                         { t_s, tick, stopped, over, boats: [{ name, team, x, y, heading_deg, course_deg, speed_m_s,
 //                                 tagged, carrying, disabled, outside, agent_lost, quarantined, nav_lost }] }; null before;
-//                                 carrying is the number of a flag, or -1
-//   flags                         [{ team, x, y, carrier }]: where each is now; carrier is a boat's name, or null
-//   events                        all that are known; of a game that is played the newest 20000
-//   selected, following, driving  the boat's name or null; whether; its name or null
-//   helm, estimate                of the selected boat, as sent; null without
-//   modes                         of the helms of all boats, as sent; null before
-//   hulls, labels                 [{ name, left, top, right, bottom }]: what boats, and names beside them, take on the chart, px
+//                                 carrying is the index of a flag, or -1
+//   flags                         [{ team, x, y, carrier }]: current positions; carrier is a boat's name, or null
+//   events                        all known; in a live game the newest 20000
+//   selected, following, driving  the boat's name or null; whether; the boat's name or null
+//   helm, estimate                of the selected boat, as sent; null if missing
+//   modes                         of all boats' helms, as sent; null before
+//   hulls, labels                 [{ name, left, top, right, bottom }]: areas of boats and names on the chart, px
 //   statuses                      of gateways, by boat
-//   badges, alarms, sounded       [{ name, kind, label, detail }] of real boats; [{ boat, text, active }] that wait; tones played so far
-//   fences                        [{ outline, keepOuts }] of real boats, and stops [{ name, stopping_m, clearance_m }]
-//   background                    whether there is an image or a shoreline below the field
-//   drawn, fps, draw_ms           frames drawn; pictures a second; mean time of a picture's making
-//   view                          { x, y, scale }: middle, and pixels to a metre
+//   badges, alarms, sounded       [{ name, kind, label, detail }] of real boats; [{ boat, text, active }] not acknowledged; tones played so far
+//   fences, stops                 [{ outline, keepOuts }] of real boats; [{ name, stopping_m, clearance_m }]
+//   background                    whether an image or a shoreline is shown below the field
+//   drawn, fps, draw_ms           frames drawn; pictures per second; mean time to draw a picture
+//   view                          { x, y, scale }: centre, and pixels per metre
 //   measured                      { range_m, bearing_deg }; null before two ends are chosen
 //
-// Elements with an id that stays: score-<team>, clock, rate, phase, rights, connection, notices, events, boat-list, rose,
+// Elements with stable ids: score-<team>, clock, rate, phase, rights, connection, notices, events, boat-list, rose,
 // rose-function, events-fold, show-plots, plots, plot-other, share, png, film, behaviours, variables, gateway, helm-reason, follow,
 // drive, boat-facts, boat-badge, checks, operated, operate, operate-<command>, mission-file, operator-token, alarms, mute, acknowledge-all, show-chart, draw-
 // fence, fence-toml, fence-part, fence-<action>,
@@ -61,11 +61,11 @@ import { View } from './view.js';
 import { expose } from './window.js';
 import { plain, show, write } from './words.js';
 
-/** How often words are written anew, ms. */
+/** Interval at which texts are written, ms. */
 const TELL_MS = 200;
-/** How often the list of boats is. */
+/** The same for the list of boats. */
 const LIST_EVERY = 3;
-/** How near a pointer must be to a boat, px. */
+/** Maximum distance of the pointer from a boat, px. */
 const REACH_MOUSE_PX = 8;
 const REACH_TOUCH_PX = 22;
 
@@ -107,7 +107,7 @@ class Page {
     this.alarms = new Alarms({ choose: (name) => this.look(name) });
     this.background = new Background({ changed: () => { this.drawnField = ''; } });
     this.background.load();
-    /** What gateways say of real boats. */
+    /** The gateways' reports on real boats. */
     this.readings = [];
     this.following = false;
     this.asked = '';
@@ -144,26 +144,26 @@ class Page {
     this.link.start();
     setInterval(() => this.tell(), TELL_MS);
     const loop = (now_ms) => {
-      // First, so that a picture that fails is not the last.
+      // First, so that an error in one picture does not stop the next.
       requestAnimationFrame(loop);
       this.draw(now_ms);
     };
     requestAnimationFrame(loop);
   }
 
-  /** Sends what somebody asked for; says so if it cannot. */
+  /** Sends a command; shows a notice if that fails. */
   send(message) {
     if (this.link.send(message) || message.do === 'drive' || message.do === 'let_go') return;
-    notice('No connection. The server did not hear this.');
+    notice('No connection. The command was not sent.');
   }
 
   lost(unheard, displaced) {
     this.drive.letGo();
-    if (unheard) notice('The connection broke before the server answered. It may not have heard what was asked last.');
+    if (unheard) notice('The connection broke before the server replied. The last command may not have arrived.');
     document.body.classList.add('lost');
     write(byId('connection'), displaced
-      ? 'Too many pages look: another one has the place of this. It tries again in half a minute.'
-      : 'Connection lost. Trying again.');
+      ? 'Too many pages are open, and another one replaced this one. Reconnecting in half a minute.'
+      : 'Connection lost. Reconnecting.');
     show(byId('connection'), true);
   }
 
@@ -192,26 +192,26 @@ class Page {
         this.drive.hear(message);
         break;
       case 'refused':
-        // A page that is refused does not steer.
+        // A refused page does not drive.
         if (message.what === 'drive') this.drive.letGo();
         if (['operate', 'mission'].includes(message.what)) return this.details.operate.refuse(message.reason);
         notice(`Not done: ${plain(message.what)}. ${message.reason}`);
         break;
-      // Kinds that we do not know are of a newer server.
+      // Unknown kinds come from newer servers.
       default: return;
     }
     if (message.kind === 'state') this.drive.hearState(message);
     if (message.kind === 'state' || message.kind === 'player') this.controls.tell(game);
   }
 
-  /** There is no game yet: says how far it is, or why there is none. */
+  /** There is no game yet: shows the progress or the failure. */
   wait({ text, failed }) {
     this.link.tries = 0;
     document.body.classList.add('unplayed');
     document.body.classList.remove('lost');
     show(byId('connection'), false);
     write(byId('about'), text);
-    write(byId('phase'), failed ? 'no game' : 'being played');
+    write(byId('phase'), failed ? 'no game' : 'preparing');
     this.waiting = true;
   }
 
@@ -254,12 +254,12 @@ class Page {
     this.tell();
   }
 
-  /** A replay begins where the address says, else it plays; one that is shown after its game stands, with the score of its end. */
+  /** A replay starts at the address's moment, or else plays. A replay shown after its own game stays paused, with the final score. */
   begin(first) {
     if (first && !this.goToAddress() && this.game.mode === 'replay') this.link.send({ do: 'control', what: 'resume' });
   }
 
-  /** To the moment and the boat of the address. Whether it names a moment. */
+  /** Goes to the address's moment and boat. Returns whether it has a moment. */
   goToAddress() {
     const { t_s, boat } = wanted();
     if (boat !== null) this.look(boat);
@@ -269,18 +269,18 @@ class Page {
     return true;
   }
 
-  /** Puts what is shown into the address, and that where people can paste it. */
+  /** Puts what is shown into the address, and copies the address to the clipboard. */
   async share() {
     const address = nameMoment(this.game.t_s, this.game.selected);
     try {
       await navigator.clipboard.writeText(address);
-      notice('The address of this moment is copied.');
+      notice('Link copied.');
     } catch {
-      notice('The address in the browser shows this moment now: copy it from there.');
+      notice('The browser’s address now shows this moment: copy it from there.');
     }
   }
 
-  /** Selects a boat, or none. `look` brings up its details. */
+  /** Selects a boat, or none. `look` opens its details. */
   select(name, look = false) {
     const { game } = this;
     if (name !== null && !game.indexOf.has(name)) return;
@@ -294,7 +294,7 @@ class Page {
     this.tell();
   }
 
-  /** Selects a boat that may be anywhere, and brings it into the chart. */
+  /** Selects a boat anywhere, and moves the chart to it. */
   look(name) {
     const index = this.game.indexOf.get(name);
     if (index === undefined) return;
@@ -310,7 +310,7 @@ class Page {
     this.look(vehicles[next].name);
   }
 
-  /** Asks the server for the helm and the estimate of the selected boat, if what is wanted has changed. */
+  /** Requests the helm and the estimate of the selected boat if the selection has changed. */
   ask() {
     const modes = this.list.visible && !document.hidden;
     if (this.game.hello && modes !== this.askedModes && this.link.send({ do: 'modes', wanted: modes })) this.askedModes = modes;
@@ -321,7 +321,7 @@ class Page {
     if (vehicle === null && this.asked === '') return;
     if (!this.link.send({ do: 'select', vehicle, functions })) return;
     this.asked = key;
-    // What is known was told to a page that did not look.
+    // Known data may stem from before the page was hidden.
     if (functions && isBare(this.game.helm?.report)) this.game.helm = null;
   }
 
@@ -333,7 +333,7 @@ class Page {
     else if (at >= 0) this.select(this.game.vehicles[at].name, true);
   }
 
-  /** By keys a corner of a geofence is taken in the middle of the chart, an end of what is measured at the selected boat, else there. */
+  /** Enter adds a corner of a geofence at the chart's centre, or an end of a measurement at the selected boat or the centre. */
   takeHere() {
     if (this.fenceEditor.active) {
       this.fenceEditor.take(this.view.centreX, this.view.centreY);
@@ -351,7 +351,7 @@ class Page {
     this.sheet.classList.toggle('over-boat', this.boats.hovered >= 0);
   }
 
-  /** Zooms at the selected boat, if it is on the chart, else at the middle. */
+  /** Zooms at the selected boat if it is on the chart, or else at the centre. */
   zoom(factor) {
     const { game, view } = this;
     const index = game.frames > 0 ? game.indexOf.get(game.selected) : undefined;
@@ -388,14 +388,14 @@ class Page {
     const { game, drive } = this;
     const index = game.indexOf.get(game.selected);
     if (drive.driving) drive.letGo();
-    else if (this.driver === 'other') notice(`Somebody else steers ${plain(game.selected)}.`);
+    else if (this.driver === 'other') notice(`Another page is driving ${plain(game.selected)}.`);
     else if (index !== undefined && game.vehicles[index].teleop && game.mode === 'live' && game.hello.rights) {
       drive.take(game.vehicles[index], (game.heading[index] * 180) / Math.PI);
     }
     this.tell();
   }
 
-  /** To an event: the moment in a replay, and the boat. */
+  /** Goes to an event: selects its boat and, in a replay, its moment. */
   goTo(event) {
     const { game } = this;
     if (game.mode === 'replay') this.timeline.seek(this.timeline.seen_s(event.at_s));
@@ -415,7 +415,7 @@ class Page {
     if (this.game.hello) this.tell();
   }
 
-  /** Writes all words that are not of a single frame. */
+  /** Writes all texts that do not belong to a single frame. */
   tell() {
     const { game } = this;
     this.ticks += 1;
@@ -436,7 +436,7 @@ class Page {
     if (document.hidden) this.status.tellFrame(game);
   }
 
-  /** What gateways say of real boats: badges and alarms. */
+  /** The gateways' reports on real boats: badges and alarms. */
   tellReal(now_ms) {
     const { game } = this;
     this.readings = readStatuses(game, now_ms);
@@ -451,7 +451,7 @@ class Page {
   resize() {
     const { clientWidth, clientHeight } = this.sheet;
     this.ratio = Math.min(2, devicePixelRatio || 1);
-    // The sea sees to its own size.
+    // The sea sets its own size.
     for (const canvas of this.layers.slice(1)) {
       canvas.width = Math.max(1, Math.round(clientWidth * this.ratio));
       canvas.height = Math.max(1, Math.round(clientHeight * this.ratio));

@@ -1,4 +1,4 @@
-// The colours of the chart, taken from the style sheet so that light and dark live in one place.
+// The colours of the chart, read from the style sheets so that light and dark are defined in one place.
 
 const NAMES = [
   'water', 'crest', 'trough', 'grid', 'ink', 'faint', 'edge', 'wall', 'land', 'halo', 'accent', 'on-accent', 'danger', 'on-danger', 'good', 'warn', 'paper',
@@ -10,7 +10,7 @@ const calm = matchMedia('(prefers-reduced-motion: reduce)');
 
 export const palette = { version: 0 };
 
-/** Takes them anew from the style sheets. */
+/** Reads them again from the style sheets. */
 export function readColours() {
   const style = getComputedStyle(document.documentElement);
   for (const name of NAMES) palette[name] = style.getPropertyValue(`--${name}`).trim();
@@ -21,10 +21,10 @@ export function readColours() {
 
 readColours();
 
-/** Whether people asked for little motion. */
+/** Whether the user prefers reduced motion. */
 export const calmly = () => calm.matches;
 
-/** The colour of a team; grey for none. */
+/** The colour of a team; grey for null. */
 export const teamColour = (team) => palette.teams[team] ?? palette.faint;
 
 /** Red, green and blue of `#rrggbb`. */

@@ -1,4 +1,4 @@
-// Plots of the selected boat over a recorded game, below the time line and in step with the chart.
+// Plots of the selected boat over a recorded game, below the time line and synchronised with the chart.
 
 import { drawDiagram, partAt, sampleAt } from './diagram.js';
 import { palette, teamColour } from './palette.js';
@@ -7,13 +7,13 @@ import { bearing, clock, make, number, options, plain, show, write } from './wor
 const KEY = 'squall.plots';
 const MARGIN = { left: 4, right: 4, top: 4, bottom: 4 };
 const NONE = '';
-/** A plot reaches at least so far up, m or m/s: noise is not drawn as mountains. */
+/** Minimum range of a plot, m or m/s, so that noise does not fill it. */
 const LEAST = 1;
 
 const metres = (value) => number(value, 1, 'm');
 const speed = (value) => number(value, 2, 'm/s');
 
-/** Each plot: title, the lists of a boat's curves, the ordered one first, how values are written, and whether they go around. */
+/** Each plot: title, the boat's curves (the ordered one first), the format of values, and whether they wrap around. */
 const PLOTS = [
   ['Speed', ['ordered_speed_m_s', 'speed_m_s'], speed, false],
   ['Heading', ['ordered_heading_deg', 'heading_deg'], bearing, true],
@@ -31,7 +31,7 @@ function remembered() {
 }
 
 export class Plots {
-  /** `on` has `send(message)`, `seek(t_s)`, and `moved()`, when the chart gets more room or less. */
+  /** `on` has `send(message)`, `seek(t_s)`, and `moved()`, called when the chart's size changes. */
   constructor(on) {
     this.on = on;
     this.button = document.getElementById('show-plots');
@@ -69,7 +69,7 @@ export class Plots {
     try {
       localStorage.setItem(KEY, String(this.open));
     } catch {
-      // Then it is forgotten with the page.
+      // Not stored: it lasts as long as the page.
     }
     this.on.moved();
   }
@@ -80,13 +80,13 @@ export class Plots {
     options(this.other, [[NONE, 'to …'], ...game.vehicles.map(({ name }) => [name, `to ${plain(name)}`])]);
   }
 
-  /** Takes what the server sent. The score alone is the time line's. */
+  /** Takes curves from the server. The score alone is for the time line. */
   take(message) {
     if (message.vehicle === null) return;
     this.curves = message;
   }
 
-  /** Asks for the curves of the selected boat once they are to be seen, and draws them. */
+  /** Requests the curves of the selected boat once they are visible, and draws them. */
   tell(game) {
     const replay = game.mode === 'replay';
     show(this.button, replay);
@@ -104,7 +104,7 @@ export class Plots {
     }
   }
 
-  /** The lists of a plot, as far as they are known. */
+  /** The known curves of a plot. */
   lists(plot, boat) {
     if (this.curves?.vehicle !== boat) return [];
     return plot.keys.map((key) => (key === 'range_m' ? this.curves.range_m : this.curves.boat?.[key]) ?? []);

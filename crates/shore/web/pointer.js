@@ -1,10 +1,10 @@
-// Hands on the chart: drag to move it, wheel and pinch to zoom, click or tap to choose a boat.
+// Pointer input on the chart: drag to move, wheel and pinch to zoom, click or tap to choose a boat.
 
 /** A press that moves less than this is a click, px. */
 const STILL_PX = 5;
 
 export class Pointer {
-  /** `on` has `tap(x, y, touch)`, `hover(x, y)`, and `moved()`, when somebody takes the chart in hand. */
+  /** `on` has `tap(x, y, touch)`, `hover(x, y)`, and `moved()`, called when the user moves the chart. */
   constructor(element, view, on) {
     Object.assign(this, { element, view, on, pointers: new Map(), travelled: 0 });
     element.addEventListener('pointerdown', (event) => this.down(event));
@@ -20,7 +20,7 @@ export class Pointer {
     return { x: event.clientX - box.left, y: event.clientY - box.top };
   }
 
-  /** Buttons upon the chart look after themselves. */
+  /** Buttons on the chart handle their own events. */
   elsewhere(event) {
     return event.target.closest('button, #steering-place, #fence-editor') !== null;
   }

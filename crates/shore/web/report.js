@@ -1,24 +1,24 @@
-// The page of a report: what kind it is, and what is wrong with it. Texts of a report only ever become text.
+// The page of a report. Texts from a report are only ever inserted as text.
 
 import { Theme } from './theme.js';
 import { Tournament } from './tournament.js';
 import { Training } from './training.js';
 import { make, plain, write } from './words.js';
 
-/** A training that goes on is looked at again so often, ms. */
+/** Refresh interval for a training in progress, ms. */
 const AGAIN_MS = 10_000;
 const KINDS = { tournament: Tournament, training: Training };
 
 const byId = (id) => document.getElementById(id);
 
-/** Says what is wrong with the report, or what is missing in it. */
+/** Shows what is wrong with the report or missing in it. */
 function remark(...texts) {
   byId('remarks').replaceChildren(...texts.filter(Boolean).map((text) => make('p', 'note', text)));
 }
 
 async function fetched() {
   const answer = await fetch('/report.json');
-  if (!answer.ok) throw new Error('the server has no report: squall view FILE shows one');
+  if (!answer.ok) throw new Error('the server has no report; to show one, use squall view FILE');
   return answer.json();
 }
 
@@ -32,7 +32,7 @@ class ReportPage {
     try {
       const report = await fetched();
       const kind = KINDS[report.kind];
-      if (!kind) throw new Error(`its kind is ${report.kind}`);
+      if (!kind) throw new Error(`unknown kind ${report.kind}`);
       this.shown = new kind(byId('report'));
       this.tell(report);
       if (this.shown.goesOn) setInterval(() => this.again(), AGAIN_MS);
@@ -41,13 +41,13 @@ class ReportPage {
     }
   }
 
-  /** Shows what has come since. */
+  /** Shows new data. */
   async again() {
     if (document.hidden) return;
     try {
       this.tell(await fetched());
     } catch (error) {
-      remark(`What is shown is not the newest: ${error.message}`);
+      remark(`The data shown is outdated: ${error.message}`);
     }
   }
 

@@ -1,12 +1,12 @@
-// The rose: an objective function of a helm as a polar heat map, courses around and speeds outward.
+// The rose: an objective function of a helm as a polar heat map. The angle is the course, the radius the speed.
 
 import { palette } from './palette.js';
 import { number, wrapDeg } from './words.js';
 
-/** Room around the rose for its letters, px. */
+/** Space around the rose for its letters, px. */
 const RIM = 20;
 
-/** The heat map's colour of every utility. */
+/** The heat map's colour for every utility. */
 const SHADES = Uint32Array.from({ length: 101 }, (_, value) => {
   const at = (value / 100) * (palette.heat.length - 1);
   const low = Math.min(palette.heat.length - 2, Math.floor(at));
@@ -23,7 +23,7 @@ export class Rose {
     this.drawn = null;
   }
 
-  /** Draws `utilities` of a report; null draws the empty rose. `now` is where the boat truly goes. */
+  /** Draws `utilities` of a report; null draws an empty rose. `now` is the boat's true course and speed. */
   draw(report, utilities, now) {
     const side = this.canvas.clientWidth;
     if (side === 0) return;
@@ -102,7 +102,7 @@ export class Rose {
     if (speedMax > 0) context.fillText(number(speedMax, 1), middle + at + 3, middle + at + 7);
   }
 
-  /** The chosen course and speed as a ring with a point; those of the boat as a small diamond. */
+  /** The chosen course and speed as a ring with a point, those of the boat as a small diamond. */
   dot(middle, radius, course_deg, out, chosen) {
     const { context } = this;
     const angle = (wrapDeg(course_deg) * Math.PI) / 180;

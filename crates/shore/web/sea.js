@@ -1,22 +1,22 @@
-// The sea: waves as a faint shading, and wind and current in words beside their arrows.
+// The sea: waves as faint shading, and wind and current as arrows with text.
 
 import { calmly, palette, rgb } from './palette.js';
 import { bearing, number, show, wrapDeg, write } from './words.js';
 
-/** Pixels of the chart to a cell of the shading. */
+/** Pixels of the chart per cell of the shading. */
 const CELL_PX = 8;
 const CELLS_MAX = 14000;
 /** More components than these cost time and change little. */
 const COMPONENTS_MAX = 40;
-/** How often the shading moves, ms. */
+/** Interval at which the shading moves, ms. */
 const STEP_MS = 80;
-/** The same where people want little motion, ms. */
+/** The same if the user prefers reduced motion, ms. */
 const STEP_CALM_MS = 5000;
-/** Strength of the shading at most. */
+/** Maximum opacity of the shading. */
 const STRENGTH = 0.45;
 
 export class Sea {
-  /** The canvas has a pixel for a cell; the browser spreads it over the chart. */
+  /** The canvas has one pixel per cell; the browser scales it to the chart. */
   constructor(canvas) {
     this.canvas = canvas;
     this.context = canvas.getContext('2d', { alpha: false });
@@ -26,7 +26,7 @@ export class Sea {
     this.last_ms = -1e9;
   }
 
-  /** Takes the waves of a chart, greatest first. */
+  /** Takes the waves of a chart, largest first. */
   greet(waves) {
     const sorted = [...(waves ?? [])].sort((a, b) => Math.abs(b.amplitude_m) - Math.abs(a.amplitude_m));
     this.components = sorted.slice(0, COMPONENTS_MAX);
@@ -34,7 +34,7 @@ export class Sea {
     this.drawn = '';
   }
 
-  /** Draws the water if something changed. */
+  /** Draws the water if something has changed. */
   draw(view, t_s, shown, now_ms) {
     const waves = shown.waves && this.deviation_m > 0 && Number.isFinite(t_s);
     const place = `${waves ? view.version : 'flat'} ${palette.version} `;
@@ -56,20 +56,20 @@ export class Sea {
     this.cell = cell;
     canvas.width = across;
     canvas.height = down;
-    // The middle of the first pixel lies in the chart's corner.
+    // The centre of the first pixel is at the chart's corner.
     Object.assign(canvas.style, { left: `${-cell / 2}px`, top: `${-cell / 2}px`, width: `${across * cell}px`, height: `${down * cell}px` });
     this.image = this.context.createImageData(across, down);
     this.heights = new Float32Array(across * down);
   }
 
-  /** Adds up the components. Along a row each is a turning pointer, which costs four products a cell and no cosine. */
+  /** Sums the components. Along a row each is a rotating pointer, which costs four products per cell and no cosine. */
   sum(view, t_s, cell, across, down) {
     const heights = this.heights.fill(0);
     const cell_m = cell / view.scale;
     const left = view.eastOf(0);
     const top = view.northOf(0);
     for (const { amplitude_m, k_x, k_y, omega_rad_s, phase_rad } of this.components) {
-      // Waves too short for the cells would only shimmer.
+      // Waves too short for the cells would only flicker.
       const finest = Math.hypot(k_x, k_y) * cell_m;
       const amplitude = amplitude_m * Math.min(1, Math.max(0, 2 - finest));
       if (amplitude === 0) continue;
@@ -109,7 +109,7 @@ export class Sea {
   }
 }
 
-/** Wind and current that are less than this are none, m/s. */
+/** Wind and current below this count as none, m/s. */
 const LEAST_M_S = 0.005;
 
 /** Wind and current beside the chart. */
@@ -121,7 +121,7 @@ export class Weather {
     this.state = document.getElementById('sea-state');
   }
 
-  /** Tells what the frame's sea is like. */
+  /** Shows the sea of a frame. */
   tell(sea, waves_m) {
     const some = Boolean(sea) && (waves_m > 0 || [[sea.wind_east_m_s, sea.wind_north_m_s], [sea.current_east_m_s, sea.current_north_m_s]]
       .some((each) => Math.hypot(...each) >= LEAST_M_S));

@@ -1,4 +1,4 @@
-// How the game stands: score, clock, phase, and the pane about the game and its server.
+// The state of the game: score, clock, phase, and the pane about the game and its server.
 
 import { bytes, clock, clockShort, fill, make, number, plain, show, write } from './words.js';
 
@@ -6,7 +6,7 @@ const PHASES = { waiting: 'waiting', playing: 'playing', paused: 'paused', over:
 
 const byId = (id) => document.getElementById(id);
 
-/** A name as an id may hold it. */
+/** A name as part of an id. */
 const idOf = (name) => String(name).replace(/[^\w-]/g, '_');
 
 export class Status {
@@ -16,7 +16,7 @@ export class Status {
     this.facts = make('dl', 'facts');
     this.drawn = make('dl', 'facts');
     this.drawnBox = make('details', '', '', make('summary', '', 'Randomised'), this.drawn);
-    this.rights = make('p', 'note', 'This page may only watch. Open it at the address with a token to act.');
+    this.rights = make('p', 'note', 'This page may only watch. To control the game, open it with the token.');
     this.trouble = make('p', 'matter');
     this.pane.prepend(this.rights, this.trouble, this.facts, this.drawnBox);
   }
@@ -35,7 +35,7 @@ export class Status {
     show(this.rights, hello.mode === 'live' && !hello.rights);
   }
 
-  /** Score and clock, which go by the frames. */
+  /** Score and clock, which change with every frame. */
   tellFrame(game) {
     this.values?.forEach(({ value }, team) => write(value, String(game.score[team] ?? '–')));
     const duration = game.chart.duration_s;
@@ -68,13 +68,13 @@ export class Status {
     return [PHASES[phase] ?? phase ?? 'live', phase === 'playing' ? 'good' : 'warn'];
   }
 
-  /** What is over the chart while nobody plays. */
+  /** The text over the chart while the game does not run. */
   tellOver(game) {
     const { state } = game;
     let words = '';
     const waited = [...(state?.gateways ?? []).map((name) => `the gateway of ${plain(name)}`)];
     if (state?.minds && state.phase === 'waiting') waited.unshift(...this.agentWords(state.minds));
-    if (state?.phase === 'waiting') words = waited.length > 0 ? `Waiting for ${waited.join(', ')}` : 'Waiting to begin';
+    if (state?.phase === 'waiting') words = waited.length > 0 ? `Waiting for ${waited.join(', ')}` : 'Waiting to start';
     if (state?.phase === 'gone') words = 'The game is gone. Waiting for another.';
     const over = byId('over');
     write(over, words);
@@ -89,13 +89,13 @@ export class Status {
   tellPane(game) {
     const { chart, hello, state, player } = game;
     const pairs = [['Field', plain(chart.field?.name ?? '–')], ['Rules', plain(chart.rules ?? '–')], ['Sea', plain(chart.sea ?? '–')],
-      ['Seed', String(chart.seed ?? '–')], ['Boats', String(game.count)], ['Decision every', number(chart.decision_s, 2, 's')]];
+      ['Seed', String(chart.seed ?? '–')], ['Boats', String(game.count)], ['Decision period', number(chart.decision_s, 2, 's')]];
     if (state) pairs.push(...this.stateFacts(state));
     if (player) {
       pairs.push(['File', player.file ?? '–'], ['From', clock(player.from_s)], ['To', clock(player.to_s)]);
-      if (player.cut) pairs.push(['The file', 'ends abruptly']);
+      if (player.cut) pairs.push(['Truncated', 'yes']);
     }
-    if (game.unread > 0) pairs.push(['Frames not understood', String(game.unread)]);
+    if (game.unread > 0) pairs.push(['Unreadable frames', String(game.unread)]);
     pairs.push(['Squall', hello?.version ?? '–']);
     this.tellPairs(this.facts, pairs);
     const drawn = Object.entries(chart.drawn ?? {}).map(([name, value]) =>
@@ -113,8 +113,8 @@ export class Status {
     const pairs = [];
     if (state.pace !== undefined && state.pace !== null) pairs.push(['Pace', plain(String(state.pace))]);
     if (Number.isFinite(state.rate)) pairs.push(['Achieved', `${number(state.rate, 1)}× real time`]);
-    if (Number.isFinite(state.frames_hz)) pairs.push(['Frames', `${number(state.frames_hz, 0)} a second`]);
-    const lists = [['Agents waited for', state.minds], ['Gateways waited for', state.gateways]];
+    if (Number.isFinite(state.frames_hz)) pairs.push(['Frames', `${number(state.frames_hz, 0)} per second`]);
+    const lists = [['Waiting for agents', state.minds], ['Waiting for gateways', state.gateways]];
     for (const [name, list] of lists) {
       if (Array.isArray(list) ? list.length > 0 : list) pairs.push([name, Array.isArray(list) ? list.map(plain).join(', ') : String(list)]);
     }
@@ -134,11 +134,11 @@ export class Status {
   }
 }
 
-/** How long a notice stands, ms. */
+/** How long a notice is shown, ms. */
 const NOTICE_MS = 6000;
 const NOTICES_MAX = 3;
 
-/** Tells people something for a while. The same twice is told once. */
+/** Shows a notice for a while; a repeated one only once. */
 export function notice(text) {
   const place = byId('notices');
   const same = [...place.children].find((each) => each.dataset.text === text);

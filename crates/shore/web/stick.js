@@ -1,12 +1,12 @@
-// The stick of a gamepad. It is heeded once it was seen at rest: one that leans from the start, or lies under a book, steers nothing.
+// The stick of a gamepad. It counts only after it has been at rest: one that is deflected from the start steers nothing.
 
-/** Nearer to its middle than this a stick is at rest. */
+/** A stick closer to its centre than this is at rest. */
 const DEAD_ZONE = 0.18;
 
-/** Some devices give numbers that are none. */
+/** Some devices report non-finite numbers. */
 const axis = (value) => (Number.isFinite(value) ? value : 0);
 
-/** All that may have a stick. Where there is a gamepad as browsers know them, pedals and tilt sensors are none. */
+/** All devices that may have a stick. If there is a standard gamepad, pedals and tilt sensors do not count. */
 function pads() {
   const all = [...(navigator.getGamepads?.() ?? [])].filter((pad) => pad?.connected && pad.axes.length >= 2);
   const standard = all.filter((pad) => pad.mapping === 'standard');
@@ -18,17 +18,17 @@ function pads() {
 
 export class Stick {
   constructor() {
-    /** Those that were seen at rest. */
+    /** Devices that have been at rest. */
     this.rested = new Set();
-    /** Whose stick is out. */
+    /** The device whose stick is deflected. */
     this.held = null;
   }
 
-  /** What the stick wants now: `{ course_deg, out }`; when it is let go `{ out: 0, gone }`, once; null if nothing. */
+  /** The stick's current command: `{ course_deg, out }`; `{ out: 0, gone }` once when it is released; null without one. */
   read() {
     const all = pads();
     const names = all.map((pad) => pad.name);
-    // Whoever comes back must be seen at rest again.
+    // A reconnected device must be at rest first.
     this.rested = new Set(names.filter((name) => this.rested.has(name)));
     for (const pad of all) if (pad.out <= DEAD_ZONE) this.rested.add(pad.name);
     const out = all.filter((pad) => pad.out > DEAD_ZONE && this.rested.has(pad.name));

@@ -4,7 +4,7 @@ import { make } from './words.js';
 
 export const cell = (text, classes = '') => make('td', classes, text);
 
-/** The head of a row or a column. */
+/** The header of a row or a column. */
 export function head(scope, text, classes = '') {
   const th = make('th', classes, text);
   th.scope = scope;
@@ -19,7 +19,7 @@ export function watch(address, label) {
   return make('td', '', '', link);
 }
 
-/** A table with heads `[text, classes]` of its columns, which can be moved sideways, by keys as well. */
+/** A table with column headers `[text, classes]`. It scrolls sideways, also by keys. */
 export function tableOf(label, heads, rows, classes = 'list') {
   const columns = heads.map(([text, of]) => head('col', text, of));
   const box = make('div', 'scroll', '', make('table', classes, '', make('thead', '', '', make('tr', '', '', ...columns)), make('tbody', '', '', ...rows)));

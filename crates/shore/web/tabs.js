@@ -4,7 +4,7 @@ const NAMES = ['boats', 'boat', 'events', 'game'];
 const byId = (id) => document.getElementById(id);
 
 export class Tabs {
-  /** `on` has `changed(name, wide)`, when another tab is shown or the page is another width. */
+  /** `on` has `changed(name, wide)`, called when another tab is shown or the page's width changes. */
   constructor(on) {
     this.on = on;
     this.name = 'boats';
@@ -16,10 +16,10 @@ export class Tabs {
 
   show(name) {
     const wide = this.wide.matches;
-    // On a wide page the events have a place of their own.
+    // On a wide page the events have their own place.
     this.name = name === 'events' && wide ? 'boats' : name;
     document.body.dataset.tab = this.name;
-    // A phone has no room for these below the chart.
+    // A phone has no space for these below the chart.
     const place = wide ? byId('controls') : byId('pane-game');
     if (byId('shown').parentElement !== place) place.insertBefore(byId('shown'), wide ? byId('help') : place.firstChild);
     for (const each of NAMES) {

@@ -1,4 +1,4 @@
-// Light and dark: as the system has it, until somebody switches.
+// Light and dark: follows the system until the user switches.
 
 import { readColours } from './palette.js';
 
@@ -17,7 +17,7 @@ function remembered() {
 }
 
 export class Theme {
-  /** `changed` is called when the colours are others. */
+  /** `changed` is called when the colours change. */
   constructor(changed = () => {}) {
     this.changed = changed;
     this.sheet = document.getElementById('dark-style');
@@ -25,7 +25,7 @@ export class Theme {
     this.chosen = remembered();
     this.button.addEventListener('click', () => this.toggle());
     system.addEventListener('change', () => this.apply());
-    // The browser may not have the style yet when it is wanted.
+    // The browser may not have loaded the style yet.
     this.sheet.addEventListener('load', () => this.apply());
     this.apply();
   }
@@ -36,13 +36,13 @@ export class Theme {
 
   toggle() {
     const wanted = this.dark ? 'light' : 'dark';
-    // What the system has needs no keeping: then the page goes on to follow it.
+    // The system's own setting is not stored, so that the page keeps following it.
     this.chosen = (wanted === 'dark') === system.matches ? null : wanted;
     try {
       if (this.chosen) localStorage.setItem(KEY, this.chosen);
       else localStorage.removeItem(KEY);
     } catch {
-      // Then it is forgotten with the page.
+      // Not stored: it lasts as long as the page.
     }
     this.apply();
   }

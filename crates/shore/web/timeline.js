@@ -1,4 +1,4 @@
-// The time line of a replay: where it is, what happened when, and ways to get there.
+// The time line of a replay: the current moment, the events, and ways to reach them.
 
 import { palette } from './palette.js';
 import { clock, clockShort, make, options, show } from './words.js';
@@ -13,12 +13,12 @@ export const KINDS = [
 ];
 
 const ANY = 'any';
-/** Least time between two seeks while scrubbing, ms. */
+/** Minimum time between two seeks while scrubbing, ms. */
 const SEEK_MS = 50;
 const SIDE = 14;
 const LANE_TOP = 11;
 const LANE = 9;
-/** A jump back does not stick at the event that it has just reached, s. */
+/** Jumping back skips an event that was just reached, s. */
 const STICK_S = 0.05;
 
 function drawShape(context, shape, x, y, r) {
@@ -75,7 +75,7 @@ export class Timeline {
 
   greet(game) {
     this.game = game;
-    // A jump that was still to be sent belonged to what was shown before.
+    // A pending jump belonged to the previous view.
     clearTimeout(this.timer);
     this.timer = 0;
     this.scrubbing = false;
@@ -94,7 +94,7 @@ export class Timeline {
     return Math.max(this.from_s + 1e-3, this.game.player?.to_s ?? this.game.chart.duration_s ?? 1);
   }
 
-  /** Where the handle stands: where somebody drags it, else where the replay is. */
+  /** Position of the handle: where it is dragged, or else the replay's time. */
   get at_s() {
     return this.wanted_s ?? this.game.player?.t_s ?? this.game.t_s ?? 0;
   }
@@ -117,7 +117,7 @@ export class Timeline {
     this.settle();
   }
 
-  /** Goes to a time: at once, or if that would be too often then a little later; the last one is always sent. */
+  /** Goes to a time, now or a little later if seeks come too often; the last one is always sent. */
   seek(t_s) {
     this.wanted_s = Math.min(this.to_s, Math.max(this.from_s, t_s));
     if (this.timer !== 0) return;
@@ -133,7 +133,7 @@ export class Timeline {
     this.settle();
   }
 
-  /** Gives the handle back to the replay once it has had time to follow. */
+  /** Returns the handle to the replay once it has had time to follow. */
   settle() {
     clearTimeout(this.settling);
     this.settling = setTimeout(() => {
@@ -152,7 +152,7 @@ export class Timeline {
     event.stopPropagation();
   }
 
-  /** To the next (1) or previous (-1) event of a kind: its number, or any. */
+  /** Goes to the next (1) or previous (-1) event of a kind: its index, or any. */
   jump(kind, way) {
     if (this.game?.mode !== 'replay') return;
     const marks = kind === ANY ? this.marks : this.marks.filter((mark) => mark.kind === Number(kind));
@@ -162,11 +162,11 @@ export class Timeline {
     if (next) this.seek(seen(next));
   }
 
-  /** When what happens at this time is first seen: frames are of decisions, and events may fall between two. */
+  /** The time of the first frame that shows an event: frames are at decisions, and events may fall between two. */
   seen_s(at_s) {
     const decision_s = this.game.chart.decision_s;
     if (!(decision_s > 0)) return at_s;
-    // A little more, lest rounding shows the frame before.
+    // Slightly later, so that rounding does not show the previous frame.
     return Math.ceil(at_s / decision_s - 1e-6) * decision_s + 1e-6;
   }
 
@@ -259,7 +259,7 @@ export class Timeline {
     this.drawn = `${this.drawn} `;
   }
 
-  /** The score as steps, behind the marks. */
+  /** Draws the score as steps, behind the marks. */
   drawScore(context, x, base) {
     if (!this.score) return;
     const { t_s, score, most } = this.score;

@@ -1,13 +1,13 @@
-// A tournament or a league on the page: ratings, who beats whom, and the games of two entries, each of which can be watched.
+// A tournament or a league: ratings, head-to-head results, and the games of two entries, which can be watched.
 
 import { addressOfGame, keepAddress } from './address.js';
 import { cell, head, tableOf, watch } from './table.js';
 import { clockShort, make, number, options, plain, show } from './words.js';
 
-/** Games that are listed at first, and how many more each time. */
+/** Number of games listed at first, and added each time. */
 const LISTED = 100;
 const RESULTS = [['', 'all'], ['won', 'won'], ['drawn', 'drawn'], ['lost', 'lost']];
-/** What is counted of each entry: title, key. */
+/** Counts per entry: title, key. */
 const COUNTS = [['Points', 'score'], ['Grabs', 'grabs'], ['Captures', 'captures'], ['Tags', 'tags'], ['Tagged', 'tagged'],
   ['Out of bounds', 'out_of_bounds'], ['Collisions', 'collisions']];
 
@@ -29,7 +29,7 @@ export class Tournament {
     place.replaceChildren(this.ratings, this.matrix, this.games);
   }
 
-  /** A report is whole. */
+  /** The report is complete. */
   get goesOn() {
     return false;
   }
@@ -42,8 +42,8 @@ export class Tournament {
     this.drawRatings();
     this.drawMatrix();
     this.fromAddress();
-    const played = report.games_unplayed > 0 ? `, ${report.games_unplayed} games were not played` : '';
-    const facts = `${report.game}${report.sea ? `, sea ${report.sea}` : ''}. ${report.entries.length} entries, ${report.games_per_pairing} games a pairing, `
+    const played = report.games_unplayed > 0 ? `, ${report.games_unplayed} games not played` : '';
+    const facts = `${report.game}${report.sea ? `, sea ${report.sea}` : ''}. ${report.entries.length} entries, ${report.games_per_pairing} games per pairing, `
       + `${report.seeds_counted} seeds from ${report.seed}${played}. Squall ${report.version} (${report.commit || 'unknown'}).`;
     return { name: report.tournament, facts, remarks: this.remarks() };
   }
@@ -51,11 +51,11 @@ export class Tournament {
   remarks() {
     const { games_left_out, failures, entries } = this.report;
     return [
-      entries.length === 0 ? 'There is no seed of which all games were played: no result.' : '',
-      this.unplayable ? `No game of it can be watched: ${this.unplayable}` : '',
-      games_left_out > 0 ? `${games_left_out} games are left out, since others of their seed are missing.` : '',
+      entries.length === 0 ? 'No result: no seed has all its games.' : '',
+      this.unplayable ? `Games cannot be watched: ${this.unplayable}` : '',
+      games_left_out > 0 ? `${games_left_out} games are left out because others with the same seed are missing.` : '',
       ...failures.slice(0, 5).map((each) => `Could not start: ${each.blue} against ${each.red}, seed ${each.seed}: ${each.why}`),
-      failures.length > 5 ? `${failures.length - 5} more could not start.` : '',
+      failures.length > 5 ? `${failures.length - 5} more games could not start.` : '',
     ];
   }
 
@@ -84,8 +84,8 @@ export class Tournament {
       ...COUNTS.map(([, key]) => mean(entry[key])));
     const heads = [['Place', 'number'], ['Entry'], ['Rating', 'number'], ['95 %', 'number'], [''], ['Won', 'number'], ['Drawn', 'number'], ['Lost', 'number'],
       ...COUNTS.map(([title]) => [title, 'number'])];
-    this.ratings.replaceChildren(make('h2', '', 'Ratings'), make('p', 'faint', 'Elo: 100 points ahead are 64 % of a game, 200 are 76 %. All other numbers '
-      + 'are means a game. Intervals are of 95 %, over seeds.'), tableOf('Ratings', heads, entries.map(row), 'list ratings'));
+    this.ratings.replaceChildren(make('h2', '', 'Ratings'), make('p', 'faint', 'Elo: a lead of 100 points means winning 64 %, 200 points 76 %. All other numbers '
+      + 'are means per game. Confidence intervals are 95 %, over seeds.'), tableOf('Ratings', heads, entries.map(row), 'list ratings'));
   }
 
   drawMatrix() {
@@ -101,7 +101,7 @@ export class Tournament {
       button.type = 'button';
       button.setAttribute('aria-pressed', 'false');
       button.setAttribute('aria-label', `${plain(row.name)} against ${plain(column.name)}: won ${percent(wins, games)} %, drawn ${percent(draws, games)} %, `
-        + `lost ${percent(losses, games)} % of ${games} games, ${signed(score_difference)} points a game. Lists the games.`);
+        + `lost ${percent(losses, games)} % of ${games} games, ${signed(score_difference)} points per game. Lists the games.`);
       button.addEventListener('click', () => this.choose(row.name, column.name));
       const share = (wins + draws / 2) / Math.max(1, games);
       button.style.setProperty('--share', `${Math.abs(share - 0.5) * 60}%`);
@@ -110,11 +110,11 @@ export class Tournament {
       return make('td', '', '', button);
     };
     const rows = entries.map((row) => make('tr', '', '', head('row', plain(row.name)), ...entries.map((column) => of(row, column))));
-    this.matrix.replaceChildren(make('h2', '', 'Head to head'), make('p', 'faint', 'How often the row beats the column, and by how many points a game. '
-      + 'Press a cell for its games.'), tableOf('Head to head', [[''], ...entries.map(({ name }) => [plain(name)])], rows, 'matrix'));
+    this.matrix.replaceChildren(make('h2', '', 'Head to head'), make('p', 'faint', 'How often the row beats the column, and the mean points difference per game. '
+      + 'Click a cell for its games.'), tableOf('Head to head', [[''], ...entries.map(({ name }) => [plain(name)])], rows, 'matrix'));
   }
 
-  /** Shows the games of two entries, and puts them into the address. */
+  /** Shows the games of two entries, and puts the entries into the address. */
   choose(row, column) {
     const words = new URLSearchParams(location.hash.slice(1));
     words.set('row', row);
@@ -133,7 +133,7 @@ export class Tournament {
     this.drawGames();
   }
 
-  /** The games of the chosen two, from the side of the row. */
+  /** The games of the chosen two, seen from the row's entry. */
   chosenGames() {
     const [row, column] = this.chosen;
     const own = ({ blue, red }) => (blue === row && red === column ? 0 : blue === column && red === row ? 1 : -1);
@@ -147,13 +147,13 @@ export class Tournament {
     show(this.games, this.report.matches.length > 0);
     const title = make('h2', '', this.chosen ? `${plain(this.chosen[0])} against ${plain(this.chosen[1])}` : 'Games');
     if (!this.chosen) {
-      this.games.replaceChildren(title, make('p', 'faint', 'Press a cell above: its games are listed here, and each can be watched.'));
+      this.games.replaceChildren(title, make('p', 'faint', 'Click a cell above to list its games here and watch them.'));
       return;
     }
     const found = this.chosenGames();
     const label = make('label', '', '', make('span', '', 'Show '), this.filter);
-    const said = make('p', '', found.length === 0 ? 'There is no such game.' : '');
-    const words = `${found.length} games${this.unplayable ? '' : '. A game to be watched is played again first, which takes some seconds.'}`;
+    const said = make('p', '', found.length === 0 ? 'No such games.' : '');
+    const words = `${found.length} games${this.unplayable ? '' : '. Watching a game first replays it, which takes some seconds.'}`;
     const more = make('button', '', `${Math.min(LISTED, found.length - this.listed)} more`);
     more.id = 'games-more';
     more.type = 'button';

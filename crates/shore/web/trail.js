@@ -1,20 +1,20 @@
-// Where boats have been in the last minute, and how fast: one ring of samples for all of them.
+// The boats' positions and speeds in the last minute: one ring buffer for all.
 
 import { palette } from './palette.js';
 
 /** Length of a trail, s. */
 export const TRAIL_S = 60;
 const SAMPLES = 256;
-/** Time between two samples, s. */
+/** Sampling interval, s. */
 const STEP_S = 0.25;
-/** A boat that gets this much farther between two samples than a fast boat could has jumped, m/s and m. */
+/** A boat that moves this much farther between two samples than a fast boat could has jumped, m/s and m. */
 const LEAP_M_S = 12;
 const LEAP_M = 6;
-/** No more pieces than this are drawn at a time. */
+/** Maximum number of pieces drawn at a time. */
 const PIECES_MAX = 9000;
-/** Trails of this many boats are drawn at full strength. */
+/** Trails of up to this many boats are drawn at full opacity. */
 const CLEAR = 30;
-/** Ages at which a trail gets fainter, as parts of its length, and its strengths. */
+/** Ages at which a trail fades, as parts of its length, and its opacities. */
 const BANDS = [[0, 0.2, 0.8], [0.2, 0.5, 0.45], [0.5, 1, 0.2]];
 
 export class Trails {
@@ -26,7 +26,7 @@ export class Trails {
     this.speeds = new Float32Array(SAMPLES * count);
     this.near = new Uint8Array(count);
     this.version = 0;
-    /** Grows when all is forgotten. */
+    /** Grows when all samples are dropped. */
     this.epoch = 0;
     this.clear();
   }
@@ -38,7 +38,7 @@ export class Trails {
     this.version += 1;
   }
 
-  /** Whether it is time for the next sample. */
+  /** Whether the next sample is due. */
   wants(t_s) {
     return this.kept === 0 || Math.abs(t_s - this.times[this.head]) >= STEP_S - 1e-6;
   }
@@ -57,7 +57,7 @@ export class Trails {
     this.speeds[this.head * this.count + boat] = speed;
   }
 
-  /** Calls `visit(age, speed)` for the samples of a boat, newest first; ages are parts of the length of a trail. */
+  /** Calls `visit(age, speed)` for the samples of a boat, newest first; ages are parts of a trail's length. */
   eachSpeed(boat, now_s, visit) {
     for (let back = 0; back < this.kept; back++) {
       const row = this.row(back);
@@ -72,14 +72,14 @@ export class Trails {
     return (this.head - back + SAMPLES) % SAMPLES;
   }
 
-  /** Draws the trails of all boats for which `colourOf` gives a colour; the selected one stands out. */
+  /** Draws the trails of all boats for which `colourOf` returns a colour, with the selected one highlighted. */
   draw(context, view, teams, colours, now_s, selected) {
     if (this.kept < 2) return;
-    // A power of two, so that the rows left out stay the same while the ring turns.
+    // A power of two, so that the skipped rows stay the same as the ring turns.
     const near = this.nearby(view);
     const stride = 2 ** Math.max(0, Math.ceil(Math.log2((near * this.kept) / PIECES_MAX)));
     context.lineJoin = 'round';
-    // The more there are, the fainter, or they hide the boats.
+    // The more trails, the fainter, or they would hide the boats.
     const fade = Math.min(1, Math.sqrt(CLEAR / near));
     for (const [young, old, strength] of BANDS) {
       for (let team = 0; team < colours.length; team++) {
@@ -102,7 +102,7 @@ export class Trails {
     context.globalAlpha = 1;
   }
 
-  /** Marks the boats that are on the chart or not far off it, and counts them. */
+  /** Marks and counts the boats on the chart or near it. */
   nearby(view) {
     const row = this.head * this.count;
     const reachX = view.width / view.scale;
@@ -140,10 +140,10 @@ export class Trails {
   }
 }
 
-/** Trails are drawn no more often than this while only they or the place of the chart change, ms. */
+/** Minimum interval between redraws while only trails or the position of the chart change, ms. */
 const AGAIN_MS = 150;
 
-/** The canvas of the trails: drawn anew now and then; in between it moves along with the chart, which costs next to nothing. */
+/** The canvas of the trails. It is redrawn from time to time and otherwise moves with the chart, which costs almost nothing. */
 export class TrailLayer {
   constructor(canvas) {
     this.canvas = canvas;
@@ -151,12 +151,12 @@ export class TrailLayer {
     this.drawn = { look: '', soft: '', at_ms: 0, x: 0, y: 0 };
   }
 
-  /** It is empty, and to be drawn anew. */
+  /** The canvas is empty and must be redrawn. */
   forget() {
     this.drawn.look = '';
   }
 
-  /** `key` is what else it depends on; `index` is the selected boat. */
+  /** `key` covers everything else that affects it; `index` is the selected boat. */
   draw(game, view, shown, key, index, now_ms) {
     const { drawn } = this;
     const look = `${view.scale} ${view.width} ${view.height} ${palette.version} ${key} ${game.trails.epoch}`;

@@ -1,4 +1,4 @@
-// A training on the page: curves over samples, the newest evaluation against each opponent, and recorded episodes to watch.
+// A training: curves over samples, the newest evaluation against each opponent, and recorded episodes.
 
 import { addressOfGame } from './address.js';
 import { drawDiagram, partAt, sampleAt, ticksOf } from './diagram.js';
@@ -8,26 +8,26 @@ import { make, number, plain, show } from './words.js';
 
 const MARGIN = { left: 46, right: 12, top: 8, bottom: 24 };
 const MILLION = 1e6;
-/** Evaluations that are listed. */
+/** Maximum number of evaluations listed. */
 const ROWS_MAX = 200;
 const DASHES = [[], [7, 4], [2, 3], [10, 3, 2, 3]];
 
-/** A share of games, of those that are won, drawn and lost. */
+/** The share of won, drawn or lost games. */
 const share = ({ won, drawn, lost }) => (100 * (won + drawn / 2)) / Math.max(1, won + drawn + lost);
 
-/** Curves of evaluations, one for each opponent: title, unit, value, and from where to where if that is known. */
+/** Curves of evaluations, one line per opponent: title, unit, value, and range if known. */
 const AGAINST = [
-  ['Games won, draws counting half', '%', share, [0, 100]],
-  ['Points ahead', 'a game', ({ points, points_against }) => points - points_against],
-  ['Left the field', 'times a game', ({ left_field }) => left_field],
+  ['Games won (draws count half)', '%', share, [0, 100]],
+  ['Points ahead', 'per game', ({ points, points_against }) => points - points_against],
+  ['Left the field', 'times per game', ({ left_field }) => left_field],
 ];
 /** Curves of updates: title, unit, column. */
-const OF_UPDATES = [['Reward', 'a step', 'reward'], ['Entropy of the policy', 'nats', 'entropy'], ['Loss of the policy', '', 'policy_loss'],
-  ['Error of what it expects', 'loss', 'value_loss'], ['Divergence from the policy before', 'nats', 'divergence']];
+const OF_UPDATES = [['Reward', 'per step', 'reward'], ['Policy entropy', 'nats', 'entropy'], ['Policy loss', '', 'policy_loss'],
+  ['Value loss', '', 'value_loss'], ['Divergence from the previous policy', 'nats', 'divergence']];
 
 const isNumber = (value) => typeof value === 'number' && Number.isFinite(value);
 
-/** One chart: a title, a legend with the values at the chosen place, and lines. */
+/** A chart: title, legend with the values at the chosen position, and lines. */
 class Chart {
   constructor(title, unit, span) {
     this.title = title;
@@ -45,7 +45,7 @@ class Chart {
     this.canvas.addEventListener('keydown', (event) => this.key(event));
   }
 
-  /** Takes lines `{ name, xs, values }`, and where stages begin. */
+  /** Takes lines `{ name, xs, values }` and the starts of stages. */
   take(lines, steps) {
     this.lines = lines;
     this.steps = steps;
@@ -54,7 +54,7 @@ class Chart {
     [this.from, this.to] = [0, xs.reduce((most, each) => Math.max(most, each), 0) || 1];
     const values = lines.flatMap((line) => line.values).filter(isNumber);
     const [low, high] = this.span ?? [values.reduce((a, b) => Math.min(a, b), Infinity), values.reduce((a, b) => Math.max(a, b), -Infinity)];
-    // What does not change is in the middle, with room for a tenth of it: rounding is not drawn as mountains.
+    // A constant line is centred within a tenth of its value, so that rounding does not fill the chart.
     const size = Math.max(Math.abs(low), Math.abs(high));
     const room = this.span ? 0 : Math.max(0.06 * (high - low), high - low < 0.01 * size ? 0.1 * size : 0, 1e-6);
     [this.low, this.high] = [low - room, high + room];
@@ -88,7 +88,7 @@ class Chart {
     this.legend.replaceChildren(...styled.map(one));
     const when = this.at === null ? 'at the end' : `at ${number(this.at, 2)} million samples`;
     this.canvas.setAttribute('aria-label', `${this.title}, ${when}: ${styled.map((line) => `${line.name ? `${plain(line.name)} ` : ''}${words(line)}`).join(', ')}. `
-      + 'Arrow keys go along it.');
+      + 'Arrow keys move along it.');
     if (this.canvas.clientWidth === 0) return;
     const tick = (places) => (at) => [at, number(at, places)];
     const rows = ticksOf(this.low, this.high, 4);
@@ -108,12 +108,12 @@ export class Training {
     this.newest = make('section');
     this.episodes = make('section');
     const charts = make('div', 'charts', '', ...[...this.against, ...this.ofUpdates].map(({ box }) => box));
-    place.replaceChildren(make('section', '', '', make('h2', '', 'Curves'), make('p', 'faint', 'Over samples in millions; dashed where a stage begins.'), charts),
+    place.replaceChildren(make('section', '', '', make('h2', '', 'Curves'), make('p', 'faint', 'Over samples in millions. Dashed lines: start of a stage.'), charts),
       this.newest, this.episodes);
     new ResizeObserver(() => this.draw()).observe(charts);
   }
 
-  /** More may come. */
+  /** Whether more data may come. */
   get goesOn() {
     return true;
   }
@@ -138,21 +138,21 @@ export class Training {
     this.drawEpisodes(episodes);
     const last = updates.at(-1);
     const facts = last ? `${number(last.samples / MILLION, 2)} million samples, stage ${plain(last.stage)}, ${new Set(evaluations.map(({ samples }) => samples)).size} evaluations.`
-      : 'Nothing was learnt yet.';
+      : 'Nothing learnt yet.';
     return { name, facts, remarks: [] };
   }
 
-  /** What came of the games of each checkpoint, the newest first. */
+  /** The evaluation of each checkpoint, newest first. */
   drawEvaluations(evaluations) {
     show(this.newest, evaluations.length > 0);
     const heads = [['Samples', 'number'], ['Stage'], ['Opponent'], ...['Won', 'Drawn', 'Lost', 'Points', 'Left the field'].map((text) => [text, 'number'])];
     const row = (each) => make('tr', '', '', ...this.first(each), ...[String(each.won), String(each.drawn), String(each.lost),
       `${number(each.points, 1)} : ${number(each.points_against, 1)}`, number(each.left_field, 1)].map((text) => cell(text, 'number')));
-    this.newest.replaceChildren(make('h2', '', 'Evaluations'), make('p', 'faint', 'Games of each checkpoint against each opponent, the newest first; points are means a game.'),
+    this.newest.replaceChildren(make('h2', '', 'Evaluations'), make('p', 'faint', 'Games of each checkpoint against each opponent, newest first. Points are means per game.'),
       tableOf('Evaluations', heads, evaluations.slice(-ROWS_MAX).reverse().map(row)));
   }
 
-  /** The cells that every row begins with. */
+  /** The first cells of every row. */
   first({ samples, stage, opponent }) {
     return [cell(`${number(samples / MILLION, 2)} M`, 'number'), cell(plain(stage)), cell(plain(opponent))];
   }
@@ -160,10 +160,10 @@ export class Training {
   drawEpisodes(episodes) {
     const heads = [[''], ['Samples', 'number'], ['Stage'], ['Opponent'], ...['Seed', 'Points', 'Steps'].map((text) => [text, 'number'])];
     const row = (each) => make('tr', '', '',
-      watch(addressOfGame(each.recording.replace(/^games\//, '')), `Watch the episode of seed ${each.seed} against ${plain(each.opponent)}`), ...this.first(each),
+      watch(addressOfGame(each.recording.replace(/^games\//, '')), `Watch the episode with seed ${each.seed} against ${plain(each.opponent)}`), ...this.first(each),
       ...[each.seed, `${each.points} : ${each.points_against}`, String(each.steps)].map((text) => cell(text, 'number')));
     this.episodes.replaceChildren(make('h2', '', 'Recorded episodes'), episodes.length === 0
-      ? make('p', 'faint', 'None: squall train --record-every N records some.')
+      ? make('p', 'faint', 'None. To record episodes, use squall train --record-every N.')
       : tableOf('Recorded episodes', heads, [...episodes].reverse().map(row)));
   }
 }

@@ -1,8 +1,8 @@
-// Which part of the water the chart shows: north is up, and transforms go between metres and pixels.
+// The visible part of the chart: north is up. Converts between metres and pixels.
 
 const SCALE_MIN = 0.02;
 const SCALE_MAX = 120;
-/** The inner part of the chart, of its width and height. */
+/** The inner part of the chart, as a share of its width and height. */
 const INNER = 0.6;
 
 export class View {
@@ -14,9 +14,9 @@ export class View {
     this.centreX = 0;
     this.centreY = 0;
     this.bounds = { left: 0, right: 100, bottom: 0, top: 100 };
-    /** Grows with every change, so that layers know when to be drawn anew. */
+    /** Grows with every change, so that layers know when to redraw. */
     this.version = 0;
-    /** Whether nobody has moved it since it was fitted. */
+    /** Whether it is as fitted, not moved by the user. */
     this.fitted = true;
   }
 
@@ -28,12 +28,12 @@ export class View {
     return this.height / 2 - (y - this.centreY) * this.scale;
   }
 
-  /** East, from a pixel. */
+  /** East coordinate of a pixel. */
   eastOf(px) {
     return (px - this.width / 2) / this.scale + this.centreX;
   }
 
-  /** North, from a pixel. */
+  /** North coordinate of a pixel. */
   northOf(py) {
     return (this.height / 2 - py) / this.scale + this.centreY;
   }
@@ -52,7 +52,7 @@ export class View {
     this.fit();
   }
 
-  /** All of these belong to what is fitted as well. */
+  /** Everything that is fitted. */
   widen(points) {
     const { left, right, bottom, top } = this.bounds;
     const [xs, ys] = [0, 1].map((axis) => points.map((point) => point[axis]));
@@ -62,7 +62,7 @@ export class View {
 
   fit() {
     const { left, right, bottom, top } = this.bounds;
-    // Room for the weather above, and for the scale and the buttons below.
+    // Space for the weather above, and for the scale and the buttons below.
     const side = Math.min(44, this.width * 0.05);
     const above = Math.min(92, this.height * 0.17);
     const below = Math.min(72, this.height * 0.24);
@@ -87,11 +87,11 @@ export class View {
     this.version += 1;
   }
 
-  /** Brings a place into the inner part of the chart, if it is not there: to the middle. */
+  /** Centres a position unless it is in the inner part of the chart. */
   bringIn(x, y) {
     const across = Math.abs(this.xOf(x) - this.width / 2) / this.width;
     const down = Math.abs(this.yOf(y) - this.height / 2) / this.height;
-    // What is near the rim while all of the field is shown can be seen well.
+    // While the whole field is shown, positions near the edge are visible enough.
     const most = this.fitted ? 0.5 : INNER / 2;
     if (across > most || down > most) this.centreOn(x, y);
   }
@@ -100,7 +100,7 @@ export class View {
     this.centreOn(this.centreX - dx / this.scale, this.centreY + dy / this.scale);
   }
 
-  /** Zooms so that what is under the pixel stays there. */
+  /** Zooms; the point under the pixel stays in place. */
   zoomAt(px, py, factor) {
     const east = this.eastOf(px);
     const north = this.northOf(py);

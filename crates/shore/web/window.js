@@ -1,4 +1,4 @@
-// What tests may read of the page: `window.squall`, described at the top of page.js.
+// `window.squall`, the part of the page that tests may read; described at the top of page.js.
 
 import { wrapDeg } from './words.js';
 
@@ -29,7 +29,7 @@ function flagsOf(game) {
   });
 }
 
-/** Lets `window.squall` be read. */
+/** Publishes `window.squall`. */
 export function expose(page) {
   const { game, link, stats, view, drive } = page;
   const readers = {

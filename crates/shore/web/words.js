@@ -1,8 +1,8 @@
-// How numbers and places are put into words, and how words get onto the page only when they change.
+// Formats numbers and positions, and writes texts to the page only when they change.
 
 const said = new WeakMap();
 
-/** Writes the text into the element unless it stands there. */
+/** Writes the text into the element if it differs. */
 export function write(element, text) {
   if (said.get(element) === text) return;
   said.set(element, text);
@@ -14,7 +14,7 @@ export function show(element, visible) {
   if (element.hidden === visible) element.hidden = !visible;
 }
 
-/** An element with classes, text and children. */
+/** Creates an element with classes, text and children. */
 export function make(tag, classes = '', text = '', ...children) {
   const element = document.createElement(tag);
   if (classes) element.className = classes;
@@ -35,7 +35,7 @@ export function clock(t_s) {
 /** `mm:ss` */
 export const clockShort = (t_s) => clock(t_s).slice(0, -2);
 
-/** A compass course of three digits. */
+/** A compass course with three digits. */
 export function bearing(deg) {
   return Number.isFinite(deg) ? `${String(Math.round(wrapDeg(deg)) % 360).padStart(3, '0')}°` : '–';
 }
@@ -44,24 +44,24 @@ export function wrapDeg(deg) {
   return ((deg % 360) + 360) % 360;
 }
 
-/** A number with so many places, or a dash. */
+/** A number with this many decimals, or a dash. */
 export function number(value, places = 1, unit = '') {
   if (typeof value !== 'number' || !Number.isFinite(value)) return '–';
   const text = value.toFixed(places).replace('-', '−');
   return unit ? `${text}\u00a0${unit}` : text;
 }
 
-/** Bytes as people read them. */
+/** A size in bytes, readable. */
 export function bytes(count) {
   if (!Number.isFinite(count)) return '–';
   if (count < 1e6) return `${Math.round(count / 1e3)} kB`;
   return count < 1e9 ? `${(count / 1e6).toFixed(1)} MB` : `${(count / 1e9).toFixed(2)} GB`;
 }
 
-/** `blue_one` as people read it. */
+/** `blue_one` as shown to people. */
 export const plain = (name) => String(name).replaceAll('_', ' ');
 
-/** Makes the children of `parent` stand for `items`: rows are made when missing, told what to show, and removed. */
+/** Makes the children of `parent` match `items`: creates missing rows, updates all, and removes surplus ones. */
 export function fill(parent, items, makeRow, tellRow) {
   while (parent.children.length > items.length) parent.lastElementChild.remove();
   for (let i = 0; i < items.length; i++) {
@@ -70,7 +70,7 @@ export function fill(parent, items, makeRow, tellRow) {
   }
 }
 
-/** Gives a select these options, `[value, text]`, if it has others. */
+/** Sets the options `[value, text]` of a select if they differ. */
 export function options(select, wanted) {
   const key = JSON.stringify(wanted);
   if (said.get(select) === key) return;

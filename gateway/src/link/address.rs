@@ -1,12 +1,12 @@
-//! The address of a link, as people type it: `tcp://HOST:PORT` and so on.
+//! Link addresses as users type them, such as `tcp://HOST:PORT`.
 
 use std::fmt;
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// The speeds a serial line may have, baud.
-// Which speed and format a Surveyor's serial line has is not published: the usual ones of NMEA
-// devices, 8N1. RTK receivers have the faster ones, and the telemetry ports of autopilots 921600.
+/// Supported speeds of a serial line, baud.
+// A Surveyor's serial speed and format are not published. These are the usual ones of NMEA devices,
+// 8N1. RTK receivers use the faster ones, and autopilots' telemetry ports 921600.
 pub const BAUDS: [u32; 9] = [4800, 9600, 19_200, 38_400, 57_600, 115_200, 230_400, 460_800, 921_600];
 
 /// The default speed of a serial line: NMEA 0183-HS.
@@ -22,9 +22,9 @@ const TO_LISTEN: &str =
 pub enum LinkAddress {
     /// A TCP port.
     Tcp(Side, HostPort),
-    /// A UDP port. One of our own answers whoever sent to it.
+    /// A UDP port. Our own port replies to every sender.
     Udp(Side, HostPort),
-    /// A local UDP port that is linked to its first sender: boats send to the port of their ground station.
+    /// A local UDP port for its first sender only: boats send to their ground station's port.
     UdpListen(HostPort),
     /// A serial line, 8N1.
     Serial {
@@ -33,59 +33,60 @@ pub enum LinkAddress {
         /// One of [`BAUDS`].
         baud: u32,
     },
-    /// A new pseudo-terminal, which others open as if it was a serial line.
+    /// A new pseudo-terminal, which other programs open like a serial line.
     Pty {
-        /// Where a symlink to it is wanted.
+        /// Where to create a symlink to it.
         link: Option<PathBuf>,
     },
 }
 
-/// Which side of a link an address is for.
+/// The side of a link that an address is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// The port is somebody else's: connect to it.
+    /// Connects to another program's port.
     Connects,
-    /// The port is our own.
+    /// Opens a port of its own.
     Listens,
 }
 
-/// A port of a machine.
+/// A port on a machine.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct HostPort {
-    /// Name or number of the machine, IPv6 without brackets; `0.0.0.0` listens everywhere.
+    /// Name or address of the machine, IPv6 without brackets; `0.0.0.0` listens on all interfaces.
     pub host: String,
-    /// The port; 0 listens on any that is free.
+    /// The port; 0 listens on any free one.
     pub port: u16,
 }
 
-/// A link address that is not understood.
+/// An invalid link address.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("link address {text:?}: {found}, allowed: {allowed}")]
 pub struct LinkAddressError {
-    /// What was typed.
+    /// The address as typed.
     pub text: String,
-    /// What is wrong with it.
+    /// The fault.
     pub found: String,
-    /// What would be right.
+    /// The values allowed.
     pub allowed: &'static str,
 }
 
-/// What is wrong with it, and what would be right.
+/// The fault, and the values allowed.
 type Fault = (String, &'static str);
 
 impl LinkAddress {
-    /// For the side that connects: `tcp://HOST:PORT`, `udp://HOST:PORT`, `udp-listen://HOST:PORT`, `serial:///dev/ttyUSB0?baud=38400`.
+    /// Parses an address to connect to: `tcp://HOST:PORT`, `udp://HOST:PORT`, `udp-listen://HOST:PORT` or
+    /// `serial:///dev/ttyUSB0?baud=38400`.
     ///
     /// # Errors
-    /// [`LinkAddressError`] tells what was found and what is allowed.
+    /// [`LinkAddressError`] with the value found and the values allowed.
     pub fn to_connect(text: &str) -> Result<LinkAddress, LinkAddressError> {
         parse(text, Side::Connects).map_err(|fault| error(text, fault))
     }
 
-    /// For the side that waits: as [`LinkAddress::to_connect`], or `pty`, or `pty:///path/of/symlink`.
+    /// Parses an address to listen on: those of [`LinkAddress::to_connect`], `pty`, or `pty:///path/of/symlink`.
     ///
     /// # Errors
-    /// [`LinkAddressError`] tells what was found and what is allowed.
+    /// [`LinkAddressError`] with the value found and the values allowed.
     pub fn to_listen(text: &str) -> Result<LinkAddress, LinkAddressError> {
         parse(text, Side::Listens).map_err(|fault| error(text, fault))
     }
@@ -130,14 +131,14 @@ fn parse(text: &str, side: Side) -> Result<LinkAddress, Fault> {
         "udp-listen" if !listens => Ok(LinkAddress::UdpListen(host_and_port(rest, side)?)),
         "serial" => serial(rest),
         "pty" if listens => Ok(LinkAddress::Pty { link: Some(absolute(rest)?) }),
-        // Whoever connects to somebody else's terminal does so by its path, as a serial line.
+        // To connect to another program's terminal, use its path as a serial line.
         "pty" => Err(("a pty can only be listened on".to_owned(), forms)),
         _ => Err((format!("the scheme is {scheme:?}"), forms)),
     }
 }
 
 fn host_and_port(text: &str, side: Side) -> Result<HostPort, Fault> {
-    // From the right, for IPv6 addresses; one without a port ends in a bracket.
+    // Split from the right because of IPv6 addresses, which end in a bracket without a port.
     let Some((host, port)) = text.rsplit_once(':').filter(|(_, port)| !port.ends_with(']')) else {
         return Err(("it has no port".to_owned(), "HOST:PORT"));
     };
@@ -146,14 +147,14 @@ fn host_and_port(text: &str, side: Side) -> Result<HostPort, Fault> {
         return Err((format!("the host is {host:?}"), "an IPv6 address in brackets, as in [::1]:8003"));
     }
     let name = inside.unwrap_or(host);
-    // Other characters would reach the resolver, whose error is less clear.
+    // The resolver's error for other characters is less clear.
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_.:%".contains(c);
     if name.is_empty() || !name.chars().all(plain) {
         let hosts = "a name, an IPv4 address, or an IPv6 address in brackets; 0.0.0.0 listens everywhere";
         return Err((format!("the host is {host:?}"), hosts));
     }
     let (first, ports) = if side == Side::Connects { (1, "1 to 65535") } else { (0, "0 to 65535; 0 is any free one") };
-    // `parse` alone would take "+80".
+    // `parse` alone would accept "+80".
     let number = Some(port).filter(|port| port.bytes().all(|b| b.is_ascii_digit()));
     match number.and_then(|port| port.parse::<u16>().ok()) {
         Some(port) if port >= first => Ok(HostPort { host: name.to_owned(), port }),

@@ -1,12 +1,12 @@
-//! The back-off of a link: how long it waits before it connects again.
+//! The back-off of a link: the wait before it reconnects.
 
 use std::time::Duration;
 
-/// Bytes must have come for this long before a connection counts as a good one. A peer that accepts and
-/// closes at once, or sends one line and dies, keeps the waits growing.
+/// A connection counts as good after it has received bytes for this long. The waits keep growing for a peer that
+/// accepts and closes at once, or dies after one line.
 pub(super) const STEADY: Duration = Duration::from_secs(1);
 
-/// A zero in the settings would be a busy loop.
+/// Prevents a busy loop if the settings contain 0.
 const SHORTEST: Duration = Duration::from_millis(10);
 
 /// Waits that double, from the first to the longest.
@@ -25,18 +25,18 @@ impl Backoff {
     /// The wait before the next attempt.
     pub(super) fn wait(&mut self) -> Duration {
         let wait = self.next;
-        // At most a second between attempts: a boat that is under way without us drives two or
-        // three metres in that.
+        // At most a second between attempts: an uncontrolled boat travels two or three metres in that
+        // time.
         self.next = wait.saturating_mul(2).min(self.longest);
         wait
     }
 
-    /// Begins again with the first wait.
+    /// Starts again with the first wait.
     pub(super) fn reset(&mut self) {
         self.next = self.first;
     }
 
-    /// After a connection on which bytes came for this long.
+    /// Resets the waits if the connection received bytes for long enough.
     pub(super) fn note_connection(&mut self, received_for: Duration) {
         if received_for >= STEADY {
             self.reset();

@@ -1,4 +1,4 @@
-//! The side that connects, and reconnects whenever the connection is lost.
+//! The side that connects, and reconnects when the connection is lost.
 
 use super::backoff::Backoff;
 use super::clock::{self, TICK};
@@ -14,21 +14,21 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// The longest attempt to connect.
+/// Maximum time of an attempt to connect.
 const CONNECT: Duration = Duration::from_secs(2);
 
 /// How often an attempt is polled.
-// Polled, since a blocking connect cannot be interrupted: a gateway that is asked to end would
-// wait for an address that does not answer.
+// A blocking connect cannot be interrupted: a gateway asked to exit would wait for an address that
+// does not answer.
 const POLL: Duration = Duration::from_millis(5);
 
-/// How many bytes TCP may hold unacknowledged before the connection counts as dead, and for how long.
-// A half-open connection takes bytes until the buffer is full. What it holds are old commands,
-// so it is as small as systems allow.
+/// Maximum unacknowledged bytes of a TCP connection, and how long they may stay so before it counts as dead.
+// A half-open connection accepts bytes until the buffer is full. These become old commands, so the buffer is as
+// small as systems allow.
 const SEND_BUFFER: usize = 4096;
 const UNACKNOWLEDGED: Duration = Duration::from_secs(2);
 
-/// Connects, serves, waits, until the link is closed.
+/// Connects, serves and waits in turn until the link is closed.
 pub(super) fn run(threads: &Arc<Threads>, address: &LinkAddress) {
     let mut backoff = Backoff::new(threads.settings.retry_first, threads.settings.retry_max);
     let mut seen = threads.reconnects();
@@ -80,7 +80,7 @@ fn connect_tcp(threads: &Threads, at: &HostPort) -> io::Result<(Port, String)> {
     Err(last)
 }
 
-/// Connects without blocking: `connect_timeout` could not be interrupted when the link is closed meanwhile.
+/// Connects without blocking; `connect_timeout` could not be interrupted when the link is closed.
 fn connect_to(threads: &Threads, address: SocketAddr) -> io::Result<TcpStream> {
     let socket = Socket::new(Domain::for_address(address), Type::STREAM, Some(Protocol::TCP))?;
     socket.set_nonblocking(true)?;
@@ -103,7 +103,7 @@ fn connect_to(threads: &Threads, address: SocketAddr) -> io::Result<TcpStream> {
     if let Some(e) = socket.take_error()? {
         return Err(e);
     }
-    // Nobody listens on a port of the ephemeral range, and our own socket was given that very port.
+    // Nothing listens on this port of the ephemeral range, and our own socket got that very port.
     if socket.local_addr()?.as_socket() == Some(address) {
         return Err(ErrorKind::ConnectionRefused.into());
     }
@@ -111,18 +111,18 @@ fn connect_to(threads: &Threads, address: SocketAddr) -> io::Result<TcpStream> {
     tune(socket)
 }
 
-/// Sets the options of a TCP connection that carries commands: no delay, and early detection of a dead peer.
+/// Sets the options for a TCP connection that carries commands: no delay, and early detection of a dead peer.
 pub(super) fn tune(socket: Socket) -> io::Result<TcpStream> {
-    // A sentence is a packet: Nagle's algorithm would hold the second one back for the
-    // acknowledgement of the first.
+    // A sentence is a packet: Nagle's algorithm would delay the second one until the first is
+    // acknowledged.
     socket.set_tcp_nodelay(true)?;
     socket.set_tcp_keepalive(
         &TcpKeepalive::new().with_time(UNACKNOWLEDGED).with_interval(Duration::from_secs(1)).with_retries(2),
     )?;
-    // Keepalive works on an idle connection only. With unacknowledged bytes under way Linux
-    // retransmits for a quarter of an hour unless this limit is set.
+    // Keepalive only works on idle connections. With unacknowledged bytes, Linux retransmits for a quarter
+    // of an hour unless this limit is set.
     socket.set_tcp_user_timeout(Some(UNACKNOWLEDGED))?;
-    // Linux doubles what it is given, for its own bookkeeping.
+    // Linux doubles the value for its own bookkeeping.
     socket.set_send_buffer_size(SEND_BUFFER)?;
     socket.set_read_timeout(Some(TICK))?;
     socket.set_write_timeout(Some(TICK))?;
@@ -134,7 +134,7 @@ fn connect_udp(at: &HostPort) -> io::Result<(Port, String)> {
     let Some(address) = addresses.next() else {
         return Err(io::Error::new(ErrorKind::NotFound, "the host has no address"));
     };
-    // A socket of the family of its peer: on some systems an IPv6 socket does not reach IPv4
+    // The socket has its peer's address family: on some systems an IPv6 socket cannot reach IPv4
     // addresses.
     let any: SocketAddr = if address.is_ipv4() { ([0, 0, 0, 0], 0).into() } else { (Ipv6Addr::UNSPECIFIED, 0).into() };
     let socket = UdpSocket::bind(any)?;
@@ -145,16 +145,15 @@ fn connect_udp(at: &HostPort) -> io::Result<(Port, String)> {
 }
 
 /// Waits for the first datagram, and connects to its sender.
-// One peer, in place of a server for all: the boat is one, and the guard needs a socket on which a
-// plain write reaches it. A boat that starts anew sends from another port: after the silence that
-// ends a link, the next one is found.
+// A single peer rather than a server: there is one boat, and the guard needs a socket on which a plain write
+// reaches it. A boat that restarts sends from another port; it is found after silence has ended the link.
 fn await_udp(threads: &Threads, at: &HostPort) -> io::Result<(Port, String)> {
     let socket = UdpSocket::bind((at.host.as_str(), at.port))?;
     socket.set_read_timeout(Some(TICK))?;
     socket.set_write_timeout(Some(TICK))?;
     let start = clock::now();
     while clock::since(start) < CONNECT && !threads.is_stopped() {
-        // Only looked at: it is the first that the connection reads.
+        // Only peeked at: the connection reads this datagram first.
         match socket.peek_from(&mut [0]) {
             Ok((_, from)) => {
                 socket.connect(from)?;
@@ -168,11 +167,11 @@ fn await_udp(threads: &Threads, at: &HostPort) -> io::Result<(Port, String)> {
 }
 
 fn open_serial(path: &Path, baud: u32) -> io::Result<(Port, String)> {
-    // A speed alone sets the rest to raw 8N1 without flow control.
+    // Setting the speed alone selects raw 8N1 without flow control.
     let mut line = SerialPort::open(path, baud)?;
     line.set_read_timeout(TICK)?;
     line.set_write_timeout(TICK)?;
-    // What came before the line was opened is old.
+    // Discard what arrived before the line was opened.
     line.discard_input_buffer()?;
     Ok((Port::Serial { line, baud }, path.display().to_string()))
 }

@@ -1,4 +1,4 @@
-//! One connection to a peer, from up to down: a thread that reads, and one that writes.
+//! One connection to a peer, from up to down, with a reading and a writing thread.
 
 use super::LinkEvent;
 use super::clock::{self, TICK};
@@ -10,20 +10,20 @@ use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// The most bytes that one event carries; a datagram fits.
+/// Maximum bytes per event; a datagram fits.
 pub(super) const CHUNK: usize = 64 * 1024;
 
-/// A connection to a peer that is up. Dropped, it ends; [`Connection::close`] also emits [`LinkEvent::Down`].
+/// A connection to a peer that is up. Dropping it ends it; [`Connection::close`] also emits [`LinkEvent::Down`].
 pub(super) struct Connection {
     threads: Arc<Threads>,
     pub(super) peer: Arc<Peer>,
     writer: Option<JoinHandle<()>>,
 }
 
-/// How a connection went.
+/// The result of a connection.
 pub(super) struct Served {
     pub(super) end: End,
-    /// Time from up to the last bytes received.
+    /// Time between coming up and the last bytes received.
     pub(super) received_for: Duration,
 }
 
@@ -32,8 +32,8 @@ impl Connection {
     pub(super) fn open(threads: &Arc<Threads>, port: Port, name: String) -> io::Result<Connection> {
         let peer = Arc::new(Peer::new(threads.number(), port));
         let mut connection = Connection { threads: Arc::clone(threads), peer, writer: None };
-        // Added first, then announced: who answers `Up` with bytes wants them to reach this peer. The writer comes
-        // last, so that no `Written` comes before `Up`.
+        // Added before `Up` is announced, so that bytes sent in response to `Up` reach this peer. The writer starts
+        // last, so that no `Written` precedes `Up`.
         threads.tell_port(connection.peer.port.descriptor());
         threads.add(&connection.peer);
         threads.emit(LinkEvent::Up { peer: connection.peer.number, name });
@@ -59,13 +59,13 @@ impl Connection {
 
     fn read_on(&self, received_at: &mut Instant) -> End {
         let mut buffer = vec![0; CHUNK];
-        // A pseudo-terminal has nobody at its other end for hours, and that is no fault.
+        // A pseudo-terminal may have no reader for hours, which is no fault.
         let silence = self.threads.settings.silence.filter(|_| self.peer.port.can_fall_silent());
         loop {
             if let Some(end) = self.peer.is_to_end() {
                 return end;
             }
-            // A peer that came up while the others were being ended was not ended with them.
+            // A peer that came up while the others were being ended has not been ended yet.
             if self.threads.is_stopped() {
                 return End::Stopped;
             }
@@ -93,13 +93,13 @@ impl Connection {
         self.threads.remove(&self.peer);
         self.peer.end(end.clone());
         match end {
-            // What a lost connection still holds are commands for a moment that has passed.
+            // Bytes still held by a lost connection are outdated commands.
             End::Lost(_) => self.peer.port.reset(),
             End::Asked | End::Stopped => self.peer.port.finish(),
         }
         self.threads.tell_port(None);
         if let Some(writer) = self.writer.take() {
-            // A writer that panicked is as done as one that did not.
+            // A writer that panicked has ended too.
             drop(writer.join());
         }
         self.threads.emit(LinkEvent::Down { peer: self.peer.number, reason: end.to_string() });
@@ -113,14 +113,14 @@ impl Drop for Connection {
     }
 }
 
-/// Writes what is queued, until the end.
+/// Writes queued bytes until the connection ends.
 fn write_on(peer: &Peer, threads: &Threads) {
     while let Some(request) = peer.outbox.next() {
         let (begun_at, transit) = (clock::now(), peer.port.transit(request.bytes().len()));
         match peer.port.write(request.bytes(), || peer.is_over()) {
             Ok(Wrote::All) => {
                 let at = clock::now();
-                // Reported after the last byte is with the system, for the latency of orders.
+                // Reported after the system has accepted the last byte, to measure the latency of orders.
                 if let Some(tag) = request.settle() {
                     threads.emit(LinkEvent::Written { tag, at });
                 }
@@ -128,7 +128,7 @@ fn write_on(peer: &Peer, threads: &Threads) {
             Ok(Wrote::Dropped) => threads.note_displaced(1),
             Err(e) => peer.end(End::Lost(format!("cannot write: {e}"))),
         }
-        // What is queued meanwhile can still be displaced here; in the driver it could not.
+        // Bytes queued meanwhile can still be displaced here, but not in the driver.
         while clock::since(begun_at) < transit && !peer.is_over() {
             threads.sleep(transit.saturating_sub(clock::since(begun_at)).min(TICK));
         }

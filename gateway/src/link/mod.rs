@@ -1,8 +1,8 @@
-//! Byte links to boats and to back seats; each reconnects by itself.
+//! Byte links to boats and back seats that reconnect automatically.
 //!
-//! A link is a few threads of its own: one that connects or accepts, and for every peer one that reads and
-//! one that writes. They report events through one callback and take write requests from outboxes of depth
-//! one, so that a slow peer gets the newest command late rather than old ones in order.
+//! A link runs a few threads: one that connects or accepts, and for each peer one that reads and one that writes.
+//! They report events through one callback. Write requests go through outboxes of depth one, so that a slow peer
+//! gets the newest command late instead of old ones in order.
 //! Read `connection` first, then `client`, then `port`.
 
 mod address;
@@ -31,33 +31,33 @@ use std::time::{Duration, Instant};
 use thiserror::Error;
 use threads::Threads;
 
-/// The most peers that a link serves at once.
+/// Maximum number of peers per link.
 const PEERS_MAX: usize = 8;
 
 /// How long dropping a link waits for its threads.
-// Several ticks of 25 ms for threads to notice, and the graceful close of 80 ms.
+// Several ticks of 25 ms in which threads notice, and a graceful close of 80 ms.
 const CLOSE_MAX: Duration = Duration::from_millis(190);
 
 /// The timeouts of a link.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LinkSettings {
-    /// After this long without bytes a peer counts as gone, as one that lost power. `None` is never, for the
-    /// side that listens. A pseudo-terminal's peers may be silent; a UDP server's for 10 s at most.
+    /// Without bytes for this long, a peer counts as lost. `None`, for the side that listens, means never. The peer of a
+    /// pseudo-terminal may stay silent; a peer of a UDP server for at most 10 s.
     pub silence: Option<Duration>,
-    /// The wait before the second attempt; it doubles with each.
+    /// The wait before the second attempt; doubles each time.
     pub retry_first: Duration,
-    /// The longest wait between attempts.
+    /// Maximum wait between attempts.
     pub retry_max: Duration,
 }
 
 impl Default for LinkSettings {
     fn default() -> LinkSettings {
         LinkSettings {
-            // A boat sends at least once a second. TCP alone notices a pulled cable after
-            // minutes, UDP and serial lines never.
+            // A boat sends at least once a second. TCP alone notices a pulled cable after minutes; UDP and
+            // serial lines never do.
             silence: Some(Duration::from_secs(3)),
             retry_first: Duration::from_millis(100),
-            // An E-stop may be waiting for the connection: no longer back-off.
+            // No longer back-off, because an E-stop may be waiting for the connection.
             retry_max: Duration::from_secs(1),
         }
     }
@@ -66,119 +66,118 @@ impl Default for LinkSettings {
 /// An event of a link.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LinkEvent {
-    /// A peer is there. Peers are numbered from 0 and never again the same within a link's life.
+    /// A peer has connected. Peers are numbered from 0; a link never reuses a number.
     Up {
-        /// Its number.
+        /// The peer's number.
         peer: u32,
-        /// Where it is: an address, or a device.
+        /// The peer's address or device.
         name: String,
     },
-    /// A peer sent something.
+    /// A peer has sent bytes.
     Bytes {
-        /// Its number.
+        /// The peer's number.
         peer: u32,
         /// When the read returned.
         at: Instant,
-        /// What it sent, whole lines or not, at most 64 KiB.
+        /// The bytes, whether whole lines or not; at most 64 KiB.
         bytes: Vec<u8>,
     },
-    /// A peer is gone.
+    /// A peer is lost.
     Down {
-        /// Its number.
+        /// The peer's number.
         peer: u32,
-        /// What happened.
+        /// Why it was lost.
         reason: String,
     },
-    /// The peer could not be reached.
+    /// The peer cannot be reached.
     Failed {
-        /// What happened.
+        /// The cause.
         reason: String,
-        /// When it is tried again.
+        /// Time until the next attempt.
         retry_in: Duration,
     },
-    /// Everything sent under this tag has been written, to all peers that were up then. Not emitted if there was
+    /// Everything sent with this tag has been written to all peers that were up at the time. Not emitted if there were
     /// none, or if one of them missed it.
     Written {
         /// The tag.
         tag: u64,
-        /// When the system took the last of it.
+        /// When the system accepted the last byte.
         at: Instant,
     },
 }
 
-/// Why a link cannot be opened at all.
+/// Why a link cannot be opened.
 #[derive(Debug, Error)]
 pub enum LinkError {
-    /// The port cannot be listened on.
+    /// Cannot listen on the port.
     #[error("cannot listen on {kind} port {} of {}: {reason}", at.port, at.host)]
     Listen {
         /// `TCP` or `UDP`.
         kind: &'static str,
         /// The port.
         at: HostPort,
-        /// What the system says.
+        /// The system's error.
         reason: String,
     },
-    /// A serial line does not have this speed.
+    /// The serial line does not support this speed.
     #[error("{path}: baud is {baud}, allowed: {BAUDS:?}")]
     Baud {
         /// The device.
         path: PathBuf,
-        /// What was asked for.
+        /// The requested speed.
         baud: u32,
     },
-    /// There is no pseudo-terminal to be had.
+    /// No pseudo-terminal available.
     #[error("cannot open a pseudo-terminal: {reason}")]
     Pty {
-        /// What the system says.
+        /// The system's error.
         reason: String,
     },
-    /// The symlink to a pseudo-terminal cannot be made.
+    /// Cannot create the symlink to the pseudo-terminal.
     #[error("cannot make the symlink {path}: {reason}")]
     Symlink {
-        /// Where it was wanted.
+        /// The path of the symlink.
         path: PathBuf,
-        /// What is in the way.
+        /// The cause.
         reason: String,
     },
-    /// There is no thread to be had.
+    /// No thread available.
     #[error("cannot start a thread for {address}: {source}")]
     Thread {
-        /// The link.
+        /// The link's address.
         address: String,
-        /// What the system says.
+        /// The system's error.
         source: io::Error,
     },
 }
 
-/// The way of a gateway's bytes to its boat.
+/// A gateway's connection to its boat.
 pub trait BoatLink {
-    /// Queues bytes; never blocks. What was queued before and has not been begun is displaced.
+    /// Queues bytes without blocking. Displaces queued bytes whose write has not begun.
     fn send(&self, bytes: Vec<u8>, tag: u64);
 
-    /// How many were displaced so far.
+    /// The number of displaced writes so far.
     fn displaced(&self) -> u64;
 
-    /// Sends a shutdown message, as [`Link::send_and_wait`] does.
+    /// Sends a shutdown message; see [`Link::send_and_wait`].
     fn send_and_wait(&self, bytes: &[u8], limit: Duration) -> bool;
 }
 
-/// Called with the descriptor of every connection before it is used, and with nothing when it is over.
+/// Called with the descriptor of every connection before its use, and with `None` after its end.
 pub type OnPort = Box<dyn Fn(Option<BorrowedFd<'_>>) + Send + Sync>;
 
-/// A link that reconnects by itself, in threads of its own. Dropped, it closes everything within 200 ms: what
-/// was written still arrives, what was only queued is lost. A shutdown message is sent with
-/// [`Link::send_and_wait`].
+/// A link that reconnects automatically, on its own threads. Dropping it closes everything within 200 ms: written
+/// bytes still arrive, queued ones are lost. To send a shutdown message, use [`Link::send_and_wait`].
 pub struct Link {
     threads: Arc<Threads>,
     reach: String,
 }
 
 impl Link {
-    /// Opens a link. `on_event` is called in several threads; while it waits, its link does.
+    /// Opens a link. Several threads call `on_event`; while it blocks, so does the link.
     ///
     /// # Errors
-    /// [`LinkError`] only for what will never work. A peer that is not there is [`LinkEvent::Failed`].
+    /// [`LinkError`] if the link can never work. An unreachable peer is [`LinkEvent::Failed`].
     pub fn open(
         address: &LinkAddress,
         settings: LinkSettings,
@@ -187,10 +186,10 @@ impl Link {
         Link::open_watched(address, settings, None, on_event)
     }
 
-    /// As [`Link::open`]; `on_port` may duplicate the descriptors, to write to them when this process cannot.
+    /// Like [`Link::open`]. `on_port` may duplicate the descriptors, to write to them when this process cannot.
     ///
     /// # Errors
-    /// [`LinkError`], as there.
+    /// As for [`Link::open`].
     pub fn open_watched(
         address: &LinkAddress,
         settings: LinkSettings,
@@ -204,35 +203,33 @@ impl Link {
         Ok(Link { threads, reach })
     }
 
-    /// The address that others can connect to, as in `tcp://127.0.0.1:8003`: with port 0 the real port, for
-    /// a PTY the slave's path.
+    /// The address to connect to, such as `tcp://127.0.0.1:8003`: with the real port instead of 0, or a PTY slave's
+    /// path.
     #[must_use]
     pub fn reach(&self) -> String {
         self.reach.clone()
     }
 
-    /// Queues bytes for all peers that are up; never blocks. What was queued before and has not been begun is
-    /// displaced, at each peer separately.
+    /// Queues bytes for all peers without blocking. For each peer, displaces queued bytes whose write has not begun.
     pub fn send(&self, bytes: Vec<u8>, tag: u64) {
-        // Nobody waits here: if the boat does not read, the next command takes the place of
-        // this one.
+        // Never wait here: if the boat does not read, the next command displaces this one.
         drop(self.threads.enqueue(bytes, Some(tag), Priority::Normal));
     }
 
-    /// How many were displaced so far, summed over the peers.
+    /// The number of displaced writes so far, over all peers.
     #[must_use]
     pub fn displaced(&self) -> u64 {
         self.threads.displaced()
     }
 
-    /// Sends a shutdown message: displaces what is queued, writes these bytes to all peers, and waits for that up to
-    /// `limit`. Returns whether there was a peer, and the system took the bytes for all of them; what had not begun by
-    /// then stays queued. They are not displaced by what other threads send meanwhile. Works while panicking.
+    /// Sends a shutdown message: displaces what is queued, writes these bytes to all peers, and waits up to `limit`.
+    /// Returns whether there was a peer and the system accepted the bytes for all of them. Bytes whose write has not
+    /// begun by then stay queued. Other threads' bytes do not displace them. Works while panicking.
     pub fn send_and_wait(&self, bytes: &[u8], limit: Duration) -> bool {
         self.threads.enqueue(bytes.to_vec(), None, Priority::Shutdown).wait(limit)
     }
 
-    /// Breaks the connections now; a client connects again after the first wait.
+    /// Breaks all connections; a client reconnects after the first wait.
     pub fn reconnect(&self) {
         self.threads.reconnect();
     }
@@ -258,10 +255,10 @@ impl Drop for Link {
     }
 }
 
-/// What a link's first thread does.
+/// The work of a link's first thread.
 type Work = Box<dyn FnOnce() + Send>;
 
-/// The address at which others reach the link, and what its first thread does.
+/// Returns the address at which others reach the link, and the work of its first thread.
 fn prepare(threads: Arc<Threads>, address: &LinkAddress) -> Result<(String, Work), LinkError> {
     Ok(match address {
         LinkAddress::Tcp(Side::Listens, at) => {
@@ -287,7 +284,6 @@ fn prepare(threads: Arc<Threads>, address: &LinkAddress) -> Result<(String, Work
     })
 }
 
-/// What `bound` has taken, and its address.
 fn listening<T>(
     kind: &'static str,
     at: &HostPort,

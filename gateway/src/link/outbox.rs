@@ -1,19 +1,18 @@
-//! The outbox of one peer: a queue of depth one, in which the newest write request displaces the one before.
+//! The outbox of a peer: a queue of depth one, in which the newest write request displaces the previous one.
 
 use parking_lot::{Condvar, Mutex};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// What may displace what.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Priority {
-    /// Displaced by the next.
+    /// Displaced by any later request.
     Normal,
-    /// Not displaced by normal requests: a stop must not lose a race against a set-point.
+    /// Not displaced by normal requests: a stop must not lose the race against a set-point.
     Shutdown,
 }
 
-/// Bytes to write to one peer. Dropped before it was taken, it is lost, and its completion knows.
+/// Bytes to write to one peer. If it is dropped before they are written, its completion counts them as lost.
 pub(super) struct WriteRequest {
     bytes: Arc<Vec<u8>>,
     completion: Arc<Completion>,
@@ -21,7 +20,7 @@ pub(super) struct WriteRequest {
     taken: bool,
 }
 
-/// Whether all peers have taken the same bytes.
+/// Tracks whether all peers have accepted the same bytes.
 pub(super) struct Completion {
     tag: Option<u64>,
     count: Mutex<Count>,
@@ -46,21 +45,21 @@ struct State {
 }
 
 impl Completion {
-    /// For bytes that go to so many peers.
+    /// A completion for bytes that go to this many peers.
     pub(super) fn new(tag: Option<u64>, peers: usize) -> Arc<Completion> {
-        // Without a peer the bytes are lost.
+        // Without peers the bytes are lost.
         let count = Mutex::new(Count { open: peers, lost: peers == 0 });
         Arc::new(Completion { tag, count, changed: Condvar::new() })
     }
 
-    /// Waits up to `limit`; whether every peer took the bytes.
+    /// Waits up to `limit`. Returns whether every peer accepted the bytes.
     pub(super) fn wait(&self, limit: Duration) -> bool {
         let mut count = self.count.lock();
         self.changed.wait_while_for(&mut count, |count| count.open > 0, limit);
         count.open == 0 && !count.lost
     }
 
-    /// One peer less; whether it was the last, and none lost the bytes.
+    /// Counts down one peer. Returns whether it was the last one and no peer lost the bytes.
     fn settle(&self, lost: bool) -> bool {
         let mut count = self.count.lock();
         count.open -= 1;
@@ -79,7 +78,7 @@ impl WriteRequest {
         &self.bytes
     }
 
-    /// Notes that the peer took it; returns the tag once all did.
+    /// Notes that the peer accepted the bytes. Returns the tag after the last peer.
     pub(super) fn settle(mut self) -> Option<u64> {
         self.taken = true;
         if self.completion.settle(false) { self.completion.tag } else { None }
@@ -99,7 +98,7 @@ impl Outbox {
         Outbox { state: Mutex::default(), changed: Condvar::new() }
     }
 
-    /// Queues a request; whether one was displaced (the queued one, or this one by a shutdown message).
+    /// Queues a request. Returns whether a request was displaced: the queued one, or this one by a shutdown message.
     pub(super) fn push(&self, request: WriteRequest) -> bool {
         let mut state = self.state.lock();
         if state.shut {
@@ -108,23 +107,23 @@ impl Outbox {
         if request.priority == Priority::Normal
             && state.queued.as_ref().is_some_and(|queued| queued.priority == Priority::Shutdown)
         {
-            // Nothing may displace the last words to a boat.
+            // Nothing may displace the final message to a boat.
             return true;
         }
-        // Depth one: a slow line gets the newest command late, not all the old ones in order.
+        // Depth one: a slow line gets the newest command late instead of all old ones in order.
         let displaced = state.queued.replace(request).is_some();
         self.changed.notify_one();
         displaced
     }
 
-    /// Waits for a request; none comes after the outbox was shut.
+    /// Waits for a request. Returns `None` after the outbox was shut.
     pub(super) fn next(&self) -> Option<WriteRequest> {
         let mut state = self.state.lock();
         self.changed.wait_while(&mut state, |state| state.queued.is_none() && !state.shut);
         state.queued.take()
     }
 
-    /// Drops what is queued and accepts nothing more.
+    /// Drops the queued request and rejects all later ones.
     pub(super) fn shut(&self) {
         let mut state = self.state.lock();
         state.shut = true;

@@ -5,14 +5,14 @@ use super::port::Port;
 use parking_lot::Mutex;
 use std::fmt;
 
-/// Why a connection is over.
+/// Why a connection ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum End {
-    /// Our side asked for a new one.
+    /// A reconnect was requested.
     Asked,
-    /// Our side is closing down.
+    /// The link is closing.
     Stopped,
-    /// It broke.
+    /// The connection broke.
     Lost(String),
 }
 
@@ -39,14 +39,14 @@ impl Peer {
         Peer { number, outbox: Outbox::new(), port, end: Mutex::new(None) }
     }
 
-    /// Ends the connection, for the first reason that was given.
+    /// Ends the connection; the first reason given counts.
     pub(super) fn end(&self, end: End) {
-        // The first reason is the cause; the errors of the other thread follow from it.
+        // The first reason is the cause; the other thread's errors follow from it.
         self.end.lock().get_or_insert(end);
         self.outbox.shut();
     }
 
-    /// Why the connection is to end, if it is.
+    /// Why the connection must end, if it must.
     pub(super) fn is_to_end(&self) -> Option<End> {
         self.end.lock().clone()
     }

@@ -1,4 +1,4 @@
-//! A port as the operating system gives it: bytes in, bytes out, no call waits long.
+//! A port of the operating system: reads and writes bytes without long waits.
 
 use super::clock;
 use super::pty::Pty;
@@ -10,19 +10,19 @@ use std::os::fd::{AsFd, BorrowedFd};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// A peer that takes nothing for this long is gone.
+/// A peer that accepts no bytes for this long is lost.
 pub(super) const STALL: Duration = Duration::from_secs(2);
 
-/// How long a graceful close waits for the peer's.
-// A round trip over radio, and well within the time that a closing link has.
+/// How long a graceful close waits for the peer.
+// A radio round trip, well within the time that a closing link has.
 const LINGER: Duration = Duration::from_millis(80);
 
-/// A socket, a serial line or a pseudo-terminal. Reads and writes may happen at once, in two threads.
+/// A socket, a serial line or a pseudo-terminal. Two threads may read and write at the same time.
 pub(super) enum Port {
     Tcp(TcpStream),
     /// Connected.
     Udp(UdpSocket),
-    /// Shared by all peers of a server, which reads it.
+    /// The server reads the socket, which all its peers share.
     UdpTo(Arc<UdpSocket>, SocketAddr),
     Serial {
         line: SerialPort,
@@ -31,35 +31,35 @@ pub(super) enum Port {
     Pty(Arc<Pty>),
 }
 
-/// What a read brought.
+/// The result of a read.
 pub(super) enum Received {
     Bytes(usize),
     Nothing,
     End,
 }
 
-/// What became of bytes.
+/// The result of a write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Wrote {
     All,
-    /// There was no room for them, and that is no error.
+    /// No free space, which is not an error.
     Dropped,
 }
 
 impl Port {
-    /// What the system knows it by; nothing for a port that peers share.
+    /// The port's descriptor. None if peers share the port.
     pub(super) fn descriptor(&self) -> Option<BorrowedFd<'_>> {
         match self {
             Port::Tcp(stream) => Some(stream.as_fd()),
             Port::Udp(socket) => Some(socket.as_fd()),
             Port::Serial { line, .. } => Some(line.as_fd()),
-            // The guard needs a descriptor on which a plain write reaches the boat; these are
-            // for emulated boats, which need no guard.
+            // The guard needs a descriptor on which a plain write reaches the boat. These ports are for emulated
+            // boats, which need no guard.
             Port::UdpTo(..) | Port::Pty(_) => None,
         }
     }
 
-    /// Waits for bytes, a tick at most.
+    /// Waits for bytes, at most one tick.
     pub(super) fn read(&self, buffer: &mut [u8]) -> io::Result<Received> {
         let read = match self {
             Port::Tcp(stream) => (&mut &*stream).read(buffer),
@@ -69,7 +69,7 @@ impl Port {
             Port::Pty(pty) => pty.read(buffer),
         };
         match read {
-            // An empty datagram is one.
+            // Empty datagrams are valid.
             Ok(0) if matches!(self, Port::Udp(_)) => Ok(Received::Nothing),
             Ok(0) => Ok(Received::End),
             Ok(count) => Ok(Received::Bytes(count)),
@@ -78,7 +78,7 @@ impl Port {
         }
     }
 
-    /// Writes all bytes, in one call if the system accepts that; gives up when told to, or after a stall.
+    /// Writes all bytes, in one call if the system accepts that. Gives up when `is_given_up`, or after [`STALL`].
     pub(super) fn write(&self, bytes: &[u8], is_given_up: impl Fn() -> bool) -> io::Result<Wrote> {
         if let Port::Pty(pty) = self {
             pty.begin()?;
@@ -97,7 +97,7 @@ impl Port {
                     progress_at = clock::now();
                 }
                 Err(e) if !is_pause(&e) => return Err(e),
-                // Its beginning was discarded: the rest would be a torn sentence.
+                // The beginning was discarded, so the rest would be an incomplete sentence.
                 Err(_) if self.flushes() != flushes => return Ok(Wrote::Dropped),
                 Err(_) if clock::since(progress_at) >= STALL => {
                     return Err(io::Error::new(ErrorKind::TimedOut, format!("nothing taken for {STALL:?}")));
@@ -118,7 +118,7 @@ impl Port {
         }
     }
 
-    /// Discards what nobody reads, where that is ours to do.
+    /// Discards old unread bytes where that is possible.
     pub(super) fn flush_if_stale(&self) -> io::Result<()> {
         if let Port::Pty(pty) = self { pty.flush_if_stale() } else { Ok(()) }
     }
@@ -127,16 +127,16 @@ impl Port {
         if let Port::Pty(pty) = self { pty.flushes() } else { 0 }
     }
 
-    /// Whether silence means that the peer is gone. Who opens a terminal may only want to read.
+    /// Whether silence means that the peer is lost. A reader of a terminal may never write.
     pub(super) fn can_fall_silent(&self) -> bool {
         !matches!(self, Port::Pty(_))
     }
 
-    /// Closes gracefully: what was written still arrives.
+    /// Closes gracefully, so that written bytes still arrive.
     pub(super) fn finish(&self) {
         let Port::Tcp(stream) = self else { return };
-        // Closing a socket with unread bytes makes the system send a reset, which may overtake what was
-        // written last: so read until the other side has closed too, for a moment.
+        // Closing a socket with unread bytes makes the system send a reset, which may overtake the last bytes
+        // written. Read until the other side has closed too, for a moment.
         if stream.shutdown(Shutdown::Write).is_err() {
             return;
         }
@@ -149,23 +149,22 @@ impl Port {
         }
     }
 
-    /// Resets the connection: what the system still holds would be stale when it arrived. A connection that is gone
-    /// already need not be reset.
+    /// Resets the connection, because bytes still held by the system would arrive too late. A connection that is gone
+    /// needs no reset.
     pub(super) fn reset(&self) {
         match self {
-            // A reset: whatever the peer has not read is thrown away instead of being delivered
-            // later.
+            // A reset discards everything that the peer has not read.
             Port::Tcp(stream) => drop(SockRef::from(stream).set_linger(Some(Duration::ZERO))),
-            // A serial driver goes on sending after the descriptor is closed.
+            // A serial driver keeps sending after the descriptor is closed.
             Port::Serial { line, .. } => drop(line.discard_output_buffer()),
             _ => {}
         }
     }
 
-    /// How long so many bytes take to the peer, where that is long. The driver of a serial
-    /// line takes 4 KiB at once, which are 8 s of old commands at 4800 baud.
+    /// The time to transmit so many bytes, where it is long. A serial driver accepts 4 KiB at once, which at
+    /// 4800 baud are 8 s of old commands.
     pub(super) fn transit(&self, count: usize) -> Duration {
-        // Eight bits, a start and a stop bit.
+        // Eight data bits, a start bit and a stop bit.
         if let Port::Serial { baud, .. } = self {
             Duration::from_secs_f64(10.0 * count as f64 / f64::from(*baud))
         } else {
@@ -174,12 +173,12 @@ impl Port {
     }
 }
 
-/// Whether a wait ended without a result. A timeout that has a number is TCP's own: that connection is lost.
+/// Whether a wait ended without a result.
 fn is_pause(error: &io::Error) -> bool {
     match error.kind() {
         ErrorKind::WouldBlock | ErrorKind::Interrupted => true,
-        // With a number of the system it is ETIMEDOUT of a dead TCP connection; without one it
-        // is a time-out that we set.
+        // With a system error number it is TCP's ETIMEDOUT, and the connection is lost; without one it is a
+        // timeout that we set.
         ErrorKind::TimedOut => error.raw_os_error().is_none(),
         _ => false,
     }

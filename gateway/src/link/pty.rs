@@ -1,4 +1,4 @@
-//! A pseudo-terminal of our own, which others open as if a boat was on a serial line.
+//! A pseudo-terminal of our own, which other programs open like a boat's serial line.
 
 use super::LinkError;
 use super::clock::{self, TICK};
@@ -17,12 +17,12 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-/// What nobody has read for this long is discarded: whoever opens the terminal later wants to know where
-/// the boat is, not where it was.
+/// Bytes unread for this long are discarded: a program that opens the terminal later needs the boat's current
+/// position, not an old one.
 const UNREAD_MAX: Duration = Duration::from_millis(500);
 
-/// Both ends of a pseudo-terminal. We keep the slave open too: without anybody on it the master could not
-/// be written, and the next one on it would find echo and line editing switched on again.
+/// Both ends of a pseudo-terminal. We keep the slave open too: with no process on it the master could not be
+/// written, and the next process would find echo and line editing enabled.
 pub(super) struct Pty {
     master: SerialPort,
     slave: OwnedFd,
@@ -32,22 +32,22 @@ pub(super) struct Pty {
     flushes: AtomicU64,
 }
 
-/// What is known of the reader.
+/// What is known about the reader.
 #[derive(Default)]
 struct ReaderState {
-    /// Since when there has always been something that nobody read.
+    /// Start of the period during which there have always been unread bytes.
     unread_since: Option<Instant>,
-    /// When the newest in it was begun.
+    /// When the newest unread write began.
     begun_at: Option<Instant>,
 }
 
 impl Pty {
-    /// Opens one, raw, with a symlink to it if wanted.
+    /// Opens a raw pseudo-terminal, with a symlink to it if requested.
     pub(super) fn open(link: Option<&Path>) -> Result<Pty, LinkError> {
-        // The slave stays open here as well: a master whose last slave closes reports an error
-        // on Linux until somebody opens it again.
+        // The slave stays open here too: on Linux, a master whose last slave closes returns errors until
+        // a process opens it again.
         let (master, slave, path) = pair().map_err(|e| LinkError::Pty { reason: e.to_string() })?;
-        // Made before the symlink is, so that a refusal leaves nothing behind.
+        // Before the symlink, so that a failure leaves nothing behind.
         let mut pty = Pty { master, slave, path, link: None, reader: Mutex::default(), flushes: AtomicU64::new(0) };
         if let Some(link) = link {
             make_symlink(link, &pty.path)?;
@@ -56,7 +56,7 @@ impl Pty {
         Ok(pty)
     }
 
-    /// What others open.
+    /// The path that others open.
     pub(super) fn path(&self) -> &Path {
         &self.path
     }
@@ -69,20 +69,20 @@ impl Pty {
         self.master.write(bytes)
     }
 
-    /// How often unread bytes were discarded.
+    /// How often unread bytes have been discarded.
     pub(super) fn flushes(&self) -> u64 {
         self.flushes.load(Ordering::Relaxed)
     }
 
-    /// Before a write: discards what was not read for some time.
+    /// Before a write: discards bytes that have been unread for too long.
     pub(super) fn begin(&self) -> io::Result<()> {
         let mut reader = self.reader.lock();
         reader.begun_at = Some(clock::now());
         if self.unread_for(&mut reader)? >= UNREAD_MAX { self.discard(&mut reader) } else { Ok(()) }
     }
 
-    /// Now and then: discards what was not read for some time, if nothing in it is new. There is no notification
-    /// that somebody opened the slave, but a reader empties it.
+    /// Called regularly: discards bytes that have been unread for too long, unless some are new. The system does not
+    /// report that a process opened the slave, but a reader empties it.
     pub(super) fn flush_if_stale(&self) -> io::Result<()> {
         let mut reader = self.reader.lock();
         let is_old = reader.begun_at.is_none_or(|at| clock::since(at) >= UNREAD_MAX);
@@ -90,14 +90,14 @@ impl Pty {
         if is_old && unread_for >= UNREAD_MAX { self.discard(&mut reader) } else { Ok(()) }
     }
 
-    /// Discards all that has not been read.
+    /// Discards all unread bytes.
     pub(super) fn flush(&self) -> io::Result<()> {
         self.discard(&mut self.reader.lock())
     }
 
-    /// For how long there has always been something to read.
+    /// How long there have always been unread bytes.
     fn unread_for(&self, reader: &mut ReaderState) -> io::Result<Duration> {
-        // No event tells that somebody reads; the fill of the slave's queue does.
+        // No event reports a read, but the fill level of the slave's queue shows it.
         let is_unread = rustix::io::ioctl_fionread(&self.slave)? > 0;
         let since = reader.unread_since.filter(|_| is_unread);
         reader.unread_since = since.or_else(|| is_unread.then(clock::now));
@@ -107,7 +107,7 @@ impl Pty {
     fn discard(&self, reader: &mut ReaderState) -> io::Result<()> {
         reader.unread_since = None;
         self.flushes.fetch_add(1, Ordering::Relaxed);
-        // On the slave: flushing the master would discard what the others wrote to us.
+        // On the slave: flushing the master would discard what others wrote to us.
         Ok(rustix::termios::tcflush(&self.slave, QueueSelector::IFlush)?)
     }
 }
@@ -115,7 +115,7 @@ impl Pty {
 impl Drop for Pty {
     fn drop(&mut self) {
         let Some(link) = &self.link else { return };
-        // It may belong to another process by now.
+        // The path may belong to another process by now.
         if fs::read_link(link).is_ok_and(|target| target == self.path) {
             drop(fs::remove_file(link));
         }
@@ -130,7 +130,7 @@ fn pair() -> io::Result<(SerialPort, OwnedFd, PathBuf)> {
     let path = PathBuf::from(OsStr::from_bytes(name.as_bytes()));
     let slave = rustix::fs::open(&path, OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC, Mode::empty())?;
     let mut settings = rustix::termios::tcgetattr(&slave)?;
-    // Otherwise the line discipline echoes what the back seat writes and turns CR into LF.
+    // Otherwise the line discipline echoes the back seat's bytes and converts CR to LF.
     settings.make_raw();
     rustix::termios::tcsetattr(&slave, OptionalActions::Now, &settings)?;
     rustix::fs::fcntl_setfl(&master, OFlags::NONBLOCK)?;
@@ -140,11 +140,11 @@ fn pair() -> io::Result<(SerialPort, OwnedFd, PathBuf)> {
     Ok((master, slave, path))
 }
 
-/// Makes `link` point to `target`, over an old symlink but over nothing else.
+/// Links `link` to `target`. Replaces an old symlink, but nothing else.
 fn make_symlink(link: &Path, target: &Path) -> Result<(), LinkError> {
     let refused = |reason: String| LinkError::Symlink { path: link.to_owned(), reason };
-    // Symlinks are replaced, since a killed process leaves its own behind; anything else may be
-    // somebody's file.
+    // Replaces symlinks, because a killed process leaves its own behind. Anything else may be a user's
+    // file.
     match fs::symlink_metadata(link) {
         Ok(found) if !found.is_symlink() => {
             return Err(refused("something else is there, allowed: nothing, or an old symlink".to_owned()));

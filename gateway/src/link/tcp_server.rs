@@ -1,4 +1,4 @@
-//! A TCP port of our own, for some peers at once.
+//! A TCP port of our own for several peers at once.
 
 use super::client::tune;
 use super::clock::TICK;
@@ -11,24 +11,24 @@ use std::io;
 use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
 
-/// Takes the port.
+/// Opens the port.
 pub(super) fn bind(at: &HostPort) -> Result<(TcpListener, SocketAddr), LinkError> {
     listening("TCP", at, |at| {
         let listener = TcpListener::bind(at)?;
-        // On Linux it holds for `accept` too.
+        // On Linux this applies to `accept` too.
         SockRef::from(&listener).set_read_timeout(Some(TICK))?;
         let address = listener.local_addr()?;
         Ok((listener, address))
     })
 }
 
-/// Accepts connections, until the link is closed.
+/// Accepts connections until the link is closed.
 pub(super) fn run(threads: &Arc<Threads>, listener: &TcpListener) {
     while !threads.is_stopped() {
         match listener.accept() {
             Ok((stream, from)) => serve_peer(threads, stream, from),
             Err(e) if e.kind() == io::ErrorKind::WouldBlock => {}
-            // Too many open files, for example: it may pass.
+            // For example too many open files, which may pass.
             Err(_) if threads.sleep(TICK) == Woken::Stopped => return,
             Err(_) => {}
         }
@@ -36,11 +36,11 @@ pub(super) fn run(threads: &Arc<Threads>, listener: &TcpListener) {
 }
 
 fn serve_peer(threads: &Arc<Threads>, stream: TcpStream, from: SocketAddr) {
-    // Dropping the stream closes it: the peer sees at once that there is no room.
+    // Dropping the stream closes it: the peer sees at once that there is no free slot.
     if threads.count() >= PEERS_MAX {
         return;
     }
-    // A peer that is gone already, or for which there is no thread, finds the connection closed.
+    // A peer that is already gone, or that gets no thread, finds the connection closed.
     let Ok(stream) = tune(stream.into()) else { return };
     let Ok(connection) = Connection::open(threads, Port::Tcp(stream), from.to_string()) else { return };
     drop(threads.spawn("link reader", move || drop(connection.serve())));

@@ -1,4 +1,4 @@
-//! The threads of one link, and the peers they serve.
+//! The threads of one link, and their peers.
 
 use super::outbox::{Completion, Priority, WriteRequest};
 use super::peer::{End, Peer};
@@ -11,12 +11,12 @@ use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-/// What all threads of a link share.
+/// State shared by all threads of a link.
 pub(super) struct Threads {
     pub(super) settings: LinkSettings,
     on_event: Box<dyn Fn(LinkEvent) + Send + Sync>,
     on_port: Option<OnPort>,
-    /// Peers that are up. Never locked while anything waits.
+    /// Peers that are up. Never locked during a wait.
     peers: Mutex<Vec<Arc<Peer>>>,
     numbers: AtomicU32,
     displaced: AtomicU64,
@@ -34,15 +34,14 @@ struct State {
 /// Why a wait ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Woken {
-    /// Its time is over.
     Elapsed,
-    /// Somebody asked for a reconnect.
+    /// A reconnect was requested.
     Asked,
     /// The link is closed.
     Stopped,
 }
 
-/// Counts a running thread, until dropped.
+/// Counts a running thread until dropped.
 struct RunningThread(Arc<Threads>);
 
 impl Drop for RunningThread {
@@ -70,14 +69,13 @@ impl Threads {
         })
     }
 
-    /// Starts a thread.
     pub(super) fn spawn(
         self: &Arc<Threads>,
         name: &str,
         work: impl FnOnce() + Send + 'static,
     ) -> io::Result<JoinHandle<()>> {
-        // Counted before the thread starts, so that a link that closes right then waits for it
-        // too; dropping the guard undoes it when the spawn fails.
+        // Counted before the thread starts, so that a link that closes at this moment waits for it too. If the spawn
+        // fails, dropping the guard undoes it.
         self.state.lock().running += 1;
         let running = RunningThread(Arc::clone(self));
         thread::Builder::new().name(name.to_owned()).spawn(move || {
@@ -86,19 +84,19 @@ impl Threads {
         })
     }
 
-    /// Tells of the descriptor of a connection, or that it is over.
+    /// Reports the descriptor of a new connection, or the end of the connection.
     pub(super) fn tell_port(&self, descriptor: Option<BorrowedFd<'_>>) {
         if let Some(on_port) = &self.on_port {
             on_port(descriptor);
         }
     }
 
-    /// Calls back with an event. Never with a lock held: the callback may call anything.
+    /// Calls the callback. No lock may be held, because the callback may call anything.
     pub(super) fn emit(&self, event: LinkEvent) {
         (self.on_event)(event);
     }
 
-    /// A number that no peer of this link has had.
+    /// A peer number that this link has never used.
     pub(super) fn number(&self) -> u32 {
         self.numbers.fetch_add(1, Ordering::Relaxed)
     }
@@ -115,13 +113,11 @@ impl Threads {
         self.peers.lock().len()
     }
 
-    /// Queues bytes for all peers.
     pub(super) fn enqueue(&self, bytes: Vec<u8>, tag: Option<u64>, priority: Priority) -> Arc<Completion> {
         let bytes = Arc::new(bytes);
-        // Held to the end, so that all peers see the same order.
+        // Held to the end, so that all peers get the same order.
         let peers = self.peers.lock();
-        // For as many peers as there are now: one that comes later did not get this, and nobody
-        // waits for it.
+        // The number of current peers: one that connects later does not get this, so nothing may wait for it.
         let completion = Completion::new(tag, peers.len());
         let displaced =
             peers.iter().filter(|peer| peer.outbox.push(WriteRequest::new(&bytes, &completion, priority))).count();
@@ -137,19 +133,18 @@ impl Threads {
         self.displaced.load(Ordering::Relaxed)
     }
 
-    /// Breaks all connections.
     pub(super) fn reconnect(&self) {
         self.state.lock().reconnects += 1;
         self.changed.notify_all();
         self.end_all(&End::Asked);
     }
 
-    /// Ends all threads; waits for them up to `limit`.
+    /// Ends all threads and waits for them, up to `limit`.
     pub(super) fn stop(&self, limit: Duration) {
         self.state.lock().stopped = true;
         self.changed.notify_all();
         self.end_all(&End::Stopped);
-        // A thread that still runs hangs in its callback, and ends after that.
+        // A thread that is still running hangs in its callback and ends after it.
         drop(self.wait(limit, |state| state.running > 0));
     }
 
@@ -157,17 +152,17 @@ impl Threads {
         self.state.lock().stopped
     }
 
-    /// How often a reconnect was asked for.
+    /// The number of reconnects requested.
     pub(super) fn reconnects(&self) -> u64 {
         self.state.lock().reconnects
     }
 
-    /// Waits this long, unless the link is closed.
+    /// Waits this long or until the link is closed.
     pub(super) fn sleep(&self, limit: Duration) -> Woken {
         if self.wait(limit, |state| !state.stopped).stopped { Woken::Stopped } else { Woken::Elapsed }
     }
 
-    /// As [`Threads::sleep`], unless a reconnect is asked for, or was since `seen`, which is then brought up to date.
+    /// Like [`Threads::sleep`], but a reconnect requested since `seen` also ends the wait. Updates `seen`.
     pub(super) fn pause(&self, limit: Duration, seen: &mut u64) -> Woken {
         let state = self.wait(limit, |state| !state.stopped && state.reconnects == *seen);
         if state.stopped {

@@ -1,4 +1,4 @@
-//! A UDP port of our own, whose peers are those who sent to it lately.
+//! A UDP port of our own; its peers are the recent senders.
 
 use super::clock::{self, TICK};
 use super::connection::{CHUNK, Connection};
@@ -11,7 +11,7 @@ use std::net::{SocketAddr, UdpSocket};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// A peer that sends nothing for this long is forgotten, or sooner if the settings say so.
+/// A peer that is silent for this long is forgotten. The settings may only shorten this time.
 const IDLE_MAX: Duration = Duration::from_secs(10);
 
 struct UdpPeer {
@@ -20,7 +20,7 @@ struct UdpPeer {
     received_at: Instant,
 }
 
-/// Takes the port.
+/// Opens the port.
 pub(super) fn bind(at: &HostPort) -> Result<(UdpSocket, SocketAddr), LinkError> {
     listening("UDP", at, |at| {
         let socket = UdpSocket::bind(at)?;
@@ -31,7 +31,7 @@ pub(super) fn bind(at: &HostPort) -> Result<(UdpSocket, SocketAddr), LinkError> 
     })
 }
 
-/// Receives from all peers, until the link is closed.
+/// Receives from all peers until the link is closed.
 pub(super) fn run(threads: &Arc<Threads>, socket: &Arc<UdpSocket>) {
     let silence_max = threads.settings.silence.map_or(IDLE_MAX, |silence| silence.min(IDLE_MAX));
     let mut peers: Vec<UdpPeer> = Vec::new();
@@ -54,16 +54,16 @@ pub(super) fn run(threads: &Arc<Threads>, socket: &Arc<UdpSocket>) {
 
 fn receive(threads: &Arc<Threads>, socket: &Arc<UdpSocket>, peers: &mut Vec<UdpPeer>, from: SocketAddr, bytes: &[u8]) {
     let at = clock::now();
-    // A peer is whoever sent a datagram: UDP has no connections, and back seats expect answers
-    // at the port they sent from.
+    // A peer is any sender of a datagram: UDP has no connections, and back seats expect replies on the port they
+    // sent from.
     let known = peers.iter_mut().find(|peer| peer.from == from);
     let peer = if let Some(peer) = known {
         peer.received_at = at;
         peer.connection.peer.number
-    // Forged senders must not make a thread each.
+    // Forged senders must not start a thread each.
     } else if peers.len() < PEERS_MAX {
         let port = Port::UdpTo(Arc::clone(socket), from);
-        // Out of threads: it may send again later.
+        // Out of threads; the peer may send again later.
         let Ok(connection) = Connection::open(threads, port, from.to_string()) else { return };
         let peer = connection.peer.number;
         peers.push(UdpPeer { from, connection, received_at: at });
@@ -76,7 +76,7 @@ fn receive(threads: &Arc<Threads>, socket: &Arc<UdpSocket>, peers: &mut Vec<UdpP
     }
 }
 
-/// The first peer whose connection is to end, and why.
+/// The first peer whose connection must end, with the reason.
 fn first_to_close(peers: &[UdpPeer], silence_max: Duration) -> Option<(usize, End)> {
     let end = |peer: &UdpPeer| {
         let silent =

@@ -1,11 +1,11 @@
-//! Requests of boats to the referee, for rules that require requests.
+//! The boats' requests to the referee, under rules that need requests.
 
 use messages::Picture;
 use primitives::{Ned, VehicleId};
 use rules::{Asks, Field, Rules};
 
-/// The requests of a team's boats according to its picture, as with pRangeEvent of the Aquaticus
-/// missions. A boat that believes it is in reach makes a request, because a refused request costs
+/// The requests that a team's boats make from their picture, as with pRangeEvent in the Aquaticus
+/// missions. Any boat that believes it is in reach makes a request, because a refusal costs
 /// nothing.
 pub(super) fn asks_of<'a>(
     rules: &Rules,

@@ -1,4 +1,4 @@
-//! Faults of agents and links during a game: silent boats and held boats.
+//! Faults of agents and links during a game: silent or held boats.
 
 use super::Contest;
 use primitives::{SimTime, VehicleId};
@@ -6,16 +6,15 @@ use rules::Event;
 use scenario::Scenario;
 use scenario::fault::{FaultKind, FaultSpan, fault_spans};
 
-/// Fault spans of a vehicle's agent and link in this game.
 pub(super) fn of(scenario: &Scenario, vehicle: VehicleId) -> Vec<FaultSpan> {
     let name = &scenario.vehicles[vehicle.index()].name;
     let spans = fault_spans(&scenario.faults, (vehicle, name), &scenario.seeds(), scenario.rules.time_limit);
-    // Faults of sensors and thrusters belong to the world. Spans follow from the seed before the
-    // game, so a snapshot contains none and processes agree.
+    // Faults of sensors and thrusters belong to the world. The spans follow from the seed before
+    // the game, so a snapshot contains none and processes agree.
     spans.into_iter().filter(|span| matches!(span.kind, FaultKind::AgentLost | FaultKind::LinkLost)).collect()
 }
 
-/// Whether a fault currently silences a vehicle's agent or link.
+/// Whether a fault silences a vehicle's agent or link at `now`.
 pub(super) fn is_silent(faults: &[FaultSpan], now: SimTime) -> bool {
     faults.iter().any(|span| span.is_on(now))
 }
@@ -26,8 +25,8 @@ impl Contest {
         is_silent(&self.faults[vehicle.index()], self.now())
     }
 
-    /// Applies agent faults that start or end in this tick, with an event each: boats whose agents
-    /// die hold.
+    /// Starts and ends the agent faults of this tick, with an event each. Boats whose agents die
+    /// hold.
     pub(super) fn begin_and_end_faults(&mut self) {
         let (now, tick) = (self.now(), self.scenario.tick);
         for i in 0..self.faults.len() {
@@ -36,7 +35,7 @@ impl Contest {
             }
             let is_on =
                 |at: SimTime| self.faults[i].iter().any(|span| span.kind == FaultKind::AgentLost && span.is_on(at));
-            // Computed from the previous tick instead of stored: a restored game must log the same
+            // Derived from the previous tick instead of stored: a restored game must log the same
             // events.
             let (was, is) = (now.0 >= tick.0 && is_on(now - tick), is_on(now));
             if is {

@@ -1,26 +1,26 @@
-//! The reason why a boat holds.
+//! Why a boat holds.
 
 use super::Contest;
 use messages::Order;
 use primitives::VehicleId;
 use rules::Directive;
 
-/// The reason why a boat holds. If several apply, the first in this list counts.
+/// Why a boat holds. If several causes apply, the first in this list counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HoldCause {
-    /// An operator stopped all boats, until release.
+    /// An operator has stopped all boats until release.
     EStopped,
-    /// An operator halted all boats for now.
+    /// An operator has halted all boats for now.
     Halted,
-    /// A real boat has had no fix for too long.
+    /// A real boat has been without a fix for too long.
     NavLost,
-    /// The agent of a real boat is lost.
+    /// A real boat's agent is lost.
     AgentLost,
-    /// A real boat in a game that is over.
+    /// The game of a real boat is over.
     GameOver,
     /// The newest order of a real boat answers a picture that is too old.
     OrderExpired,
-    /// The rules require it: the boat is out of action, or out of play for good.
+    /// The rules require it: the boat is out of action or permanently out of play.
     Rules,
     /// The order in force is to hold: the agent ordered it, or the last order was refused, has
     /// expired, was recalled, or is so old that the boat's own watchdog stopped it.
@@ -41,7 +41,7 @@ impl Contest {
         })
     }
 
-    /// Why a vehicle holds regardless of rules and agent.
+    /// Why a vehicle holds regardless of rules and agent, if it does.
     pub(super) fn stop_cause(&self, i: usize) -> Option<HoldCause> {
         if self.state.e_stopped {
             return Some(HoldCause::EStopped);
@@ -49,7 +49,7 @@ impl Contest {
         if self.state.halted {
             return Some(HoldCause::Halted);
         }
-        // A real boat moves only while it is supervised.
+        // A real boat moves only under supervision.
         let track = self.state.tracks[i].as_ref()?;
         if track.is_lost(self.now()) {
             return Some(HoldCause::NavLost);

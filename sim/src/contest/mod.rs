@@ -1,9 +1,9 @@
-//! A running game: the world, the referee, the orders in force, and all events.
+//! A running game: the world, the referee, the orders in force and all events.
 //!
-//! One decision consists of [`Contest::pictures`] to the agents, [`Contest::order`] from them, and
-//! [`Contest::advance`]. The network node and the in-process arena do only that, so a game has the
-//! same bytes in both. The world is physics alone: [`Contest::effective_command`] decides what a
-//! boat does in a tick.
+//! A decision consists of [`Contest::pictures`] to the agents, [`Contest::order`] from them, and
+//! [`Contest::advance`]. The network node and the in-process arena do nothing else, so a game has
+//! the same bytes in both. The world is physics alone; [`Contest::effective_command`] decides what
+//! a boat does in a tick.
 
 mod ask;
 mod faults;
@@ -37,27 +37,27 @@ use scenario::{Scenario, Source};
 use state::{ContestState, OrderInForce};
 use std::sync::Arc;
 
-/// A running game. A copy continues independently.
+/// A running game. A clone continues independently.
 #[derive(Clone)]
 pub struct Contest {
     scenario: Arc<Scenario>,
     referee: Referee,
-    /// Time without an order after which each vehicle's thrusters stop.
+    /// By vehicle index: time without an order after which the thrusters stop.
     watchdogs: Vec<Option<SimTime>>,
     world: World,
     radio: Option<Radio>,
-    /// Fault spans of agent and link, by vehicle index.
+    /// By vehicle index: fault spans of agent and link.
     faults: Vec<Vec<FaultSpan>>,
     sightings: Option<Sightings>,
     state: ContestState,
     work: Work,
     /// Identifies the game in snapshots.
     scenario_mark: u64,
-    /// Inputs since the last request, if they are kept.
+    /// Inputs since the last request, if kept.
     given: Option<Vec<Input>>,
 }
 
-/// Memory reused every tick; carries no state between ticks.
+/// Memory reused every tick, without state between ticks.
 #[derive(Clone, Default)]
 struct Work {
     commands: Vec<Order>,
@@ -68,10 +68,10 @@ struct Work {
 }
 
 impl Contest {
-    /// The game of `scenario` with this seed, at its start.
+    /// The game of `scenario` with this seed, before its first tick.
     ///
     /// # Errors
-    /// [`NoStart`] if the boats do not fit into their spawn area or the randomised values are
+    /// [`NoStart`] if the boats do not fit into their spawn area, or the randomised values are
     /// inconsistent.
     pub fn new(scenario: &Scenario, seed: u64) -> Result<Contest, NoStart> {
         let scenario = scenario.of_seed(seed)?;
@@ -157,11 +157,11 @@ impl Contest {
     }
 
     /// Each team's picture for the open decision, by team index. Repeated calls return the same.
-    /// Each event is in the pictures of one decision.
+    /// Each event is in the pictures of exactly one decision.
     pub fn pictures(&mut self) -> &[Picture] {
         if self.state.pictured_for != Some(self.state.decision) {
-            // Built once per decision, however often requested: building draws noise and reads
-            // events, and an agent that receives a picture twice must get the same bytes.
+            // Built once per decision, because building draws noise and reads events: an agent that
+            // receives a picture twice must get the same bytes.
             self.state.pictured_for = Some(self.state.decision);
             self.note(Input::Pictured);
             self.gather();
@@ -182,7 +182,7 @@ impl Contest {
         &self.state.pictures
     }
 
-    /// The picture of a vehicle's team, last built by [`Contest::pictures`].
+    /// The picture of a vehicle's team last built by [`Contest::pictures`].
     #[must_use]
     pub fn picture_of(&self, vehicle: VehicleId) -> &Picture {
         &self.state.pictures[self.scenario.team_of(vehicle).index()]
@@ -201,7 +201,7 @@ impl Contest {
         frame
     }
 
-    /// From now on, keeps inputs for [`Contest::take_inputs`].
+    /// Keeps inputs from now on, for [`Contest::take_inputs`].
     pub fn keep_inputs(&mut self) {
         self.given.get_or_insert_default();
     }
@@ -217,7 +217,7 @@ impl Contest {
         }
     }
 
-    /// Applies a recorded input. An input that was refused in the recording is refused again.
+    /// Applies a recorded input. One that was refused in the recording is refused again.
     pub fn give(&mut self, input: Input) {
         match input {
             Input::Pictured => drop(self.pictures()),
@@ -228,17 +228,17 @@ impl Contest {
             Input::Reported { vehicle, nav, fix_at, valid } => drop(self.report(vehicle, nav, fix_at, valid)),
             Input::EStopped(stopped) => self.e_stop(stopped),
             Input::Halted(halted) => self.halt(halted),
-            // In recorded order with all other inputs: on replay, the order of inputs and ticks
+            // In recorded order with all other inputs: in a replay, the order of inputs and ticks
             // must not depend on clocks.
             Input::Played => self.advance(),
         }
     }
 
     /// Updates a real boat's navigation at `fix_at`, at most a decision ahead of the game, because
-    /// reports arrive while a decision is open. A report that is not `valid` changes nothing.
+    /// reports arrive while a decision is open. A report that is not `valid` changes no position.
     ///
     /// # Errors
-    /// [`BadReport`] for implausible numbers and for a simulated boat; nothing changes then.
+    /// [`BadReport`] for implausible numbers and simulated boats; nothing changes then.
     pub fn report(&mut self, vehicle: VehicleId, nav: Nav, fix_at: SimTime, valid: bool) -> Result<(), BadReport> {
         let now = self.now();
         let track = self.state.tracks[vehicle.index()].as_mut().ok_or(BadReport::Simulated)?;
@@ -253,14 +253,14 @@ impl Contest {
         Ok(())
     }
 
-    /// Whether a boat's position is or was known: for a real boat from a report, for a simulated
-    /// one always.
+    /// Whether a boat's position has ever been known: for a real boat from a report, for a
+    /// simulated one always.
     #[must_use]
     pub fn has_position(&self, vehicle: VehicleId) -> bool {
         self.state.tracks[vehicle.index()].as_ref().is_none_or(Track::has_fix)
     }
 
-    /// Marks real boats without a fix for too long as lost; they stay at rest.
+    /// Marks real boats without a recent fix as lost; they stay at rest.
     fn watch_real_boats(&mut self) {
         let now = self.now();
         for i in 0..self.state.tracks.len() {
@@ -275,7 +275,7 @@ impl Contest {
         }
     }
 
-    /// Boats observe and report.
+    /// Updates what is known ashore from the boats' reports and sightings.
     fn gather(&mut self) {
         let Contest { scenario, world, radio, sightings, state, faults, .. } = self;
         let ContestState { standing, decision, known, tracks, .. } = state;
@@ -286,7 +286,7 @@ impl Contest {
             sightings.record_truth(decision, oldest, (0..tracks.len()).map(|i| scene.contact(i)));
         }
         for (i, (known, track)) in known.iter_mut().zip(tracks).enumerate() {
-            // Without a report from the boat, its data stay unknown.
+            // Until a real boat reports, its data stay unknown.
             if faults::is_silent(&faults[i], now) {
                 continue;
             }
@@ -315,7 +315,7 @@ impl Contest {
         }
     }
 
-    /// Marks a vehicle's agent as lost, with an event; the vehicle holds as by [`Contest::hold`].
+    /// Marks a vehicle's agent as lost, with an event; the vehicle holds, as by [`Contest::hold`].
     /// No effect if it is already lost.
     pub fn lose_agent(&mut self, vehicle: VehicleId) {
         if !std::mem::replace(&mut self.state.agent_lost[vehicle.index()], true) {
@@ -325,8 +325,7 @@ impl Contest {
         }
     }
 
-    /// Marks a vehicle's agent as back; messages sent before do not arrive. No effect if it was not
-    /// lost.
+    /// Marks a lost agent as back; earlier messages do not arrive. No effect if it was not lost.
     pub fn regain_agent(&mut self, vehicle: VehicleId) {
         if std::mem::replace(&mut self.state.agent_lost[vehicle.index()], false) {
             self.note(Input::AgentBack(vehicle));
@@ -343,7 +342,7 @@ impl Contest {
         }
     }
 
-    /// Makes all boats hold for now, or ends that hold (not an E-stop), with an event if the state
+    /// Makes all boats hold for now, or ends that (not an E-stop), with an event if the state
     /// changes.
     pub fn halt(&mut self, halted: bool) {
         if std::mem::replace(&mut self.state.halted, halted) != halted {
@@ -354,8 +353,8 @@ impl Contest {
 
     /// Advances to the next decision or the end of the game.
     pub fn advance(&mut self) {
-        // Once per decision and before any tick: an order that expired in the middle would make a
-        // game depend on when it was checked.
+        // Once per decision, before any tick: if orders expired within a decision, a game would
+        // depend on when this is checked.
         self.expire_orders();
         self.hear_requests();
         for _ in 0..self.scenario.ticks_per_decision {
@@ -378,8 +377,8 @@ impl Contest {
         self.assert_sound();
     }
 
-    /// Collects the boats' requests to the referee until the next decision, from the last pictures
-    /// of their teams.
+    /// Collects the boats' requests to the referee for this decision, by their teams' last
+    /// pictures.
     fn hear_requests(&mut self) {
         let Contest { scenario, state, work: Work { asks, .. }, .. } = self;
         if scenario.rules.tags_and_grabs == Acting::Automatic {
@@ -392,8 +391,8 @@ impl Contest {
         }
     }
 
-    /// One tick: boats move, the referee looks and boats are set back; sensors are read if a
-    /// decision is next.
+    /// Plays one tick: boats move, the referee acts and boats are set back. Before a decision,
+    /// sensors are read.
     fn step(&mut self) {
         self.update_stations();
         let mut commands = std::mem::take(&mut self.work.commands);
@@ -412,7 +411,7 @@ impl Contest {
         legs.clear();
         legs.extend((0..commands.len()).map(|i| world.leg(VehicleId::at(i))));
         referee.advance(standing, notes, &Look { legs, asks, near: world.pairs(), now }, events);
-        // After the referee has looked: otherwise it would never see a boat enter the circle.
+        // After the referee, which would otherwise never see a boat enter the circle.
         world.set_back(|vehicle, at| referee.keepout(standing, vehicle, at));
         let tick = world.state().tick;
         // Only before decisions, because nothing reads the sensors in between.
@@ -423,7 +422,7 @@ impl Contest {
         self.work.commands = commands;
     }
 
-    /// The current or final outcome.
+    /// The outcome so far.
     ///
     /// # Panics
     /// If the score differs from the sum over the events.

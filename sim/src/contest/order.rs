@@ -1,4 +1,4 @@
-//! Orders: received, delivered, expired, and the effect of the rules on the order in force.
+//! Orders: how they arrive and expire, and the effect of the rules on the order in force.
 
 use super::Contest;
 use super::state::OrderInForce;
@@ -9,24 +9,24 @@ use primitives::{Ned, SimTime, VehicleId};
 use rules::Directive;
 use scenario::boat::Hold;
 
-/// Radius within which a station-keeping boat rests, m ...
+/// Radius within which a station-keeping boat rests, m.
 // Within the noise of a satellite receiver: with a smaller radius a boat would never rest.
 const STATION_RADIUS_M: f64 = 2.0;
-/// ... and return speed per distance beyond it, 1/s.
+/// Return speed of a station-keeping boat per distance beyond that radius, 1/s.
 const STATION_RETURN_PER_S: f64 = 0.5;
 
 impl Contest {
     /// Sends an order to a vehicle. It is in force from its arrival until the next arrival or its
     /// expiry. A real boat receives it over a real link instead of the simulated one. `given_at` is
-    /// the time of the answered picture, and is limited to the present.
+    /// the time of the answered picture, limited to the present.
     ///
     /// # Errors
-    /// [`BadOrder`] for invalid numbers: the vehicle is ordered to hold.
+    /// [`BadOrder`] for invalid numbers; the vehicle then holds.
     pub fn order(&mut self, vehicle: VehicleId, order: Order, given_at: SimTime) -> Result<(), BadOrder> {
         let checked = order.check();
         let (order, i, now) = (checked.unwrap_or_default(), vehicle.index(), self.now());
-        // Otherwise an agent could claim to have answered a picture of the future, and its order
-        // would never expire.
+        // Otherwise an agent could claim to answer a future picture, and its order would never
+        // expire.
         let given_at = given_at.min(now);
         self.note(Input::Ordered { vehicle, order, given_at });
         // The input is already recorded: a replay applies the fault again.
@@ -45,7 +45,7 @@ impl Contest {
         checked.map(drop)
     }
 
-    /// The order in force for a vehicle: the last one that arrived and has not expired.
+    /// A vehicle's order in force: the last one that arrived and has not expired.
     #[must_use]
     pub fn order_in_force(&self, vehicle: VehicleId) -> Order {
         self.state.orders[vehicle.index()].order
@@ -57,11 +57,10 @@ impl Contest {
         self.state.orders[vehicle.index()].given_at
     }
 
-    /// The effective command of a vehicle: its order in force, as modified by rules and operators.
-    /// A boat driven home gets a course at the speed that the rules allow; a speed limit also
-    /// scales thrust. A real boat holds while its position or its agent is lost, after its order
-    /// has expired, and after the end of the game: whatever the rules require, it must be
-    /// supervised.
+    /// A vehicle's effective command: its order in force, as modified by rules and operators. A
+    /// boat driven home gets a course at the speed that the rules allow; a speed limit also scales
+    /// thrust. A real boat holds while its position or its agent is lost, after its order has
+    /// expired, and after the end of the game: whatever the rules require, it must be supervised.
     #[must_use]
     pub fn effective_command(&self, vehicle: VehicleId) -> Order {
         let i = vehicle.index();
@@ -101,8 +100,7 @@ impl Contest {
         }
     }
 
-    /// Sets the stations of station-keeping boats that start to hold, and clears those of the
-    /// others.
+    /// Sets the stations of station-keeping boats that start to hold, and clears all others.
     pub(super) fn update_stations(&mut self) {
         for i in 0..self.state.stations.len() {
             let vehicle = VehicleId::at(i);
@@ -115,8 +113,7 @@ impl Contest {
         }
     }
 
-    /// Makes a vehicle hold at once, whatever its order. Uses no radio, and cancels orders in
-    /// transit.
+    /// Makes a vehicle hold at once. Uses no radio, and cancels orders in transit.
     pub fn hold(&mut self, vehicle: VehicleId) {
         self.note(Input::Held(vehicle));
         self.hold_now(vehicle.index());
@@ -157,8 +154,8 @@ impl Contest {
             {
                 *in_force = OrderInForce { order, arrived_at: now, ..*in_force };
             }
-            // Like firmware, the boat's own watchdog counts from the last order that arrived; the
-            // time to live counts from the picture.
+            // Like firmware, the boat's watchdog counts from the last order that arrived; the time
+            // to live counts from the picture.
             if self.watchdogs[i].is_some_and(|limit| now > in_force.arrived_at + limit) {
                 in_force.order = Order::Hold;
             }
@@ -166,7 +163,7 @@ impl Contest {
     }
 }
 
-/// The order that keeps a boat at its station: hold near it, else a course to it.
+/// The order that keeps a boat at its station: hold near it, otherwise return to it.
 fn keeping_station(at: Ned, station: Ned, speed_max_m_s: f64) -> Order {
     let off_m = at.distance(station);
     if off_m <= STATION_RADIUS_M {

@@ -1,4 +1,4 @@
-//! Saves and restores the state of a contest as bytes.
+//! Saves and restores the state of a contest.
 
 use super::Contest;
 use super::state::ContestState;
@@ -9,20 +9,20 @@ use scenario::Scenario;
 use thiserror::Error;
 use xxhash_rust::xxh3;
 
-/// The start of a snapshot: name and layout version.
+/// Start of a snapshot: name and layout version.
 const MAGIC: [u8; 5] = *b"SQLC\x01";
 
-/// All changing state: boats and sea, the game, messages in transit, sightings.
+/// All changing state: boats and sea, game, messages in transit, sightings.
 type Parts = (State, ContestState, Option<RadioState>, Option<SightingState>);
 
 /// Why bytes are not a snapshot of this contest.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum RestoreError {
-    /// Not a snapshot, or of another layout.
+    /// Not a snapshot, or one with another layout.
     #[error("not a snapshot of this version of Squall")]
     NotASnapshot,
-    /// A snapshot of another scenario or seed, with a different sea.
-    #[error("a snapshot of another scenario, of another seed, or of other versions of its files")]
+    /// A snapshot of another scenario or seed.
+    #[error("a snapshot of another scenario or seed, or of other versions of its files")]
     OtherScenario,
     /// A truncated or modified snapshot.
     #[error("the snapshot is damaged")]
@@ -31,8 +31,8 @@ pub enum RestoreError {
 
 impl Contest {
     /// All changing state as bytes, marked with its game. A contest of the same game restored from
-    /// it continues like this one, to the last bit. The inputs kept for [`Contest::take_inputs`]
-    /// are not included.
+    /// it continues identically, to the last bit. Inputs kept for [`Contest::take_inputs`] are not
+    /// included.
     #[must_use]
     pub fn snapshot(&self) -> Vec<u8> {
         let (radio, sightings) = (self.radio.as_ref().map(Radio::state), self.sightings.as_ref().map(Sightings::state));
@@ -49,7 +49,7 @@ impl Contest {
     /// Restores the state from a snapshot of the same game, earlier or later.
     ///
     /// # Errors
-    /// [`RestoreError`] names the defect; the contest stays as it was.
+    /// [`RestoreError`]; the contest then stays as it was.
     pub fn restore(&mut self, snapshot: &[u8]) -> Result<(), RestoreError> {
         let rest = snapshot.strip_prefix(&MAGIC).ok_or(RestoreError::NotASnapshot)?;
         let (mark, rest) = rest.split_at_checked(8).ok_or(RestoreError::Damaged)?;
@@ -69,8 +69,8 @@ impl Contest {
         Ok(())
     }
 
-    /// A 128-bit hash over world, standing and all events. In games with radio links, limits of
-    /// sharing or command watchdogs, it also covers orders in force, messages in transit and
+    /// A 128-bit hash over world, standing and all events. In games with radio links, limits on
+    /// sharing or command watchdogs it also covers orders in force, messages in transit and
     /// contacts; with real boats, their fixes.
     #[must_use]
     pub fn digest(&self) -> u128 {
@@ -86,7 +86,7 @@ impl Contest {
             hash.update(&record.subject.to_le_bytes());
             hash.update(&record.object.to_le_bytes());
         }
-        // Only if present: digests of games without them stay as they were before radios were
+        // Only if present, so that digests of games without them stayed the same when radios were
         // added.
         if self.radio.is_some() || self.sightings.is_some() || self.watchdogs.iter().any(Option::is_some) {
             let in_force: Vec<_> = orders.iter().map(|held| held.order).collect();
@@ -108,5 +108,5 @@ pub(super) fn mark(scenario: &Scenario) -> u64 {
 }
 
 fn bytes(state: &impl serde::Serialize) -> Vec<u8> {
-    postcard::to_stdvec(state).expect("plain numbers always encode")
+    postcard::to_stdvec(state).expect("plain numbers can be encoded")
 }

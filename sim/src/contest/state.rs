@@ -1,4 +1,4 @@
-//! The changing state of a contest apart from its boats, and its invariants.
+//! The changing state of a contest without its boats, and its invariants.
 
 use super::Contest;
 use crate::external::Track;
@@ -22,12 +22,12 @@ pub(super) struct ContestState {
     pub(super) stations: Vec<Option<Ned>>,
     /// Whether each vehicle's agent is lost.
     pub(super) agent_lost: Vec<bool>,
-    /// Whether an operator has set the E-stop or a temporary hold.
+    /// Whether an operator has set the E-stop or a halt.
     pub(super) e_stopped: bool,
     pub(super) halted: bool,
     /// Tracks of the real boats, by vehicle index.
     pub(super) tracks: Vec<Option<Track>>,
-    /// Own boats as known ashore, as of the last pictures.
+    /// Own boats as known ashore in the last pictures.
     pub(super) known: Vec<OwnBoat>,
     pub(super) events: Vec<Logged>,
     /// Event position of the last pictures.
@@ -38,28 +38,28 @@ pub(super) struct ContestState {
     pub(super) pictures: Vec<Picture>,
 }
 
-/// The order in force for a vehicle.
+/// A vehicle's order in force.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct OrderInForce {
     pub(super) order: Order,
     /// Time of arrival.
     pub(super) arrived_at: SimTime,
-    /// Time of the picture that the newest order answers, arrived or in transit.
+    /// Time of the picture that the newest order answers, whether arrived or in transit.
     pub(super) given_at: SimTime,
 }
 
 impl Contest {
-    /// Checks invariants of world and game, once per decision.
+    /// Checks the invariants of world and game, once per decision.
     pub(super) fn assert_sound(&self) {
         let (world, standing) = (self.world.state(), &self.state.standing);
-        assert_eq!(world.now, self.scenario.tick * world.tick as i64, "time is ticks");
-        // The world quarantines boats with a non-finite state; one that gets past that is our bug,
+        assert_eq!(world.now, self.scenario.tick * world.tick as i64, "time is the number of ticks");
+        // The world quarantines boats with a non-finite state. One that gets past that is our bug,
         // and the game's result would be worthless.
-        assert!(world.boats.iter().all(|boat| boat.pose.at.is_finite()), "boats are somewhere");
+        assert!(world.boats.iter().all(|boat| boat.pose.at.is_finite()), "positions are finite");
         for (i, boat) in standing.vehicles.iter().enumerate() {
             let Some(flag) = boat.carrying else { continue };
             // Three rules interact here, and each could break it.
-            assert!(boat.in_play && !boat.tagged && !boat.outside, "vehicle {i} carries a flag");
+            assert!(boat.in_play && !boat.tagged && !boat.outside, "vehicle {i} carries a flag out of play");
             assert_eq!(
                 standing.flags[flag.index()].carrier,
                 Some(VehicleId::at(i)),
@@ -67,12 +67,16 @@ impl Contest {
             );
         }
         let carried = standing.flags.iter().filter(|flag| flag.carrier.is_some()).count();
-        assert_eq!(carried, standing.vehicles.iter().filter(|boat| boat.carrying.is_some()).count(), "flags carried");
+        assert_eq!(
+            carried,
+            standing.vehicles.iter().filter(|boat| boat.carrying.is_some()).count(),
+            "each flag has one carrier"
+        );
     }
 
     /// Checks that the score equals the sum over the events.
     pub(super) fn assert_score(&self) {
-        // Counted again from the events: referee and log must not diverge.
+        // Counted from the events, so that referee and log cannot diverge.
         let mut tally = Tally::new(self.scenario.vehicles.len());
         self.state.events.iter().for_each(|logged| tally.add(logged.event));
         let mut score = vec![0_u32; self.score().len()];
@@ -80,6 +84,6 @@ impl Contest {
             let team = &mut score[vehicle.team.index()];
             *team = team.saturating_add(self.scenario.rules.points.of(counts));
         }
-        assert_eq!(score, self.score(), "the score is what the events add up to");
+        assert_eq!(score, self.score(), "the score is the sum over the events");
     }
 }

@@ -1,11 +1,11 @@
-//! Accepts or refuses orders of agents. No network and no clock in here.
+//! Accepts or refuses agents' orders, without network and clock.
 
 use super::membership::Membership;
 use messages::refusal::{Refusal, Refusals};
 use messages::{Order, Orders};
 use primitives::VehicleId;
 
-/// Which orders are accepted in time.
+/// Which orders arrive in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Timing {
     /// Those for the open decision.
@@ -23,7 +23,7 @@ pub struct Accepted {
     pub back: Vec<VehicleId>,
 }
 
-/// Processes an agent's orders while `tick` is open.
+/// Handles an agent's orders while `tick` is open.
 pub fn accept(
     agents: &mut Membership,
     message: &Orders,
@@ -36,11 +36,11 @@ pub fn accept(
         refusals.count(Refusal::Ticket);
         return accepted;
     }
-    // A message with a valid ticket shows that the agent is present, in time or not.
+    // A valid ticket shows that the agent is present, in time or not.
     accepted.back = agents.welcome_back(message.ticket);
     let seq = message.stamp.seq;
-    // A duplicate: the sim repeats pictures and agents repeat answers, which makes acknowledgements
-    // unnecessary.
+    // A duplicate: the sim repeats pictures and agents repeat replies, which replaces
+    // acknowledgements.
     if own.iter().any(|vehicle| agents.has_taken(*vehicle, seq)) {
         return accepted;
     }
@@ -69,8 +69,8 @@ fn orders_for(own: &[VehicleId], message: &Orders, refusals: &mut Refusals) -> V
     }
     for vehicle in own {
         if !orders.iter().any(|(given, _)| given == vehicle) {
-            // It holds instead of continuing with the previous order: a mind that forgets a boat
-            // has a bug, and the result reports it.
+            // It holds instead of continuing its previous order: a mind that forgets a boat has a
+            // bug, and the result reports it.
             refusals.count(Refusal::Missing);
             orders.push((*vehicle, Order::Hold));
         }
@@ -113,8 +113,8 @@ mod tests {
         assert!(!agents.all_answered(0));
         take(&mut agents, &orders(2, 0, &[2]));
         assert!(agents.all_answered(0) && !agents.all_answered(1));
-        assert_eq!(take(&mut agents, &orders(2, 0, &[2])), 0, "an answer that comes twice is taken once");
-        assert_eq!(refusals.total(), 0, "and not refused");
+        assert_eq!(take(&mut agents, &orders(2, 0, &[2])), 0, "a duplicate counts once");
+        assert_eq!(refusals.total(), 0, "a duplicate is not refused");
     }
 
     #[test]
@@ -159,14 +159,14 @@ mod tests {
             accept(agents, message, (tick, Timing::Lockstep), &mut refusals)
         };
         assert_eq!(agents.gone("agent 0"), [VehicleId(0)]);
-        assert!(agents.all_answered(9), "nobody is waited for");
+        assert!(agents.all_answered(9), "no agent is awaited");
         let late = take(&mut agents, &orders(1, 0, &[0]), 9);
         assert_eq!((late.back, late.orders.len()), (vec![VehicleId(0)], 0));
-        assert!(!agents.all_answered(9), "it is waited for again");
+        assert!(!agents.all_answered(9), "the agent is awaited again");
         agents.give_up(9);
         assert_eq!(agents.join(&request(Role::Agent, "b", &["blue_one"]), 2, NOW), granted(2, &[0]));
-        assert_eq!(take(&mut agents, &orders(1, 9, &[0]), 9), Accepted::default(), "the vehicle is b's");
-        assert!(!agents.all_answered(9), "b is waited for, the other is not");
+        assert_eq!(take(&mut agents, &orders(1, 9, &[0]), 9), Accepted::default(), "the vehicle belongs to b");
+        assert!(!agents.all_answered(9), "only b is awaited");
         take(&mut agents, &orders(2, 9, &[0]), 9);
         assert!(agents.all_answered(9));
         assert_eq!(refusals, Refusals::from([(Refusal::WrongTick, 1), (Refusal::Ticket, 1)]));

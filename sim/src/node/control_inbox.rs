@@ -1,14 +1,14 @@
-//! Operator commands to the game: they precede all other messages, and no stop is ever lost.
+//! Operator commands to the game. They precede all other messages, and no stop is ever lost.
 
 use bus::Watched;
 use messages::Control;
 use messages::refusal::{Refusal, Refusals};
 use std::collections::VecDeque;
 
-/// Limit of waiting commands: more than people give between two reads of the sim.
+/// Maximum number of waiting commands: more than people give between two reads by the sim.
 const WAITING_MAX: usize = 64;
 
-/// An operator command; `Q` is a query that needs a reply.
+/// An operator command. `Q` is a query that needs a reply.
 #[derive(Debug, PartialEq)]
 pub(super) enum Command<Q> {
     /// A published stop, which needs no token.
@@ -17,10 +17,8 @@ pub(super) enum Command<Q> {
     Ask(Q),
 }
 
-/// The commands that wait for the sim.
 pub(super) struct ControlInbox<Q>(Watched<Waiting<Q>>);
 
-/// Waiting commands and counted refusals.
 struct Waiting<Q> {
     commands: VecDeque<Command<Q>>,
     refusals: Refusals,
@@ -33,11 +31,12 @@ impl<Q> Default for ControlInbox<Q> {
 }
 
 impl<Q> ControlInbox<Q> {
-    /// Adds a published command. Returns whether the sim should look.
+    /// Adds a published command. Returns whether the sim should read the inbox.
     pub(super) fn put_stop(&self, bytes: &[u8]) -> bool {
         let control = serde_json::from_slice::<Control>(bytes);
         self.0.visit(|waiting| match control {
-            // Publishing stops needs no token; all other commands must be queries with the token.
+            // Publishing needs no token for stops; all other commands must be queries with the
+            // token.
             Ok(control) if control.stops() => {
                 waiting.put_stop(control);
                 true
@@ -53,7 +52,7 @@ impl<Q> ControlInbox<Q> {
         })
     }
 
-    /// Adds a query if there is room. Returns whether there was.
+    /// Adds a query unless the inbox is full. Returns whether it was added.
     pub(super) fn put_query(&self, query: Q) -> bool {
         self.0.visit(|waiting| {
             let has_room = waiting.commands.len() < WAITING_MAX;
@@ -78,11 +77,11 @@ impl<Q> ControlInbox<Q> {
 }
 
 impl<Q> Waiting<Q> {
-    /// Adds a stop, unless it repeats the last command. If the inbox is full, the stop replaces the
-    /// commands that are not stops.
+    /// Adds a stop unless it repeats the last command. In a full inbox it replaces all commands
+    /// that are not stops.
     fn put_stop(&mut self, stop: Control) {
         let is_stop = |command: &Command<Q>, stop| matches!(command, Command::Stop(waiting) if *waiting == stop);
-        // Stops are repeated until they are answered: duplicates would only fill the inbox.
+        // Senders repeat stops until they get a reply; duplicates would only fill the inbox.
         if self.commands.back().is_some_and(|last| is_stop(last, stop)) {
             return;
         }
@@ -116,7 +115,7 @@ mod tests {
         let inbox = ControlInbox::default();
         assert!(send(&inbox, Control::EStop) && send(&inbox, Control::EStop) && inbox.put_query(1));
         assert!(send(&inbox, Control::EStop) && send(&inbox, Control::Halt) && inbox.put_query(1));
-        assert!(!send(&inbox, Control::Release) && !send(&inbox, Control::Stop), "those are asked for");
+        assert!(!send(&inbox, Control::Release) && !send(&inbox, Control::Stop), "they must be queries");
         assert!(!inbox.put_stop(b"ahoy") && !inbox.put_stop(b"\"e_stop"));
         let [e_stop, halt] = [Control::EStop, Control::Halt].map(Command::Stop);
         assert_eq!(all(&inbox), [Command::Stop(Control::EStop), Command::Ask(1), e_stop, halt, Command::Ask(1)]);
@@ -131,7 +130,7 @@ mod tests {
         assert!(send(&inbox, Control::EStop));
         assert_eq!(all(&inbox), [Command::Stop(Control::Halt), Command::Stop(Control::EStop)]);
         assert_eq!(inbox.refusals(), Refusals::from([(Refusal::Flood, 999)]));
-        // Nor is it filled by stops with queries between them: no release stays behind the stop
+        // Alternating stops and queries do not fill it either: no release stays behind the stop
         // that it ends.
         for i in 0..1000 {
             send(&inbox, if i % 2 == 0 { Control::EStop } else { Control::Halt });

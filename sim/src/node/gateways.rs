@@ -1,14 +1,14 @@
-//! Accepts or refuses reports of gateways. No network and no clock in here.
+//! Accepts or refuses gateways' reports, without network and clock.
 
 use super::membership::Membership;
 use messages::external::NavReport;
 use messages::refusal::{Refusal, Refusals};
 use primitives::SimTime;
 
-/// Limit of the age of a fix, one day: longer than any game.
+/// Maximum age of a fix, one day: longer than any game.
 const OLDEST: SimTime = SimTime(86_400_000_000_000);
 
-/// Checks a report that arrived at game time `now`; returns the time of its fix if accepted.
+/// Checks a report that arrived at game time `now`. Returns the time of its fix if accepted.
 pub fn accept(gateways: &mut Membership, report: &NavReport, now: SimTime, refusals: &mut Refusals) -> Option<SimTime> {
     let (vehicle, seq) = (report.vehicle, report.stamp.seq);
     let mut own = gateways.vehicles_of(report.ticket).peekable();
@@ -26,7 +26,7 @@ pub fn accept(gateways: &mut Membership, report: &NavReport, now: SimTime, refus
         drop(own);
         gateways.note_taken(vehicle, seq);
         gateways.welcome_back(report.ticket);
-        // The age is by the gateway's own clock. A fix time would require synchronised clocks.
+        // The age is by the gateway's own clock; a time of fix would require synchronised clocks.
         return Some(now - SimTime(report.age_ns).min(OLDEST));
     };
     refusals.count(refusal);
@@ -89,6 +89,6 @@ mod tests {
         gateways.gone("a");
         assert!(gateways.vacant().eq([VehicleId(0), VehicleId(2)]));
         assert!(accept(&mut gateways, &report(7, 3, 0), NOW, &mut Refusals::default()).is_some());
-        assert!(gateways.vacant().eq([VehicleId(2)]), "nobody had taken its boat");
+        assert!(gateways.vacant().eq([VehicleId(2)]), "no other node had taken its boat");
     }
 }

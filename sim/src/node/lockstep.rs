@@ -5,16 +5,15 @@ use super::{NodeError, ProgressMessage};
 use bus::clock;
 use std::time::{Duration, Instant};
 
-/// Time without an answer after which the pictures are sent again.
-// A link that was interrupted may have lost the picture or its answer, and both sides would wait
-// forever.
+/// Time without a reply after which the pictures are sent again.
+// An interrupted link may have lost the picture or its reply, and both sides would wait forever.
 const SEND_AGAIN: Duration = Duration::from_millis(250);
 
 /// Plays until the game is over or stopped.
 pub(super) fn play(server: &mut GameServer<'_>, tell: &mut dyn FnMut(ProgressMessage)) -> Result<(), NodeError> {
     let mut due = clock::now();
     while !server.contest.is_over() && !server.is_stopped() {
-        // Before sending the pictures: the recording of a decision is then complete even if the
+        // Before the pictures are sent: the recording of a decision is then complete even if the
         // game is killed while agents compute.
         server.record();
         server.send_pictures()?;
@@ -26,7 +25,7 @@ pub(super) fn play(server: &mut GameServer<'_>, tell: &mut dyn FnMut(ProgressMes
             gather(server, tell)?;
             due = clock::now();
         }
-        // Some agents have not answered: further answers are not late.
+        // Some agents have not replied: later replies are not late.
         if server.is_stopped() {
             break;
         }
@@ -39,7 +38,7 @@ pub(super) fn play(server: &mut GameServer<'_>, tell: &mut dyn FnMut(ProgressMes
     Ok(())
 }
 
-/// Waits until a decision's time has passed at the speed limit; returns the due time.
+/// Waits until a decision's time has passed at the speed limit. Returns the due time.
 fn keep_speed(
     server: &mut GameServer<'_>,
     due: Instant,
@@ -50,7 +49,7 @@ fn keep_speed(
     let now = clock::now();
     // Lost time is not made up.
     let due = (due + Duration::from_secs_f64(decision_s / speed)).max(now);
-    // The speed may change, or the game may be paused, during the wait.
+    // The speed may change, and the game may be paused, during the wait.
     while clock::now() < due && server.pacing.speed() == Some(speed) && !server.pacing.is_held() && !server.is_stopped()
     {
         server.listen(due.saturating_duration_since(clock::now()).min(Duration::from_millis(50)));
@@ -59,7 +58,7 @@ fn keep_speed(
     Ok(due.min(clock::now()))
 }
 
-/// Waits until all agents have answered the open decision; those that exceed the scenario's
+/// Waits until all agents have answered the open decision. Those that exceed the scenario's
 /// patience are lost.
 fn gather(server: &mut GameServer<'_>, tell: &mut dyn FnMut(ProgressMessage)) -> Result<(), NodeError> {
     let tick = server.contest.decision();
@@ -70,7 +69,7 @@ fn gather(server: &mut GameServer<'_>, tell: &mut dyn FnMut(ProgressMessage)) ->
     while !server.agents.all_answered(tick) && !server.is_stopped() {
         server.listen(Duration::from_millis(50));
         if server.time.worked().saturating_sub(since) >= patience {
-            // Drops all that have not answered at once: the next decision waits for none of them.
+            // All that have not replied, at once: the next decision waits for none of them.
             server.give_up(tick);
         } else if clock::since(sent) >= SEND_AGAIN {
             server.send_pictures()?;
@@ -78,7 +77,7 @@ fn gather(server: &mut GameServer<'_>, tell: &mut dyn FnMut(ProgressMessage)) ->
             sent = clock::now();
         }
     }
-    // Nodes that joined or left meanwhile, if the game waits for nobody.
+    // Handles nodes that joined or left meanwhile, if the game waits for none.
     server.listen(Duration::ZERO);
     Ok(())
 }

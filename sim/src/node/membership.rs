@@ -1,7 +1,7 @@
-//! Membership of a game: agents that decide for vehicles, and gateways that connect real boats. One
-//! list per role.
+//! Membership of a game: agents that decide for vehicles, and gateways that connect real boats,
+//! with one list per role.
 //!
-//! A joining node gets a ticket and sends it with every message. No network and no clock in here:
+//! A node that joins gets a ticket and sends it with every message. No network and no clock here:
 //! the server passes in messages and acts on the results.
 
 use messages::{JoinReply, JoinRequest, Role};
@@ -12,7 +12,7 @@ use scenario::{Scenario, Source};
 #[derive(Clone, Debug)]
 pub struct Membership {
     role: Role,
-    /// Places, by vehicle index.
+    /// By vehicle index.
     places: Vec<Place>,
 }
 
@@ -20,7 +20,7 @@ pub struct Membership {
 #[derive(Clone, Debug)]
 struct Place {
     name: String,
-    /// Whether it is available to this role: gateways connect only real boats.
+    /// Whether it is open to this role: gateways connect only real boats.
     is_open: bool,
     holder: Option<Holder>,
 }
@@ -30,7 +30,7 @@ struct Place {
 struct Holder {
     node: String,
     ticket: u64,
-    /// Whether it counts as present: it has not died or fallen silent.
+    /// Whether it counts as present: neither dead nor silent.
     is_present: bool,
     /// The sequence number of its newest accepted message.
     newest: Option<u64>,
@@ -54,11 +54,10 @@ impl Membership {
         Membership { role, places: places.collect() }
     }
 
-    /// Handles a join request at this time of the game. `ticket` is the ticket for the node if it
-    /// joins.
+    /// Handles a join request at this time of the game. `ticket` is the node's ticket if it joins.
     ///
-    /// A node that requests its own vehicles again gets them again, with the new ticket: the reply
-    /// was lost.
+    /// A node that requests its own vehicles again gets them with the new ticket: the reply was
+    /// lost.
     pub fn join(&mut self, request: &JoinRequest, ticket: u64, now: SimTime) -> JoinReply {
         let role = self.role;
         let refused = |reason: String| JoinReply::Refused { reason };
@@ -68,8 +67,7 @@ impl Membership {
             let (theirs, ours) = (&request.version, primitives::VERSION);
             return refused(format!("the {role} is Squall {theirs}, the sim is Squall {ours}: use the same version"));
         }
-        // A node must join for at least one vehicle: lockstep would wait for a node that has
-        // nothing to answer.
+        // A node must join for at least one vehicle: lockstep would wait for a node without any.
         if request.vehicles.is_empty() {
             return refused(format!("the {role} names no vehicle"));
         }
@@ -85,15 +83,14 @@ impl Membership {
             if place.present().is_some_and(|holder| holder.node != request.node) {
                 return JoinReply::Busy { vehicle: name.clone() };
             }
-            // A name given twice is a slip on the command line and would make the count of boats
-            // wrong.
+            // A repeated name is a typing error and would make the count of boats wrong.
             if vehicles.contains(&VehicleId::at(i)) {
                 return refused(format!("the {role} names {name:?} twice"));
             }
             vehicles.push(VehicleId::at(i));
         }
         for vehicle in &vehicles {
-            // A new ticket voids the old one, so that an agent presumed dead cannot steer alongside
+            // A new ticket voids the old one, so that an agent presumed dead cannot steer beside
             // its successor.
             let holder = Holder { node: request.node.clone(), ticket, is_present: true, newest: None };
             self.places[vehicle.index()].holder = Some(holder);
@@ -101,13 +98,12 @@ impl Membership {
         JoinReply::Granted { ticket, vehicles, now_ns: now }
     }
 
-    /// The vehicles that nodes can join for, in words.
     fn on_offer(&self) -> String {
         let names: Vec<&str> = self.open().map(|(_, place)| place.name.as_str()).collect();
         match (self.role, names.is_empty()) {
             (Role::Agent, _) => format!("there are {}", names.join(", ")),
-            (Role::Gateway, false) => format!("external is {}", names.join(", ")),
-            (Role::Gateway, true) => "no vehicle is external: the game has none, or is a rehearsal".to_owned(),
+            (Role::Gateway, false) => format!("the external vehicles are {}", names.join(", ")),
+            (Role::Gateway, true) => "no vehicle is external: the game has none or is a rehearsal".to_owned(),
         }
     }
 
@@ -120,18 +116,18 @@ impl Membership {
         places.filter_map(|(i, place)| Some((VehicleId::at(i), place.holder.as_mut()?)))
     }
 
-    /// The vehicles of the node with this ticket; empty if the ticket is unknown or void.
+    /// The vehicles of the node with this ticket. None if the ticket is unknown or void.
     pub(super) fn vehicles_of(&self, ticket: u64) -> impl Iterator<Item = VehicleId> {
         let holds = move |place: &Place| place.holder.as_ref().is_some_and(|holder| holder.ticket == ticket);
         self.open().filter(move |(_, place)| holds(place)).map(|(vehicle, _)| vehicle)
     }
 
-    /// The tickets of all nodes that hold a vehicle or may come back to it.
+    /// The tickets of all nodes that hold a vehicle or may return to it.
     pub(super) fn tickets(&self) -> impl Iterator<Item = u64> {
         self.places.iter().filter_map(|place| Some(place.holder.as_ref()?.ticket))
     }
 
-    /// Marks the node with this ticket as present; returns its vehicles that were lost and are
+    /// Marks the node with this ticket as present. Returns its vehicles that were lost and are
     /// back.
     pub(super) fn welcome_back(&mut self, ticket: u64) -> Vec<VehicleId> {
         let back = self.holders().filter(|(_, holder)| holder.ticket == ticket && !holder.is_present);
@@ -155,20 +151,20 @@ impl Membership {
         }
     }
 
-    /// Removes a node; returns its abandoned vehicles. It may come back to those that no other node
-    /// takes.
+    /// Removes a node. Returns its abandoned vehicles, to which it may return unless another node
+    /// takes them.
     pub fn gone(&mut self, node: &str) -> Vec<VehicleId> {
-        // Identified by the link that zenoh reports as gone, not by a liveliness token: anybody
-        // could show one in another's name.
+        // Identified by the link that zenoh reports as gone, not by a liveliness token, which
+        // anyone could show in another's name.
         self.lose(|holder| holder.node == node)
     }
 
-    /// Drops all nodes that have not answered `tick`; returns their abandoned vehicles.
+    /// Drops all nodes that have not answered `tick`. Returns their abandoned vehicles.
     pub fn give_up(&mut self, tick: u64) -> Vec<VehicleId> {
         self.lose(|holder| holder.newest.is_none_or(|newest| newest < tick))
     }
 
-    /// Drops the node that has this vehicle; returns all its abandoned vehicles.
+    /// Drops the node that has this vehicle. Returns all its abandoned vehicles.
     pub fn lose_holder_of(&mut self, vehicle: VehicleId) -> Vec<VehicleId> {
         let ticket = self.places[vehicle.index()].present().map(|holder| holder.ticket);
         self.lose(|holder| Some(holder.ticket) == ticket)
@@ -190,7 +186,7 @@ impl Membership {
         self.places.iter().filter_map(Place::present).all(answered)
     }
 
-    /// The available vehicles without a present node.
+    /// The open vehicles without a present node.
     pub fn vacant(&self) -> impl Iterator<Item = VehicleId> {
         self.open().filter(|(_, place)| place.present().is_none()).map(|(vehicle, _)| vehicle)
     }
@@ -207,10 +203,10 @@ pub(super) mod tests {
     use super::*;
     use std::path::Path;
 
-    /// Time of the game at which all nodes join.
+    /// Game time at which all nodes join.
     pub(in super::super) const NOW: SimTime = SimTime(100);
 
-    /// A game of blue one, blue two, red one and red two; with `is_mixed`, blue one and red one are
+    /// A game of blue one, blue two, red one and red two. With `is_mixed`, blue one and red one are
     /// real boats.
     pub(in super::super) fn membership(role: Role, is_mixed: bool) -> Membership {
         let name = if is_mixed { "mixed_2v2" } else { "pav01_vs_pav01" };
@@ -261,14 +257,14 @@ pub(super) mod tests {
             let mut all = membership(role, true);
             all.join(&request(role, "a", &["blue_one"]), 1, NOW);
             all.gone("a");
-            assert_eq!(all.welcome_back(1), [VehicleId(0)], "nobody has taken it");
+            assert_eq!(all.welcome_back(1), [VehicleId(0)], "no other node has taken it");
             let busy = JoinReply::Busy { vehicle: "blue_one".to_owned() };
             assert_eq!(all.join(&request(role, "b", &["blue_one"]), 2, NOW), busy);
             all.note_taken(VehicleId(0), 5);
             assert!(all.has_taken(VehicleId(0), 5) && !all.has_taken(VehicleId(0), 6));
-            assert_eq!(all.join(&request(role, "a", &["blue_one"]), 3, NOW), granted(3, &[0]), "the answer was lost");
+            assert_eq!(all.join(&request(role, "a", &["blue_one"]), 3, NOW), granted(3, &[0]), "the reply was lost");
             assert!(all.vehicles_of(1).next().is_none(), "the newer ticket counts");
-            assert!(!all.has_taken(VehicleId(0), 0), "and its messages count anew");
+            assert!(!all.has_taken(VehicleId(0), 0), "its messages are counted from zero");
         }
     }
 
@@ -280,7 +276,7 @@ pub(super) mod tests {
         assert!(!all.all_answered(0));
         all.note_taken(VehicleId(2), 0);
         assert_eq!(all.give_up(0), [VehicleId(0), VehicleId(3)]);
-        assert!(all.all_answered(0) && !all.all_answered(1), "who is lost is not waited for");
+        assert!(all.all_answered(0) && !all.all_answered(1), "a lost node is not awaited");
         all.welcome_back(1);
         assert_eq!(all.lose_holder_of(VehicleId(3)), [VehicleId(0), VehicleId(3)]);
         assert_eq!((all.lose_holder_of(VehicleId(3)), all.lose_holder_of(VehicleId(1))), (vec![], vec![]));
@@ -293,12 +289,17 @@ pub(super) mod tests {
             (Role::Agent, true, &["green_one"], "there are blue_one, blue_two, red_one, red_two"),
             (Role::Agent, true, &["blue_one", "blue_one"], "twice"),
             (Role::Gateway, true, &[], "the gateway names no vehicle"),
-            (Role::Gateway, true, &["green_one"], "no vehicle \"green_one\"; external is blue_one, red_one"),
+            (
+                Role::Gateway,
+                true,
+                &["green_one"],
+                "no vehicle \"green_one\"; the external vehicles are blue_one, red_one",
+            ),
             (
                 Role::Gateway,
                 true,
                 &["blue_one", "blue_two"],
-                "blue_two is simulated in this game; external is blue_one,",
+                "blue_two is simulated in this game; the external vehicles are blue_one,",
             ),
             (Role::Gateway, true, &["blue_one", "blue_one"], "twice"),
             (Role::Gateway, false, &["blue_one"], "or is a rehearsal"),

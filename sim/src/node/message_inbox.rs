@@ -1,5 +1,5 @@
-//! Messages of other nodes to the game. Every sender has a share of the room, which no other sender
-//! can use up.
+//! Messages from other nodes to the game. Every sender has a share of the space that no other
+//! sender can use up.
 
 use super::subscriptions::Incoming;
 use bus::Watched;
@@ -9,12 +9,12 @@ use serde::de::DeserializeOwned;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::time::Duration;
 
-/// The sender of a message, for the purpose of sharing the room.
+/// The sender of a message, for sharing the space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Sender {
     /// The node with this ticket.
     Member(u64),
-    /// The gateway with this ticket, for its reports to other nodes.
+    /// The gateway with this ticket, with reports for other nodes.
     Reporting(u64),
     /// Nodes that request to join.
     Joining,
@@ -22,23 +22,23 @@ pub(super) enum Sender {
     Recorded(usize),
     /// The network, which reports lost nodes.
     Network,
-    /// Other inboxes, which announce that they have content.
+    /// Other inboxes that have messages.
     Inboxes,
 }
 
 impl Sender {
-    /// Limit of waiting messages: more than arrive between two reads of the sim.
+    /// Maximum number of waiting messages: more than arrive between two reads by the sim.
     fn share(self) -> usize {
         match self {
-            // Shares by topic or by link would need no tickets, but anybody can publish on any
-            // number of topics, over any number of links.
+            // Shares by topic or by link would need no tickets, but anyone can publish on any
+            // number of topics over any number of links.
             Sender::Member(_) => 128,
-            // This includes every byte between a gateway and its boat.
+            // Includes every byte between a gateway and its boat.
             Sender::Reporting(_) => 2048,
             Sender::Joining => 64,
             Sender::Recorded(_) => 2048,
             Sender::Network => 1024,
-            // One look reads all of them.
+            // One notification reads all of them.
             Sender::Inboxes => 1,
         }
     }
@@ -72,12 +72,12 @@ impl MessageInbox {
         self.gate.visit(|gate| gate.tickets = tickets);
     }
 
-    /// Decodes a message. Invalid ones are counted and take no room.
+    /// Decodes a message. Invalid ones are counted and take no space.
     pub(super) fn decode<M: Message + DeserializeOwned>(&self, bytes: &[u8]) -> Option<M> {
         self.gate.visit(|gate| gate.refusals.decode(bytes))
     }
 
-    /// Adds a message if its sender is entitled to and has room left.
+    /// Adds a message if its sender may send it and has space left.
     pub(super) fn push(&self, message: Incoming) {
         let sender = message.sender();
         if let Sender::Member(ticket) | Sender::Reporting(ticket) = sender
@@ -94,24 +94,22 @@ impl MessageInbox {
             }
             has_room
         });
-        // A look without room is no loss, because another one is already waiting.
+        // A notification without space is no loss, because another one is already waiting.
         if !has_room && sender != Sender::Inboxes {
             self.refuse(Refusal::Flood);
         }
     }
 
-    /// Counts a refused message.
     pub(super) fn refuse(&self, refusal: Refusal) {
         self.gate.visit(|gate| gate.refusals.count(refusal));
     }
 
-    /// The next message, if one arrives within `limit`.
     pub(super) fn next_within(&self, limit: Duration) -> Option<Incoming> {
         self.waiting.wait(limit, |waiting| !waiting.messages.is_empty());
         self.take_now()
     }
 
-    /// The next message, if there is one.
+    /// The next message, if any.
     pub(super) fn take_now(&self) -> Option<Incoming> {
         self.waiting.visit(|waiting| {
             let (sender, message) = waiting.messages.pop_front()?;
@@ -169,7 +167,7 @@ mod tests {
         assert_eq!(got.iter().filter(|sender| **sender == Sender::Member(7)).count(), share);
         assert_eq!(got.iter().filter(|sender| **sender == Sender::Inboxes).count(), 1);
         assert!(got.ends_with(&[Sender::Member(8), Sender::Recorded(1), Sender::Network]), "{got:?}");
-        // Reading makes room.
+        // Reading frees space.
         inbox.push(orders(7));
         assert_eq!(senders(&inbox), [Sender::Member(7)]);
     }
@@ -181,7 +179,7 @@ mod tests {
         assert!(inbox.decode::<Orders>(b"ahoy").is_none());
         assert_eq!(senders(&inbox), [Sender::Member(7)]);
         assert_eq!(inbox.refusals(), Refusals::from([(Refusal::Ticket, 99_999), (Refusal::Garbage, 1)]));
-        // A node that joins anew has a new ticket, and the old one is void.
+        // A node that rejoins has a new ticket, and the old one is void.
         inbox.accept_tickets([9].into());
         [orders(7), orders(9)].into_iter().for_each(|message| inbox.push(message));
         assert_eq!(senders(&inbox), [Sender::Member(9)]);

@@ -1,8 +1,7 @@
-//! The sim on the network: it lets nodes join, paces the game and publishes it.
+//! The sim on the network: lets nodes join, paces the game and publishes it.
 //!
-//! [`serve`] plays one game from the first join to the last frame. All decisions are made in
-//! [`Contest`], [`membership`], [`agents`] and [`gateways`]; this module has the sockets and the
-//! clocks.
+//! [`serve`] plays one game from the first join to the last frame. [`Contest`], [`membership`],
+//! [`agents`] and [`gateways`] make all decisions; this module has the sockets and the clocks.
 
 pub mod agents;
 mod control_inbox;
@@ -36,27 +35,26 @@ use thiserror::Error;
 /// The pace of a game.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pace {
-    /// Every decision waits for every agent: as fast as the slowest, and reproducible.
+    /// Every decision waits for every agent: as fast as the slowest agent, and reproducible.
     Lockstep,
-    /// Follows the clock times this factor, and waits for nobody.
+    /// Follows the clock times this factor and waits for no agent.
     Realtime {
         /// Simulated seconds per second.
         factor: f64,
     },
 }
 
-/// Settings of a sim node in addition to the scenario.
+/// Settings of a sim node besides the scenario.
 pub struct Settings {
     /// The game's name on the network.
     pub game: GameName,
     /// The network endpoints.
     pub net: Net,
-    /// How to pace the game.
+    /// The pace of the game.
     pub pace: Pace,
-    /// Time to wait for agents, and for gateways of real boats, before starting without the missing
-    /// ones.
+    /// How long to wait for agents, and for gateways of real boats, before starting without them.
     pub join_limit: Duration,
-    /// In lockstep: limit of simulated seconds per second, until an operator changes it.
+    /// In lockstep: maximum simulated seconds per second, until an operator changes it.
     pub speed: Option<f64>,
     /// Set externally to end the game early.
     pub stop: Arc<AtomicBool>,
@@ -77,7 +75,7 @@ impl std::fmt::Display for Pace {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Pace::Lockstep => f.write_str("lockstep"),
-            // In the form that is parsed again: a recording's pace can be passed to another run.
+            // In a form that can be parsed: a recording's pace can be passed to another run.
             Pace::Realtime { factor } if *factor == 1.0 => f.write_str("realtime"),
             Pace::Realtime { factor } => write!(f, "{factor}x"),
         }
@@ -87,7 +85,8 @@ impl std::fmt::Display for Pace {
 impl std::str::FromStr for Pace {
     type Err = String;
     fn from_str(text: &str) -> Result<Pace, String> {
-        let wrong = || format!("pace {text:?} is not lockstep, realtime, or a factor from 0.01x to 1000x such as 4x");
+        let wrong =
+            || format!("pace is {text:?}, expected lockstep, realtime, or a factor from 0.01x to 1000x such as 4x");
         match text {
             "lockstep" => Ok(Pace::Lockstep),
             "realtime" => Ok(Pace::Realtime { factor: 1.0 }),
@@ -99,11 +98,11 @@ impl std::str::FromStr for Pace {
     }
 }
 
-/// Serves the game of `scenario` with this seed and plays it to its end. `recorder` records it.
+/// Serves the game of `scenario` with this seed to its end. `recorder` records it.
 ///
 /// # Errors
-/// [`NodeError`] if the boats do not fit on the field, the network fails, or there are real boats
-/// in lockstep, because they cannot wait.
+/// [`NodeError`] if the boats do not fit on the field, the network fails, or a lockstep game has real
+/// boats, which cannot wait.
 pub fn serve(
     scenario: &Scenario,
     seed: u64,
@@ -112,18 +111,17 @@ pub fn serve(
     tell: &mut dyn FnMut(ProgressMessage),
 ) -> Result<Report, NodeError> {
     if settings.pace == Pace::Lockstep {
-        // A real boat does not wait for agents to compute.
+        // A real boat does not wait while agents compute.
         scenario.has_no_real_boats().map_err(NoStart::from)?;
     }
-    // Before the hub opens: a game whose boats do not fit is refused before any node can join.
+    // Before the hub opens: a game whose boats do not fit is refused before any node joins.
     let contest = Contest::new(scenario, seed)?;
     let mut server = GameServer::open(contest, settings, recorder)?;
     tell(ProgressMessage::Open {
         game: settings.game.as_str().to_owned(),
         endpoint: settings.net.local_endpoint().unwrap_or_default(),
     });
-    // Simulated time starts when all are present: the start-up time of programs is not part of a
-    // game.
+    // Simulated time starts when all are present: the start-up of programs is not part of a game.
     server.wait_for_everybody(settings.join_limit, tell)?;
     tell(ProgressMessage::Started);
     let started = clock::now();
@@ -133,7 +131,7 @@ pub fn serve(
     }
     let cut_short = !server.contest.is_over();
     let wall_s = clock::since(started).as_secs_f64();
-    // The result is final before the agents leave, because their leaving is not part of the game.
+    // The result is final before the agents leave, because leaving is not part of the game.
     let outcome = server.contest.outcome();
     std::mem::take(&mut server.reporter).rest(&outcome, tell);
     server.shut_down()?;

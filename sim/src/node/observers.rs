@@ -1,4 +1,4 @@
-//! The sim's answers to observers, and the topics it subscribes to only for the recorder.
+//! The sim's replies to observers, and the topics subscribed to only for the recorder.
 
 use crate::contest::Contest;
 use messages::{Message, PolicyProposal, Say};
@@ -12,11 +12,11 @@ pub(super) fn water_json(contest: &Contest) -> Vec<u8> {
     serde_json::to_vec(&contest.world().sea().water()).expect("waves are JSON")
 }
 
-/// Limit of events in an answer: no link carries more than a megabyte at once, and nobody waits for
-/// it.
+/// Maximum number of events in a reply: no link carries more than a megabyte at once, and no
+/// observer waits for it.
 const EVENTS_MAX: usize = 5000;
 
-/// The events so far, as JSON; only the last ones if there are many.
+/// The events so far, as JSON; the last ones if there are too many.
 pub(super) fn events_json(contest: &Contest) -> Vec<u8> {
     let (scenario, all) = (contest.scenario(), contest.events());
     let events = all[all.len().saturating_sub(EVENTS_MAX)..].iter().map(|logged| EventOutcome::new(scenario, logged));
@@ -26,15 +26,15 @@ pub(super) fn events_json(contest: &Contest) -> Vec<u8> {
 /// A topic that is subscribed to only for the recorder.
 pub(super) struct RecordedTopic {
     pub(super) topic: String,
-    /// The schema of CDR messages; none for JSON.
+    /// The schema of CDR messages; `None` for JSON.
     pub(super) schema: Option<&'static str>,
-    /// Validates the bytes, so that every recorded message can be read.
+    /// Validates messages, so that every recorded one can be read.
     pub(super) is_sound: fn(&[u8]) -> bool,
 }
 
 impl RecordedTopic {
     fn cdr<M: Message + DeserializeOwned>(topic: String) -> RecordedTopic {
-        // Checked before recording: a reader must not fail on a message published by a stranger.
+        // Checked before recording: a reader must not fail on a stranger's message.
         RecordedTopic { topic, schema: Some(M::SCHEMA), is_sound: |bytes| codec::decode::<M>(bytes).is_ok() }
     }
 }

@@ -1,17 +1,16 @@
-//! Pause and speed of a running game, as controlled by operators.
+//! Pause and speed of a running game, controlled by operators.
 
 use messages::Control;
 
-/// Pause and speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pacing {
     is_paused: bool,
-    /// Decisions still to be played while paused.
+    /// Decisions still to play while paused.
     steps: u32,
-    /// Simulated seconds per second: a target by the clock, a limit in lockstep. None is unlimited.
+    /// Simulated seconds per second: a target in real time, a limit in lockstep. `None`: unlimited.
     speed: Option<f64>,
     is_lockstep: bool,
-    /// Whether there are real boats, which have their own pace.
+    /// Whether there are real boats, whose speed cannot change.
     is_real: bool,
 }
 
@@ -21,7 +20,7 @@ impl Pacing {
         Pacing { is_paused: false, steps: 0, speed, is_lockstep, is_real }
     }
 
-    /// Whether the game is held now.
+    /// Whether the game must not advance now.
     pub(super) fn is_held(&self) -> bool {
         self.is_paused && self.steps == 0
     }
@@ -31,7 +30,7 @@ impl Pacing {
         self.is_paused
     }
 
-    /// Simulated seconds per second; none is unlimited.
+    /// Simulated seconds per second. `None`: unlimited.
     pub(super) fn speed(&self) -> Option<f64> {
         self.speed
     }
@@ -41,7 +40,7 @@ impl Pacing {
         self.steps = self.steps.saturating_sub(1);
     }
 
-    /// Applies a command; returns whether it is possible.
+    /// Applies a command. Returns whether it is possible.
     pub(super) fn change(&mut self, control: Control) -> bool {
         match control {
             Control::Pause => (self.is_paused, self.steps) = (true, 0),
@@ -66,7 +65,7 @@ mod tests {
     #[test]
     fn a_paused_game_plays_the_steps_that_it_is_asked_for() {
         let mut pacing = Pacing::new(None, true, false);
-        assert!(!pacing.is_held() && !pacing.change(Control::Step), "it is going on");
+        assert!(!pacing.is_held() && !pacing.change(Control::Step), "a running game needs no step");
         assert!(pacing.change(Control::Pause) && pacing.is_held());
         assert!(
             pacing.change(Control::Step) && pacing.change(Control::Step) && !pacing.is_held() && pacing.is_paused()

@@ -1,11 +1,11 @@
-//! Real time or a multiple of it: the clock sets the pace, and the game waits for nobody.
+//! Real time or a multiple of it: the clock sets the pace, and the game waits for no node.
 
 use super::server::GameServer;
 use super::{NodeError, ProgressMessage};
 use bus::clock;
 use std::time::Duration;
 
-/// Plays until the game is over or stopped, and counts the decisions that began late.
+/// Plays until the game is over or stopped. Counts the decisions that began late.
 pub(super) fn play(server: &mut GameServer<'_>, tell: &mut dyn FnMut(ProgressMessage)) -> Result<(), NodeError> {
     let mut due = clock::now() + period(server);
     while !server.contest.is_over() && !server.is_stopped() {
@@ -26,12 +26,12 @@ pub(super) fn play(server: &mut GameServer<'_>, tell: &mut dyn FnMut(ProgressMes
         }
         let late = clock::since(due);
         if late > period {
-            // Lost time is not made up: the game runs slower than requested, and reports it.
+            // Lost time is not made up: the game runs slower than requested and reports it.
             server.overruns += 1;
             due = clock::now();
         }
         due += period;
-        // This pace waits for nobody, so silence is measured since the last message of an agent.
+        // At this pace, silence is measured since an agent's last message.
         server.lose_silent();
         server.contest.advance();
         server.pacing.played();

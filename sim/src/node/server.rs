@@ -29,16 +29,15 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// Limit of unanswered questions.
+/// Maximum number of unanswered questions.
 const QUESTIONS: usize = 64;
 /// Period of progress reports.
 const REPORT_EVERY: Duration = Duration::from_millis(100);
-/// Period of recording the state of the run if nothing has changed.
+/// Interval at which the unchanged state of the run is recorded.
 const RECORD_EVERY: Duration = Duration::from_secs(1);
-/// Time that agents have to leave when the game is over.
+/// How long agents have to leave when the game is over.
 const SHUTDOWN: Duration = Duration::from_secs(2);
 
-/// All state of a served game.
 pub(super) struct GameServer<'w> {
     pub(super) contest: Contest,
     pub(super) pacing: Pacing,
@@ -65,9 +64,9 @@ pub(super) struct GameServer<'w> {
     released: Publisher,
     guard: Guard,
     game: GameName,
-    /// Whether an operator request arrived since the state of the run was last sent.
+    /// Whether an operator request has arrived since the run state was last sent.
     is_news: bool,
-    /// When the state of the run was last recorded.
+    /// When the run state was last recorded.
     run_recorded: Instant,
     pub(super) overruns: u64,
     /// Topics subscribed to only for the recorder.
@@ -76,7 +75,7 @@ pub(super) struct GameServer<'w> {
     reports: BTreeMap<(VehicleId, Reported), Publisher>,
     /// Publishers of commands, by real boat.
     external_orders: Vec<(VehicleId, Publisher)>,
-    /// The answer to the query for the game's description.
+    /// The reply to the query for the game's description.
     game_info: Vec<u8>,
     stop: Arc<AtomicBool>,
     refusals: Refusals,
@@ -85,7 +84,7 @@ pub(super) struct GameServer<'w> {
     pub(super) time: WorkingTime,
     pub(super) reporter: Reporter,
     last_report: (Instant, SimTime),
-    /// When the current decision was opened, once the game runs.
+    /// When the open decision was opened, once the game runs.
     opened: Option<Instant>,
     pace: Pace,
     declarations: Vec<Declaration>,
@@ -93,13 +92,13 @@ pub(super) struct GameServer<'w> {
 }
 
 impl<'w> GameServer<'w> {
-    /// Opens the hub: nodes can join from now on.
+    /// Opens the hub, so that nodes can join.
     pub(super) fn open(
         mut contest: Contest,
         settings: &Settings,
         recorder: Option<&'w mut GameRecorder>,
     ) -> Result<GameServer<'w>, NodeError> {
-        // The hub gets the scenario, because its rules list every topic by team and boat.
+        // The hub needs the scenario, because its rules list every topic by team and boat.
         let bus = Bus::hub(&settings.net, &settings.game, contest.scenario())?;
         let (questions_sender, questions) = inbox(QUESTIONS);
         let (controls, messages) = (Arc::new(ControlInbox::default()), Arc::new(MessageInbox::default()));
@@ -176,8 +175,8 @@ impl<'w> GameServer<'w> {
         })
     }
 
-    /// Waits until every vehicle has an agent and every real boat has reported, or until the time
-    /// limit; missing agents are then lost.
+    /// Waits until every vehicle has an agent and every real boat has reported, at most until the
+    /// time limit. Missing agents are then lost.
     pub(super) fn wait_for_everybody(
         &mut self,
         limit: Duration,
@@ -205,7 +204,7 @@ impl<'w> GameServer<'w> {
             self.listen(Duration::from_millis(100));
         }
         self.last_report = (clock::now(), SimTime::ZERO);
-        // The first agents have waited for the last: their silence so far means nothing.
+        // The first agents have waited for the last, so their silence so far does not count.
         self.heard.fill(self.time.worked());
         Ok(())
     }
@@ -225,7 +224,7 @@ impl<'w> GameServer<'w> {
         vehicles.map(|vehicle| self.name_of(vehicle).to_owned()).collect()
     }
 
-    /// The frame of the open decision, built once for the recording and for observers.
+    /// The frame of the open decision, built once for recording and observers.
     fn frame(&mut self) -> Arc<Frame> {
         let decision = self.contest.decision();
         let frame = self.frame.take().filter(|frame| frame.stamp.seq == decision);
@@ -242,9 +241,9 @@ impl<'w> GameServer<'w> {
         }
     }
 
-    /// Publishes the frame, if there are observers.
+    /// Publishes the frame if there are observers.
     pub(super) fn send_frame(&mut self) -> Result<(), NodeError> {
-        // In lockstep every decision would pay for encoding a frame that nobody reads.
+        // Otherwise every lockstep decision would pay for encoding a frame that nobody reads.
         if !self.frames.is_heard() {
             return Ok(());
         }
@@ -252,10 +251,10 @@ impl<'w> GameServer<'w> {
         Ok(self.frames.send(&*frame)?)
     }
 
-    /// Sends every team the picture of the open decision, and every real boat its order. Sending
+    /// Sends every team its picture of the open decision, and every real boat its order. Sending
     /// twice is harmless.
     pub(super) fn send_pictures(&mut self) -> Result<(), NodeError> {
-        // Reports of real boats arrive while a decision is open: their age counts back from this
+        // Reports of real boats arrive while a decision is open; their age counts back from this
         // moment.
         self.opened = Some(clock::now());
         // Pictures are sent again until they are answered, but recorded once.
@@ -273,11 +272,11 @@ impl<'w> GameServer<'w> {
         (0..self.external_orders.len()).try_for_each(|i| self.pass_on(self.external_orders[i].0))
     }
 
-    /// Sends a real boat its effective command, or hold while the game is paused. Does nothing for
+    /// Sends a real boat its effective command, or hold while the game is paused. No effect for
     /// simulated boats.
     fn pass_on(&mut self, vehicle: VehicleId) -> Result<(), NodeError> {
         let Some(boat) = self.external_orders.iter().position(|(boat, _)| *boat == vehicle) else { return Ok(()) };
-        // A paused game must not leave a real boat under way on its last order.
+        // A paused game must not leave a real boat moving on its last order.
         let is_held = self.pacing.is_held();
         self.send_order(boat, if is_held { Order::Hold } else { self.contest.effective_command(vehicle) })
     }
@@ -290,7 +289,7 @@ impl<'w> GameServer<'w> {
         }
         let (valid_ns, seq) = (self.contest.now(), self.contest.decision());
         let stamp = Stamp { valid_ns, seq, version: ExternalOrder::VERSION };
-        // The time of the answered picture: the gateway judges the age of an order by it, however
+        // The time of the answered picture, by which the gateway judges an order's age, however
         // often the order is repeated.
         let given_ns = self.contest.given_at(vehicle);
         let order = ExternalOrder { stamp, given_ns, order: VehicleOrder::new(vehicle, order) };
@@ -311,7 +310,7 @@ impl<'w> GameServer<'w> {
 
     /// Drops agents that have been silent for longer than the scenario's patience.
     pub(super) fn lose_silent(&mut self) {
-        // In working time, not by the clock: a suspended sim does not blame agents for silence
+        // In working time, not by the clock: a suspended sim must not blame agents for silence
         // during that time.
         let patience = Duration::from_secs_f64(self.contest.scenario().patience_s);
         for i in 0..self.heard.len() {
@@ -322,7 +321,7 @@ impl<'w> GameServer<'w> {
         }
     }
 
-    /// Marks the agents of these vehicles as lost; real boats get their new order at once.
+    /// Marks the agents of these vehicles as lost. Real boats get their new order at once.
     fn lose_agents(&mut self, vehicles: Vec<VehicleId>) {
         for vehicle in vehicles {
             self.contest.lose_agent(vehicle);
@@ -341,7 +340,6 @@ impl<'w> GameServer<'w> {
         self.refusals + self.inbox.refusals() + self.controls.refusals() + dropped
     }
 
-    /// Reports progress, if due.
     pub(super) fn report_progress(&mut self, tell: &mut dyn FnMut(ProgressMessage)) -> Result<(), NodeError> {
         let (then, then_sim) = self.last_report;
         let passed = clock::since(then);
@@ -355,7 +353,7 @@ impl<'w> GameServer<'w> {
         self.send_run(if self.pacing.is_paused() { Phase::Paused } else { Phase::Playing }, rate)
     }
 
-    /// Publishes the state of the run, if there are observers.
+    /// Publishes the run state if there are observers.
     fn send_run(&mut self, phase: Phase, rate: f64) -> Result<(), NodeError> {
         let is_news = std::mem::take(&mut self.is_news);
         let is_due = self.recorder.is_some() && (is_news || clock::since(self.run_recorded) >= RECORD_EVERY);
@@ -391,20 +389,20 @@ impl<'w> GameServer<'w> {
         }
     }
 
-    /// Sends the end of the game to all nodes, and waits briefly for the agents to leave.
+    /// Sends the end of the game to all nodes and waits briefly for agents to leave.
     pub(super) fn shut_down(&mut self) -> Result<(), NodeError> {
         for (picture, publisher) in self.contest.pictures().to_vec().into_iter().zip(&self.pictures) {
             publisher.send(&messages::Picture { over: true, ..picture })?;
         }
         let frame = Frame { over: true, ..Frame::clone(&self.frame()) };
         self.frames.send(&frame)?;
-        // Real boats hold from now on, even if the game is cut short.
+        // Real boats hold from now on, even if the game ends early.
         (0..self.external_orders.len()).try_for_each(|boat| self.send_order(boat, Order::Hold))?;
         self.is_news = true;
         self.send_run(Phase::Over, 0.0)?;
         let start = clock::now();
-        // The last message may get lost; agents that leave show that they received it. With a time
-        // limit, because one may hang.
+        // The last message may get lost; an agent that leaves has received it. The wait is limited,
+        // because an agent may hang.
         while !self.agents.is_empty() && clock::since(start) < SHUTDOWN {
             self.listen(Duration::from_millis(20));
         }
@@ -413,13 +411,13 @@ impl<'w> GameServer<'w> {
         Ok(())
     }
 
-    /// Sends a real boat its order between two decisions. A closed session is detected at the next
-    /// decision.
+    /// Sends a real boat its order between two decisions. The next decision detects a closed
+    /// session.
     fn pass_on_now(&mut self, vehicle: VehicleId) {
         self.pass_on(vehicle).unwrap_or_default();
     }
 
-    /// Waits while the game is paused: agents and boats are kept, and messages are read.
+    /// Waits while the game is paused: keeps agents and boats, and reads messages.
     pub(super) fn stay_paused(&mut self, tell: &mut dyn FnMut(ProgressMessage)) -> Result<(), NodeError> {
         /// Agents that receive nothing for too long leave.
         const SEND_AGAIN: Duration = Duration::from_secs(1);
@@ -435,7 +433,7 @@ impl<'w> GameServer<'w> {
                 sent = clock::now();
             }
         }
-        // Agents that were silent meanwhile had nothing to answer.
+        // Agents had nothing to answer meanwhile.
         self.heard.fill(self.time.worked());
         Ok(())
     }

@@ -1,5 +1,5 @@
-//! Subscriptions and queries of a sim: commands, questions and all other messages have an inbox
-//! each.
+//! A sim's subscriptions and queries, with one inbox each for commands, questions and all other
+//! messages.
 
 use super::control_inbox::ControlInbox;
 use super::message_inbox::{MessageInbox, Sender};
@@ -28,16 +28,15 @@ pub(super) enum Incoming {
         message: Vec<u8>,
     },
     Join(Query),
-    /// For the recorder only: the topic's index in the list, and the message.
+    /// Only for the recorder: the topic's index in the list, and the message.
     RecordedMessage(usize, Vec<u8>),
     /// The link to this node is gone.
     Gone(String),
-    /// Makes the sim look into the inboxes for commands and questions.
+    /// Makes the sim read the inboxes for commands and questions.
     Look,
 }
 
 impl Incoming {
-    /// The sender.
     pub(super) fn sender(&self) -> Sender {
         match self {
             Incoming::Orders(orders) => Sender::Member(orders.ticket),
@@ -58,7 +57,6 @@ pub(super) enum Question {
     Water,
 }
 
-/// The inboxes of a sim, for callbacks.
 pub(super) struct Inboxes {
     pub(super) controls: Arc<ControlInbox<Query>>,
     pub(super) questions: InboxSender<(Question, Query)>,
@@ -66,7 +64,6 @@ pub(super) struct Inboxes {
 }
 
 impl Inboxes {
-    /// A callback for messages of one kind.
     fn message_callback<M: Message + DeserializeOwned + 'static>(
         &self,
         incoming: fn(M, &[u8]) -> Incoming,
@@ -80,7 +77,6 @@ impl Inboxes {
         }
     }
 
-    /// A callback for questions of one kind.
     fn question_callback(&self, question: fn() -> Question) -> impl Fn(Query) + Send + Sync + use<> {
         let (questions, others) = (self.questions.clone(), Arc::clone(&self.others));
         move |query| {
@@ -118,7 +114,7 @@ pub(super) fn report_publishers(
     Ok(publishers)
 }
 
-/// Opens all subscriptions; `recorded` are the topics subscribed to only for the recorder.
+/// Opens all subscriptions. `recorded` are the topics subscribed to only for the recorder.
 pub(super) fn open(
     bus: &Bus,
     game: &GameName,
@@ -128,7 +124,7 @@ pub(super) fn open(
 ) -> Result<Vec<Declaration>, BusError> {
     let others = || Arc::clone(&inboxes.others);
     let (gone, joins) = (others(), others());
-    // If there is no room for a look, the sim is busy, and looks before each message.
+    // If this does not fit, the sim is busy and reads the inbox before each message anyway.
     let (stops, look) = (Arc::clone(&inboxes.controls), others());
     let stop = move |bytes: &[u8]| {
         if stops.put_stop(bytes) {
@@ -142,7 +138,7 @@ pub(super) fn open(
         }
     };
     let mut declarations = vec![
-        // One subscription for all agents: their names are in the key for access control, and the
+        // One subscription for all agents: the key has their names for access control, and the
         // ticket identifies the sender.
         bus.subscribe(topic::all_orders(game), inboxes.message_callback(|orders, _| Incoming::Orders(orders)))?,
         bus.subscribe(topic::control(game), stop)?,

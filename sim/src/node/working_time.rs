@@ -1,12 +1,12 @@
-//! Working time of a sim, by which it measures its patience with other nodes. Other nodes are not
-//! blamed for time that the sim itself lost because it was suspended or had no processor.
+//! Working time of a sim, by which it measures its patience with other nodes. It excludes time that
+//! the sim itself lost because it was suspended or had no processor.
 
 use std::time::{Duration, Instant};
 
-/// A turn of the sim's own that takes longer than this counts as interrupted.
+/// A turn of the sim that takes longer than this counts as an interruption.
 const TURN_MAX: Duration = Duration::from_secs(1);
-/// Time after an interruption for lost links to come back, during which patience does not count.
-/// zenoh waits at most four seconds between two connection attempts.
+/// How long lost links have to return after an interruption, during which patience does not count.
+/// zenoh waits at most four seconds between two attempts to connect.
 const RECOVERY: Duration = Duration::from_secs(10);
 
 /// A clock that stops while its sim is interrupted.
@@ -28,9 +28,9 @@ impl WorkingTime {
         let passed = now.saturating_duration_since(self.looked);
         self.looked = now;
         if passed.saturating_sub(waited) > TURN_MAX {
-            // Ten seconds more: zenoh drops links after ten seconds of silence, and they have to be
-            // opened again. A shorter lease would detect broken links sooner but drop suspended
-            // ones as well.
+            // Ten seconds more: zenoh drops links after ten seconds of silence, and they must be
+            // reopened. A shorter lease would detect broken links sooner but drop suspended ones as
+            // well.
             self.recovery = RECOVERY;
             return;
         }
@@ -39,7 +39,7 @@ impl WorkingTime {
         self.worked += passed - recovered;
     }
 
-    /// Working time, without interruptions and recovery from them.
+    /// Working time without interruptions and recovery.
     pub(super) fn worked(&self) -> Duration {
         self.worked
     }
@@ -60,8 +60,8 @@ mod tests {
         let mut time = WorkingTime::new(start);
         for (at_s, waited_s, worked_s, is_recovering, what) in [
             (0.5, 0.0, 0.5, false, "its own work"),
-            (5.5, 5.0, 5.5, false, "it waited for somebody"),
-            (6.4, 0.05, 6.4, false, "it waited a little longer than it wanted to"),
+            (5.5, 5.0, 5.5, false, "it waited for another node"),
+            (6.4, 0.05, 6.4, false, "it waited a little longer than requested"),
             (21.4, 0.05, 6.4, true, "it was suspended for fifteen seconds"),
             (22.0, 0.6, 6.4, true, "it recovers"),
             (40.0, 0.05, 6.4, true, "it was suspended again"),

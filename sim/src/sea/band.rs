@@ -1,4 +1,4 @@
-//! The variance of a wave field by frequency band, for comparison with the requested spectrum.
+//! The variance of a wave field by frequency band, to compare with the requested spectrum.
 
 use super::WaveField;
 use super::spectrum::BAND;
@@ -7,9 +7,9 @@ use std::f64::consts::TAU;
 /// A frequency band of a wave field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Band {
-    /// Lower and upper end, Hz.
+    /// Lower and upper limit, Hz.
     pub range_hz: (f64, f64),
-    /// Variance of the elevation due to its components, m².
+    /// Variance of the elevation from its components, m².
     pub variance_m2: f64,
 }
 
@@ -28,8 +28,8 @@ pub fn range_hz(tp_s: f64) -> (f64, f64) {
 }
 
 impl WaveField {
-    /// Divides `range_hz` into `count` equally wide bands. A component outside the range counts in
-    /// the nearest band, so that the variances add up to that of the sea.
+    /// Divides `range_hz` into `count` equal bands. A component outside the range counts in the
+    /// nearest band, so that the variances add up to that of the sea.
     #[must_use]
     pub fn bands(&self, range_hz: (f64, f64), count: usize) -> Vec<Band> {
         let width_hz = (range_hz.1 - range_hz.0) / count as f64;
@@ -82,7 +82,7 @@ mod tests {
                 let at = |i: i32| density_m2_hz(&waves, low_hz + (high_hz - low_hz) * (f64::from(i) + 0.5) / 100.0);
                 let want = (0..100).map(at).sum::<f64>() / 100.0;
                 let got = band.density_m2_hz();
-                assert!((got - want).abs() < TOLERANCE * highest, "{gamma}, {low_hz} Hz: {got}, wanted {want}");
+                assert!((got - want).abs() < TOLERANCE * highest, "{gamma}, {low_hz} Hz: {got}, want {want}");
             }
         }
     }

@@ -1,14 +1,12 @@
-//! A Gauss-Markov process with a cached window of grid points, interpolated in between.
+//! A Gauss-Markov process with a cached window of grid points and linear interpolation.
 //!
-//! The process itself is a function of the grid point. Outside the window its points are
-//! recomputed: slower, but with the same bits.
+//! Outside the window, points are recomputed: slower, but with the same bits.
 
 use super::gauss_markov::{GaussMarkov, Pair, Trail};
 
-/// Limit of cached points.
+/// Maximum number of cached points.
 const HELD_MAX: i64 = 1 << 16;
 
-/// A process with its cache.
 #[derive(Clone, Debug)]
 pub(super) struct CachedProcess {
     process: GaussMarkov,
@@ -22,11 +20,11 @@ pub(super) struct CachedProcess {
 }
 
 impl CachedProcess {
-    /// A process with a cache of at least `points`, within a limit.
+    /// A process with a cache of at least `points`, up to a limit.
     pub(super) fn new(process: GaussMarkov, points: f64) -> CachedProcess {
         let correlation = GaussMarkov::neighbour_correlation();
         let length = (points.ceil() as i64).saturating_add(3).clamp(1, HELD_MAX) as u64;
-        // A power of two, so that a slot is a mask and not a division.
+        // A power of two, so that a slot is a mask rather than a division.
         let ring = vec![(0.0, 0.0); length.next_power_of_two() as usize];
         CachedProcess { process, correlation, trail: Trail::default(), ring, held: (0, 0) }
     }
@@ -53,8 +51,8 @@ impl CachedProcess {
         let (index, weight) = (floor as i64, place - floor);
         let (low, high) = self.neighbours(index);
         let product = 2.0 * weight * (1.0 - weight);
-        // Linear interpolation of two correlated numbers has less variance in the middle; without
-        // this correction gusts would be weaker between grid points.
+        // Between two correlated numbers, linear interpolation has less variance; uncorrected,
+        // gusts would be weaker between grid points.
         let deviation = (1.0 - product * (1.0 - self.correlation)).sqrt();
         let between = |low: f64, high: f64| (low + weight * (high - low)) / deviation;
         (between(low.0, high.0), between(low.1, high.1))
@@ -66,7 +64,7 @@ impl CachedProcess {
         if self.held.0 <= index && index + 1 < self.held.1 {
             return (self.ring[self.slot(index)], self.ring[self.slot(index + 1)]);
         }
-        // The path to the second point mostly coincides with that to the first.
+        // The path to the second point is mostly that to the first.
         let mut trail = Trail::default();
         (self.process.at(index, &mut trail), self.process.at(index + 1, &mut trail))
     }
@@ -89,7 +87,7 @@ mod tests {
     fn the_cache_changes_no_bit() {
         let bare = CachedProcess::new(process(), 0.0);
         let mut cached = CachedProcess::new(process(), 40.0);
-        // Ahead by a little, by a lot, back, beyond the ring, and below zero.
+        // Ahead by little and by a lot, back, beyond the ring, and below zero.
         for from in [0.0, 0.4, 1.7, 30.2, 31.0, 200.5, 5.5, 6.5, -70.2, -1030.0, 1e6] {
             cached.hold(from, from + 40.0);
             for place in [from - 90.0, from - 0.1, from, from + 0.3, from + 17.5, from + 40.0, from + 99.9] {

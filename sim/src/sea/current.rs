@@ -1,7 +1,7 @@
-//! The current at a place and a time: mean, wander, tide, shear and eddies, summed.
+//! The current at a place and time: the sum of mean, wander, tide, shear and eddies.
 //!
-//! The uniform part (mean, wander, tide) is computed once per tick by [`CurrentField::at_time`],
-//! the local part (shear, eddies) per boat.
+//! [`CurrentField::at_time`] computes the uniform part (mean, wander, tide) once per tick; the local
+//! part (shear, eddies) is computed per boat.
 
 use super::cached_process::CachedProcess;
 use super::eddy::{self, Vortex};
@@ -50,8 +50,8 @@ impl CurrentField {
         }
     }
 
-    /// Caches what [`CurrentField::at_time`] needs at `now`. Affects only speed: the results are
-    /// bit-identical without it.
+    /// Caches what [`CurrentField::at_time`] needs at `now`. Affects only the speed, not a single
+    /// bit of the results.
     pub fn prepare(&mut self, now: SimTime) {
         if let Some((wander, process)) = &mut self.wander {
             let place = wander_place(wander, now);
@@ -59,7 +59,7 @@ impl CurrentField {
         }
     }
 
-    /// Whether it is the same everywhere.
+    /// Whether the current is the same everywhere.
     #[inline]
     #[must_use]
     pub fn is_uniform(&self) -> bool {
@@ -74,7 +74,7 @@ impl CurrentField {
         if let Some((wander, process)) = &self.wander {
             let mean_m_s = self.mean_m_s.dot(wander.toward);
             let wandering_m_s = mean_m_s + wander.sigma_m_s * process.at(wander_place(wander, now)).0;
-            // Clipped, not reflected: the process itself continues unbounded and remains a function
+            // Clipped, not reflected: the process itself continues unbounded and stays a function
             // of time.
             let speed_m_s = wandering_m_s.max(wander.speed_m_s.0).min(wander.speed_m_s.1);
             uniform_m_s = uniform_m_s + wander.toward.scaled(speed_m_s - mean_m_s);
@@ -102,12 +102,11 @@ impl CurrentNow<'_> {
         self.over_hull(place, Rotation::NORTH).0
     }
 
-    /// The water's velocity (m/s) at the centre of a hull, and its rotation (rad/s clockwise) as
-    /// felt by a hull on this heading: the rate at which the flow across the heading grows along
-    /// it.
+    /// The water's velocity (m/s) at the centre of a hull, and the rotation (rad/s clockwise) felt
+    /// by a hull on this heading: the rate at which the flow across the heading grows along it.
     ///
-    /// The hull is assumed to be short compared with the curvature of the flow: for one of a tenth
-    /// of an eddy's core radius, the mean over its length differs by a thousandth.
+    /// The hull is assumed short compared with the curvature of the flow: for one of a tenth of an
+    /// eddy's core radius, the mean over its length differs by a thousandth.
     #[inline]
     #[must_use]
     pub fn over_hull(&self, place: Ned, rotation: Rotation) -> (Ned, f64) {

@@ -1,4 +1,4 @@
-//! An eddy in the water: the Lamb-Oseen vortex.
+//! An eddy: the Lamb-Oseen vortex.
 //!
 //! v(r) = Γ / (2 π r) (1 − exp(−r² / a²)), clockwise seen from above for Γ > 0. The flow is fastest
 //! at r = √α a with e^α = 1 + 2 α, α = 1.2564, where it is Γ / (2 π a) (1 − e^−α) / √α.
@@ -50,8 +50,8 @@ impl Vortex {
         (velocity, rate + fade * along * along)
     }
 
-    /// The water's angular rate about the centre at a place, rad/s, and the share of the
-    /// circulation inside its radius.
+    /// The water's angular rate around the centre, rad/s, and the share of the circulation inside
+    /// the place's radius.
     #[inline]
     fn rate_and_share(&self, from_centre: Ned) -> (f64, f64) {
         let s = from_centre.dot(from_centre) * self.per_radius_squared;
@@ -64,8 +64,8 @@ impl Vortex {
     }
 }
 
-/// Eddies drawn from the stream `eddies` of this seed: uniform over the field, in random directions
-/// of rotation.
+/// Draws eddies from the stream `eddies` of this seed: uniform over the field, with random
+/// directions of rotation.
 #[must_use]
 pub fn draw(random: &RandomEddies, field: &Field, seed: u64) -> Vec<Eddy> {
     let mut stream = Stream::new(seed, "eddies");
@@ -74,8 +74,8 @@ pub fn draw(random: &RandomEddies, field: &Field, seed: u64) -> Vec<Eddy> {
         let across_m = stream.between(0.0, field.plan.depth_m);
         let radius_m = stream.between(random.radius_m.0, random.radius_m.1);
         let peak_m_s = stream.between(random.peak_m_s.0, random.peak_m_s.1);
-        // All numbers of an eddy are drawn, even if a range has a single value: fixing a value does
-        // not move the next eddy.
+        // All numbers of an eddy are drawn, even from a range with a single value, so that fixing a
+        // value does not move the next eddy.
         let sense = if stream.bits() & 1 == 0 { 1.0 } else { -1.0 };
         Eddy { centre: field.at(along_m, across_m), radius_m, peak_m_s: sense * peak_m_s }
     };

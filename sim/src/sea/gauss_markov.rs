@@ -1,20 +1,19 @@
 //! The stationary Gauss-Markov process with random access to its grid.
 //!
-//! Also known as the Ornstein-Uhlenbeck process: mean 0, variance 1, correlation e^(−lag). Its
-//! usual recursion needs the entire past; here a point is computed from the noise alone. Every 32
-//! correlation lengths there is an independent point (the neglected correlation is e^−32 = 1e−14),
-//! and the intervals between are halved repeatedly: in the middle between two known points δ away,
-//! the process has
+//! Also called the Ornstein-Uhlenbeck process: mean 0, variance 1, correlation e^(−lag). Its usual
+//! recursion needs the entire past; here a point is computed from the noise alone. Every 32
+//! correlation lengths there is an independent point (the neglected correlation is e^−32 = 1e−14).
+//! The intervals in between are halved repeatedly: midway between two known points δ away, the
+//! process has
 //!
 //! ```text
 //! mean (a + b) ρ / (1 + ρ²)        variance (1 − ρ²) / (1 + ρ²)        ρ = e^(−δ)
 //! ```
 //!
-//! This is the Gauss-Markov process conditioned on both (the bridge of Lévy's construction, for
-//! this process). A world reset to any tick therefore finds the same bits, whatever was read
-//! before.
+//! This is the Gauss-Markov process conditioned on both (Lévy's bridge, for this process). A world
+//! reset to any tick therefore finds the same bits, whatever was read before.
 //!
-//! Where another seed takes over after a point k, the process continues from there: with x from the
+//! If another seed takes over after a point k, the process continues from there. With x from the
 //! previous seed and y from the new one, it is y_j + (x_k − y_k) e^(−lag) at the points j after k.
 //! This has the law of the process given all values up to k: y's own value at k is subtracted, and
 //! the rest is independent of it.
@@ -25,11 +24,11 @@ use primitives::stream::Noise;
 
 /// Grid points per correlation length.
 pub(super) const STEPS_PER_LENGTH: f64 = 32.0;
-/// Number of halvings of an interval between independent points.
+/// Number of times that an interval between independent points is halved.
 const LEVELS: usize = 10;
 /// Grid points between two independent ones: 32 correlation lengths.
 const BLOCK: i64 = 1 << LEVELS;
-/// Offset that makes the noise counts of all relevant grid points positive.
+/// Offset that makes the noise counts of all grid points in use positive.
 const COUNT_OF_POINT_ZERO: i64 = 1 << 40;
 
 /// Two independent processes on one grid.
@@ -39,10 +38,10 @@ pub(super) type Pair = (f64, f64);
 #[derive(Clone, Debug)]
 pub(super) struct GaussMarkov {
     noise: Noise,
-    /// The noises that replace the first, by ascending point.
+    /// The noises that replace the first one, by ascending point.
     later: Vec<Later>,
-    /// By level: the factor on the sum of the neighbours, and the standard deviation about that
-    /// mean.
+    /// By level: the factor on the sum of the neighbours, and the standard deviation around the
+    /// result.
     halving: [(f64, f64); LEVELS],
 }
 
@@ -56,10 +55,11 @@ struct Later {
     above: Pair,
 }
 
-/// The points on the path to the last look-up. Makes the next one cheap, without changing results.
+/// The points on the path to the last look-up, which make the next one cheap without changing
+/// results.
 #[derive(Clone, Debug)]
 pub(super) struct Trail {
-    /// The noise that they belong to: how many came before it.
+    /// The index of the noise to which they belong.
     of: usize,
     points: [(i64, Pair); LEVELS + 2],
 }
@@ -80,13 +80,13 @@ impl Trail {
 }
 
 impl GaussMarkov {
-    /// The process `name` of this game. `place` is the farthest grid position read by a time: a
-    /// seed that ends then applies up to there.
+    /// The process `name` of this game. `place` is the farthest grid position read at a time, up to
+    /// which a seed that ends then applies.
     pub(super) fn new(seeds: &Seeds, name: &str, place: impl Fn(SimTime) -> f64) -> GaussMarkov {
         let halving = std::array::from_fn(|level| {
             let apart = (BLOCK >> (level + 1)) as f64 / STEPS_PER_LENGTH;
-            // Once per level of halving; a look-up then needs no transcendental function except the
-            // logarithm of the noise.
+            // Once per level, so that a look-up needs no transcendental function except the noise's
+            // logarithm.
             let rho = libm::exp(-apart);
             (rho / (1.0 + rho * rho), (-libm::expm1(-2.0 * apart) / (1.0 + rho * rho)).sqrt())
         });
@@ -102,7 +102,6 @@ impl GaussMarkov {
         process
     }
 
-    /// The correlation of neighbours on the grid.
     pub(super) fn neighbour_correlation() -> f64 {
         libm::exp(-1.0 / STEPS_PER_LENGTH)
     }
@@ -125,7 +124,7 @@ impl GaussMarkov {
     fn of_noise(&self, noise: Noise, index: i64, trail: &mut Trail) -> Pair {
         let draw = |index: i64| noise.normal_pair((COUNT_OF_POINT_ZERO + index) as u64);
         let block = index.div_euclid(BLOCK);
-        // The ends of a block alternate, so that the end of one is still known as the start of the
+        // The ends of blocks alternate, so that the end of one is still known as the start of the
         // next.
         let end = |block: i64| LEVELS + (block & 1) as usize;
         // Neighbours share most of their path: a sequence of points costs about one draw each.
@@ -167,7 +166,7 @@ mod tests {
         const AFTER: i64 = 700;
         let first = GaussMarkov::new(&9.into(), "test", |now| now.as_s());
         let at = |process: &GaussMarkov, index| process.at(index, &mut Trail::default());
-        // Two points after the change, one block later, and given the point of the change.
+        // Two points after the change and one block later, given the point of the change.
         let lags = [1_i64, 40, 60];
         let known = at(&first, AFTER + 1).0;
         let mut sums = [[0.0; 3]; 3];
@@ -193,7 +192,7 @@ mod tests {
         let rho = |steps: f64| libm::exp(-steps / STEPS_PER_LENGTH);
         let covariance = sums[1][2] / games - sums[1][0] / games * sums[2][0] / games;
         let want = rho(20.0) * (1.0 - rho(80.0));
-        assert!((covariance - want).abs() < 5.0 / games.sqrt(), "covariance {covariance}, not {want}");
+        assert!((covariance - want).abs() < 5.0 / games.sqrt(), "covariance {covariance}, want {want}");
     }
 
     #[test]
@@ -227,7 +226,7 @@ mod tests {
             for (which, got) in
                 [mean(&|i| x[i].0 * x[i + lag].0, lag), mean(&|i| x[i].1 * x[i + lag].1, lag)].into_iter().enumerate()
             {
-                assert!((got - want).abs() < within, "process {which}, lag {lag}: {got}, not {want} within {within}");
+                assert!((got - want).abs() < within, "process {which}, lag {lag}: {got}, want {want} within {within}");
             }
         }
         // The same only at the seams between blocks: 3900 seams.
@@ -235,7 +234,7 @@ mod tests {
         for lag in [1, 8, 32] {
             let got = seams().map(|i| x[i - lag].0 * x[i + lag].0).sum::<f64>() / seams().count() as f64;
             let want = libm::exp(-2.0 * lag as f64 / STEPS_PER_LENGTH);
-            assert!((got - want).abs() < 5.0 * (2.0 / 3900.0_f64).sqrt(), "lag {lag} over a seam: {got}, not {want}");
+            assert!((got - want).abs() < 5.0 * (2.0 / 3900.0_f64).sqrt(), "lag {lag} over a seam: {got}, want {want}");
         }
     }
 }

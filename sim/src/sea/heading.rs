@@ -1,12 +1,11 @@
-//! A table over the heading: entries every five degrees, interpolated linearly.
+//! A table over the heading with entries every five degrees and linear interpolation.
 
 use crate::lanes::{FOLD, Lanes, ROW};
 use std::f64::consts::TAU;
 
 /// Number of headings in the table.
-// Linear interpolation between 72 headings is off by at most 0.4 % (root mean square) for the
-// shipped boats, and by up to 3 % for a hull three waves long, on which such waves have little
-// effect.
+// For the shipped boats, interpolation between 72 headings has an error of at most 0.4 % (root mean
+// square). For a hull three waves long it is up to 3 %, but such waves have little effect there.
 pub(super) const BINS: usize = 72;
 
 /// The heading of a bin, rad.
@@ -14,12 +13,12 @@ pub(super) fn of_bin(bin: usize) -> f64 {
     bin as f64 * (TAU / BINS as f64)
 }
 
-/// The heading in bins: the bin below, and the fraction to the next.
+/// The heading in bins: the bin below, and the fraction up to the next.
 #[inline(always)]
 fn place(heading_rad: f64) -> (usize, f64) {
     let bins = heading_rad * (BINS as f64 / TAU);
     let below = bins.floor();
-    // A NaN heading finds bin 0, and gives NaN.
+    // A NaN heading finds bin 0 and gives NaN.
     ((below as i64).rem_euclid(BINS as i64) as usize, bins - below)
 }
 
@@ -45,7 +44,7 @@ impl Segment {
     }
 }
 
-/// Rows of numbers that depend on the heading. The rows of one bin are adjacent.
+/// Rows of numbers that depend on the heading; rows of one bin are adjacent.
 #[derive(Clone, Debug)]
 pub(super) struct HeadingTable {
     rows: usize,
@@ -53,7 +52,7 @@ pub(super) struct HeadingTable {
 }
 
 impl HeadingTable {
-    /// A table with this many `rows`. `numbers` gives four numbers for a bin and a component;
+    /// A table with this many `rows`. `numbers` returns four numbers for a bin and a component;
     /// beyond the last component they are 0.
     pub(super) fn new(rows: usize, numbers: impl Fn(usize, usize) -> [f64; FOLD]) -> HeadingTable {
         let number = |i: usize| {

@@ -31,22 +31,22 @@ pub struct WaveSample {
 
 /// The waves of a field, averaged over one kind of hull.
 ///
-/// A component's direction from the bow enters through the heading only, so everything beyond
-/// products is looked up by heading. The drift force is Newman's approximation,
+/// The heading alone determines a component's direction from the bow, so everything beyond products
+/// is looked up by heading. The drift force is Newman's approximation,
 ///
 /// ```text
 /// F = (mean F) |sum c e^(i theta)|^2 / sum c^2        c = a R
 /// ```
 ///
-/// whose time average is exactly the mean drift force. In long-crested waves this is |sum a sqrt(T)
-/// e^(i theta)|²; in spread waves, the groups determine the size, and the mean over the directions
-/// determines the direction.
+/// whose time average is exactly the mean drift force. In long-crested waves it is |sum a sqrt(T)
+/// e^(i theta)|²; in spread waves, the groups determine the magnitude and the mean over the
+/// directions determines the direction.
 #[derive(Clone, Debug)]
 pub struct HullWaves {
     instructions: Instructions,
     blocks: Vec<Block>,
-    /// For each component: velocity in surge and sway per cosine of the phase, in yaw per sine; and
-    /// a R, which does not depend on the heading.
+    /// For each component: velocity in surge and sway per cosine of the phase and in yaw per sine,
+    /// and a R, which does not depend on the heading.
     lines: HeadingTable,
     /// The mean drift force divided by the sum of c²: surge, sway, and two zeros.
     drift: HeadingTable,
@@ -80,13 +80,13 @@ impl Row {
 }
 
 impl HullWaves {
-    /// The waves of `field` on this boat in water of this density.
+    /// The waves of `field` on this boat, in water of this density.
     #[must_use]
     pub fn new(field: &WaveField, boat: &Boat, water_density_kg_m3: f64) -> HullWaves {
         HullWaves::of(field, boat, water_density_kg_m3, &Patches::new(field, boat))
     }
 
-    /// The same, reusing the averaged waves under its hull.
+    /// The same, with averaged waves that are already known.
     pub(super) fn of(field: &WaveField, boat: &Boat, water_density_kg_m3: f64, patches: &Patches) -> HullWaves {
         let block = |waves: &[PlaneWave]| Block {
             phases: Phases::new(waves),
@@ -100,7 +100,7 @@ impl HullWaves {
             [surge, sway, yaw, reflected_m[wave]]
         });
         let reflected_m2: f64 = reflected_m.iter().map(|c| c * c).sum();
-        // Over time the squares average to the closed-form mean drift.
+        // The time average of the squares is the closed-form mean drift.
         let per_m2 = if reflected_m2 > 0.0 { 1.0 / reflected_m2 } else { 0.0 };
         let drift = HeadingTable::new(1, |bin, number| {
             if number > 0 {
@@ -131,14 +131,14 @@ impl HullWaves {
         (self.sample(&sums, pose.psi_rad), [change_m.sum(0), change_m.sum(1)])
     }
 
-    /// The sums over the components, and those of the submergence if its lines are given.
+    /// Sums over the components, with those of the submergence if its lines are given.
     #[inline(always)]
     fn sums(&self, submergence: Option<&[Segment]>, pose: Pose, time_s: f64) -> (Sums, Lanes<f32>) {
         let mut sums = Sums { of_cos: Lanes::splat(0.0), of_sin: Lanes::splat(0.0) };
         let mut change_m = Lanes::splat(0.0);
         let (lines, fraction) = self.lines.at(pose.psi_rad);
         for (n, (block, lines)) in self.blocks.iter().zip(lines.as_chunks::<FOLD>().0).enumerate() {
-            // At the boat's position, which produces the frequency of encounter. Adding it
+            // At the boat's position, which produces the frequency of encounter. Adding that
             // explicitly would combine it with a wrong wave number.
             let (sin, cos) = block.phases.sin_cos(pose.at, time_s);
             for (i, (row, line)) in block.rows.iter().zip(lines).enumerate() {
@@ -155,7 +155,7 @@ impl HullWaves {
 
     fn sample(&self, Sums { of_cos, of_sin }: &Sums, heading_rad: f64) -> WaveSample {
         let (in_phase, off_phase) = (of_cos.sum(3), of_sin.sum(3));
-        // The squared envelope: Newman's approximation, in which drift follows the wave groups.
+        // The squared envelope: in Newman's approximation, drift follows the wave groups.
         let groups_m2 = in_phase * in_phase + off_phase * off_phase;
         let (drift, fraction) = self.drift.at(heading_rad);
         let mean = drift[0].at_fraction(fraction);
@@ -174,7 +174,7 @@ struct Sums {
     of_sin: Lanes<f32>,
 }
 
-/// [`HullWaves::at`] without the use of the sums: here, it would affect their register allocation.
+/// [`HullWaves::at`] without the use of the sums, which would affect their register allocation here.
 struct At<'a> {
     waves: &'a HullWaves,
     pose: Pose,

@@ -1,8 +1,8 @@
-//! The sea: forces and water velocities from waves, wind and current at a boat's position and time.
+//! The sea: the effects of waves, wind and current on a boat at a position and time.
 //!
 //! Start with [`SeaNow::forcing`], the only place where the sea acts on boats. Everything here is a
-//! function of the scenario, the seed and the time. The sea has no memory, so a world reset to an
-//! earlier time finds the same sea.
+//! function of scenario, seed and time. The sea has no memory, so a world reset to an earlier time
+//! finds the same sea.
 
 pub mod band;
 mod cached_process;
@@ -47,21 +47,20 @@ use std::sync::Arc;
 /// Distance of the propellers astern of midships, as a share of the length.
 const PROPELLER_ASTERN: f64 = 0.4;
 
-/// Large shared tables, by size of hull.
+/// Large tables shared by size of hull.
 type Made<const N: usize, T> = Vec<([f64; N], Arc<T>)>;
 
-/// The sea of a game with tables for each kind of boat. Copies share the tables, which are large.
+/// The sea of a game, with tables for each kind of boat. Clones share the tables, which are large.
 #[derive(Clone, Debug)]
 pub struct SeaModel {
     waves: Option<WaveField>,
     wind: Option<WindField>,
     current: CurrentField,
-    /// Shapes by size of hull, shared by kinds of boat that differ only in other respects.
+    /// Shapes by size of hull; kinds of boat that differ only in other respects share them.
     shapes: Made<3, Shape>,
     /// Propeller submergence, by size of hull and position of the propellers.
     submergences: Made<4, Submergence>,
     kinds: Vec<Kind>,
-    /// Half a tick.
     half_tick: SimTime,
     half_s: f64,
 }
@@ -97,7 +96,7 @@ pub struct SeaNow<'a> {
     middle_s: f64,
 }
 
-/// The effect of the sea on a boat over a tick.
+/// The sea's effect on a boat over a tick.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SeaForcing {
     /// The water's velocity over the ground, without the orbital motion of waves, m/s.
@@ -119,10 +118,10 @@ impl SeaModel {
     #[must_use]
     pub fn new(sea: &Sea, boats: &[Boat], field: &Field, tick: SimTime, seeds: &Seeds) -> SeaModel {
         let waves = sea.waves.as_ref().map(|waves| WaveField::new(waves, sea.depth_m, seeds.first()));
-        // At least half a metre: the wind profile is a power of the height and meaningless at the
-        // water itself.
+        // At least half a metre: the wind profile is a power of the height and has no meaning at
+        // the water itself.
         let highest = boats.iter().map(|boat| boat.windage.height_m).fold(0.5, f64::max);
-        // Zero wind means no wind force, even on a boat under way.
+        // Zero wind means no wind force, even on a moving boat.
         let wind = sea.wind.as_ref().filter(|wind| wind.speed_10m_m_s > 0.0);
         let wind = wind.map(|wind| WindField::new(wind, highest, field, seeds));
         let mut model = SeaModel {
@@ -149,13 +148,13 @@ impl SeaModel {
         model
     }
 
-    /// The index of the boat's propeller submergence, if the propellers can ventilate; created on
-    /// first use.
+    /// The index of the boat's propeller submergence, created on first use; `None` if the
+    /// propellers cannot ventilate.
     fn submergence_of(&mut self, boat: &Boat, patches: &mut Made<2, Patches>) -> Option<usize> {
         let (Drive::Thrusters { thruster, .. }, Some(field)) = (&boat.drive, &self.waves) else { return None };
-        // Boats whose propellers never draw air pay nothing for this.
+        // Boats whose propellers never draw air do not pay for this.
         thruster.flaws.ventilation?;
-        // By size, not by name: tables take most of the time to create a game, and strategies often
+        // By size, not by name: tables dominate the time to create a game, and strategies often
         // differ where hulls do not.
         let size = [boat.length_m, boat.beam_m, boat.draught_m, thruster.arm_m];
         Some(index_of(&mut self.submergences, size, || {
@@ -188,8 +187,7 @@ impl SeaModel {
         }
     }
 
-    /// Caches what is needed at `now`. Affects only speed: the results are bit-identical without
-    /// it.
+    /// Caches what is needed at `now`. Affects only the speed, not a single bit of the results.
     pub fn prepare(&mut self, now: SimTime) {
         self.current.prepare(now);
         if let Some(wind) = &mut self.wind {
@@ -208,16 +206,16 @@ impl SeaModel {
     #[inline]
     #[must_use]
     pub fn at_time(&self, now: SimTime) -> SeaNow<'_> {
-        // In whole nanoseconds: the time of a wave has the same bits whether the game was played or
-        // restored to this point.
+        // In whole nanoseconds, so that wave times have the same bits in a played and in a restored
+        // game.
         let middle_s = (now + self.half_tick).as_s();
         SeaNow { model: self, current: self.current.at_time(now), now, middle_s }
     }
 }
 
 impl SeaNow<'_> {
-    /// The effect of the sea on a boat of this kind, with this hull, in the tick that starts now.
-    /// `nu` is its velocity over the ground in body axes.
+    /// The sea's effect on a boat of this kind with this hull, in the tick that starts now. `nu` is
+    /// its velocity over the ground in body axes.
     #[inline]
     #[must_use]
     pub fn forcing(&self, kind: usize, hull: &HullModel, pose: Pose, rotation: Rotation, nu: Planar) -> SeaForcing {
@@ -253,7 +251,7 @@ impl SeaNow<'_> {
     ) {
         let (half_s, shape) = (self.model.half_s, &self.model.shapes[boat.shape].1);
         let velocity_m_s = nu.in_ned(rotation);
-        // Once, in the middle of the tick: the rate of change is known there as well, and three
+        // Once, in the middle of the tick: the rate of change is known there too, and three
         // evaluations would triple the largest part of a tick.
         let middle = Pose { at: pose.at + velocity_m_s.scaled(half_s), psi_rad: pose.psi_rad + half_s * nu.yaw };
         let (waves, submergence_change_m) = match boat.submergence.map(|index| &self.model.submergences[index].1) {
@@ -261,7 +259,7 @@ impl SeaNow<'_> {
             Some(submergence) => shape.waves.at_with(submergence, middle, self.middle_s),
         };
         forcing.submergence_change_m = submergence_change_m;
-        // Linear waves have no mean transport. In real ones floating bodies drift (Stokes), and
+        // Linear waves have no mean transport. In real waves floating bodies drift (Stokes), and
         // this part of the drift does not follow from the forces.
         forcing.current_m_s = forcing.current_m_s + shape.rise_drift_m_s;
         forcing.water = forcing.water.plus(1.0, waves.velocity);
@@ -277,7 +275,7 @@ impl SeaNow<'_> {
         self.model.waves.as_ref()
     }
 
-    /// The waves for observers; none on calm water.
+    /// The waves for observers; none in calm water.
     #[must_use]
     pub fn water(&self) -> Water {
         Water { waves: self.waves().map(WaveField::plane_waves).unwrap_or_default() }
@@ -298,7 +296,7 @@ impl SeaNow<'_> {
     /// The velocity of the air 10 m above the water, m/s.
     #[must_use]
     pub fn wind_at(&self, at: Ned) -> Ned {
-        // At ten metres, the reference height of wind reports and Beaufort numbers, not at a boat's
+        // Ten metres is the reference height of wind reports and Beaufort numbers, not a boat's
         // height.
         self.model.wind.as_ref().map_or_else(Ned::default, |wind| wind.at(at, wind.mean_m_s(10.0), self.now))
     }
@@ -320,7 +318,7 @@ fn patches_of<'a>(made: &'a mut Made<2, Patches>, field: &WaveField, boat: &Boat
     &made[index].1
 }
 
-/// The index of the entry for this size; created on first use.
+/// The index of the entry for this size, created on first use.
 fn index_of<const N: usize, T>(made: &mut Made<N, T>, size: [f64; N], make: impl FnOnce() -> T) -> usize {
     made.iter().position(|(other, _)| *other == size).unwrap_or_else(|| {
         made.push((size, Arc::new(make())));

@@ -1,7 +1,7 @@
 //! Plane waves averaged over a rectangle, length by beam.
 //!
-//! All effects of waves on a hull derive from this, for each wave and each heading of a table. It
-//! is computed once.
+//! All effects of waves on a hull derive from this, for each wave and each heading of a table,
+//! computed once.
 
 use super::heading::{self, BINS};
 use super::wave::{PlaneWave, WaveField};
@@ -13,7 +13,7 @@ pub(super) struct Patch {
     /// The wave's direction of travel in body axes: a unit vector.
     pub(super) ahead: f64,
     pub(super) starboard: f64,
-    /// Factors of averaging over the length and over the beam.
+    /// Averaging factors over the length and over the beam.
     pub(super) mean_x: f64,
     pub(super) mean_y: f64,
     /// The slope of the best-fitting straight line over the length and over the beam, per −sine of
@@ -40,7 +40,7 @@ impl Patch {
 /// slope of the line that best fits sin, 3 (sin u − u cos u) / u³.
 fn fit(half_rad: f64) -> (f64, f64) {
     let u = half_rad;
-    // Series near zero, where the quotient loses its digits.
+    // A series near zero, where the quotient loses its digits.
     if u.abs() < 1e-4 {
         return (1.0 - u * u / 6.0, 1.0 - u * u / 10.0);
     }
@@ -49,7 +49,7 @@ fn fit(half_rad: f64) -> (f64, f64) {
     (sin / u, tilt)
 }
 
-/// The averaged waves of a field under hulls of one length and beam, for every heading of a table.
+/// The averaged waves of a field under hulls of one length and beam, by heading of a table.
 pub(super) struct Patches {
     waves: usize,
     /// Grouped by heading, in table order.
@@ -60,7 +60,7 @@ impl Patches {
     pub(super) fn new(field: &WaveField, boat: &Boat) -> Patches {
         let of_bin = |bin| field.waves.iter().map(move |wave| Patch::new(wave, boat, heading::of_bin(bin)));
         let mut patches: Vec<Patch> = (0..BINS / 2).flat_map(of_bin).collect();
-        // After half a turn, the same wave comes from the other end: this saves half of the sines
+        // After half a turn, the same wave comes from the other end, which saves half of the sines
         // at the start of a game.
         patches.extend_from_within(..);
         let half = patches.len() / 2;
@@ -90,7 +90,7 @@ mod tests {
             for (want, got) in want.zip(patches.of_bin(bin)) {
                 let numbers = |p: &Patch| [p.ahead, p.starboard, p.mean_x, p.mean_y, p.tilt_x, p.tilt_y];
                 for (want, got) in numbers(&want).into_iter().zip(numbers(got)) {
-                    assert!((want - got).abs() < 1e-12, "{bin}: {got} against {want}");
+                    assert!((want - got).abs() < 1e-12, "{bin}: got {got}, want {want}");
                 }
             }
         }

@@ -1,12 +1,12 @@
 //! Sine and cosine of sixteen angles at once, bit-identical on every machine.
 //!
-//! The sea needs thousands of them per tick. Only sums, products and differences are used, each
-//! rounded by IEEE 754 and none fused, so neither the processor nor the platform's C library
+//! The sea needs thousands of them per tick. They use only sums, products and differences, each
+//! rounded by IEEE 754 and none fused. Neither the processor nor the platform's C library therefore
 //! affects the result.
 //!
-//! The angle is reduced to half a turn in double precision. Sine, cosine and the sums over the
-//! waves are in single precision, with twice as many numbers per instruction. A wave is then
-//! accurate to a millionth of its height.
+//! The angle is reduced to half a turn in double precision. Sine, cosine and the sums over waves
+//! are in single precision, with twice as many numbers per instruction. A wave is then accurate to
+//! a millionth of its height.
 
 use crate::lanes::Lanes;
 
@@ -16,7 +16,7 @@ const ROUNDER: f64 = 6_755_399_441_055_744.0;
 
 /// sin π r = r (S0 + S1 r² + ...), minimax for |r| ≤ 1/2 by the Remez exchange: error at most
 /// 3.4e-9, before rounding.
-#[expect(clippy::approx_constant, reason = "near π, and not π")]
+#[expect(clippy::approx_constant, reason = "close to π, but not π")]
 const SIN: [f32; 5] = [3.141_592_6, -5.167_707, 2.550_031_4, -0.598_045_2, 0.077_220_13];
 
 /// cos π r = C0 + C1 r² + ..., likewise: error at most 4.7e-8.
@@ -29,11 +29,11 @@ pub(super) const ERROR: f64 = 1.2e-6;
 /// Sine and cosine of angles in turns (1 is a full turn). Accurate to 1.2e-6 up to ±2^51 turns.
 ///
 /// In turns the reduction is an exact subtraction, however large the angle. The polynomials take
-/// half the angle, within ±a quarter turn, so quadrants need no distinction.
+/// half the angle, within ± a quarter turn, so quadrants need no case distinction.
 #[inline(always)]
 pub(super) fn sin_cos_turns(turns: Lanes<f64>) -> (Lanes<f32>, Lanes<f32>) {
     let rounder = Lanes::<f64>::splat(ROUNDER);
-    // In double precision, so that a phase is as accurate after a day as at the start; the rest is
+    // In double precision, so that a phase is as accurate after a day as at the start. The rest is
     // in single precision, which takes half the time.
     let r = (turns - ((turns + rounder) - rounder)).single();
     let x = r * r;
@@ -77,7 +77,7 @@ mod tests {
                 let (sin, cos) = one(turns);
                 let (want_sin, want_cos) = truth(turns);
                 let error = (sin - want_sin).abs().max((cos - want_cos).abs());
-                assert!(error < ERROR, "{turns} turns: off by {error}");
+                assert!(error < ERROR, "{turns} turns: error {error}");
                 worst = worst.max(error);
             }
         }

@@ -1,5 +1,4 @@
-//! The wave spectrum (JONSWAP) and the directional spreading, and the components that represent
-//! them.
+//! The wave spectrum (JONSWAP), the directional spreading, and the components that represent them.
 //!
 //! JONSWAP (Hasselmann et al. 1973) in terms of Hs and Tp, with the normalisation of Goda and
 //! DNV-RP-C205:
@@ -54,7 +53,7 @@ impl Jonswap {
     }
 }
 
-/// The same as a density over frequency: m²/Hz at `frequency_hz` > 0.
+/// The same as a density over frequency, m²/Hz, at `frequency_hz` > 0.
 #[must_use]
 pub fn density_m2_hz(waves: &Waves, frequency_hz: f64) -> f64 {
     TAU * jonswap_m2_s(waves, TAU * frequency_hz)
@@ -62,13 +61,13 @@ pub fn density_m2_hz(waves: &Waves, frequency_hz: f64) -> f64 {
 
 /// The components that represent this sea, by ascending frequency.
 ///
-/// The band is divided into one stratum per component, each with the same share of the variance and
-/// its second moment (that of the velocities) combined; a component carries the variance of its
+/// The band is divided into one stratum per component, with equal shares of the variance and its
+/// second moment (that of the velocities) combined. A component carries the variance of its
 /// stratum. Its frequency is drawn from the spectrum within the stratum: every moment is right on
 /// average, and the frequencies have no common multiple after which the sea would repeat itself.
 /// Each has one direction, so that the sea is the same process everywhere (Jefferys 1987).
 /// Directions are quantiles of the spreading at multiples of the golden ratio: few neighbouring
-/// frequencies suffice to cover all directions, and neither side is favoured.
+/// frequencies cover all directions, and neither side is favoured.
 pub(super) fn components(waves: &Waves, seed: u64) -> Vec<Component> {
     let mut stream = Stream::new(seed, "waves");
     let count = waves.components as usize;
@@ -79,14 +78,14 @@ pub(super) fn components(waves: &Waves, seed: u64) -> Vec<Component> {
     let densities: Vec<f64> = points(BAND).map(|x| jonswap.density_m2_s(x * peak_rad_s)).collect();
     let energy = Curve::new(BAND, densities.iter().copied());
     let second = Curve::new(BAND, points(BAND).zip(&densities).map(|(x, density)| x * x * density));
-    // Strata of equal share in energy and its second moment: by energy alone only a handful would
-    // represent the short waves, which make the slopes.
+    // By energy alone, only a handful of strata would represent the short waves, which make the
+    // slopes.
     let both = Curve { x: energy.x, up_to: (0..=PIECES).map(|i| 0.5 * (energy.up_to[i] + second.up_to[i])).collect() };
     let spread = spread(waves.spreading);
     let first_quantile = stream.unit();
 
     // The renormalisation replaces the variance outside the band. With amplitudes straight from the
-    // density, Hs is off by up to 6 % for 16 to 64 components.
+    // density, Hs has an error of up to 6 % for 16 to 64 components.
     let variance_m2 = waves.hs_m * waves.hs_m / 16.0;
     let mut below = 0.0;
     (0..count)
@@ -95,7 +94,7 @@ pub(super) fn components(waves: &Waves, seed: u64) -> Vec<Component> {
             let share = above - below;
             let x = energy.at(below + stream.unit() * share);
             below = above;
-            // One direction per frequency. Many directions at one frequency lock into a standing
+            // One direction per frequency, because several at one frequency lock into a standing
             // pattern.
             let quantile = first_quantile + i as f64 * GOLDEN;
             Component {
@@ -136,8 +135,8 @@ struct Curve {
 }
 
 impl Curve {
-    /// Integrates densities at the [`points`] of the interval by the trapezoidal rule. They must be
-    /// positive somewhere.
+    /// Integrates densities at the [`points`] of the interval by the trapezoidal rule. At least one
+    /// must be positive.
     fn new(x: (f64, f64), mut densities: impl Iterator<Item = f64>) -> Curve {
         let mut up_to = Vec::with_capacity(PIECES + 1);
         up_to.push(0.0);

@@ -22,7 +22,7 @@ impl Submergence {
         Submergence::of(field, boat, places, &Patches::new(field, boat))
     }
 
-    /// The same, reusing the averaged waves under its hull.
+    /// The same, with averaged waves that are already known.
     pub(super) fn of(field: &WaveField, boat: &Boat, places: [Body; 2], patches: &Patches) -> Submergence {
         let waves: Vec<Wave> = field.waves.iter().map(|wave| Wave::new(wave, boat)).collect();
         let further = |bin| {
@@ -51,8 +51,7 @@ impl Submergence {
     }
 }
 
-/// Adds the changes by the waves of a row, from its numbers, sines and cosines: first port, then
-/// starboard.
+/// Adds the changes by a row's waves from its numbers, sines and cosines: port, then starboard.
 #[inline(always)]
 pub(super) fn add(change_m: &mut Lanes<f32>, line: Lanes<f32>, sin: Lanes<f32>, cos: Lanes<f32>) {
     const HALF: usize = LANES / 2;
@@ -128,7 +127,7 @@ mod tests {
                 let risen_m =
                     attitude.heave_up_m + attitude.pitch_rad * place.ahead - attitude.roll_rad * place.starboard;
                 let want_m = field.surface(at, time_s).elevation_m - risen_m;
-                assert!((got_m - want_m).abs() < 3e-7, "{k}: {got_m} against {want_m}");
+                assert!((got_m - want_m).abs() < 3e-7, "{k}: got {got_m}, want {want_m}");
             }
         }
     }

@@ -18,7 +18,7 @@ pub struct Summary {
     pub waves: Option<WaveSummary>,
     /// Effects of the wind, if any.
     pub wind: Option<WindSummary>,
-    /// The initial current in the middle of the field, m/s.
+    /// The initial current at the centre of the field, m/s.
     pub current_m_s: Ned,
 }
 
@@ -29,15 +29,16 @@ pub struct WaveSummary {
     pub hs_m: f64,
     /// Peak period, s.
     pub tp_s: f64,
-    /// Length of a wave of the peak period, m.
+    /// Length of a wave with the peak period, m.
     pub wavelength_m: f64,
     /// Standard deviation of the slope, rad.
     pub slope_rms_rad: f64,
     /// Standard deviation of the orbital velocity at the surface, m/s.
     pub orbital_rms_m_s: f64,
-    /// Standard deviation averaged over the hull, with the waves from ahead and from abeam, m/s.
+    /// Standard deviation of the orbital velocity averaged over the hull, with waves from ahead and
+    /// from abeam, m/s.
     pub orbital_on_hull_m_s: [f64; 2],
-    /// Stokes drift over the hull's draught, m/s.
+    /// Stokes drift averaged over the hull's draught, m/s.
     pub stokes_m_s: f64,
     /// Mean drift force on the hull with the waves from ahead and from abeam, N.
     pub drift_newton: [f64; 2],
@@ -57,7 +58,7 @@ pub struct WindSummary {
 }
 
 impl Summary {
-    /// The effects of this sea on this boat on this field.
+    /// The effects of a sea on a boat on this field.
     #[must_use]
     pub fn new(sea: &Sea, boat: &Boat, field: &Field, seed: u64) -> Summary {
         let hull = HullModel::new(&boat.hull, sea.water_density_kg_m3);
@@ -75,7 +76,7 @@ impl Summary {
 }
 
 fn wave_summary(field: &WaveField, (tp_s, from_rad): (f64, f64), boat: &Boat, density_kg_m3: f64) -> WaveSummary {
-    // From ahead and from abeam, the two extremes for a hull longer than wide.
+    // From ahead and from abeam, the extremes for a hull longer than wide.
     let headings_rad = [from_rad, from_rad + std::f64::consts::FRAC_PI_2];
     let on_hull = |heading_rad: f64| {
         let velocities = field
@@ -120,7 +121,7 @@ fn wind_summary(wind: &Wind, boat: &Boat, hull: &HullModel) -> WindSummary {
 /// The root of `excess`, a decreasing function, between 0 and `most`, by bisection.
 fn equilibrium(most: f64, excess: impl Fn(f64) -> f64) -> f64 {
     let (mut low, mut high) = (0.0, most);
-    // Sixty halvings go beyond the last bit: drag is not smooth enough for Newton's method.
+    // Sixty halvings go beyond the last bit; drag is not smooth enough for Newton's method.
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
         if excess(middle) > 0.0 {
@@ -154,7 +155,7 @@ mod tests {
         // Known values for a sea of 0.5 m and 3 s: 14 m long, 0.32 m/s and 0.27 m/s on the hull,
         // 0.066 m/s at the surface, 10.7 and 5.3 N, over a slightly narrower frequency band.
         sea.waves = Some(waves_from(1.0, 0.5, 3.0, 512));
-        let waves = Summary::new(&sea, &boat, &game.field, 1).waves.unwrap_or_else(|| panic!("there are waves"));
+        let waves = Summary::new(&sea, &boat, &game.field, 1).waves.unwrap_or_else(|| panic!("the sea has waves"));
         assert!((waves.hs_m - 0.5).abs() < 1e-9 && (waves.wavelength_m - 14.05).abs() < 0.1, "{waves:?}");
         assert!((waves.orbital_rms_m_s - 0.32).abs() < 0.03, "{waves:?}");
         assert!((waves.orbital_on_hull_m_s[0] - 0.27).abs() < 0.03, "{waves:?}");

@@ -1,8 +1,8 @@
-//! A wave field: a sum of plane waves, each with its own height, frequency and direction.
+//! A wave field: a sum of plane waves with separate heights, frequencies and directions.
 //!
 //! Linear (Airy) theory: elevation a cos θ with θ = k·x − ω t + φ and ω² = g k tanh k h. A moving
 //! boat encounters it at the frequency ω − k·V, simply because the field is evaluated at its
-//! position. Its effects on a hull are in [`HullWaves`](super::HullWaves).
+//! position. The effects on a hull are in [`HullWaves`](super::HullWaves).
 
 use super::sine::sin_cos_turns;
 use super::spectrum;
@@ -23,7 +23,7 @@ pub struct Component {
     pub omega_rad_s: f64,
     /// Compass bearing of its travel.
     pub toward_rad: f64,
-    /// Phase at the datum at the start of the game; at 0 the crest is there.
+    /// Phase at the datum at the start of the game; 0 is a crest.
     pub phase_rad: f64,
 }
 
@@ -51,7 +51,7 @@ impl PlaneWave {
 
     /// Horizontal orbital velocity at a depth, over a ω: cosh k(z + h) / sinh k h.
     pub(super) fn orbital_at(&self, below_m: f64) -> f64 {
-        // As decaying exponentials: sinh and cosh of deep water overflow.
+        // With decaying exponentials, because sinh and cosh overflow in deep water.
         self.decay_at(below_m) / (1.0 - libm::exp(-2.0 * self.depth_rad()))
     }
 
@@ -72,7 +72,7 @@ impl PlaneWave {
     /// shallow.
     fn group_factor(&self) -> f64 {
         let twice = 2.0 * self.depth_rad();
-        // Beyond this the quotient is 0 to the last bit, and soon after the hyperbolic sine
+        // Beyond this the quotient is 0 to the last bit, and soon afterwards the hyperbolic sine
         // overflows.
         if twice > 40.0 { 1.0 } else { 1.0 + twice / libm::sinh(twice) }
     }
@@ -88,9 +88,9 @@ impl PlaneWave {
         0.5 * a * a * self.component.omega_rad_s * layer / (draught_m * (1.0 - bottom) * (1.0 - bottom))
     }
 
-    /// The part of a hull's drift force that depends on neither its size nor the wave's direction,
-    /// as its square root: a R, from 1/2 ρ g a² R², with the share R = 1 − e^(−2kT) of the wave
-    /// that a hull of draught T reflects. Finite depth as in Longuet-Higgins (1977).
+    /// The square root of the part of a hull's drift force that depends on neither its size nor the
+    /// wave's direction: a R, from 1/2 ρ g a² R², with the share R = 1 − e^(−2kT) of the wave that
+    /// a hull of draught T reflects. Finite depth as in Longuet-Higgins (1977).
     pub(super) fn reflected_m(&self, draught_m: f64) -> f64 {
         let reflected = 1.0 - libm::exp(-2.0 * self.wavenumber_rad_m * draught_m);
         self.component.amplitude_m * reflected * self.group_factor().sqrt()
@@ -105,8 +105,8 @@ pub fn wavenumber_rad_m(omega_rad_s: f64, depth_m: f64) -> f64 {
         // tanh is 1 to the last bit.
         return deep;
     }
-    // Eckart (1952), within 5 %, then Newton's method, which converges after four or five steps.
-    // The dispersion relation has no closed solution in finite depth.
+    // Eckart (1952), within 5 %, then four or five steps of Newton's method. In finite depth the
+    // dispersion relation has no closed solution.
     let mut k = deep / libm::tanh(deep * depth_m).sqrt();
     for _ in 0..20 {
         let tanh = libm::tanh(k * depth_m);
@@ -122,8 +122,8 @@ pub fn wavenumber_rad_m(omega_rad_s: f64, depth_m: f64) -> f64 {
 /// Phases of sixteen components, in turns: they decrease by `per_s` and increase by `per_north_m`
 /// and `per_east_m`.
 ///
-/// After a day the phase of the fastest wave is about 10^5 turns, which an f64 stores with a
-/// precision of 10^-11 turns.
+/// After a day the phase of the fastest wave is about 10^5 turns, which an f64 stores to 10^-11
+/// turns.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Phases {
     start: Lanes<f64>,
@@ -161,12 +161,12 @@ impl Phases {
     }
 }
 
-/// `part` of each wave, up to the number of lanes; lanes without a wave are 0.
+/// `part` of each wave, up to the number of lanes. Lanes without a wave are 0.
 pub(super) fn side_by_side<T: Default, const N: usize>(waves: &[PlaneWave], part: impl Fn(&PlaneWave) -> T) -> [T; N] {
     std::array::from_fn(|lane| waves.get(lane).map_or_else(T::default, &part))
 }
 
-/// [`side_by_side`] for a number of each of a row's waves, in single precision.
+/// [`side_by_side`] for one number of each of a row's waves, in single precision.
 pub(super) fn row_of(waves: &[PlaneWave], part: impl Fn(&PlaneWave) -> f64) -> [f32; ROW] {
     side_by_side(waves, |w| part(w) as f32)
 }
@@ -236,7 +236,7 @@ impl WaveField {
     /// The field of these components: a regular wave, or a sea measured elsewhere.
     #[must_use]
     pub fn of(components: &[Component], depth_m: Option<f64>, drift_factor: f64) -> WaveField {
-        // Infinite instead of merely large: every formula above has its limit there and needs no
+        // Infinite rather than merely large: every formula above has its limit there and needs no
         // special case.
         let depth_m = depth_m.unwrap_or(f64::INFINITY);
         let waves: Vec<PlaneWave> = components.iter().map(|c| PlaneWave::new(*c, depth_m)).collect();
@@ -273,7 +273,7 @@ impl WaveField {
         self.waves.iter().map(plane).collect()
     }
 
-    /// The surface at a place and time, of all components.
+    /// The surface at a place and time.
     #[must_use]
     pub fn surface(&self, at: Ned, time_s: f64) -> Surface {
         let sums = self.instructions.run(SurfaceAt { blocks: &self.blocks, at, time_s });
@@ -337,7 +337,7 @@ impl WaveField {
     }
 
     /// Mean second-order force on a hull on this heading, in body axes: the momentum that the waves
-    /// lose by reflection (Maruo 1960), with side and end taken as walls:
+    /// lose by reflection (Maruo 1960), with the hull's sides and ends taken as walls:
     ///
     /// ```text
     /// X = sum 1/2 rho g a^2 R^2 B cos b |cos b|     Y = sum 1/2 rho g a^2 R^2 L sin b |sin b|     R = 1 - e^(-2kT)
@@ -360,7 +360,7 @@ impl WaveField {
         self.waves.iter().map(|wave| wave.reflected_m(boat.draught_m)).collect()
     }
 
-    /// The same force, from each wave's reflected part and its travel ahead and to starboard.
+    /// The same force from each wave's reflected part and its travel ahead and to starboard.
     pub(super) fn drift_of(
         &self,
         boat: &Boat,

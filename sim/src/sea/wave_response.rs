@@ -1,7 +1,7 @@
 //! Heave, roll and pitch of a hull in waves, for sensors and observers.
 //!
-//! The hull follows the surface, averaged over its area, like three damped springs. There is no
-//! feedback on the horizontal motion.
+//! The hull follows the surface, averaged over its area, like three damped springs. The response
+//! does not affect the horizontal motion.
 
 use super::heading::HeadingTable;
 use super::patch::{Patch, Patches};
@@ -18,8 +18,7 @@ pub(super) const ROLL: (f64, f64) = (7.4, 0.2);
 pub(super) const PITCH: (f64, f64) = (8.6, 0.4);
 
 /// Heave, roll and pitch of a hull, and their rates. Angles are as in NED: roll is positive with
-/// the starboard side down, pitch with the bow up. Heave is the height above the position at rest,
-/// up.
+/// the starboard side down, pitch with the bow up. Heave is the height above the position at rest.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Attitude {
     /// Height, m.
@@ -42,12 +41,12 @@ pub struct Attitude {
 ///
 /// Heave, roll and pitch respond to a wave of frequency ω with wn² / (wn² − ω² + 2 i ζ wn ω) times
 /// the plane that best fits the surface at the draught. The frequency is that at a fixed place: the
-/// effect of the boat's own speed on the response is neglected, but not the frequency of encounter.
+/// boat's own speed changes the frequency of encounter, but not the response.
 #[derive(Clone, Debug)]
 pub struct WaveResponse {
     instructions: Instructions,
     blocks: Vec<Block>,
-    /// Heave per cosine, roll and pitch per sine of the phase, before the springs respond; and
+    /// Heave per cosine, and roll and pitch per sine of the phase, before the springs respond; and
     /// zero.
     quasi_static: HeadingTable,
 }
@@ -59,8 +58,9 @@ struct Block {
     rows: [Row; FOLD],
 }
 
-/// The responses in heave, roll and pitch to four components, and zero: factors on the sine and the
-/// cosine of the phase. The phase decreases with time, so a lagging response has a leading phase.
+/// The responses in heave, roll and pitch to four components, and zero, as factors on the sine and
+/// the cosine of the phase. The phase decreases with time, so a lagging response has a leading
+/// phase.
 #[derive(Clone, Copy, Debug)]
 struct Row {
     /// The response to the cosine of the phase in heave, and to its sine in roll and pitch.
@@ -109,8 +109,8 @@ pub(super) fn transfer(natural_rad_s: f64, damping: f64, omega_rad_s: f64) -> (f
     let ratio = omega_rad_s / natural_rad_s;
     let (real, imaginary) = (1.0 - ratio * ratio, 2.0 * damping * ratio);
     let size = real * real + imaginary * imaginary;
-    // A damped spring driven by the surface. These seas peak at half of its natural frequency or
-    // below, so a hull mostly follows the surface.
+    // A damped spring driven by the surface. These seas peak at or below half of its natural
+    // frequency, so a hull mostly follows the surface.
     (real / size, imaginary / size)
 }
 
@@ -121,7 +121,7 @@ impl WaveResponse {
         WaveResponse::of(field, boat, &Patches::new(field, boat))
     }
 
-    /// The same, reusing the averaged waves under its hull.
+    /// The same, with averaged waves that are already known.
     pub(super) fn of(field: &WaveField, boat: &Boat, patches: &Patches) -> WaveResponse {
         let block = |waves: &[PlaneWave]| Block {
             phases: Phases::new(waves),
@@ -130,7 +130,7 @@ impl WaveResponse {
         // Waves that are short compared with the draught have little effect: the hull follows the
         // pressure at its keel, not the surface.
         let pressed_m: Vec<f64> = field.waves.iter().map(|wave| pressed_m(wave, boat)).collect();
-        // Tabulated by heading: averaging each wave over the hull is most of the work, and changes
+        // Tabulated by heading: averaging each wave over the hull is most of the work and changes
         // little between ticks.
         let quasi_static = HeadingTable::new(row_count(&field.waves), |bin, wave| {
             let Some(patch) = patches.of_bin(bin).get(wave) else { return [0.0; FOLD] };
@@ -169,8 +169,8 @@ struct Sums {
     heave_acceleration: Lanes<f32>,
 }
 
-/// [`WaveResponse::at`] without the use of the sums: here, it would affect their register
-/// allocation.
+/// [`WaveResponse::at`] without the use of the sums, which would affect their register allocation
+/// here.
 struct At<'a> {
     response: &'a WaveResponse,
     pose: Pose,

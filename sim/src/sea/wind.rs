@@ -1,11 +1,11 @@
-//! The wind at a place and a time: a mean that decreases towards the water, and gusts that travel
+//! The wind at a place and time: a mean that decreases towards the water, and gusts that travel
 //! with it.
 //!
 //! Gusts are a frozen pattern that the mean wind carries over the field (Taylor 1938): a gust at
-//! one boat reaches another d metres downwind after d / U. So the pattern is a function of U t − d
-//! alone, with d measured downwind from the datum and U the mean wind at the reference height.
-//! Boats at other heights meet the same pattern, in proportion to the mean wind at their height. It
-//! does not vary across the wind: boats abreast meet the same gusts.
+//! one boat reaches another d metres downwind after d / U. The pattern is therefore a function of U
+//! t − d alone, with d measured downwind from the datum and U the mean wind at the reference
+//! height. Boats at other heights meet the same pattern, in proportion to the mean wind at their
+//! height. The pattern does not vary across the wind: boats abreast meet the same gusts.
 //!
 //! U is at least 1 m/s: a stationary pattern would not gust.
 
@@ -17,10 +17,10 @@ use primitives::reseed::Seeds;
 use rules::field::Field;
 use scenario::sea::{Gusts, Wind};
 
-/// Lowest speed at which gusts travel, m/s.
+/// Minimum speed at which gusts travel, m/s.
 pub const CARRY_MIN_M_S: f64 = 1.0;
-/// Margin around the field within which gusts are cached, m. For boats beyond it they are computed
-/// more slowly.
+/// Margin around the field within which gusts are cached, m; beyond it they are computed more
+/// slowly.
 const MARGIN_M: f64 = 50.0;
 
 /// The wind over a field.
@@ -28,7 +28,7 @@ const MARGIN_M: f64 = 50.0;
 pub struct WindField {
     /// Unit vector of the mean wind's direction of travel.
     downwind: Ned,
-    /// A quarter turn to starboard of it.
+    /// A quarter turn to starboard of `downwind`.
     across: Ned,
     speed_10m_m_s: f64,
     profile_exponent: f64,
@@ -63,7 +63,7 @@ impl WindField {
             profile_exponent: wind.profile_exponent,
             gusts: None,
         };
-        // By the highest boat: the pattern has a single speed, or boats would disagree about the
+        // At the highest boat: the pattern has a single speed, or boats would disagree about the
         // time of a gust.
         let carry_m_s = made.mean_m_s(reference_height_m).max(CARRY_MIN_M_S);
         let along_m = field.corners.map(|corner| corner.dot(downwind));
@@ -76,7 +76,7 @@ impl WindField {
             Gusts::OrnsteinUhlenbeck { intensity, across_ratio, length_m } => {
                 let steps_per_m = STEPS_PER_LENGTH / length_m;
                 let steps_per_s = steps_per_m * carry_m_s;
-                // The field has seen none of the redrawn gusts: they are upwind of it.
+                // No redrawn gust has reached the field: they are all upwind of it.
                 let process = GaussMarkov::new(seeds, "gust", |now| place((steps_per_s, steps_per_m), reach_m.0, now));
                 Some(Frozen {
                     process: CachedProcess::new(process, (reach_m.1 - reach_m.0) * steps_per_m),
@@ -97,8 +97,8 @@ impl WindField {
         self.speed_10m_m_s * libm::pow(height_m / 10.0, self.profile_exponent)
     }
 
-    /// Caches the gusts over the field at `now`. Affects only speed: [`WindField::at`] gives the
-    /// same bits without it.
+    /// Caches the gusts over the field at `now`. Affects only the speed: [`WindField::at`] gives
+    /// the same bits without it.
     pub fn prepare(&mut self, now: SimTime) {
         if let Some(gusts) = &mut self.gusts {
             let (near_m, far_m) = gusts.reach_m;

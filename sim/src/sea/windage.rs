@@ -8,9 +8,9 @@
 //! γ = −atan2(v_rw, u_rw)         u_rw = u − u_w                v_rw = v − v_w
 //! ```
 //!
-//! For the air's velocity past the boat (a ahead, s to starboard), which is (−u_rw, −v_rw), cos γ =
-//! −a / V and sin γ = s / V, so no angle is needed. Wind on the bow pushes it away from the wind: N
-//! < 0 for a wind from fine on the starboard bow, so a free boat ends up beam to the wind.
+//! The air's velocity past the boat (a ahead, s to starboard) is (−u_rw, −v_rw). Then cos γ = −a /
+//! V and sin γ = s / V, so no angle is needed. Wind pushes the bow away: N < 0 for a wind from fine
+//! on the starboard bow, so a free boat ends up beam to the wind.
 
 use crate::hull::Planar;
 use primitives::frame::{Body, Ned, Rotation, body_from_ned};

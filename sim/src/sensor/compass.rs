@@ -1,13 +1,12 @@
-//! A magnetic compass: the heading with declination, deviation and other errors.
+//! A magnetic compass: heading with declination, deviation and other errors.
 //!
 //! ```text
 //! reading = ψ − declination − (A + B sin ψ + C cos ψ + D sin 2ψ + E cos 2ψ) + thrust error + noise
 //! ```
 //!
-//! Declination and deviation have the navigator's sign: east is positive, which means that the
-//! needle points east of its true direction and the compass reads too low (Bowditch, The American
-//! Practical Navigator, ch. on compasses). The thrust error is that of the reading at full thrust
-//! of both thrusters.
+//! Declination and deviation have the navigator's sign: with east positive, the needle points east
+//! of its true direction and the compass reads too low (Bowditch, The American Practical Navigator,
+//! ch. on compasses). The thrust error is that of the reading at full thrust of both thrusters.
 
 use super::{Truth, whole_ticks};
 use primitives::angle::wrap_pi;
@@ -23,7 +22,6 @@ pub struct CompassModel {
     compass: Compass,
     noise: TimedNoise,
     period: SimTime,
-    /// Its fault spans in this game.
     faults: Vec<FaultSpan>,
 }
 
@@ -32,7 +30,7 @@ pub struct CompassModel {
 pub struct CompassState {
     /// The last reading.
     psi_rad: f64,
-    /// The error of that reading, rad.
+    /// The error of the last reading, rad.
     pub(super) error_rad: f64,
 }
 
@@ -67,7 +65,7 @@ impl CompassModel {
         self.faults.iter().filter(|span| span.is_on(now)).map(|span| span.offset_rad).reduce(|sum, one| sum + one)
     }
 
-    /// The heading reading at `now`, rad, -pi to pi: that of the last period.
+    /// The reading at `now`, rad, -pi to pi: that of the last period.
     pub fn read(&self, state: &mut CompassState, truth: &Truth, now: SimTime) -> f64 {
         if now.0 % self.period.0 == 0 {
             let number = (now.0 / self.period.0) as u64;
@@ -79,7 +77,7 @@ impl CompassModel {
             if let Some(off_rad) = self.fault_rad(now) {
                 state.psi_rad = wrap_pi(state.psi_rad + off_rad);
             }
-            // The front seat steers by its compass, like a real one: a deviation leads the boat
+            // The front seat steers by its compass, like a real one, so a deviation leads the boat
             // astray instead of only being reported.
             state.error_rad = wrap_pi(state.psi_rad - psi_rad);
         }

@@ -1,8 +1,8 @@
 //! A satellite receiver: delayed and noisy position and velocity over the ground.
 //!
 //! A fix is taken every period and delivered after the latency. Its position has a wandering bias
-//! (Gauss-Markov), white noise and the last jump; its velocity, measured by Doppler shift, has
-//! white noise alone. Drop-outs and freezes follow two-state Markov chains, sampled at the fixes.
+//! (Gauss-Markov), white noise and the last jump. Its velocity, measured by Doppler shift, has only
+//! white noise. Two-state Markov chains, sampled at the fixes, cause drop-outs and freezes.
 
 use super::{GaussMarkovStep, Truth, whole_ticks};
 use crate::two_state::TwoStateChain;
@@ -14,8 +14,8 @@ use scenario::sensor::{Gps, Outage};
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
-/// Limit of fixes in transit: the latency is at most this many periods. A file may specify 12
-/// periods; rounded to whole decisions, this can become 18 for the same time.
+/// Maximum number of fixes in transit, and maximum latency in periods. A file may specify 12
+/// periods; rounded to whole decisions, the same time can be 18.
 pub const UNDER_WAY_MAX: usize = 18;
 /// Pairs of normal numbers per fix: bias, position, velocity, jump.
 const PAIRS: u64 = 4;
@@ -49,7 +49,7 @@ pub struct GpsModel {
     /// Probability of a jump per fix.
     jump_chance: f64,
     jump_m: f64,
-    /// Its fault spans in this game, in addition to its own drop-outs and freezes.
+    /// Its fault spans in this game, besides its own drop-outs and freezes.
     faults: Vec<FaultSpan>,
 }
 
@@ -77,7 +77,7 @@ fn chain(outage: Outage, period: SimTime) -> TwoStateChain {
 }
 
 impl GpsModel {
-    /// The receiver of the boat named `vehicle`, read once per `tick`; its period is a whole number
+    /// The receiver of the boat named `vehicle`, read once per `tick`. Its period is a whole number
     /// of ticks.
     ///
     /// # Panics
@@ -86,7 +86,7 @@ impl GpsModel {
     pub fn new(gps: &Gps, tick: SimTime, seeds: &Seeds, vehicle: &str) -> GpsModel {
         let period = whole_ticks(gps.period_s, tick);
         let latency = SimTime::from_s(gps.latency_s);
-        assert!(latency <= period * UNDER_WAY_MAX as i64, "a latency is at most {UNDER_WAY_MAX} periods");
+        assert!(latency <= period * UNDER_WAY_MAX as i64, "the latency exceeds {UNDER_WAY_MAX} periods");
         GpsModel {
             normals: seeds.noise(&format!("gps/{vehicle}")),
             uniforms: seeds.noise(&format!("gps/{vehicle}/events")),
@@ -110,15 +110,14 @@ impl GpsModel {
         self.faults = faults.iter().filter(|span| is_of_gps(span.kind)).copied().collect();
     }
 
-    /// The present fault of this kind, if any.
     fn fault(&self, kind: FaultKind, now: SimTime) -> Option<&FaultSpan> {
         self.faults.iter().find(|span| span.kind == kind && span.is_on(now))
     }
 
     /// The last fix delivered by `now`. The receiver has been on since before the game: the fix of
-    /// time 0 is available at once, and initially there are no faults.
+    /// time 0 is available at once, and there are no faults initially.
     pub fn read(&self, state: &mut GpsState, truth: &Truth, now: SimTime) -> Fix {
-        // Delivery makes room for the new fix.
+        // Delivery frees space for the new fix.
         while let Some(fix) = state.under_way.pop_front_if(|fix| fix.at + self.latency <= now) {
             state.latest = fix;
         }
@@ -130,7 +129,7 @@ impl GpsModel {
             if number == 0 || (self.latency == SimTime::ZERO && !dropped) {
                 state.latest = fix;
             } else if !dropped {
-                assert!(state.under_way.len() < UNDER_WAY_MAX, "a latency is at most {UNDER_WAY_MAX} periods");
+                assert!(state.under_way.len() < UNDER_WAY_MAX, "more than {UNDER_WAY_MAX} fixes in transit");
                 state.under_way.push_back(fix);
             }
         }
@@ -167,7 +166,7 @@ impl GpsModel {
             && (self.freeze.next(state.frozen.is_some(), uniform(1))
                 || self.fault(FaultKind::GpsFrozen, now).is_some());
         state.frozen = freezes.then(|| state.frozen.unwrap_or(measured));
-        // A frozen receiver still gives its fixes new time stamps: their age does not reveal the
+        // A frozen receiver still stamps its fixes with new times, so their age does not reveal the
         // freeze.
         state.frozen.map_or(measured, |frozen| Fix { at: now, ..frozen })
     }

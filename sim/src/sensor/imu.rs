@@ -1,5 +1,5 @@
-//! Gyro and accelerometers: rotation rates and specific force in body axes, ahead, to starboard and
-//! down.
+//! Gyro and accelerometers: rotation rates and specific force in body axes (ahead, starboard,
+//! down).
 //!
 //! With roll φ, pitch θ and heading ψ (Fossen 2021, ch. 2 and 14):
 //!
@@ -8,7 +8,7 @@
 //! accelerometers:  f = R(φ, θ, ψ)ᵀ (a − g),  g downwards: a boat at rest reads −g down, the water's push
 //! ```
 //!
-//! plus white noise and a wandering bias (Gauss-Markov) for each. The accelerometers are midships.
+//! each with white noise and a wandering bias (Gauss-Markov). The accelerometers are midships.
 
 use super::{GaussMarkovStep, Truth};
 use primitives::reseed::{Seeds, TimedNoise};
@@ -88,7 +88,7 @@ impl ImuModel {
         let mut reading = ImuReading::of(truth);
         for axis in 0..3 {
             let (noise, step) = drawn.normal_pair(PAIRS * number + axis as u64);
-            // A random bias that wanders slowly: integrated rates diverge by it, which white noise
+            // A random bias that wanders slowly makes integrated rates diverge, which white noise
             // alone would hide.
             let bias = &mut state.bias.gyro_rad_s[axis];
             *bias = kept * *bias + fresh * imu.gyro_bias_rad_s * step;

@@ -1,7 +1,7 @@
 //! A boat's sensors: satellite navigation, compass, gyro and accelerometers.
 //!
-//! Start with [`SensorModel::read`]. A sensor omitted from a boat's file is perfect: it reports the
-//! true values bit for bit. The memory of sensors is in their state, which is plain numbers and
+//! Start with [`SensorModel::read`]. A sensor that a boat's file omits is perfect: it reports the
+//! true values bit for bit. Sensors keep their memory in their state, which is plain numbers and
 //! part of the world's snapshot. Random values are looked up by the number of the fix or reading,
 //! under `gps/<vehicle>`, `compass/<vehicle>` and `imu/<vehicle>`.
 
@@ -22,14 +22,14 @@ use scenario::fault::FaultSpan;
 use scenario::sensor::Sensors;
 use serde::{Deserialize, Serialize};
 
-/// The true state of a boat at one tick, as far as sensors measure it.
+/// A boat's true state at one tick, as far as sensors measure it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Truth {
     /// Position and heading.
     pub pose: Pose,
     /// Velocity over the ground in body axes.
     pub nu: Planar,
-    /// The rate of change of the components of `nu`. The accelerometers add the rotation of the
+    /// The rate of change of the components of `nu`; the accelerometers add the rotation of the
     /// axes.
     pub nu_dot: Planar,
     /// Attitude in the waves.
@@ -49,8 +49,8 @@ impl Truth {
 /// The measurements of a boat.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Reading {
-    /// Navigation. Position and velocity are those of the last fix, unchanged; the velocity is
-    /// converted to body axes with the present compass heading.
+    /// Navigation: position and velocity of the last fix, with the velocity converted to body axes
+    /// by the present compass heading.
     pub nav: Nav,
     /// Time of the last fix.
     pub fix_at: SimTime,
@@ -75,7 +75,7 @@ pub struct SensorState {
 }
 
 impl SensorState {
-    /// The compass error at its last reading, rad: the front seat steers wrong by this angle.
+    /// The compass error at its last reading, rad, by which the front seat steers wrong.
     #[must_use]
     pub fn heading_error_rad(&self) -> f64 {
         self.compass.error_rad
@@ -93,7 +93,7 @@ impl SensorModel {
         }
     }
 
-    /// The same sensors with these faults.
+    /// These sensors with these faults.
     #[must_use]
     pub fn with_faults(mut self, faults: &[FaultSpan]) -> SensorModel {
         if let Some(gps) = &mut self.gps {
@@ -105,7 +105,7 @@ impl SensorModel {
         self
     }
 
-    /// The measurements at `now`. Must be called for every tick from 0 on, in order.
+    /// The measurements at `now`. Must be called for every tick from 0, in order.
     #[must_use]
     pub fn read(&self, state: &mut SensorState, truth: &Truth, now: SimTime) -> Reading {
         let psi_rad = match &self.compass {
@@ -125,7 +125,7 @@ impl SensorModel {
                 (fix.position, body_from_ned(Rotation::from_heading(psi_rad), fix.velocity_m_s), fix.at)
             }
         };
-        // Without an inertial unit the rate is the true one: an omitted sensor is a perfect one.
+        // Without an inertial unit the true rate is used: an omitted sensor is perfect.
         let yaw_rate_rad_s = if self.imu.is_some() { imu.gyro_rad_s[2] } else { truth.nu.yaw };
         let nav = Nav {
             north_m: at.north,
@@ -139,7 +139,7 @@ impl SensorModel {
     }
 }
 
-/// `period_s` as a whole number of ticks, at least one: sensors measure between steps of the world.
+/// `period_s` as a whole number of ticks, at least one, because sensors are read at ticks.
 fn whole_ticks(period_s: f64, tick: SimTime) -> SimTime {
     let ticks = (period_s / tick.as_s()).round() as i64;
     tick * ticks.max(1)

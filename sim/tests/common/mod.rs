@@ -1,5 +1,5 @@
-//! Scenarios for tests, written as users would write them.
-#![allow(dead_code, reason = "each test file uses its part")]
+//! Scenarios for tests, as users would write them.
+#![allow(dead_code, reason = "each test file uses a part of it")]
 
 use messages::Order;
 use primitives::{LatLon, Ned, Pose, VehicleId};
@@ -17,15 +17,14 @@ pub(crate) fn scenarios() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios")
 }
 
-/// A shipped game.
 pub(crate) fn shipped(game: &str) -> Scenario {
     scenario::load(&scenarios().join("games").join(game)).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// A game written here; paths in it are relative to `scenarios/games`.
 pub(crate) fn written(toml: &str) -> Scenario {
-    let dir = tempfile::tempdir().expect("a temporary directory");
-    let root = scenarios().canonicalize().expect("the scenarios are there");
+    let dir = tempfile::tempdir().expect("a temporary directory can be created");
+    let root = scenarios().canonicalize().expect("the scenarios exist");
     let path = dir.path().join("test.toml");
     std::fs::write(&path, toml.replace("../", &format!("{}/", root.display()))).expect("a file can be written");
     scenario::load(&path).unwrap_or_else(|e| panic!("{e}"))
@@ -40,16 +39,21 @@ pub(crate) fn alone(boat: &str, sea: &str) -> Scenario {
     )
 }
 
-/// As [`alone`], but in still fresh water with these obstacles.
+/// Like [`alone`], but in still fresh water with these obstacles.
 pub(crate) fn among(boat: &str, obstacles: Vec<Obstacle>) -> Scenario {
     let mut scenario = alone(boat, "calm");
     scenario.field.plan.obstacles = obstacles;
     scenario
 }
 
-/// The world of a game, with its first boat placed as by [`place_boat`].
+/// A match with seed 1, at its start.
+pub(crate) fn started(scenario: &Scenario) -> Contest {
+    Contest::new(scenario, 1).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// The world of a game, with its first boat placed by [`place_boat`].
 pub(crate) fn afloat(scenario: &Scenario, seed: u64, start: (f64, f64, f64), nu: (f64, f64, f64)) -> World {
-    let mut world = World::of_game(scenario, seed).expect("an empty sea has room");
+    let mut world = World::of_game(scenario, seed).expect("the boats fit");
     place_boat(&mut world, 0, start, nu);
     world
 }
@@ -61,7 +65,7 @@ pub(crate) fn on_sea(game: &str, sea: &Path) -> Scenario {
     scenario::load_with(&path, &overrides).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Adds radio links with losses, and limits of sharing.
+/// Adds radio links with losses, and limits on sharing.
 pub(crate) fn hamper(scenario: &mut Scenario) {
     let loss = Loss { good: 0.1, bad: 0.8, good_time_s: 5.0, bad_time_s: 2.0 };
     let station = scenario.field.corners[0];
@@ -77,7 +81,6 @@ pub(crate) fn hamper(scenario: &mut Scenario) {
     };
 }
 
-/// Changes the state of a world directly.
 pub(crate) fn set(world: &mut World, change: impl FnOnce(&mut State)) {
     let mut state = world.state().clone();
     change(&mut state);
@@ -86,22 +89,22 @@ pub(crate) fn set(world: &mut World, change: impl FnOnce(&mut State)) {
 
 /// Changes the state of a contest's world directly.
 pub(crate) fn set_in(contest: &mut Contest, change: impl FnOnce(&mut State)) {
-    // Name and version, mark of the scenario, checksum; the world follows first.
+    // Name and version, mark of the scenario, checksum; then the world comes first.
     let snapshot = contest.snapshot();
     let (head, body) = (&snapshot[..13], &snapshot[21..]);
     let (mut state, rest) = postcard::take_from_bytes::<State>(body).expect("a snapshot begins with the world");
     change(&mut state);
-    let body = [&postcard::to_stdvec(&state).expect("plain numbers"), rest].concat();
+    let body = [&postcard::to_stdvec(&state).expect("plain numbers can be encoded"), rest].concat();
     let checksum = xxhash_rust::xxh3::xxh3_64(&body).to_le_bytes();
-    contest.restore(&[head, &checksum, &body].concat()).expect("it has its own mark");
+    contest.restore(&[head, &checksum, &body].concat()).expect("the snapshot is valid");
 }
 
 /// A 128-bit hash of a world's state.
 pub(crate) fn digest(world: &World) -> u128 {
-    xxhash_rust::xxh3::xxh3_128(&postcard::to_stdvec(world.state()).expect("plain numbers"))
+    xxhash_rust::xxh3::xxh3_128(&postcard::to_stdvec(world.state()).expect("plain numbers can be encoded"))
 }
 
-/// Number of boat pairs newly within the rules' collision distance, compared with `touching`.
+/// The number of boat pairs newly within the rules' collision distance, compared with `touching`.
 pub(crate) fn came_together(world: &World, scenario: &Scenario, touching: &mut Vec<(u16, u16)>) -> usize {
     let distance_m = scenario.rules.collision_distance_m;
     let near = world.pairs().iter().filter(|pair| pair.distance_squared < distance_m * distance_m);
@@ -111,9 +114,9 @@ pub(crate) fn came_together(world: &World, scenario: &Scenario, touching: &mut V
     new
 }
 
-/// Orders a vehicle, in answer to the open picture.
+/// Gives a vehicle an order in reply to the open picture.
 pub(crate) fn order(contest: &mut Contest, vehicle: VehicleId, order: Order) {
-    contest.order(vehicle, order, contest.now()).expect("sound numbers");
+    contest.order(vehicle, order, contest.now()).expect("the order is valid");
 }
 
 /// Places a boat (x east, y north) with a heading and a velocity.
@@ -214,20 +217,20 @@ pub(crate) fn square(x: f64) -> f64 {
     x * x
 }
 
-/// Tolerance of the mean square of `count` samples of a process, `step` correlation times apart,
-/// about 1: five standard errors.
+/// Tolerance, five standard errors, of the mean square (about 1) of `count` samples of a process,
+/// `step` correlation times apart.
 pub(crate) fn five_errors(count: usize, step: f64) -> f64 {
     5.0 * (2.0 / (count as f64 * step)).sqrt()
 }
 
-/// Asserts that a series of mean 0 and variance 1, `step` correlation times apart, has the
-/// correlation e^(−lag) to within this tolerance.
+/// Asserts that a series with mean 0 and variance 1, `step` correlation times apart, has the
+/// correlation e^(−lag) within this tolerance.
 pub(crate) fn assert_memory(what: &str, x: &[f64], lags: &[usize], step: f64, within: f64) {
     assert!(mean_of(x.len(), |i| x[i]).abs() < within, "{what}: mean");
     for lag in lags {
         let want = primitives::math::exp(-(*lag as f64) * step);
         let got = mean_of(x.len() - lag, |i| x[i] * x[i + lag]);
-        assert!((got - want).abs() < within, "{what}, lag {lag}: {got}, not {want} within {within}");
+        assert!((got - want).abs() < within, "{what}, lag {lag}: {got}, want {want} within {within}");
     }
 }
 

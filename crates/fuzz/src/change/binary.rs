@@ -26,7 +26,7 @@ const EDGES: [u64; 12] = [
 const POINTS: [f64; 10] =
     [0.0, -0.0, 1.0, -1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX, f64::MIN_POSITIVE, 1e-320];
 
-/// One of these inputs with a few mutations.
+/// One of the inputs with a few mutations.
 pub fn change(inputs: &[Vec<u8>], dice: &mut Dice) -> Vec<u8> {
     let mut bytes = dice.one_of(inputs).clone();
     for _ in 0..count(dice) {
@@ -36,7 +36,6 @@ pub fn change(inputs: &[Vec<u8>], dice: &mut Dice) -> Vec<u8> {
     bytes
 }
 
-/// Applies one mutation.
 fn once(bytes: &mut Vec<u8>, inputs: &[Vec<u8>], dice: &mut Dice) {
     match dice.roll(9) {
         0 => {
@@ -48,7 +47,7 @@ fn once(bytes: &mut Vec<u8>, inputs: &[Vec<u8>], dice: &mut Dice) {
             bytes.iter_mut().skip(at).take(1).for_each(|byte| *byte ^= 1 << dice.roll(8));
         }
         2 | 3 => {
-            // Numbers are at multiples of their size, after the four bytes of the encapsulation or
+            // Numbers lie at multiples of their size after the four bytes of the encapsulation, or
             // anywhere.
             let size = *dice.one_of(&[1, 2, 4, 4, 8, 8]);
             let edge = dice.one_of(&EDGES).wrapping_add(dice.roll(3) as u64).wrapping_sub(1);

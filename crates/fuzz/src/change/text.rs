@@ -1,4 +1,4 @@
-//! Mutates texts (TOML, JSON, CSV, sentences): word for word, number for number, line for line.
+//! Mutates texts (TOML, JSON, CSV, sentences): words, numbers and lines replace their own kind.
 
 use super::count;
 use crate::Dice;
@@ -6,7 +6,7 @@ use crate::Dice;
 /// Maximum length of a mutated text, bytes.
 const LENGTH_MAX: usize = 1 << 17;
 
-/// Edge-case numbers, as written in TOML, JSON or CSV.
+/// Edge-case numbers in the notation of TOML, JSON or CSV.
 const NUMBERS: [&str; 24] = [
     "0",
     "-0.0",
@@ -34,15 +34,14 @@ const NUMBERS: [&str; 24] = [
     "999999999999999999999999999999999999999999",
 ];
 
-/// Words with a meaning for one of the readers.
+/// Words with a meaning to some reader.
 const WORDS: [&str; 13] =
     ["null", "true", "false", "\"\"", "[]", "{}", "\"\\u0000\"", "\"../x\"", "\"é\"", "base", ",", "\n", "[[x]]"];
 
-/// Characters that end a text, or that would control a terminal if a reader printed them.
+/// Characters that end a text, or control a terminal when printed.
 const CHARACTERS: [char; 12] =
     ['\0', '\x1b', '\x7f', '\u{9b}', '\u{202e}', '\u{feff}', 'ß', '"', '\\', '\n', '\r', '#'];
 
-/// The kind of a piece of text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Number,
@@ -51,7 +50,7 @@ enum Kind {
     Other,
 }
 
-/// The pieces of many texts, for use as replacements.
+/// Pieces of many texts, as replacements.
 pub struct Pieces {
     numbers: Vec<String>,
     words: Vec<String>,
@@ -60,7 +59,7 @@ pub struct Pieces {
 }
 
 impl Pieces {
-    /// Collects the pieces of these texts.
+    /// Collects the pieces of the texts.
     pub fn of(texts: &[Vec<u8>]) -> Pieces {
         let mut pieces = Pieces {
             numbers: NUMBERS.map(str::to_owned).to_vec(),
@@ -102,7 +101,7 @@ impl Pieces {
         &all[dice.roll(all.len())]
     }
 
-    /// One of these texts with a few mutations.
+    /// One of the texts with a few mutations.
     pub fn change(&self, texts: &[Vec<u8>], dice: &mut Dice) -> Vec<u8> {
         let mut text = String::from_utf8_lossy(&texts[dice.roll(texts.len())]).into_owned();
         for _ in 0..count(dice) {
@@ -125,7 +124,7 @@ impl Pieces {
 
     fn change_piece(&self, text: &str, dice: &mut Dice) -> String {
         let mut pieces: Vec<(Kind, &str)> = split(text);
-        // Half of the time choose a number: numbers affect a program most.
+        // Half of the time a number, because numbers affect a program most.
         let numbers: Vec<usize> = (0..pieces.len()).filter(|i| pieces[*i].0 == Kind::Number).collect();
         let at = if numbers.is_empty() || dice.roll(2) == 0 { dice.roll(pieces.len()) } else { *dice.one_of(&numbers) };
         let Some((kind, piece)) = pieces.get(at).copied() else { return dice.one_of(&WORDS).to_string() };
@@ -167,7 +166,7 @@ impl Pieces {
     }
 }
 
-/// Splits a text into pieces that together are the whole text.
+/// Splits a text into pieces without losing anything.
 fn split(text: &str) -> Vec<(Kind, &str)> {
     let mut pieces = Vec::new();
     let mut rest = text;
@@ -190,7 +189,7 @@ fn length_of(text: &str, belongs: impl Fn(char) -> bool) -> usize {
     text.find(|c| !belongs(c)).unwrap_or(text.len())
 }
 
-/// Length of a quoted text with its quotes, or of the quote alone if the line ends first.
+/// Length of a quoted text with its quotes; 1 if the line ends first.
 fn quoted_length(text: &str, quote: char) -> usize {
     let mut is_escaped = false;
     for (at, c) in text.char_indices().skip(1) {
@@ -217,7 +216,7 @@ mod tests {
         for want in
             [(Kind::Word, "a_b"), (Kind::Number, "-1.5e3"), (Kind::Quoted, "\"x\\\"y\""), (Kind::Quoted, "\"k\"")]
         {
-            assert!(pieces.contains(&want), "{want:?} in {pieces:?}");
+            assert!(pieces.contains(&want), "no {want:?} in {pieces:?}");
         }
     }
 }

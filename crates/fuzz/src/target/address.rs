@@ -1,4 +1,4 @@
-//! One-line inputs of users and nodes: link addresses, game names, tokens, node keys.
+//! One-line inputs from users and nodes: link addresses, game names, tokens, node keys.
 
 use super::{Target, check_shown, texts};
 use bus::Token;
@@ -22,12 +22,12 @@ fn check(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     for read in [LinkAddress::to_connect, LinkAddress::to_listen] {
         match read(&text) {
-            Ok(address) => assert_eq!(read(&address.to_string()), Ok(address), "printed, and read again"),
+            Ok(address) => assert_eq!(read(&address.to_string()), Ok(address), "printed and read again"),
             Err(error) => check_shown(&error),
         }
     }
     match GameName::new(&text) {
-        // The name becomes part of keys, in which these characters are special.
+        // The name becomes part of keys, where these characters have a meaning.
         Ok(name) => assert!(name.as_str() == text && !text.contains(['/', '*', '$', '#', '?']) && !text.is_empty()),
         Err(error) => check_shown(&error),
     }
@@ -35,7 +35,7 @@ fn check(bytes: &[u8]) {
         Ok(token) => assert_eq!(token.hex(), text.trim().to_lowercase()),
         Err(error) => {
             check_shown(&error);
-            assert!(text.len() < 20 || !error.to_string().contains(&*text), "a token must not be told");
+            assert!(text.len() < 20 || !error.to_string().contains(&*text), "an error must not contain the token");
         }
     }
     if let Some((game, sim)) = topic::parse_alive(&text) {

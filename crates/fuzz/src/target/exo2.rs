@@ -1,15 +1,15 @@
-//! The conversation of a sonde and its clients: the same measurements however it is split, and a
-//! name for every number.
+//! The conversation between a sonde and its clients: it gives the same measurements however it is
+//! split, and every number has a name.
 
 use super::{Target, texts};
 use gateway::payload::exo2::{Conversation, Measurement, Sonde};
 
 pub(super) const TARGET: Target = Target { name: "exo2", seeds, change: texts, check, allocated_max: (1 << 20, 2000) };
 
-/// Separates the turns of the two sides.
+/// Separates the turns of the conversation.
 const TURN: u8 = b'\x1e';
 
-/// Conversations in lines with echo and prompt, and over HTTP 1.0 and 1.1.
+/// Conversations in lines, with echo and prompt, and over HTTP 1.0 and 1.1.
 fn seeds() -> Vec<Vec<u8>> {
     let lines = "para\r|para\r\n1 18 212\r\n# |data\r|data\r\n20.5 -7.25 8\r\n# |data\r|data\r20.5 7.25 -99999\r# ";
     let post = "POST /data HTTP/1.1\r\nHost: sonde\r\nContent-Length: 4\r\n\r\npara";
@@ -35,7 +35,7 @@ fn check(bytes: &[u8]) {
     }
 }
 
-/// The measurements from alternating turns, each split into pieces of this size.
+/// The measurements from the turns, each split into pieces of this size.
 fn measured(bytes: &[u8], size: usize) -> (Vec<Measurement>, Sonde) {
     let (mut sonde, mut conversation, mut all) = (Sonde::default(), Conversation::default(), vec![]);
     for (i, turn) in bytes.split(|byte| *byte == TURN).enumerate() {

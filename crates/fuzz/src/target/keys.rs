@@ -1,5 +1,5 @@
-//! Keys of a node (PEM): the authority's certificate, the node's certificate and its key, each
-//! preceded by its length, as decoded from PEM. Real ones are created for every run.
+//! Keys of a node: the authority's certificate, the node's certificate and its key, each decoded
+//! from PEM and preceded by its length. Real ones are created for every run.
 
 use super::{Target, binaries, check_shown};
 use bus::keys::{Bundle, Identity, make};
@@ -10,7 +10,7 @@ use tempfile::TempDir;
 pub(super) const TARGET: Target =
     Target { name: "keys", seeds, change: binaries, check, allocated_max: (4 << 20, 500) };
 
-/// The files of a bundle and their contents.
+/// The files of a bundle, with the labels of their contents.
 const FILES: [(&str, &str); 3] =
     [("authority.pem", "CERTIFICATE"), ("certificate.pem", "CERTIFICATE"), ("key.pem", "PRIVATE KEY")];
 const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -82,7 +82,7 @@ mod tests {
     fn real_keys_are_keys_here() {
         for seed in seeds() {
             check(&seed);
-            assert!(Bundle::load(FOLDER.path()).is_ok(), "taken apart and put together again");
+            assert!(Bundle::load(FOLDER.path()).is_ok(), "a reassembled bundle is valid");
         }
     }
 }

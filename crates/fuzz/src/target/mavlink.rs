@@ -1,4 +1,4 @@
-//! Messages from boats and ground stations (MAVLink frames).
+//! MAVLink frames from boats and ground stations.
 
 use super::{Target, binaries};
 use gateway::config::{BoatProtocol, Gateway};
@@ -10,7 +10,7 @@ use primitives::SimTime;
 pub(super) const TARGET: Target =
     Target { name: "mavlink", seeds, change: binaries, check, allocated_max: (1 << 24, 20_000) };
 
-/// Frames written by another program, one by one and all in a row.
+/// Frames from another program, one by one and together.
 fn seeds() -> Vec<Vec<u8>> {
     let list = include_str!("../../../../gateway/tests/mavlink/golden.txt");
     let lines = list.lines().filter_map(|line| line.split_once(' ')).filter(|(name, _)| *name != "#");
@@ -35,12 +35,12 @@ fn check(bytes: &[u8]) {
 
 fn framed<'a>(pieces: impl IntoIterator<Item = &'a [u8]>) -> (Vec<String>, Counts) {
     let (mut framer, mut received) = (Framer::new(), Vec::new());
-    // Compare texts: NaN is not equal to itself.
+    // As text, because NaN does not equal itself.
     pieces.into_iter().for_each(|piece| framer.push(piece, &mut |message| received.push(format!("{message:?}"))));
     (received, framer.counts().clone())
 }
 
-/// Arbitrary payloads of every supported message in valid frames: boat and ground station must
+/// Valid frames with arbitrary payloads of every supported message. Boat and ground station must
 /// accept them all.
 fn repaired(bytes: &[u8]) {
     let gateway = Gateway { protocol: BoatProtocol::Mavlink, ..gateway::config::default_gateway() };
@@ -59,7 +59,7 @@ fn repaired(bytes: &[u8]) {
         protocol.read(now, &out, &mut |_| {});
     }
     out.clear();
-    boat.order(now).check().expect("a sound order, whatever it was sent");
+    boat.order(now).check().expect("the order is valid for any message");
     boat.telemetry(now, &mut out);
     protocol.keep_up(now, &mut out);
 }

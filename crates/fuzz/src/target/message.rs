@@ -1,4 +1,4 @@
-//! Messages of every tick (CDR): decoding, and their effect on the sim, a mind and an observer.
+//! Messages of every tick (CDR): their decoding, and their effect on sim, minds and observers.
 
 use super::{Target, binaries, check_shown};
 use crate::played::{self, Played, mixed, played};
@@ -25,7 +25,7 @@ use std::cell::RefCell;
 pub(super) const TARGET: Target =
     Target { name: "message", seeds, change: binaries, check, allocated_max: (32 << 20, 500) };
 
-/// The ticket of all nodes.
+/// The ticket of every node.
 const TICKET: u64 = 7;
 
 fn seeds() -> Vec<Vec<u8>> {
@@ -59,11 +59,11 @@ fn seeds() -> Vec<Vec<u8>> {
     seeds
 }
 
-/// The readers of messages, in the middle of a game.
+/// Readers of messages in the middle of a game.
 struct Readers {
     scenario: Scenario,
     contest: Contest,
-    /// The state of the game before each message.
+    /// The state before each message.
     snapshot: Vec<u8>,
     agents: Membership,
     gateways: Membership,
@@ -73,7 +73,7 @@ struct Readers {
 impl Readers {
     fn new() -> Readers {
         let scenario = mixed();
-        let mut contest = Contest::new(&scenario, 1).expect("it starts");
+        let mut contest = Contest::new(&scenario, 1).expect("the game starts");
         contest.advance();
         let names = scenario.vehicles.iter().map(|vehicle| vehicle.name.clone());
         let member = |role, vehicles: Vec<String>| {
@@ -102,7 +102,7 @@ fn check(bytes: &[u8]) {
             let mut refusals = Refusals::default();
             let open = (readers.contest.decision(), Timing::Realtime);
             for (vehicle, order) in agents::accept(&mut readers.agents.clone(), &orders, open, &mut refusals).orders {
-                // A non-finite number makes the boat hold.
+                // Non-finite numbers make the boat hold.
                 readers.contest.order(vehicle, order, orders.stamp.valid_ns).unwrap_or_default();
             }
             readers.go_on();
@@ -141,14 +141,13 @@ fn check(bytes: &[u8]) {
     });
 }
 
-/// Decodes a message, whose encoding must have the same length and be stable when decoded and
-/// encoded again.
+/// Decodes a message. Its encoding must have the same length and survive another round trip.
 fn read<M: Message + Serialize + DeserializeOwned>(bytes: &[u8]) -> Option<M> {
     match codec::decode::<M>(bytes) {
         Ok(message) => {
             let written = codec::encode(&message);
             assert_eq!(written.len(), bytes.len(), "{}", M::SCHEMA);
-            let again = codec::decode::<M>(&written).unwrap_or_else(|e| panic!("written and not read: {e}"));
+            let again = codec::decode::<M>(&written).unwrap_or_else(|e| panic!("cannot decode what was encoded: {e}"));
             assert_eq!(codec::encode(&again), written, "{}", M::SCHEMA);
             Some(message)
         }
@@ -160,7 +159,8 @@ fn read<M: Message + Serialize + DeserializeOwned>(bytes: &[u8]) -> Option<M> {
 }
 
 impl Readers {
-    /// After any message the game advances with finite positions; then restores its state.
+    /// Checks that the game advances with finite positions after any message; then restores its
+    /// state.
     fn go_on(&mut self) {
         self.contest.advance();
         let frame = self.contest.frame(&mut EventCursor::default());
@@ -169,10 +169,10 @@ impl Readers {
             let numbers = [north_m, east_m, psi_rad, surge_m_s, sway_m_s, yaw_rate_rad_s];
             assert!(numbers.iter().all(|number| number.is_finite()), "{} is at {:?}", vehicle.name, truth.nav);
         }
-        self.contest.restore(&self.snapshot).expect("its own snapshot");
+        self.contest.restore(&self.snapshot).expect("the snapshot is valid");
     }
 
-    /// After any picture, the sim must accept the orders of the minds.
+    /// Checks that the sim accepts the minds' orders after any picture.
     fn decide(&mut self, picture: &Picture) {
         let mind = |i| (VehicleId::at(i), agent::mind_of(&self.scenario, VehicleId::at(i)));
         let mut runner = MindRunner::new([mind(0), mind(2)]);
@@ -184,10 +184,10 @@ impl Readers {
             let taken = self.contest.order(vehicle, order, SimTime::ZERO);
             assert!(taken.is_ok(), "{order:?} for {}", self.scenario.vehicles[vehicle.index()].name);
         }
-        self.contest.restore(&self.snapshot).expect("its own snapshot");
+        self.contest.restore(&self.snapshot).expect("the snapshot is valid");
     }
 
-    /// Teammates receive no more words than boats may send, and no non-finite numbers.
+    /// Checks that teammates receive no more words than boats may send, and only finite numbers.
     fn hear(&self, bytes: &[u8], seq: u64) {
         for team in 0..self.scenario.teams.len() {
             let mut inbox = self.team_inbox.clone();

@@ -21,15 +21,15 @@ pub type Change = Box<dyn Fn(&mut Dice) -> Vec<u8>>;
 /// A kind of input.
 #[derive(Clone, Copy)]
 pub struct Target {
-    /// Name of the target on the command line.
+    /// The name on the command line.
     pub name: &'static str,
     /// Real inputs.
     pub seeds: fn() -> Vec<Vec<u8>>,
-    /// Builds the mutator of real inputs.
+    /// Builds the mutator for real inputs.
     pub change: fn(Vec<Vec<u8>>) -> Change,
-    /// Checks every guarantee on an input; panics if one is violated.
+    /// Checks all guarantees on an input. Panics if one is violated.
     pub check: fn(&[u8]),
-    /// Limit of total allocations of a check, bytes: a constant, and a multiple of the input's
+    /// Limit on the bytes allocated by a check in total: a constant, and a multiple of the input's
     /// length.
     pub allocated_max: (usize, usize),
 }
@@ -56,22 +56,20 @@ pub fn named(name: &str) -> Option<Target> {
     TARGETS.into_iter().find(|target| target.name == name)
 }
 
-/// The text mutator.
 fn texts(seeds: Vec<Vec<u8>>) -> Change {
     let pieces = crate::change::text::Pieces::of(&seeds);
     Box::new(move |dice| pieces.change(&seeds, dice))
 }
 
-/// The binary mutator.
 fn binaries(seeds: Vec<Vec<u8>>) -> Change {
     Box::new(move |dice| crate::change::binary::change(&seeds, dice))
 }
 
-/// Checks a displayed error: a limited number of lines, each of limited length and without terminal
-/// control characters.
+/// Checks an error as displayed: few lines, each of limited length and without terminal control
+/// characters.
 fn check_shown(error: &dyn std::fmt::Display) {
     let shown = primitives::printable::message(&error.to_string());
-    assert!(!shown.trim().is_empty(), "an error that says nothing");
+    assert!(!shown.trim().is_empty(), "an empty error");
     for line in shown.lines() {
         assert!(line.chars().count() < 2100, "{} characters: {line:.200}", line.chars().count());
         assert!(!line.contains(|c: char| c.is_control()), "{line:?}");

@@ -1,5 +1,5 @@
-//! Trained policies (ONNX): a file is refused, or it is a network that answers any input, and
-//! always in the same way.
+//! Trained policies (ONNX): a file is rejected, or its network responds to any input, and always in
+//! the same way.
 
 use super::{Target, binaries, check_shown};
 use onnx::{Activation, Head, Layer, Network, Perceptron};
@@ -9,18 +9,18 @@ use scenario::policy::{PartialSpec, PolicyModel, PolicySpec};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// The limits of weights and computed numbers matter here, not the file's length.
+/// Limits on weights and computed numbers matter here, not the file's length.
 pub(super) const TARGET: Target =
     Target { name: "model", seeds, change: binaries, check, allocated_max: (256 << 20, 1000) };
 
-/// A strategy's description of a model without metadata.
+/// What a strategy states about a model without metadata.
 const SAID: PartialSpec = PartialSpec {
     observation: Some(ObservationSpace::Pyquaticus),
     action: Some(ActionSpace::Pyquaticus),
     period_s: Some(0.1),
 };
 
-/// Inputs of a network: zero, and values from a broken sensor.
+/// Inputs of a network: zero, and values of a broken sensor.
 const GIVEN: [f32; 4] = [0.0, -1.0, f32::MAX, f32::NAN];
 
 fn seeds() -> Vec<Vec<u8>> {
@@ -33,7 +33,7 @@ fn seeds() -> Vec<Vec<u8>> {
     names.into_iter().map(read).chain([own()]).collect()
 }
 
-/// A model as written by a training.
+/// A model as a training writes it.
 fn own() -> Vec<u8> {
     let spec = PolicySpec {
         observation: ObservationSpace::Squall { mates: 0, enemies: 1, frames: 1 },
@@ -55,7 +55,7 @@ fn own() -> Vec<u8> {
         end: None,
         metadata: BTreeMap::from(spec.metadata()),
     };
-    network.onnx().expect("the sizes fit")
+    network.onnx().expect("the sizes match")
 }
 
 fn check(bytes: &[u8]) {
@@ -81,6 +81,6 @@ fn check(bytes: &[u8]) {
             let outputs = 0..network.outputs().len();
             outputs.flat_map(|i| network.output(i).iter().map(|number| number.to_bits())).collect()
         };
-        assert_eq!(once(), once(), "the same input, another output");
+        assert_eq!(once(), once(), "the same input gave another output");
     }
 }

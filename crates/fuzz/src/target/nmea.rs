@@ -1,4 +1,4 @@
-//! Messages from boats (NMEA sentences).
+//! NMEA sentences from boats.
 
 use super::{Target, texts};
 use gateway::nmea::{
@@ -7,7 +7,7 @@ use gateway::nmea::{
 };
 use primitives::LatLon;
 
-/// Sentence addresses that the codec reads: random fields would seldom match one.
+/// Sentence addresses that the codec reads; random fields would rarely match one.
 const ADDRESSES: [&str; 16] = [
     "PSEAC", "PSEAA", "PSEAB", "PSEAD", "PSEAG", "PSEAR", "OIWPL", "GPGGA", "GPRMC", "GPVTG", "GPHDT", "HCHDG",
     "GPZDA", "VCGLL", "WIMWV", "VWVHW",
@@ -15,7 +15,7 @@ const ADDRESSES: [&str; 16] = [
 
 pub(super) const TARGET: Target = Target { name: "nmea", seeds, change: texts, check, allocated_max: (1 << 20, 2000) };
 
-/// Sentences from real programs and manuals, one by one and some in a row.
+/// Sentences from real programs and manuals, one by one and together.
 fn seeds() -> Vec<Vec<u8>> {
     let list = include_str!("../../../../gateway/tests/nmea/golden.txt");
     let sentences = list.lines().filter(|line| line.starts_with(|c: char| c == '$' || c.is_ascii_uppercase()));
@@ -61,7 +61,7 @@ fn stream(bytes: &[u8]) {
     }
 }
 
-/// A line with its checksum added must be accepted.
+/// A line with a correct checksum must be accepted.
 fn repaired(line: &[u8]) {
     let plain = |byte: &&u8| (b' '..=b'~').contains(*byte) && !b"$*".contains(*byte);
     let body: Vec<u8> = line.iter().filter(plain).take(ACCEPTED_MAX - 6).copied().collect();
@@ -73,11 +73,11 @@ fn repaired(line: &[u8]) {
     read(&found[0]);
 }
 
-/// A parsed sentence can be written and read again, and is then stable.
+/// A parsed sentence can be written and read again, and then stays the same.
 fn read(body: &str) {
     let Ok(sentence) = Sentence::parse(body) else { return };
     let Some(again) = reread(&sentence) else { return };
-    let settled = reread(&again).expect("what was written once is short");
+    let settled = reread(&again).expect("a written sentence is short");
     assert_eq!(written(&settled), written(&again), "{body}");
 }
 
@@ -116,7 +116,7 @@ fn numbers(bytes: &[u8]) {
     }));
 }
 
-/// The sentence after writing and reading; `None` if a required field had to be left empty.
+/// The sentence after writing and reading. `None` if a required field stayed empty.
 fn reread(sentence: &Sentence) -> Option<Sentence> {
     let wire = written(sentence);
     assert!(wire.len() <= EMITTED_MAX, "{} bytes: {wire}", wire.len());
@@ -125,7 +125,7 @@ fn reread(sentence: &Sentence) -> Option<Sentence> {
     match Sentence::parse(&found[0]) {
         Ok(back) => Some(back),
         Err(_) if matches!(sentence, Sentence::MissionSettings(_) | Sentence::Waypoint(_)) => None,
-        Err(error) => panic!("{wire} from {sentence:?}: {error}"),
+        Err(error) => panic!("cannot read {wire} from {sentence:?}: {error}"),
     }
 }
 

@@ -1,5 +1,5 @@
-//! Browser messages to a page (JSON over websocket), on a recording and on a game. Each line is a
-//! message; a line that begins with `~` is a pong, one that begins with `!` a binary message.
+//! Browser messages to a page (JSON over WebSocket), showing a recording or a game. Each line is a
+//! message: `~` starts a pong, `!` a binary message.
 
 use super::{Target, texts};
 use crate::played::{self, played};
@@ -19,11 +19,12 @@ pub(super) const TARGET: Target = Target { name: "page", seeds, change: texts, c
 const SENT_MAX: usize = 300;
 
 static REPLAY: LazyLock<ReplayView> = LazyLock::new(|| {
-    let recording = Recording::of(played(played::scenario("attack_1v1"), 30).recording(&[])).expect("it is one");
+    let recording =
+        Recording::of(played(played::scenario("attack_1v1"), 30).recording(&[])).expect("the recording is valid");
     replay_of(recording)
 });
 
-/// A view that searches for a game and never finds one.
+/// A view whose search for a game never succeeds.
 static LIVE: LazyLock<LiveView> = LazyLock::new(|| {
     let nowhere = Place::new(|_| Err("there is no game".to_owned()));
     LiveView::open(nowhere, None, Box::new(|_| ()), |_| Err(String::new())).expect("a thread")
@@ -52,19 +53,18 @@ fn check(bytes: &[u8]) {
     }
     let access = Access::Watch;
     talk(PageSession::new(LIVE.open_viewer(access), access), &text, |line, said| {
-        // A viewer without control rights can change nothing.
+        // A viewer without control rights cannot change anything.
         let acts = serde_json::from_str::<PageRequest>(line).is_ok_and(|ask| ask.acts());
-        let refused = |text: &String| text.starts_with(r#"{"kind":"refused""#) && text.contains("may only look");
-        assert!(!acts || said.iter().any(refused), "{line} was answered with {said:?}");
+        let refused = |text: &String| text.starts_with(r#"{"kind":"refused""#) && text.contains("may only watch");
+        assert!(!acts || said.iter().any(refused), "the reply to {line} was {said:?}");
     });
 }
 
-/// A view of a recording.
 fn replay_of(recording: Recording) -> ReplayView {
     ReplayView::new(Arc::new(Recorded::new(Arc::new(recording), "fuzz.mcap".to_owned())), None)
 }
 
-/// Shows a recording to a page that navigates in it.
+/// Shows a recording to a page and navigates in it.
 pub(super) fn look_around(recording: Recording) {
     let view = replay_of(recording);
     let access = Access::Watch;
@@ -72,8 +72,8 @@ pub(super) fn look_around(recording: Recording) {
     talk(PageSession::new(view.open_viewer(access), access), &seed, |_, _| ());
 }
 
-/// Sends the lines to a session. Every reply has a kind, the replies end, and at most two frames
-/// are in flight.
+/// Sends lines to a session. Every reply has a kind, replies end, and at most two frames are in
+/// flight.
 fn talk(mut session: PageSession, lines: &str, answered: impl Fn(&str, &[String])) {
     let (mut now, mut under_way) = (clock::now(), 0_usize);
     for line in lines.lines() {
@@ -104,8 +104,8 @@ fn said(session: &mut PageSession, now: Instant, under_way: &mut usize) -> Vec<S
             Some(Outgoing::Past(_)) => {}
             Some(Outgoing::Now(_)) => *under_way += 1,
         }
-        assert!(*under_way <= 2, "{under_way} frames that are not drawn");
-        // A browser page answers at once.
+        assert!(*under_way <= 2, "{under_way} frames in flight");
+        // A browser page answers immediately.
         if let Some(ping) = session.ping() {
             session.receive_pong(ping);
         }

@@ -1,5 +1,5 @@
-//! Recordings of games and gateways (MCAP): every reader, viewer, replay and analysis answers or
-//! refuses.
+//! Recordings of games and gateways (MCAP): every reader, viewer, replay and analysis processes or
+//! rejects them.
 
 use super::{Change, Target, check_shown, page};
 use crate::Dice;
@@ -27,7 +27,7 @@ static SCENARIOS: LazyLock<[Scenario; 2]> = LazyLock::new(|| ["attack_1v1", "pav
 
 /// The magic bytes of MCAP files.
 const MAGIC: &[u8] = b"\x89MCAP0\r\n";
-/// Opcodes of the records that are parsed here.
+/// Opcodes of the records parsed here.
 const CHUNK: u8 = 6;
 const METADATA: u8 = 12;
 const DATA_END: u8 = 15;
@@ -54,7 +54,6 @@ fn seeds() -> Vec<Vec<u8>> {
     ]
 }
 
-/// A short recording of a gateway.
 fn gateway_recording() -> Vec<u8> {
     let (scenario, vehicle) = (mixed(), "blue_one".to_owned());
     let gateway = gateway::config::default_gateway();
@@ -96,7 +95,7 @@ fn check(bytes: &[u8]) {
     }
 }
 
-/// Applies every reader to the recording of a game.
+/// Applies every reader to a game's recording.
 fn look_at_all_of(recording: Recording, bytes: &[u8]) {
     let series = GameSeries::of(&recording);
     serde_json::to_string(&Summary::of(&recording)).expect("a summary is JSON");
@@ -107,17 +106,17 @@ fn look_at_all_of(recording: Recording, bytes: &[u8]) {
             Err(error) => panic!("{topic}: {error}"),
         }
     }
-    alog::write(&recording, true, &mut |_| Ok(Box::new(std::io::sink()))).expect("whoever writes nowhere cannot fail");
+    alog::write(&recording, true, &mut |_| Ok(Box::new(std::io::sink()))).expect("a sink accepts everything");
     if let Err(error) = Comparison::of([recording.header(); 2], [&series; 2], 0.0) {
         check_shown(&error);
     }
     play_again(&recording);
-    page::look_around(Recording::of(bytes.to_vec()).expect("it is one"));
+    page::look_around(Recording::of(bytes.to_vec()).expect("the recording is valid"));
 }
 
-/// Replays the game from its inputs, like `squall replay --check`.
+/// Replays the game from its inputs, as `squall replay --check` does.
 fn play_again(recording: &Recording) {
-    // A scenario's numbers are trusted: only the inputs are mutated here.
+    // The numbers of a scenario are trusted, so only inputs are mutated here.
     if !SCENARIOS.contains(recording.scenario()) {
         return;
     }
@@ -131,10 +130,10 @@ fn play_again(recording: &Recording) {
     assert_eq!(recording.bag().places(FRAME).count(), recording.frame_count());
 }
 
-/// An MCAP record: its opcode and its body.
+/// An MCAP record: opcode and body.
 type Record = (u8, Vec<u8>);
 
-/// Mutates single records, and the file as a whole.
+/// Mutates single records, or the file as a whole.
 fn change(seeds: Vec<Vec<u8>>) -> Change {
     let files: Vec<Vec<Record>> = seeds.iter().map(|seed| records(&seed[MAGIC.len()..])).collect();
     let pools: Vec<Vec<Vec<u8>>> =
@@ -181,14 +180,14 @@ fn change_record(file: &mut Vec<Record>, pool: &[Vec<u8>], pieces: &Pieces, dice
     }
 }
 
-/// The records of a file, including those inside chunks.
+/// The records of a file, with those inside chunks.
 fn records(mut bytes: &[u8]) -> Vec<Record> {
     let mut records = Vec::new();
     while let Some((opcode, length, rest)) = prefix(bytes) {
         let Some((body, rest)) = rest.split_at_checked(length) else { break };
         match opcode {
-            // Skip two times, a size, a checksum, the empty compression name, and the length of the
-            // content.
+            // Skip two times, a size, a checksum, the empty compression name, and the content's
+            // length.
             CHUNK => records.extend(self::records(body.get(8 + 8 + 8 + 4 + 4 + 8..).unwrap_or_default())),
             DATA_END => break,
             _ => records.push((opcode, body.to_vec())),
@@ -204,7 +203,7 @@ fn prefix(bytes: &[u8]) -> Option<(u8, usize, &[u8])> {
     Some((*opcode, usize::try_from(u64::from_le_bytes(*length)).ok()?, rest))
 }
 
-/// A file of these records. Only the header has a valid checksum.
+/// A file of these records. Only the header's checksum is valid.
 fn written(records: &[Record]) -> Vec<u8> {
     let mut bytes = MAGIC.to_vec();
     let end = (DATA_END, vec![0; 4]);
@@ -217,7 +216,7 @@ fn written(records: &[Record]) -> Vec<u8> {
     bytes
 }
 
-/// The name and the facts of a metadata record.
+/// The name and facts of a metadata record.
 fn facts_of((opcode, body): &Record) -> Option<(Vec<u8>, BTreeMap<String, Vec<u8>>)> {
     let (name, rest) = text(body).filter(|_| *opcode == METADATA)?;
     let (mut list, _) = text(rest)?;
@@ -249,7 +248,7 @@ fn metadata(name: &[u8], facts: &BTreeMap<String, Vec<u8>>) -> Vec<u8> {
     [with_length(name), with_length(&list)].concat()
 }
 
-/// The checksum of a header's other facts, computed as by the recorder.
+/// The checksum of a header's other facts, as the recorder computes it.
 fn checksum_of(facts: &BTreeMap<String, Vec<u8>>) -> String {
     let mut hasher = crc32fast::Hasher::new();
     for (key, value) in facts.iter().filter(|(key, _)| *key != "checksum") {

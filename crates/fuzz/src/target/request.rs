@@ -1,5 +1,5 @@
-//! The control plane (JSON): requests and their proofs, replies, states, and this machine's
-//! registry.
+//! The control plane (JSON): requests with their proofs, replies, states, and the registry of this
+//! machine.
 
 use super::{Target, check_shown, texts};
 use crate::played::{self, mixed, played};
@@ -74,7 +74,7 @@ fn bytes_of<T: Serialize>(value: &T) -> Vec<u8> {
     serde_json::to_vec(value).expect("JSON")
 }
 
-/// A request alone, in its envelope, and with an invalid proof.
+/// A request on its own, in its envelope, and with an invalid proof.
 fn requests<T: Serialize>(body: &T) -> [Vec<u8>; 3] {
     let text = String::from_utf8(bytes_of(body)).expect("JSON");
     let proof = format!(r#"{{"challenge":"{}","mac":"{}"}}"#, "4f0c".repeat(8), "ab".repeat(32));
@@ -91,7 +91,7 @@ fn check(bytes: &[u8]) {
             match membership.clone().join(&request, 7, primitives::SimTime(5)) {
                 JoinReply::Granted { vehicles, .. } => assert_eq!(vehicles.len(), request.vehicles.len()),
                 JoinReply::Refused { reason } => check_shown(&reason),
-                JoinReply::Busy { vehicle } => panic!("nobody else has {vehicle}"),
+                JoinReply::Busy { vehicle } => panic!("no other node has {vehicle}"),
             }
         }
     }
@@ -115,20 +115,21 @@ fn check(bytes: &[u8]) {
     read::<Water>(bytes);
     read::<Entry>(bytes);
     read::<GatewayEntry>(bytes);
-    // Not comparable for equality: a report contains errors.
+    // No comparison for equality: a report contains errors.
     drop(serde_json::from_slice::<ProgressMessage>(bytes));
-    // Its numbers are trusted: a node that joins a game trusts its sim.
+    // The numbers are trusted, because a node that joins a game trusts its sim.
     if let Some(Err(error)) = read::<GameInfo>(bytes).map(|info| info.scenario.check_references()) {
         check_shown(&error);
     }
 }
 
-/// A decoded value must be stable when encoded and decoded again.
+/// A decoded value must survive an encoding round trip.
 fn read<T: Serialize + DeserializeOwned + PartialEq + Debug>(bytes: &[u8]) -> Option<T> {
     match serde_json::from_slice::<T>(bytes) {
         Ok(value) => {
             let written = bytes_of(&value);
-            let again = serde_json::from_slice::<T>(&written).unwrap_or_else(|e| panic!("written and not read: {e}"));
+            let again =
+                serde_json::from_slice::<T>(&written).unwrap_or_else(|e| panic!("cannot decode what was encoded: {e}"));
             assert_eq!(bytes_of(&again), written);
             Some(value)
         }
@@ -163,7 +164,7 @@ fn guarded(bytes: &[u8]) {
     assert!(!matches!(checked, Checked::Granted(_)), "{checked:?}");
 }
 
-/// The same request with the proof that it has, or one that is none, for the challenge that was the answer to it.
+/// The request with its own proof, valid or not, for the challenge in the reply.
 fn with_challenge(request: &[u8], answer: &[u8]) -> Option<Vec<u8>> {
     let mut request: Value = serde_json::from_slice(request).ok()?;
     let answer: Value = serde_json::from_slice(answer).ok()?;
@@ -172,9 +173,9 @@ fn with_challenge(request: &[u8], answer: &[u8]) -> Option<Vec<u8>> {
     Some(request.to_string().into_bytes())
 }
 
-/// Whoever asks makes something of every answer, asks so many times at most, and never tells the token.
+/// A client accepts any reply, retries a limited number of times, and never reveals the token.
 fn answered(bytes: &[u8]) {
-    // A challenge is sent back, whatever it is.
+    // Any challenge is sent back.
     let is_known = String::from_utf8_lossy(bytes).contains(&TOKEN.hex());
     let mut asked = 0;
     let command = GatewayCommand::Fleet(FleetCommand::Release);

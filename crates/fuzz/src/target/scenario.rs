@@ -1,5 +1,5 @@
-//! Scenario files of every kind (TOML): a line with the folder of the kind, then the file. The
-//! file's bases and references are files of the tree.
+//! Scenario files of every kind (TOML): a line with the folder of the kind, then the file. Bases
+//! and references are files in the tree.
 
 use super::{Target, check_shown, texts};
 use crate::played::scenarios;
@@ -13,11 +13,10 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 use tempfile::TempDir;
 
-/// Generous limits: an accepted game is also played for a moment, and may have eighty boats.
+/// Generous limits: an accepted game is also played briefly, and may have eighty boats.
 pub(super) const TARGET: Target =
     Target { name: "scenario", seeds, change: texts, check, allocated_max: (1 << 30, 10_000) };
 
-/// All kinds of files.
 const KINDS: &[Kind] = &[
     Kind::GAME,
     Kind::FIELD,
@@ -32,7 +31,7 @@ const KINDS: &[Kind] = &[
     Kind::of::<Sweep>(),
 ];
 
-/// Copies of the files of the tree, with space for one more.
+/// Copies of the files in the tree, with space for one more.
 static FOLDER: LazyLock<TempDir> = LazyLock::new(|| {
     let folder = tempfile::tempdir().expect("a folder");
     for (path, text) in files() {
@@ -43,10 +42,10 @@ static FOLDER: LazyLock<TempDir> = LazyLock::new(|| {
     folder
 });
 
-/// The files of the tree, by folder and name.
+/// The files in the tree, by folder and name.
 fn files() -> Vec<(PathBuf, Vec<u8>)> {
     let in_folder = |kind: Kind| {
-        let folder = std::fs::read_dir(scenarios().join(kind.folder())).expect("it is there");
+        let folder = std::fs::read_dir(scenarios().join(kind.folder())).expect("the folder exists");
         let mut paths: Vec<PathBuf> = folder.map(|entry| entry.expect("a file").path()).collect();
         paths.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
         paths.sort();
@@ -60,7 +59,7 @@ fn files() -> Vec<(PathBuf, Vec<u8>)> {
 
 fn seeds() -> Vec<Vec<u8>> {
     let broken = include_str!("../../../../tests/scenario_files/hostile_values.txt");
-    // A game of a thousand boats costs as much as all others together.
+    // A game of a thousand boats costs as much as all the others.
     let files = files().into_iter().filter(|(path, _)| !path.ends_with("swarm_500v500.toml"));
     let seed = |(path, text): (PathBuf, Vec<u8>)| {
         let folder = path.parent().expect("a folder").display().to_string();
@@ -95,7 +94,7 @@ fn check(bytes: &[u8]) {
     }
 }
 
-/// Every problem has a place in an existing file, and can be shown.
+/// Every problem has a place in an existing file and can be displayed.
 fn refused(problems: &Problems) {
     assert!(!problems.0.is_empty());
     for problem in &problems.0 {
@@ -107,12 +106,12 @@ fn refused(problems: &Problems) {
     }
 }
 
-/// An accepted file can be used for its purpose.
+/// An accepted file can be used.
 fn accepted(kind: Kind, path: &Path) {
     match kind.name() {
-        "game" => playable(&scenario::load(path).expect("it was accepted")),
+        "game" => playable(&scenario::load(path).expect("the file was accepted")),
         "strategy" => {
-            let strategy = scenario::load_strategy(path).expect("it was accepted");
+            let strategy = scenario::load_strategy(path).expect("the file was accepted");
             let json = serde_json::to_string(&strategy).expect("JSON");
             assert_eq!(serde_json::from_str::<scenario::strategy::Strategy>(&json).expect("JSON"), strategy);
             for role in &strategy.roles {
@@ -121,7 +120,7 @@ fn accepted(kind: Kind, path: &Path) {
             }
         }
         "gateway" => {
-            let gateway = scenario::load_file::<Gateway>(path).expect("it was accepted");
+            let gateway = scenario::load_file::<Gateway>(path).expect("the file was accepted");
             let field = scenario::load_field(&scenarios().join("fields/open_800x400.toml")).expect("a field");
             let vehicle = "blue_one".to_owned();
             let site = Some(Site { field, length_m: 2.0, declination_rad: 0.1 });
@@ -130,20 +129,20 @@ fn accepted(kind: Kind, path: &Path) {
             drop(Bridge::new(plan));
         }
         "tournament" => {
-            let tournament = scenario::load_file::<Tournament>(path).expect("it was accepted");
+            let tournament = scenario::load_file::<Tournament>(path).expect("the file was accepted");
             if let Err(problems) = experiment::tournament::Plan::new(&tournament) {
                 check_shown(&problems);
             }
         }
-        "sweep" => drop(scenario::load_file::<Sweep>(path).expect("it was accepted")),
+        "sweep" => drop(scenario::load_file::<Sweep>(path).expect("the file was accepted")),
         _ => {}
     }
 }
 
-/// An accepted game can be sent unchanged and started, or reports why not; minds play it.
+/// An accepted game can be sent unchanged, and starts or reports why not. Minds can play it.
 fn playable(scenario: &Scenario) {
     let json = serde_json::to_string(scenario).expect("JSON");
-    assert_eq!(serde_json::from_str::<Scenario>(&json).expect("JSON"), *scenario, "it does not travel");
+    assert_eq!(serde_json::from_str::<Scenario>(&json).expect("JSON"), *scenario, "the game changes in transit");
     assert_eq!(scenario.check_references(), Ok(()));
     if scenario.vehicles.len() > 40 {
         return;

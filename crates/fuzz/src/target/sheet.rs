@@ -1,4 +1,4 @@
-//! Tables of numbers from trials (CSV): commands for replay, and logs for fitting.
+//! Tables of numbers from trials (CSV): commands to replay, and logs to fit.
 
 use super::{Target, check_shown, texts};
 use crate::played::scenarios;
@@ -11,7 +11,7 @@ use trial::{Engine, LONGEST_S, Mistake, Orders, Sheet};
 
 pub(super) const TARGET: Target = Target { name: "sheet", seeds, change: texts, check, allocated_max: (1 << 20, 1000) };
 
-/// Boats with propellers, with a thrust table, and with a rudder.
+/// Boats with propellers, a thrust table, and a rudder.
 static BOATS: LazyLock<[Boat; 3]> = LazyLock::new(|| {
     ["otter", "heron", "surveyor_kinematic"].map(|name| {
         let file = scenarios().join("boats").join(name).with_extension("toml");
@@ -22,7 +22,7 @@ static BOATS: LazyLock<[Boat; 3]> = LazyLock::new(|| {
 fn seeds() -> Vec<Vec<u8>> {
     let table = |heads: &str, row: &str| {
         let mut text = format!("t_s,{heads}\n# a remark\n");
-        (0..25).for_each(|i| writeln!(text, "{}.5,{row}", i * 3).expect("a text can be written to"));
+        (0..25).for_each(|i| writeln!(text, "{}.5,{row}", i * 3).expect("a string accepts text"));
         text.into_bytes()
     };
     vec![

@@ -23,14 +23,13 @@ pub struct Side {
     pub opponent: usize,
 }
 
-/// A running game.
 pub(super) struct Game {
     seed: u64,
     side: Side,
     steps: u32,
     contest: Contest,
     runner: MindRunner<GameMind>,
-    /// The boats that receive actions, those of the learning policy first.
+    /// The boats that receive actions; the learning policy's come first.
     pilots: Vec<VehicleId>,
     read: EventCursor,
     tally: Tally,
@@ -40,19 +39,16 @@ pub(super) struct Game {
     watch: Option<Watch>,
 }
 
-/// The result of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ending {
-    /// The game goes on.
+    /// The game continues.
     None,
-    /// The game is over.
     Over,
-    /// The episode has reached its maximum length, though the game would go on.
+    /// The episode has reached its maximum length before the end of the game.
     CutOff,
 }
 
 impl Game {
-    /// The game of a seed from its start.
     pub(super) fn new(setup: &Setup, contest: Contest, seed: u64, watch: Option<Watch>) -> Game {
         let side = draw_side(setup, seed);
         let scenario = contest.scenario();
@@ -69,8 +65,8 @@ impl Game {
                 (false, Player::Model(model), _) => {
                     GameMind::Pilot(Box::new(policy_pilot(setup, scenario, vehicle).by_model(model.clone())))
                 }
-                // The arena's own game, with a pilot in place of a mind: a test plays the same game
-                // in the arena and compares digests.
+                // Same as in the arena, but with pilots as minds: a test plays the same game in the
+                // arena and compares digests.
                 _ => GameMind::Pilot(Box::new(pilot(setup, scenario, vehicle))),
             }
         };
@@ -89,38 +85,34 @@ impl Game {
             rewards: vec![0.0; count],
             watch,
         };
-        // Before the first pictures, so that the watch misses none of the game's inputs.
+        // Before the first pictures, so that the watch sees all inputs of the game.
         game.show(Moment::Decision);
         game.contest.pictures();
         game.look(setup);
         game
     }
 
-    /// The boats that receive actions, those of the learning policy first.
     pub(super) fn boats_with_actions(&self) -> &[VehicleId] {
         &self.pilots
     }
 
-    /// The number of boats that receive actions.
     pub(super) fn pilots(&self) -> usize {
         self.pilots.len()
     }
 
-    /// The pilot at this index, those of the learning policy first, and the picture of its team.
+    /// The pilot at an index of `pilots`, and its team's picture.
     fn pilot(&mut self, place: usize) -> Option<(&mut Pilot, &Picture)> {
         let vehicle = self.pilots[place];
         let pilot = self.runner.mind_mut(vehicle).and_then(GameMind::pilot_mut)?;
         Some((pilot, self.contest.picture_of(vehicle)))
     }
 
-    /// Gives a boat its action.
     pub(super) fn act(&mut self, place: usize, action: Action) {
         if let Some((pilot, _)) = self.pilot(place) {
             pilot.act(action);
         }
     }
 
-    /// Plays a policy step.
     pub(super) fn step(&mut self, setup: &Setup) -> Ending {
         for _ in 0..setup.decisions_per_step {
             if self.contest.is_over() {
@@ -147,36 +139,32 @@ impl Game {
         ending
     }
 
-    /// Passes the moment to the watch, if any.
     fn show(&mut self, moment: Moment) {
         if let Some(watch) = &mut self.watch {
             watch(&mut self.contest, moment);
         }
     }
 
-    /// Removes the watch.
     pub(super) fn end_watch(&mut self) {
         self.watch = None;
     }
 
-    /// A boat's reward in the last step.
+    /// The boat's reward in the last step.
     pub(super) fn reward_of(&self, place: usize) -> f64 {
         self.rewards[self.pilots[place].index()]
     }
 
-    /// Writes a boat's observation. Returns whether the boat will follow its action.
+    /// Writes the boat's observation. Returns whether the boat's next action takes effect.
     pub(super) fn observe(&mut self, place: usize, out: &mut [f32]) -> bool {
         let Some((pilot, picture)) = self.pilot(place) else { return false };
         out.copy_from_slice(pilot.observe(picture));
         pilot.obeys()
     }
 
-    /// The teacher's action for a boat in the last step.
     pub(super) fn taught(&mut self, place: usize) -> Option<Action> {
         self.pilot(place).and_then(|(pilot, _)| pilot.taught())
     }
 
-    /// The current standing.
     pub(super) fn standing(&self) -> Standing {
         let (score, scenario) = (self.contest.score(), self.contest.scenario());
         let teams = [self.side.learner, TeamId(1 - self.side.learner.0)];
@@ -185,7 +173,6 @@ impl Game {
         Standing { seed: self.seed, side: self.side, score, counts, steps: self.steps }
     }
 
-    /// The game itself.
     pub(super) fn contest(&self) -> &Contest {
         &self.contest
     }
@@ -200,10 +187,10 @@ impl Game {
         let step_s = scenario.tick.as_s() * f64::from(scenario.ticks_per_decision * setup.decisions_per_step);
         for (i, reward) in self.rewards.iter_mut().enumerate() {
             // A potential of the state alone, 0 at the end: it does not change the best policy (Ng,
-            // Harada and Russell, ICML 1999). Places pay undiscounted for the gain in a step. If
-            // they paid per second, half a second on the right course would change the sum by a
-            // hundredth: boats trained to retreat on 300,000 such samples were no nearer to home
-            // than stationary ones.
+            // Harada and Russell, ICML 1999). Places pay the undiscounted gain of a step. A payment
+            // per second failed: half a second on the right course changed the sum by a hundredth,
+            // and boats trained to retreat on 300,000 such samples ended no nearer to home than
+            // stationary ones.
             let after = if ending == Ending::Over { 0.0 } else { rewards.potential.of(&self.boats[i]) };
             *reward = setup.discount * after + rewards.place.of(&self.boats[i]) - before[i] + rewards.second * step_s;
         }
@@ -234,7 +221,7 @@ impl Game {
     }
 }
 
-/// A boat that receives actions or demonstrates those of a teacher.
+/// The pilot of a boat that receives actions or demonstrates a teacher's.
 fn pilot(setup: &Setup, scenario: &Scenario, vehicle: VehicleId) -> Pilot {
     if let Some(teacher) = &setup.teacher {
         let program = agent::roles::role_in(scenario, vehicle, &teacher.strategy);
@@ -243,7 +230,6 @@ fn pilot(setup: &Setup, scenario: &Scenario, vehicle: VehicleId) -> Pilot {
     policy_pilot(setup, scenario, vehicle)
 }
 
-/// A boat controlled by a policy.
 fn policy_pilot(setup: &Setup, scenario: &Scenario, vehicle: VehicleId) -> Pilot {
     match &setup.control {
         Control::Direct => Pilot::direct(scenario, vehicle, setup.spaces),
@@ -254,7 +240,7 @@ fn policy_pilot(setup: &Setup, scenario: &Scenario, vehicle: VehicleId) -> Pilot
     }
 }
 
-/// Draws the sides: two consecutive games of a kind are from both sides, unless the side is fixed.
+/// Draws the opponent and the sides. Consecutive games alternate sides unless the side is fixed.
 fn draw_side(setup: &Setup, seed: u64) -> Side {
     let total: f64 = setup.opponents.iter().map(|(weight, _)| weight.max(0.0)).sum();
     let mut left = Stream::new(seed, "opponent").between(0.0, total);
@@ -263,7 +249,7 @@ fn draw_side(setup: &Setup, seed: u64) -> Side {
         left < 0.0
     });
     let last = || setup.opponents.iter().rposition(|(weight, _)| *weight > 0.0).unwrap_or_default();
-    // By the seed: the two ends of the field differ, and the wind has a direction.
+    // Alternates because the ends of the field differ: the wind has a direction.
     let learner = setup.learner.unwrap_or(TeamId((seed % 2) as u8));
     Side { learner, opponent: chosen.unwrap_or_else(last) }
 }

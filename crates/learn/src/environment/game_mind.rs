@@ -1,20 +1,17 @@
-//! The mind of a boat in an environment: a pilot with external actions, or a strategy.
+//! The mind of a boat in an environment: a pilot or a strategy.
 
 use agent::{Mind, Pilot, Proposal};
 use messages::helm::HelmReport;
 use messages::{Order, Picture, Word};
 use scenario::strategy::Proposer;
 
-/// The mind of a boat in an environment.
 pub(super) enum GameMind {
-    /// Its actions come from outside, from a teacher or from a model.
+    /// Acts on actions from outside, from a teacher or from a model.
     Pilot(Box<Pilot>),
-    /// A strategy decides.
     Strategy(Box<dyn Mind>),
 }
 
 impl GameMind {
-    /// The pilot, if it is one.
     pub(super) fn pilot_mut(&mut self) -> Option<&mut Pilot> {
         match self {
             GameMind::Pilot(pilot) => Some(pilot),

@@ -1,5 +1,4 @@
-//! Many parallel games: one step of all of them on several threads, written into the caller's
-//! slices.
+//! Many parallel games, stepped together on several threads; results go to the caller's slices.
 
 use super::game::{Ending, Game, Side};
 use super::setup::{Player, Setup, SetupError};
@@ -12,81 +11,81 @@ use rayon::prelude::*;
 use rules::count::Counts;
 use sim::Contest;
 
-/// The standing of a game.
+/// The state of play of a game.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Standing {
-    /// The seed of the game: with the setup it identifies the game.
+    /// The seed; with the setup it identifies the game.
     pub seed: u64,
     /// The sides.
     pub side: Side,
-    /// Points of the learning policy and of its enemies.
+    /// Points of the learning policy and its enemies.
     pub score: [u32; 2],
-    /// Event counts of the learning policy's team and of its enemies.
+    /// Event counts of the learning policy and its enemies.
     pub counts: [Counts; 2],
     /// Policy steps so far.
     pub steps: u32,
 }
 
-/// An episode that ended in a step.
+/// An episode that has ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Finished {
     /// Index of the game.
     pub game: usize,
-    /// Episode number, counted game by game and episode by episode.
+    /// Episode number, counted across the games and then the episodes.
     pub number: u64,
-    /// The final standing.
+    /// The state of play at the end.
     pub standing: Standing,
-    /// Whether it was cut off before the game was over.
+    /// Whether it ended before the game was over.
     pub cut_off: bool,
 }
 
-/// The results of a step, a row for each boat that receives actions: game by game, first the boats
-/// of the learning policy and then, if any opponent is a policy, those of its enemies.
+/// The results of a step, one row per boat that may receive actions. Within each game the learning
+/// policy's boats come first, then, if any opponent is a policy, its enemies.
 #[derive(Debug)]
 pub struct Rows<'a> {
-    /// The observation of every boat, rows × values.
+    /// The observations, rows × values.
     pub observations: &'a mut [f32],
-    /// The boats' last observations before a new game began, rows × values. Only the rows of games
-    /// that end in the step are written.
+    /// The last observations of games that ended in this step, rows × values. Other rows are not
+    /// written.
     pub final_observations: &'a mut [f32],
     /// The reward of the step, by row.
     pub rewards: &'a mut [f32],
-    /// By row, whether its next action takes effect: false for a tagged boat, and where a strategy
+    /// By row, whether the next action takes effect: not for a tagged boat, nor where a strategy
     /// plays the enemies.
     pub counts: &'a mut [bool],
 }
 
 /// Parallel games; each restarts when it is over.
 ///
-/// Rows depend on the setup, the seed and the actions alone, not on the number of threads.
+/// Rows depend only on the setup, the seed and the actions, not on the number of threads.
 pub struct Games {
     setup: Setup,
     slots: Vec<Slot>,
     starts: Starts,
-    /// None for a single thread, the caller's: a game's step is shorter than waking another thread.
+    /// None for a single thread: a step is shorter than waking another thread.
     pool: Option<rayon::ThreadPool>,
     rows_per_game: usize,
     observation_size: usize,
     finished: Vec<Finished>,
 }
 
-/// A slot for consecutive games.
+/// Plays games one after the other.
 struct Slot {
     game: Game,
-    /// The number of its current game among all games: slots advance by the number of slots.
+    /// Number of the current game; grows by the number of slots.
     number: u64,
     ended: Option<Finished>,
-    /// The teacher's action in the last step, by row.
+    /// The teacher's actions in the last step, by row.
     taught: Vec<Option<Action>>,
-    /// The truth for a critic, row by row: current, and before a new game began.
+    /// The critic's additional input, row by row: current, and at the end of the previous game.
     truth: [Vec<f32>; 2],
-    /// Whether its boats have been observed: observing twice would be two decisions.
+    /// Whether the boats have been observed: a second observation would be a second decision.
     is_shown: bool,
 }
 
 impl Games {
-    /// Starts `games` games on `threads` threads. Seeds count up from `seed`, game by game and
-    /// episode by episode.
+    /// Starts `games` games on `threads` threads. Seeds count up from `seed`, across the games and
+    /// then the episodes.
     ///
     /// # Errors
     /// [`SetupError`] if the setup cannot be played.
@@ -131,38 +130,38 @@ impl Games {
         &self.setup
     }
 
-    /// Adds an opponent with weight 0.
+    /// Adds an opponent with a draw weight of 0.
     pub fn add_opponent(&mut self, player: Player) {
         self.setup.opponents.push((0.0, player));
     }
 
-    /// Sets the opponents' draw weights from each slot's next game on; missing ones are 0.
+    /// Sets the opponents' draw weights from each slot's next game on. Missing weights are 0.
     pub fn set_weights(&mut self, weights: impl IntoIterator<Item = f64>) {
         let mut weights = weights.into_iter();
         self.setup.opponents.iter_mut().for_each(|(weight, _)| *weight = weights.next().unwrap_or(0.0));
     }
 
-    /// The number of rows in all, and per game.
+    /// The total number of rows, and the number per game.
     #[must_use]
     pub fn rows(&self) -> (usize, usize) {
         (self.slots.len() * self.rows_per_game, self.rows_per_game)
     }
 
-    /// The episodes that ended in the last step, by game.
+    /// The episodes that ended in the last step, in the order of their games.
     #[must_use]
     pub fn finished(&self) -> &[Finished] {
         &self.finished
     }
 
-    /// The teacher's actions for the boats of a game in the last step, by row; none where no action
+    /// The teacher's actions in a game's last step, by row. None where no action of the policy
     /// corresponds.
     #[must_use]
     pub fn taught(&self, game: usize) -> &[Option<Action>] {
         &self.slots[game].taught
     }
 
-    /// A critic's input for a game besides observations, row by row: current, and, if a game ended
-    /// in the last step, at its end. Rows of boats without actions are missing.
+    /// A game's values for a critic beyond the observations, row by row: current, and at the end of
+    /// a game that ended in the last step. Rows of boats without actions are left out.
     #[must_use]
     pub fn truth(&self, game: usize) -> (&[f32], &[f32]) {
         let [now, last] = &self.slots[game].truth;
@@ -175,29 +174,28 @@ impl Games {
         self.slots.iter_mut().for_each(|slot| slot.game.end_watch());
     }
 
-    /// The current game in a slot.
+    /// The game that a slot is playing.
     #[must_use]
     pub fn contest(&self, game: usize) -> &Contest {
         self.slots[game].game.contest()
     }
 
-    /// The boats of a game that receive actions, in the order of its rows.
+    /// The boats of a game that receive actions, in row order.
     #[must_use]
     pub fn boats(&self, game: usize) -> &[VehicleId] {
         self.slots[game].game.boats_with_actions()
     }
 
-    /// The standing of a game.
+    /// A game's state of play.
     #[must_use]
     pub fn standing(&self, game: usize) -> Standing {
         self.slots[game].game.standing()
     }
 
-    /// Writes the rows of games that have begun and were not written yet; other rows stay
-    /// unchanged.
+    /// Writes the rows of games that have begun since the last write. Other rows stay unchanged.
     ///
     /// # Panics
-    /// If the slices are not as long as the number of rows.
+    /// If a slice does not have one entry per row.
     pub fn show(&mut self, rows: Rows<'_>) {
         self.for_each_game(rows, |setup, _, _, slot, rows| {
             if !slot.is_shown {
@@ -207,8 +205,8 @@ impl Games {
         });
     }
 
-    /// Restarts all games, with seeds from this one on as in [`Games::new`], or with the next ones.
-    /// [`Games::show`] writes them.
+    /// Restarts all games with seeds from `seed` on, as in [`Games::new`], or with the next seeds.
+    /// [`Games::show`] writes their rows.
     ///
     /// # Errors
     /// [`SetupError::NoStart`] if a game cannot begin.
@@ -230,12 +228,12 @@ impl Games {
         begun.into_iter().collect()
     }
 
-    /// Restarts one game with this seed, or its next one. Its seeds continue from there, in steps
-    /// of the number of games. [`Games::show`] writes it.
+    /// Restarts one game with this seed, or with its next one. Later seeds continue from there, in
+    /// steps of the number of games. [`Games::show`] writes its rows.
     ///
     /// # Errors
-    /// [`SetupError::NoStart`] if it cannot begin; [`SetupError::SeedOfStarts`] for a seed outside
-    /// repeating starts.
+    /// [`SetupError::NoStart`] if it cannot begin; [`SetupError::SeedOfStarts`] if the seed is not one
+    /// of the repeating starts.
     pub fn restart_game(&mut self, game: usize, seed: Option<u64>) -> Result<(), SetupError> {
         let count = self.slots.len() as u64;
         let slot = &mut self.slots[game];
@@ -247,16 +245,15 @@ impl Games {
         slot.begin(&self.setup, &self.starts)
     }
 
-    /// Plays one step of every game with an action for each row.
+    /// Plays one step of every game with one action per row.
     ///
     /// # Errors
     /// [`SetupError::NoStart`] if a new game cannot begin.
     ///
     /// # Panics
-    /// If there is not one action for each row, or the slices are not as long as the number of
-    /// rows.
+    /// If the number of actions or the length of a slice is not the number of rows.
     pub fn step(&mut self, actions: &[Action], rows: Rows<'_>) -> Result<(), SetupError> {
-        assert_eq!(actions.len(), self.rows().0, "one action a row");
+        assert_eq!(actions.len(), self.rows().0, "one action per row");
         let (count, per_game) = (self.slots.len() as u64, self.rows_per_game);
         let begun = self.for_each_game(rows, |setup, starts, i, slot, rows| {
             if !slot.is_shown {
@@ -308,14 +305,12 @@ impl Games {
 }
 
 impl Slot {
-    /// Starts the game of its current number.
     fn begin(&mut self, setup: &Setup, starts: &Starts) -> Result<(), SetupError> {
         self.game = starts.game(setup, self.number)?;
         self.is_shown = false;
         Ok(())
     }
 
-    /// Plays a step and writes the results.
     fn play(&mut self, setup: &Setup, game: usize, actions: &[Action], rows: &mut Rows<'_>) {
         let pilots = self.game.pilots();
         actions.iter().take(pilots).enumerate().for_each(|(i, action)| self.game.act(i, *action));
@@ -335,7 +330,6 @@ impl Slot {
         });
     }
 
-    /// Writes the boats' current observations.
     fn show(&mut self, setup: &Setup, rows: &mut Rows<'_>) {
         let size = rows.observations.len() / rows.rewards.len();
         self.is_shown = true;

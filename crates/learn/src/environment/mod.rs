@@ -1,5 +1,5 @@
-//! Games as learning environments: the same referee, sea, boats and minds as in any game, with
-//! external actions for some boats.
+//! Games as learning environments: the referee, sea, boats and minds of any game, with external
+//! actions for some boats.
 
 mod game;
 mod game_mind;

@@ -1,4 +1,4 @@
-//! A setup as users give it: file paths, seconds and names.
+//! A setup as users write it: file paths, seconds and names.
 
 use super::setup::{Control, Player, Setup, SetupError};
 use crate::rewards::Rewards;
@@ -9,55 +9,55 @@ use scenario::Scenario;
 use scenario::strategy::Strategy;
 use std::path::{Path, PathBuf};
 
-/// The observation space, before the team sizes are known.
+/// The observation space before the team sizes are known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RawObservation {
     /// [`ObservationSpace::Pyquaticus`].
     Pyquaticus,
-    /// [`ObservationSpace::Squall`], by default with slots for the boats of the game.
+    /// [`ObservationSpace::Squall`]; by default with one slot for each boat of the game.
     Squall {
         /// Number of slots for mates.
         mates: Option<u8>,
         /// Number of slots for enemies.
         enemies: Option<u8>,
-        /// Number of the policy's decisions in one observation.
+        /// Number of consecutive decisions in one observation.
         frames: u8,
     },
 }
 
-/// A setup as given.
+/// A setup as users write it.
 #[derive(Clone, Debug)]
 pub struct RawSetup {
     /// The game file.
     pub game: PathBuf,
-    /// The policies' observation space.
+    /// The policies' observations.
     pub observation: RawObservation,
-    /// The policies' action space.
+    /// The policies' actions.
     pub action: ActionSpace,
-    /// The strategy file whose helms apply the actions; none: actions are orders.
+    /// The strategy file whose helms apply the actions. None: actions are orders.
     pub helm: Option<PathBuf>,
-    /// How long an action holds, s: a multiple of the game's `decision_s`, its default.
+    /// How long an action holds, s: a multiple of the game's `decision_s`, which is the default.
     pub decision_s: Option<f64>,
     /// The maximum length of an episode, s.
     pub episode_max_s: Option<f64>,
-    /// The number of repeating starts: see [`Setup::starts`].
+    /// The number of repeating starts; see [`Setup::starts`].
     pub starts: Option<u32>,
-    /// The name of the learning team; none: alternating.
+    /// The learning team's name. None: alternating.
     pub team: Option<String>,
-    /// The strategy file for all but one boat of a policy's team; none: policies control all.
+    /// The strategy file for all but one boat of a policy's team. None: policies control all boats.
     pub mates: Option<PathBuf>,
-    /// The opponents' strategy files, each with its weight; without a file: the policy itself.
+    /// The opponents' weights and strategy files. Without a file, the policy plays itself.
     pub opponents: Vec<(f64, Option<PathBuf>)>,
-    /// The rewards file; none: all are 0.
+    /// The rewards file. None: all rewards are 0.
     pub rewards: Option<PathBuf>,
-    /// The value of a reward one step later, 0 to 1.
+    /// Value of a reward one step later, 0 to 1.
     pub discount: f64,
     /// A critic's input.
     pub critic: CriticInput,
 }
 
 impl RawSetup {
-    /// Reads the files and checks the rest.
+    /// Reads the files and checks the values.
     ///
     /// # Errors
     /// [`SetupError`]: the first invalid field, or all faults of a file.
@@ -131,23 +131,22 @@ fn wrong(field: &'static str, found: impl ToString, allowed: &str) -> SetupError
     SetupError::Field { field, found: found.to_string(), allowed: allowed.to_owned() }
 }
 
-/// The number of the game's decisions per decision of a policy with this period, s.
+/// The number of game decisions per policy decision.
 pub(super) fn decisions_per_step(decision_s: f64, scenario: &Scenario) -> Result<u32, SetupError> {
     let least_s = scenario.decision().as_s();
     let times = (decision_s / least_s).round();
     if (1.0..=1e6).contains(&times) && (times * least_s - decision_s).abs() < 1e-6 {
         return Ok(times as u32);
     }
-    let allowed = format!("a multiple of the {least_s} s between two decisions of the game, to a million of them");
+    let allowed = format!("a multiple of {least_s} s, the game's decision_s, up to 1,000,000 times");
     Err(wrong("decision_s", decision_s, &allowed))
 }
 
-/// The number of policy steps in an episode of this length.
 pub(super) fn steps_max(episode_max_s: f64, scenario: &Scenario, decisions_per_step: u32) -> Result<u32, SetupError> {
     let step_s = scenario.decision().as_s() * f64::from(decisions_per_step);
     let steps = (episode_max_s / step_s - 1e-6).ceil();
     if (1.0..=1e9).contains(&steps) {
         return Ok(steps as u32);
     }
-    Err(wrong("episode_max_s", episode_max_s, "more than 0, to a milliard steps"))
+    Err(wrong("episode_max_s", episode_max_s, "more than 0, up to 1,000,000,000 steps"))
 }

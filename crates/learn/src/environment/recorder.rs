@@ -1,4 +1,4 @@
-//! Records games of an environment, each in its own file, in the format of `squall run`.
+//! Records games of an environment, one file each, in the format of `squall run`.
 
 use super::watch::{Moment, Watch, Watches};
 use messages::Frame;
@@ -10,10 +10,10 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Maximum number of names tried, since others may record into the same folder.
+/// Maximum number of file names tried: other processes may record to the same folder.
 const NAMES_MAX: u32 = 100;
 
-/// The results of recordings, kept until they are read.
+/// The results of recordings until they are read.
 #[derive(Default)]
 pub struct RecordingLog {
     /// The most recently completed file.
@@ -23,7 +23,7 @@ pub struct RecordingLog {
 }
 
 impl RecordingLog {
-    /// The newest file, if one was completed since the last call.
+    /// The newest file completed since the last call.
     pub fn take_newest(&self) -> Option<PathBuf> {
         self.newest.lock().unwrap_or_else(PoisonError::into_inner).take()
     }
@@ -42,18 +42,18 @@ impl RecordingLog {
     }
 }
 
-/// The file names of recordings, and whether abandoned games are kept.
+/// How recordings are named, and whether abandoned games are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RecordingNames {
-    /// By time, game and seed: always a new file. The played part of an abandoned game is kept,
-    /// without a result.
+    /// By time, game and seed, so that no file is replaced. Keeps the played part of an abandoned
+    /// game, without a result.
     ByTime,
-    /// By the game's seed and number: [`recording_name`]. An existing file is replaced; an
-    /// abandoned game leaves none.
+    /// By the game's seed and number; see [`recording_name`]. Replaces existing files and discards
+    /// abandoned games.
     ByNumber,
 }
 
-/// The file name of the recording of a game with this seed and number.
+/// The file name of a recording.
 #[must_use]
 pub fn recording_name(seed: u64, number: u64) -> String {
     format!("{seed}_{number}.mcap")
@@ -62,18 +62,18 @@ pub fn recording_name(seed: u64, number: u64) -> String {
 /// Recording settings.
 #[derive(Clone)]
 pub struct Recordings {
-    /// The existing folder.
+    /// An existing folder.
     pub folder: PathBuf,
-    /// The naming scheme.
+    /// How files are named.
     pub names: RecordingNames,
-    /// Record every n-th game, including the first.
+    /// Records every n-th game, including the first.
     pub every: u64,
     /// The commit of the recording program.
     pub commit: String,
 }
 
 impl Recordings {
-    /// Returns watches that record games. Results go to the log; errors do not stop games.
+    /// Returns watches that record games. Results go to the log. Errors do not stop games.
     #[must_use]
     pub fn watches(self, log: Arc<RecordingLog>) -> Watches {
         let recordings = Arc::new(self);
@@ -92,7 +92,7 @@ impl Recordings {
         })
     }
 
-    /// Creates the file for a game.
+    /// Creates the file of a game.
     fn begin(&self, game: &Scenario, number: u64) -> Result<(GameRecorder, PathBuf), RecordError> {
         let mut tried = 0;
         loop {
@@ -113,7 +113,6 @@ impl Recordings {
     }
 }
 
-/// A game and the stage of its recording.
 struct RecordedGame {
     recordings: Arc<Recordings>,
     number: u64,
@@ -125,12 +124,11 @@ struct RecordedGame {
 
 /// A game without a played step leaves no file.
 enum Stage {
-    /// Nothing received yet.
     Waiting,
-    /// A copy of the game at its start, and its first frame.
+    /// The game before its first step, and its first frame.
     Start(Box<Contest>, Arc<Frame>),
     Recording(Box<GameRecorder>, PathBuf),
-    /// The file is complete, or it failed and the error is logged.
+    /// The file is complete, or failed with a logged error.
     Ended,
 }
 
@@ -142,8 +140,8 @@ impl RecordedGame {
                 contest.keep_inputs();
                 Stage::Start(Box::new(contest.clone()), Arc::new(contest.frame(&mut self.shown)))
             }
-            // Decision by decision within a step, while the game is played: a step ends one game
-            // and begins the next.
+            // Each decision is recorded as it is played: one step may end a game and begin the
+            // next.
             (Stage::Start(mut start, first), Moment::Decision) => {
                 match self.recordings.begin(start.scenario(), self.number) {
                     Ok((mut recorder, path)) => {
@@ -153,7 +151,7 @@ impl RecordedGame {
                     }
                     Err(error) => {
                         let (folder, seed) = (self.recordings.folder.display(), contest.scenario().seed);
-                        self.log.problem(format!("the game of seed {seed} is not recorded in {folder}: {error}"));
+                        self.log.problem(format!("cannot record the game with seed {seed} in {folder}: {error}"));
                         Stage::Ended
                     }
                 }
@@ -197,10 +195,10 @@ impl Drop for RecordedGame {
     }
 }
 
-/// Creates a folder for recordings if necessary, and checks that it is writable.
+/// Creates a folder for recordings if necessary and checks that it is writable.
 ///
 /// # Errors
-/// If files cannot be created in it.
+/// If no file can be created in it.
 pub fn check_recording_folder(folder: &Path) -> std::io::Result<()> {
     std::fs::create_dir_all(folder)?;
     let file = folder.join(format!(".squall-{}-{}", std::process::id(), utc::now_ns()));

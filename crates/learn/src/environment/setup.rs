@@ -1,4 +1,4 @@
-//! The setup of an environment: the game, the learner, the spaces of a policy, and its opponents.
+//! The setup of an environment: the game, the learner, its spaces and its opponents.
 
 use super::truth;
 use crate::rewards::Rewards;
@@ -16,99 +16,99 @@ use thiserror::Error;
 pub enum Control {
     /// As orders.
     Direct,
-    /// As proposals to the helms of this strategy, each of whose roles has a behaviour of the kind
+    /// As proposals to the helms of this strategy. Each of its roles needs a behaviour of kind
     /// `policy`.
     Helm(Box<Strategy>),
 }
 
-/// A strategy that plays in place of the policy, which imitates it.
+/// A strategy that plays in place of the policy, as its model to imitate.
 #[derive(Clone, Debug)]
 pub struct Teacher {
     /// The strategy.
     pub strategy: Box<Strategy>,
-    /// With [`ActionSpace::Options`]: the option of each mode, by the mode's path. Other modes are
-    /// not taught.
+    /// With [`ActionSpace::Options`]: the option of each mode, by the mode's path. Other modes
+    /// teach nothing.
     pub options: BTreeMap<String, usize>,
 }
 
 /// The player of a team.
 #[derive(Clone, Debug)]
 pub enum Player {
-    /// External actions: the learning policy or an earlier version of it.
+    /// External actions, from the learning policy or an earlier version of it.
     Policy,
     /// The helms of a strategy.
     Strategy(Box<Strategy>),
-    /// A fixed policy, through the same control as the learning one.
+    /// A fixed policy with the same control as the learning one.
     Model(PolicyModel),
 }
 
 /// The setup of an environment.
 #[derive(Clone, Debug)]
 pub struct Setup {
-    /// The game; seeds choose its random values.
+    /// The game; the seed chooses its random values.
     pub scenario: Scenario,
     /// The policies' observation and action spaces.
     pub spaces: Spaces,
     /// How actions reach the boats.
     pub control: Control,
-    /// Plays the policy's boats in its place; none: the policy plays.
+    /// Plays the policy's boats in its place. None: the policy plays.
     pub teacher: Option<Teacher>,
     /// A critic's input.
     pub critic: CriticInput,
-    /// Decisions of the game per policy step.
+    /// Game decisions per policy step.
     pub decisions_per_step: u32,
-    /// Maximum number of steps of an episode, after which it is cut off; none: whole games.
+    /// Maximum number of steps of an episode. None: until the game is over.
     pub steps_max: Option<u32>,
-    /// The number of different starts, which repeat: the slowest part of a new game, its sea and
-    /// its boats, is created once for each. None: every game has its own start.
+    /// The number of different starts, which repeat. The slowest part of a new game, its sea and
+    /// its boats, is created once per start. None: every game has a new start.
     pub starts: Option<u32>,
-    /// The learning team; none: alternating with the seed.
+    /// The learning team. None: alternates with the seed.
     pub learner: Option<TeamId>,
-    /// Policies control one boat of their team, alternating, and this strategy the others; none:
-    /// policies control all.
+    /// The strategy of all but one boat of a policy's team; that boat alternates. None: policies
+    /// control all boats.
     pub mates: Option<Box<Strategy>>,
-    /// The enemies, each with its draw weight.
+    /// The enemies and their draw weights.
     pub opponents: Vec<(f64, Player)>,
     /// The reward definition.
     pub rewards: Rewards,
-    /// The value of a reward one step later, for potentials.
+    /// Value of a potential one step later.
     pub discount: f64,
 }
 
 /// Why a setup cannot be played.
 #[derive(Debug, Error)]
 pub enum SetupError {
-    /// Games are between two teams.
-    #[error("the game has {0} teams; an environment is a game between two")]
+    /// The game does not have two teams.
+    #[error("the game has {0} teams, expected 2")]
     Teams(usize),
-    /// A policy with observations for equal teams, in a game with unequal teams.
-    #[error("the teams have {0} and {1} boats; policies play either side, so they must have as many")]
+    /// Teams of different sizes.
+    #[error("the teams have {0} and {1} boats, expected teams of equal size, because policies play both sides")]
     Uneven(usize, usize),
-    /// No opponents.
-    #[error("no opponent is given, or none with a weight above 0")]
+    /// No opponent can be drawn.
+    #[error("no opponent can be drawn, expected at least one with a weight above 0")]
     NoOpponent,
-    /// A strategy without a suitable policy behaviour.
-    #[error("the role {role:?} has no behaviour of the kind \"policy\" {expected}: nothing would come of actions")]
+    /// A role without a suitable policy behaviour.
+    #[error("the role {role:?} has no behaviour of kind \"policy\" {expected}: actions would have no effect")]
     NoPolicy {
         /// The role.
         role: String,
-        /// What the behaviour needs.
+        /// The kind of policy behaviour needed.
         expected: &'static str,
     },
-    /// Steps without a decision.
-    #[error("a policy decides every 0 decisions of the game; expected 1 or more")]
+    /// Steps without decisions.
+    #[error("decisions_per_step is 0, expected 1 or more")]
     NoDecisions,
-    /// Zero starts.
-    #[error("there are 0 starts; expected 1 or more, or none for a new one every time")]
+    /// No starts.
+    #[error("starts is 0, expected 1 or more, or none for a new start in every game")]
     NoStarts,
     /// A seed outside the repeating starts.
-    #[error("seed is {seed}, expected {first} to {last}: only so many starts come round (`starts`)")]
+    #[error("seed is {seed}, expected {first} to {last}: `starts` limits the seeds")]
     SeedOfStarts {
-        /// The requested seed.
+        /// The seed found.
         seed: u64,
-        /// The first valid seed.
+        /// The smallest valid seed.
         first: u64,
-        /// The last valid seed.
+        /// The largest valid seed.
         last: u64,
     },
     /// An invalid value from the user.
@@ -121,7 +121,7 @@ pub enum SetupError {
         /// The allowed values.
         allowed: String,
     },
-    /// A file that cannot be used.
+    /// An invalid file.
     #[error(transparent)]
     Files(#[from] Problems),
     /// A policy with non-finite weights.
@@ -133,7 +133,7 @@ pub enum SetupError {
 }
 
 impl Setup {
-    /// Checks that the setup can be played.
+    /// Checks that this setup can be played.
     ///
     /// # Errors
     /// [`SetupError`]: the first problem found.
@@ -161,13 +161,13 @@ impl Setup {
         if let Control::Helm(strategy) = &self.control {
             self.check_helm(strategy)?;
         } else if self.spaces.action == ActionSpace::Options {
-            let allowed = "another action, or a helm whose strategy has the options".to_owned();
+            let allowed = "another action space, or a helm whose strategy declares options".to_owned();
             return Err(SetupError::Field { field: "action", found: "options".to_owned(), allowed });
         }
         Ok(())
     }
 
-    /// Checks that the programs of a strategy apply the policies' choices.
+    /// Checks that every role of the strategy applies the policy's choices.
     fn check_helm(&self, strategy: &Strategy) -> Result<(), SetupError> {
         let has_options = self.spaces.action == ActionSpace::Options;
         let asks = |task: &Task| matches!(task, Task::Policy(policy) if policy.model.is_none() && policy.sets.is_some() == has_options);
@@ -180,13 +180,13 @@ impl Setup {
         if let Some(other) = strategy.roles.iter().find(|role| has_options && texts(role) != texts(&strategy.roles[0]))
         {
             let found = texts(other).unwrap_or_default().join(", ");
-            let allowed = format!("the options of the first: {}", self.options().unwrap_or_default().join(", "));
+            let allowed = format!("those of the first role: {}", self.options().unwrap_or_default().join(", "));
             return Err(SetupError::Field { field: "sets of the second role", found, allowed });
         }
         Ok(())
     }
 
-    /// The options that a policy chooses among; none for other action spaces.
+    /// The options that a policy chooses from. None in other action spaces.
     #[must_use]
     pub fn options(&self) -> Option<&[String]> {
         match &self.control {
@@ -198,7 +198,7 @@ impl Setup {
         }
     }
 
-    /// The number of discrete actions; none if they are continuous.
+    /// The number of discrete actions. None if actions are continuous.
     #[must_use]
     pub fn actions(&self) -> Option<usize> {
         self.options().map(<[String]>::len).or(self.spaces.action.count())
@@ -210,16 +210,16 @@ impl Setup {
         self.opponents.iter().any(|(_, player)| matches!(player, Player::Policy))
     }
 
-    /// The number of rows per game: one for each boat that may receive actions.
+    /// The number of rows per game: the boats that may receive actions.
     #[must_use]
     pub fn rows_per_game(&self) -> usize {
         let of_team = if self.mates.is_some() { 1 } else { self.team_size() };
         of_team * if self.is_self_play() { 2 } else { 1 }
     }
 
-    /// The boats of a team that a policy controls in the game of a seed.
+    /// The boats of a team that a policy controls in the game with this seed.
     pub fn pilots_of(&self, team: TeamId, seed: u64) -> impl Iterator<Item = VehicleId> {
-        // Sides alternate with the seed, and boats with every second seed.
+        // Sides alternate with every seed, boats with every second one.
         let one = self.mates.is_some().then(|| (seed / 2) as usize % self.team_size().max(1));
         self.boats_of(team)
             .enumerate()
@@ -239,20 +239,20 @@ impl Setup {
         self.boats_of(TeamId(0)).count()
     }
 
-    /// The names of an observation's values.
+    /// The names of the values of an observation.
     #[must_use]
     pub fn observation_names(&self) -> Vec<String> {
         let boats = self.team_size();
         self.spaces.observation.names(boats.saturating_sub(1), boats)
     }
 
-    /// The number of values of a critic's input.
+    /// The size of a critic's input.
     #[must_use]
     pub fn state_size(&self) -> usize {
         self.observation_size() + self.truth_size()
     }
 
-    /// The names of the critic's values that no policy receives.
+    /// The names of the values that only the critic receives.
     #[must_use]
     pub fn truth_names(&self) -> Vec<String> {
         let boats = self.team_size();
@@ -262,7 +262,7 @@ impl Setup {
         }
     }
 
-    /// The number of the critic's values that no policy receives.
+    /// The number of values that only the critic receives.
     #[must_use]
     pub fn truth_size(&self) -> usize {
         match self.critic {
@@ -271,7 +271,7 @@ impl Setup {
         }
     }
 
-    /// The number of values of an observation.
+    /// The size of an observation.
     #[must_use]
     pub fn observation_size(&self) -> usize {
         let boats = self.team_size();

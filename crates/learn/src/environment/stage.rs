@@ -1,4 +1,4 @@
-//! Converts a stage of a training to a setup.
+//! Converts a training stage to a setup.
 
 use super::raw::{decisions_per_step, steps_max};
 use super::setup::{Control, Player, Setup, SetupError, Teacher};
@@ -8,11 +8,11 @@ use scenario::Overrides;
 use std::collections::{BTreeMap, BTreeSet};
 
 impl Setup {
-    /// The setup of a stage: opponents are first the policy itself, if the stage has self-play,
+    /// The setup of a stage. Its opponents are the policy itself, if the stage has self-play, and
     /// then the stage's strategies. Only the first has a draw weight yet.
     ///
     /// # Errors
-    /// [`SetupError`]: the faults of a file, or the reason why it cannot be played.
+    /// [`SetupError`]: the faults of a file, or why the setup cannot be played.
     pub fn of_stage(training: &Training, stage: &Stage) -> Result<Setup, SetupError> {
         let overrides = Overrides { sea: stage.sea.clone(), ..Overrides::default() };
         let scenario = scenario::load_with(&stage.game, &overrides)?;
@@ -50,14 +50,14 @@ impl Setup {
         Ok(setup)
     }
 
-    /// A teacher whose modes map to the existing options.
+    /// The teacher, with its modes mapped to the options.
     fn teacher_of(&self, said: &training::Teacher) -> Result<Teacher, SetupError> {
         let strategy = Box::new(scenario::load_strategy(&said.strategy)?);
         let modes: BTreeSet<String> =
             strategy.roles.iter().flat_map(|role| role.leaves().map(|mode| role.path(mode))).collect();
         let listed = |names: &mut dyn Iterator<Item = &String>| names.cloned().collect::<Vec<_>>().join(", ");
         if let Some(unknown) = said.options.keys().find(|mode| !modes.contains(*mode)) {
-            let allowed = format!("modes of {}: {}", strategy.name, listed(&mut modes.iter()));
+            let allowed = format!("a mode of {}: {}", strategy.name, listed(&mut modes.iter()));
             return Err(SetupError::Field {
                 field: "a mode in the teacher's options",
                 found: unknown.clone(),
@@ -67,7 +67,7 @@ impl Setup {
         let mut options = BTreeMap::new();
         let Some(names) = self.options() else {
             if let Some(option) = said.options.values().next() {
-                let allowed = "none: the policy's action is not \"options\"".to_owned();
+                let allowed = "none, because action is not \"options\"".to_owned();
                 return Err(SetupError::Field { field: "the teacher's options", found: option.clone(), allowed });
             }
             return Ok(Teacher { strategy, options });
@@ -78,14 +78,14 @@ impl Setup {
                 Some(option) => drop(options.insert(mode, option)),
                 None if said.options.contains_key(&mode) => {
                     let (found, allowed) = (format!("{name:?}"), listed(&mut names.iter()));
-                    return Err(SetupError::Field { field: "an option of the teacher's", found, allowed });
+                    return Err(SetupError::Field { field: "an option of the teacher", found, allowed });
                 }
                 None => {}
             }
         }
         if options.is_empty() {
-            let found = format!("of {}, none of whose modes is an option", strategy.name);
-            let allowed = format!("options for its modes, of {}", listed(&mut names.iter()));
+            let found = format!("{}, whose modes match no option", strategy.name);
+            let allowed = format!("options for its modes from {}", listed(&mut names.iter()));
             return Err(SetupError::Field { field: "the teacher", found, allowed });
         }
         Ok(Teacher { strategy, options })

@@ -1,5 +1,5 @@
-//! The starts of an environment's games: their seeds count up, and repeat if the number of starts
-//! is limited.
+//! The starts of an environment's games. Seeds count up, and repeat if the number of starts is
+//! limited.
 
 use super::game::Game;
 use super::setup::{Setup, SetupError};
@@ -7,12 +7,10 @@ use super::watch::Watches;
 use sim::Contest;
 use std::sync::OnceLock;
 
-/// The starts of games.
 pub(super) struct Starts {
     seed: u64,
-    /// One game per repeating start, at its start; created when first played.
+    /// One game per repeating start, before its first step; created on first use.
     made: Vec<OnceLock<Contest>>,
-    /// Watches for games, if any.
     watches: Option<Watches>,
 }
 
@@ -22,22 +20,20 @@ impl Starts {
         Starts { seed, made: (0..count).map(|_| OnceLock::new()).collect(), watches }
     }
 
-    /// The same games, beginning at another seed.
+    /// Copies the starts with another first seed.
     pub(super) fn from(&self, setup: &Setup, seed: u64) -> Starts {
         Starts::new(setup, seed, self.watches.clone())
     }
 
-    /// Removes the watches of future games.
     pub(super) fn end_watches(&mut self) {
         self.watches = None;
     }
 
-    /// The game with this number.
     pub(super) fn game(&self, setup: &Setup, number: u64) -> Result<Game, SetupError> {
         let watch = self.watches.as_ref().and_then(|watches| watches(number));
-        // Repeating starts must outnumber the parallel games: with 64 of both, each game always had
-        // the same start, and nothing was learnt. A repeated start takes 0.03 ms, a new one with a
-        // sea 0.41 ms.
+        // Repeating starts must outnumber the parallel games: with 64 of each, every game always
+        // had the same start, and the policy learnt nothing. A repeated start takes 0.03 ms; a new
+        // one with a sea takes 0.41 ms.
         let number = if self.made.is_empty() { number } else { number % self.made.len() as u64 };
         let seed = self.seed.wrapping_add(number);
         let place = self.made.get(number as usize);
@@ -51,7 +47,6 @@ impl Starts {
         Ok(Game::new(setup, contest, seed, watch))
     }
 
-    /// The number of the game with this seed.
     pub(super) fn number_of(&self, seed: u64) -> Result<u64, SetupError> {
         let number = seed.wrapping_sub(self.seed);
         if !self.made.is_empty() && number >= self.made.len() as u64 {

@@ -1,10 +1,10 @@
-//! The truth about a game as a critic's input: values beyond any boat's sensors, in a frame that is
-//! the same for both teams.
+//! The truth about a game as input for a critic: values beyond the sensors of any boat, in the same
+//! frame for both teams.
 //!
-//! Places and directions are relative to the middle of the field: ahead of the boat's team as it
-//! faces the enemies' end, and to its port. Speeds are in units of 3 m/s, wind in units of 10 m/s,
-//! booleans are 0 or 1. The own boat comes first, then its mates, then the enemies, each in the
-//! scenario's order.
+//! Positions and directions are relative to the centre of the field: ahead, as the boat's team
+//! faces the enemies' end, and to port. Speeds are in units of 3 m/s, wind in units of 10 m/s.
+//! Booleans are 0 or 1. The boat itself comes first, then its mates, then its enemies, each in
+//! scenario order.
 
 use messages::{Picture, VehicleTruth};
 use primitives::frame::{Body, Rotation, ned_from_body};
@@ -12,7 +12,7 @@ use primitives::{Ned, VehicleId};
 use rules::event::EventCursor;
 use sim::Contest;
 
-/// The values of each boat.
+/// Values per boat.
 const BOAT: [&str; 11] = [
     "position_ahead",
     "position_port",
@@ -26,7 +26,7 @@ const BOAT: [&str; 11] = [
     "outside",
     "tag_wait",
 ];
-/// The values of the game.
+/// Values per game.
 const GAME: [&str; 8] = [
     "enemy_flag_taken",
     "own_flag_taken",
@@ -41,7 +41,6 @@ const GAME: [&str; 8] = [
 const SPEED_M_S: f64 = 3.0;
 /// Unit of wind speeds, m/s.
 const WIND_M_S: f64 = 10.0;
-/// Unit of points.
 const POINTS: f64 = 10.0;
 
 /// The number of values in a game with this many boats.
@@ -49,7 +48,7 @@ pub(super) fn size(boats: usize) -> usize {
     boats * BOAT.len() + GAME.len()
 }
 
-/// The names of the values, in order, for a boat with this many mates and enemies.
+/// The names of the values, in order.
 pub(super) fn names(mates: usize, enemies: usize) -> Vec<String> {
     let mates = (1..=mates).map(|i| format!("mate_{i}"));
     let enemies = (1..=enemies).map(|i| format!("enemy_{i}"));
@@ -58,13 +57,13 @@ pub(super) fn names(mates: usize, enemies: usize) -> Vec<String> {
     of_boats.chain(GAME.map(str::to_owned)).collect()
 }
 
-/// Appends the values of each of these boats, boat by boat.
+/// Appends the values of each boat.
 pub(super) fn write(contest: &Contest, boats: &[VehicleId], out: &mut Vec<f32>) {
-    // A default cursor: past events are not needed here.
+    // A default cursor: past events do not matter here.
     let mut cursor = EventCursor::default();
     cursor.read(contest.events());
-    // The truth is used in training only: it leaves the critic only the boats' future decisions to
-    // guess. It is stored beside the observation, and no policy ever receives it.
+    // Used only in training. It leaves only the boats' future decisions unknown to the critic. It
+    // is stored beside the observation, and no policy ever receives it.
     let frame = contest.frame(&mut cursor);
     let scenario = contest.scenario();
     let field = &scenario.field;
@@ -115,7 +114,7 @@ pub(super) fn write(contest: &Contest, boats: &[VehicleId], out: &mut Vec<f32>) 
     }
 }
 
-/// By vehicle index, the remaining share of the time between two tags.
+/// By vehicle index: the remaining share of the time until the boat may tag again.
 fn waits(contest: &Contest) -> Vec<f64> {
     let (scenario, now) = (contest.scenario(), contest.now());
     let mut waits = vec![0.0; scenario.vehicles.len()];

@@ -1,4 +1,4 @@
-//! Games with their own buffers: from actions to observations and rewards.
+//! Games with their own result buffers.
 
 use super::game::Side;
 use super::games::{Finished, Games, Rows};
@@ -7,7 +7,7 @@ use super::watch::Watches;
 use agent::Action;
 use sim::Contest;
 
-/// [`Games`] that store their last results.
+/// [`Games`] that store their latest results.
 pub struct VectorEnvironment {
     games: Games,
     shown: Shown,
@@ -19,8 +19,8 @@ struct Shown {
     final_observations: Vec<f32>,
     rewards: Vec<f32>,
     counts: Vec<bool>,
-    /// A critic's inputs, rows × values, and those before a new game began; empty if they are the
-    /// observations.
+    /// A critic's inputs, rows × values, and those at the end of a game; empty if the critic
+    /// receives the observations.
     states: Vec<f32>,
     final_states: Vec<f32>,
 }
@@ -33,8 +33,8 @@ impl Shown {
 }
 
 impl VectorEnvironment {
-    /// Starts `games` games on `threads` threads. Seeds count up from `seed`, game by game and
-    /// episode by episode.
+    /// Starts `games` games on `threads` threads. Seeds count up from `seed`, across the games and
+    /// then the episodes.
     ///
     /// # Errors
     /// [`SetupError`] if the setup cannot be played.
@@ -75,30 +75,30 @@ impl VectorEnvironment {
         self.games.setup()
     }
 
-    /// Adds an opponent with weight 0.
+    /// Adds an opponent with a draw weight of 0.
     pub fn add_opponent(&mut self, player: Player) {
         self.games.add_opponent(player);
     }
 
-    /// Sets the opponents' draw weights from each slot's next game on; missing ones are 0.
+    /// Sets the opponents' draw weights from each slot's next game on. Missing weights are 0.
     pub fn set_weights(&mut self, weights: impl IntoIterator<Item = f64>) {
         self.games.set_weights(weights);
     }
 
-    /// The number of rows in all, and per game.
+    /// The total number of rows, and the number per game.
     #[must_use]
     pub fn rows(&self) -> (usize, usize) {
         self.games.rows()
     }
 
-    /// The observation of every boat, rows × values.
+    /// The observations, rows × values.
     #[must_use]
     pub fn observations(&self) -> &[f32] {
         &self.shown.observations
     }
 
-    /// The boats' last observations before a new game began, rows × values; valid only for games
-    /// that ended in the last step.
+    /// The last observations before a new game began, rows × values. Valid only for games that
+    /// ended in the last step.
     #[must_use]
     pub fn final_observations(&self) -> &[f32] {
         &self.shown.final_observations
@@ -110,14 +110,13 @@ impl VectorEnvironment {
         if self.setup().truth_size() == 0 { &self.shown.observations } else { &self.shown.states }
     }
 
-    /// The same before a new game began; valid only for games that ended in the last step.
+    /// A critic's inputs before a new game began. Valid only for games that ended in the last step.
     #[must_use]
     pub fn final_states(&self) -> &[f32] {
         if self.setup().truth_size() == 0 { &self.shown.final_observations } else { &self.shown.final_states }
     }
 
-    /// The teacher's actions for the boats of a game in the last step, by row: see
-    /// [`Games::taught`].
+    /// The teacher's actions in a game's last step, by row; see [`Games::taught`].
     #[must_use]
     pub fn taught(&self, game: usize) -> &[Option<Action>] {
         self.games.taught(game)
@@ -129,26 +128,25 @@ impl VectorEnvironment {
         &self.shown.rewards
     }
 
-    /// By row, whether its next action takes effect: false for a tagged boat, and where a strategy
-    /// plays the enemies.
+    /// By row, whether the next action takes effect; see [`Rows::counts`](super::Rows::counts).
     #[must_use]
     pub fn counts(&self) -> &[bool] {
         &self.shown.counts
     }
 
-    /// The episodes that ended in the last step, by game.
+    /// The episodes that ended in the last step, in the order of their games.
     #[must_use]
     pub fn finished(&self) -> &[Finished] {
         self.games.finished()
     }
 
-    /// The number of boats of a game that receive actions: its first rows.
+    /// The number of boats of a game that receive actions. They are its first rows.
     #[must_use]
     pub fn boats(&self, game: usize) -> usize {
         self.games.boats(game).len()
     }
 
-    /// The current game in a slot.
+    /// The game that a slot is playing.
     #[must_use]
     pub fn contest(&self, game: usize) -> &Contest {
         self.games.contest(game)
@@ -160,20 +158,20 @@ impl VectorEnvironment {
         self.games.standing(game).side
     }
 
-    /// Plays one step of every game with an action for each row.
+    /// Plays one step of every game with one action per row.
     ///
     /// # Errors
     /// [`SetupError::NoStart`] if a new game cannot begin.
     ///
     /// # Panics
-    /// If there is not one action for each row.
+    /// If the number of actions is not the number of rows.
     pub fn step(&mut self, actions: &[Action]) -> Result<(), SetupError> {
         self.games.step(actions, self.shown.rows())?;
         self.note_states();
         Ok(())
     }
 
-    /// Joins observations and the truth.
+    /// Joins the observations with the truth.
     fn note_states(&mut self) {
         let truth = self.setup().truth_size();
         if truth == 0 {

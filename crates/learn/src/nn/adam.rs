@@ -5,13 +5,13 @@ use serde::{Deserialize, Serialize};
 /// Settings of Adam.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AdamSettings {
-    /// Decay of the gradients' mean.
+    /// Decay rate of the gradients' mean.
     pub beta_1: f32,
-    /// Decay of the squared gradients' mean.
+    /// Decay rate of the squared gradients' mean.
     pub beta_2: f32,
-    /// Added to the square root of that mean.
+    /// Added to the square root of the latter mean.
     pub epsilon: f32,
-    /// Maximum gradient norm, to which longer gradients are scaled; none: unlimited.
+    /// Maximum norm; longer gradients are scaled down to it. None: unlimited.
     pub norm_max: Option<f32>,
 }
 
@@ -32,13 +32,13 @@ pub struct Adam {
 }
 
 impl Adam {
-    /// An optimiser for this many parameters.
+    /// An optimiser for this number of parameters.
     #[must_use]
     pub fn new(parameters: usize, settings: AdamSettings) -> Adam {
         Adam { settings, powers: (1.0, 1.0), mean: vec![0.0; parameters], square: vec![0.0; parameters] }
     }
 
-    /// Takes one step against a gradient. Returns the gradient's norm before clipping.
+    /// Takes one step along the negative gradient. Returns the gradient's norm before clipping.
     pub fn step(&mut self, parameters: &mut [f32], gradient: &[f32], learning_rate: f32) -> f32 {
         let AdamSettings { beta_1, beta_2, epsilon, norm_max } = self.settings;
         let norm = gradient.iter().map(|number| f64::from(*number) * f64::from(*number)).sum::<f64>().sqrt() as f32;

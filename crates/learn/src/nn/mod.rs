@@ -1,8 +1,7 @@
-//! Small neural networks: plain layers, their gradients, and Adam.
+//! Small neural networks: dense layers, their gradients, and Adam.
 //!
-//! Everything is single precision with the same bits for any number of threads: rows are processed
-//! in shards of a fixed size, and the shards' results are summed in order. Matrices are multiplied
-//! by nalgebra.
+//! Single precision, with the same bits on any number of threads: rows are processed in shards of a
+//! fixed size, whose results are summed in order. nalgebra multiplies the matrices.
 
 mod adam;
 mod model;

@@ -5,18 +5,18 @@ use onnx::{Activation, Head, Layer, NetworkError};
 use std::collections::BTreeMap;
 
 impl Perceptron {
-    /// The bytes of an ONNX file with this network, from `observation` to `output`.
+    /// This network as an ONNX file, from `observation` to `output`.
     ///
     /// # Errors
-    /// [`NetworkError`], if a weight is not finite.
+    /// [`NetworkError`] if a weight is not finite.
     pub fn onnx(&self, output: &str, metadata: BTreeMap<String, String>) -> Result<Vec<u8>, NetworkError> {
         self.file(output, None, metadata)
     }
 
-    /// The same with the hyperbolic tangent applied to every output.
+    /// Like [`Perceptron::onnx`], with the hyperbolic tangent applied to every output.
     ///
     /// # Errors
-    /// [`NetworkError`], if a weight is not finite.
+    /// [`NetworkError`] if a weight is not finite.
     pub fn onnx_bounded(&self, output: &str, metadata: BTreeMap<String, String>) -> Result<Vec<u8>, NetworkError> {
         self.file(output, Some(Activation::Tanh), metadata)
     }
@@ -45,7 +45,7 @@ impl Perceptron {
     fn onnx_layer(&self, i: usize) -> Layer {
         let (inputs, outputs) = (self.sizes()[i], self.sizes()[i + 1]);
         let (weights, biases) = self.layer(i);
-        // Squall stores weights by input, ONNX files by output.
+        // Weights are grouped by input here and by output in ONNX files.
         let turned = (0..outputs).flat_map(|to| (0..inputs).map(move |from| weights[from * outputs + to]));
         Layer { inputs, outputs, weights: turned.collect(), biases: biases.to_vec() }
     }

@@ -1,4 +1,4 @@
-//! A multilayer perceptron: layers of weights with the hyperbolic tangent after all but the last.
+//! A multilayer perceptron with hyperbolic tangents after all layers except the last.
 
 use nalgebra::{DMatrixView, DMatrixViewMut};
 use onnx::tanh;
@@ -8,13 +8,13 @@ use serde::{Deserialize, Serialize};
 /// A multilayer perceptron.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Perceptron {
-    /// Row sizes: of the input, of each hidden layer, of the output.
+    /// Row sizes of the input, the hidden layers and the output.
     sizes: Vec<usize>,
-    /// Layer by layer: for each input its weights to all outputs, then the biases.
+    /// By layer: the weights from each input to all outputs, then the biases.
     parameters: Vec<f32>,
 }
 
-/// The forward pass's data for the backward pass: every layer's rows, the input first.
+/// Data of the forward pass that the backward pass needs: the rows of every layer, the input first.
 #[derive(Clone, Debug, Default)]
 pub struct Trace {
     layers: Vec<Vec<f32>>,
@@ -39,8 +39,8 @@ struct Layer {
 }
 
 impl Perceptron {
-    /// Random weights: orthogonal with a gain of √2, and of `output_gain` in the last layer; zero
-    /// biases (as in PPO: Andrychowicz and others, ICLR 2021).
+    /// Random orthogonal weights with a gain of √2, or `output_gain` in the last layer, and zero
+    /// biases (as for PPO in Andrychowicz and others, ICLR 2021).
     ///
     /// # Panics
     /// With fewer than two sizes, or a size of 0.
@@ -76,10 +76,10 @@ impl Perceptron {
         &mut self.parameters
     }
 
-    /// The weights of a layer, [inputs × outputs] row by row, and its biases.
+    /// The weights of a layer, inputs × outputs, and its biases.
     #[must_use]
     pub fn layer(&self, i: usize) -> (&[f32], &[f32]) {
-        let layer = self.layers().nth(i).expect("there is such a layer");
+        let layer = self.layers().nth(i).expect("the layer exists");
         (&self.parameters[layer.weights..layer.biases], &self.parameters[layer.biases..layer.end])
     }
 
@@ -94,8 +94,8 @@ impl Perceptron {
         })
     }
 
-    /// Computes the output for every row of `input`, rows × values, and the backward pass's data,
-    /// in reused memory.
+    /// Computes the output for every row of `input`, rows × values. Keeps the backward pass's data
+    /// in `trace`, reusing its memory.
     pub fn forward(&self, input: &[f32], trace: &mut Trace) {
         let rows = input.len() / self.sizes[0];
         debug_assert_eq!(input.len(), rows * self.sizes[0]);
@@ -109,23 +109,24 @@ impl Perceptron {
             let biases = &self.parameters[layer.biases..layer.end];
             after.clear();
             (0..rows).for_each(|_| after.extend_from_slice(biases));
-            // Rows are stored consecutively, so a column-major library sees the transpose of every
-            // matrix.
+            // Rows are stored consecutively, so a column-major library sees every matrix
+            // transposed.
             let weights = columns(&self.parameters[layer.weights..layer.biases], layer.outputs, layer.inputs);
-            // For nets of a few hundred units this is faster than JAX, torch, burn and candle, each
-            // measured for one update of PPO.
+            // For networks of a few hundred units this is faster than JAX, torch, burn and candle,
+            // each measured for one PPO update.
             columns_mut(after, layer.outputs, rows).gemm(1.0, &weights, &columns(before, layer.inputs, rows), 1.0);
             if i < last {
-                // The rational hyperbolic tangent of the model evaluator: libm's would take most of
-                // the time, and a policy must compute the same on the boat as in training.
+                // The rational approximation from the model evaluator: libm's tanh would take most
+                // of the time, and a policy must compute the same values on the boat as in
+                // training.
                 after.iter_mut().for_each(|number| *number = tanh(*number));
             }
         }
     }
 
-    /// Adds the gradient of a loss with respect to all parameters to `gradient`, given the gradient
-    /// with respect to every output, rows × values, which is overwritten. Returns the gradient with
-    /// respect to every input on request.
+    /// Adds the gradient of a loss with respect to all parameters to `gradient`, given its gradient
+    /// with respect to the outputs, rows × values, which is overwritten. Returns the gradient with
+    /// respect to the inputs on request.
     pub fn backward(
         &self,
         trace: &Trace,
@@ -144,7 +145,7 @@ impl Perceptron {
             }
             let by = columns(by_output, layer.outputs, rows);
             // A copy, not a strided view: nalgebra 0.35's product of such a view with a matrix of
-            // five rows or fewer wrote beyond the end of the result.
+            // up to five rows wrote beyond the end of the result.
             let turned = transposed(before, layer.inputs);
             columns_mut(weights, layer.outputs, layer.inputs).gemm(
                 1.0,
@@ -177,7 +178,7 @@ impl Perceptron {
     }
 }
 
-/// A matrix stored column by column.
+/// A column-major matrix.
 fn columns(numbers: &[f32], height: usize, width: usize) -> DMatrixView<'_, f32> {
     DMatrixView::from_slice(numbers, height, width)
 }
@@ -196,8 +197,8 @@ fn transposed(numbers: &[f32], width: usize) -> Vec<f32> {
     turned
 }
 
-/// A random matrix, row-major, with orthonormal rows or columns, whichever are fewer: the
-/// Gram-Schmidt process on normal numbers.
+/// A random row-major matrix with orthonormal rows or columns, whichever are fewer: normal numbers
+/// after the Gram-Schmidt process.
 fn orthogonal(rows: usize, columns: usize, stream: &mut Stream) -> Vec<f64> {
     let (count, length) = (rows.min(columns), rows.max(columns));
     let mut vectors: Vec<Vec<f64>> = Vec::with_capacity(count);

@@ -1,5 +1,5 @@
-//! Double DQN (van Hasselt, Guez and Silver, AAAI 2016): a network that estimates the value of each
-//! discrete action, and a target network that evaluates the action that the newer one would choose
+//! Double DQN (van Hasselt, Guez and Silver, AAAI 2016): a network estimates the value of each
+//! discrete action, and a target network evaluates the action that the current one would choose
 //! next.
 
 use super::{Minibatch, Replay, Slope};
@@ -10,12 +10,11 @@ use primitives::stream::Stream;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// A network with its target and its optimiser: the whole learning state, except for the replay
-/// buffer.
+/// A network with its target and its optimiser: the learning state without the replay buffer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DqnLearner {
-    /// From an observation to the value of the rest of the episode after each action, in the units
-    /// of scaled rewards.
+    /// From an observation to the value of the rest of the episode after each action, in scaled
+    /// rewards.
     pub network: Perceptron,
     /// The target network.
     pub target: Perceptron,
@@ -25,25 +24,24 @@ pub struct DqnLearner {
 }
 
 impl DqnLearner {
-    /// A new network with these numbers of inputs and actions.
+    /// A new network of this shape.
     #[must_use]
     pub fn new(observation: usize, hidden: &[usize], actions: usize, seed: u64) -> DqnLearner {
         let sizes = [&[observation], hidden, &[actions]].concat();
-        // With the hyperbolic tangent between layers, like all networks here and unlike the
-        // paper's: boats evaluate no other.
+        // Hyperbolic tangents, unlike in the paper: boats evaluate only such networks.
         let network = Perceptron::new(&sizes, 0.01, &mut Stream::new(seed, "actor"));
         let settings = AdamSettings { epsilon: 1e-8, norm_max: Some(10.0), ..AdamSettings::default() };
         let optimiser = Adam::new(network.parameters().len(), settings);
         DqnLearner { target: network.clone(), network, optimiser, steps: 0 }
     }
 
-    /// One optimiser step on transitions drawn from a buffer, in the calling thread pool. Returns
-    /// the loss.
+    /// Takes one optimiser step on transitions drawn from a buffer, in the calling thread pool.
+    /// Returns the loss.
     pub fn update(&mut self, replay: &Replay<u16>, settings: &Dqn, stream: &mut Stream) -> f32 {
         self.step(&replay.draw(settings.minibatch, stream), settings)
     }
 
-    /// One optimiser step on the given transitions. Returns the loss.
+    /// Takes one optimiser step on these transitions. Returns the loss.
     pub fn step(&mut self, minibatch: &Minibatch<u16>, settings: &Dqn) -> f32 {
         let (gradient, loss) = self.gradient(minibatch, settings);
         self.optimiser.step(self.network.parameters_mut(), &gradient, settings.learning_rate);
@@ -54,8 +52,8 @@ impl DqnLearner {
         loss
     }
 
-    /// The gradient of the loss with respect to the network's parameters, and the loss: the mean
-    /// Huber loss, with the limit 1, of the temporal-difference errors.
+    /// The gradient with respect to the network's parameters, and the loss: the mean Huber loss,
+    /// with a limit of 1, of the temporal-difference errors.
     #[must_use]
     pub fn gradient(&self, minibatch: &Minibatch<u16>, settings: &Dqn) -> (Vec<f32>, f32) {
         let size = self.network.sizes()[0];
@@ -70,7 +68,7 @@ impl DqnLearner {
         (slope.gradient, slope.loss)
     }
 
-    /// The contribution of a shard to the gradient, from its first transition on.
+    /// The contribution of one shard to the gradient, starting at transition `first`.
     fn shard(
         &self,
         minibatch: &Minibatch<u16>,
@@ -102,13 +100,13 @@ impl DqnLearner {
     }
 }
 
-/// The Huber loss: half the square up to 1, and a straight line beyond.
+/// The Huber loss: half the square up to 1, and linear beyond.
 fn huber(off: f32) -> f32 {
     let size = off.abs();
     if size <= 1.0 { 0.5 * off * off } else { size - 0.5 }
 }
 
-/// The action with the greatest value or, with probability `epsilon`, a random one.
+/// The most valuable action or, with probability `epsilon`, a random one.
 pub fn explored(values: &[f32], epsilon: f32, stream: &mut Stream) -> usize {
     if stream.unit() < f64::from(epsilon) { stream.below(values.len() as u64) as usize } else { likeliest(values) }
 }

@@ -1,8 +1,8 @@
-//! Off-policy algorithms: a policy learns from transitions of a replay buffer, which any policy may
+//! Off-policy algorithms: the policy learns from transitions in a replay buffer that any policy may
 //! have produced.
 //!
-//! As in PPO, rows are processed in shards of a fixed size whose gradients are summed in order, so
-//! that training gives the same bits for any number of threads.
+//! As in PPO, rows are processed in shards of a fixed size. Gradients are summed in order, so that
+//! training gives the same bits on any number of threads.
 
 pub mod dqn;
 mod replay;
@@ -10,7 +10,7 @@ pub mod td3;
 
 pub use replay::{Minibatch, Replay, Transition};
 
-/// The gradient of a loss, and the loss, of a shard: summed over its rows.
+/// The gradient of a loss and the loss, summed over a shard's rows.
 #[derive(Clone, Debug, Default)]
 struct Slope {
     gradient: Vec<f32>,
@@ -18,7 +18,7 @@ struct Slope {
 }
 
 impl Slope {
-    /// The sum of the slopes of all shards, in their order.
+    /// Sums all shards in order.
     fn sum(shards: impl IntoIterator<Item = Slope>) -> Slope {
         let mut shards = shards.into_iter();
         let mut all = shards.next().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! A replay buffer: the newest transitions, from which minibatches are drawn.
+//! A replay buffer of the newest transitions, from which minibatches are drawn.
 
 use primitives::stream::Stream;
 use serde::{Deserialize, Serialize};
@@ -12,22 +12,22 @@ pub struct Transition<'a, A> {
     pub action: A,
     /// The reward.
     pub reward: f32,
-    /// The observation after the step; after the last step of an episode, that of its last state.
+    /// The observation after the step, still of the same episode.
     pub next_observation: &'a [f32],
-    /// Whether the game was over after the step, so that no further reward follows.
+    /// Whether the step ended the game, so that no further reward follows.
     pub over: bool,
-    /// Whether the boat followed the action. From other transitions only values are learnt: a
-    /// tagged boat is steered home.
+    /// Whether the boat followed the action. Otherwise only values are learnt from the transition:
+    /// a tagged boat is steered home.
     pub counts: bool,
 }
 
 /// The newest transitions, up to a capacity.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Replay<A> {
-    /// Number of values per observation.
+    /// Observation size.
     size: usize,
     capacity: usize,
-    /// The index for the next transition in a full buffer: that of the oldest.
+    /// Index of the oldest transition in a full buffer, which is replaced next.
     oldest: usize,
     observations: Vec<f32>,
     next_observations: Vec<f32>,
@@ -37,7 +37,7 @@ pub struct Replay<A> {
     counts: Vec<bool>,
 }
 
-/// Transitions drawn from a buffer, one entry of each list per transition.
+/// Transitions drawn from a buffer. Each list has one entry per transition.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Minibatch<A> {
     /// The observations before the step, transitions × values.
@@ -48,21 +48,21 @@ pub struct Minibatch<A> {
     pub rewards: Vec<f32>,
     /// The observations after the step, transitions × values.
     pub next_observations: Vec<f32>,
-    /// Whether the game was over.
+    /// Whether each step ended the game.
     pub over: Vec<bool>,
     /// Whether the boat followed the action.
     pub counts: Vec<bool>,
 }
 
 impl<A: Copy> Replay<A> {
-    /// An empty buffer for `capacity` transitions with observations of `size` values.
+    /// An empty buffer for `capacity` transitions with observations of size `size`.
     ///
     /// # Panics
     /// If either is 0.
     #[must_use]
     pub fn new(size: usize, capacity: usize) -> Replay<A> {
-        // Part of a training's saved state, some 100 MB by default: refilling it by playing would
-        // require the earlier state of the games themselves.
+        // The buffer is part of a training's saved state, about 100 MB by default. Refilling it by
+        // playing would need the games' earlier state.
         assert!(size > 0 && capacity > 0, "{size}, {capacity}");
         Replay {
             size,
@@ -83,7 +83,7 @@ impl<A: Copy> Replay<A> {
         self.rewards.len()
     }
 
-    /// Whether it has no transitions.
+    /// Whether the buffer is empty.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.rewards.is_empty()
@@ -94,10 +94,10 @@ impl<A: Copy> Replay<A> {
         *self = Replay::new(self.size, self.capacity);
     }
 
-    /// Stores a transition, replacing the oldest if the buffer is full.
+    /// Stores a transition; replaces the oldest one in a full buffer.
     ///
     /// # Panics
-    /// If an observation has another size.
+    /// If an observation has the wrong size.
     pub fn push(&mut self, transition: Transition<'_, A>) {
         let Transition { observation, action, reward, next_observation, over, counts } = transition;
         assert!(observation.len() == self.size && next_observation.len() == self.size);
@@ -148,7 +148,7 @@ impl<A> Minibatch<A> {
         self.rewards.len()
     }
 
-    /// Whether it has no transitions.
+    /// Whether there are no transitions.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.rewards.is_empty()

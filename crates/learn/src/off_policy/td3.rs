@@ -1,5 +1,5 @@
 //! TD3, the twin delayed deep deterministic policy gradient (Fujimoto, van Hoof and Meger, ICML
-//! 2018): a policy with continuous actions, and two critics that estimate the value of actions.
+//! 2018): a policy with continuous actions, and two critics that estimate their value.
 
 use super::{Minibatch, Replay, Slope};
 use crate::nn::{Adam, AdamSettings, Perceptron, SHARD, Trace};
@@ -12,19 +12,19 @@ use serde::{Deserialize, Serialize};
 /// Dimension of an action.
 pub const NUMBERS: usize = 2;
 
-/// An action, each component from -1 to 1.
+/// An action; each component is from -1 to 1.
 pub type Numbers = [f32; NUMBERS];
 
-/// A policy and its critics, with their targets and optimisers: the whole learning state, except
-/// for the replay buffer.
+/// A policy and its critics, with their targets and optimisers: the learning state without the
+/// replay buffer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Td3Learner {
     /// From an observation to numbers whose hyperbolic tangents are the action.
     pub actor: Perceptron,
-    /// From an observation and an action to the value of the rest of the episode, in the units of
-    /// scaled rewards.
+    /// From an observation and an action to the value of the rest of the episode, in scaled
+    /// rewards.
     pub critics: [Perceptron; 2],
-    /// The target policy, which slowly follows the policy.
+    /// The target policy, which follows the policy slowly.
     pub target_actor: Perceptron,
     /// The target critics.
     pub target_critics: [Perceptron; 2],
@@ -37,10 +37,10 @@ pub struct Td3Learner {
 /// The losses of one optimiser step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Td3Losses {
-    /// Half the mean squared error of the critics, averaged over both.
+    /// Half the mean squared error, averaged over both critics.
     pub critic: f32,
-    /// The negative mean value of the policy's actions according to the first critic; none in a
-    /// step without the policy.
+    /// The negative mean value of the policy's actions according to the first critic. None if the
+    /// step did not update the policy.
     pub actor: Option<f32>,
 }
 
@@ -53,7 +53,7 @@ impl Td3Learner {
         let critic = |name| Perceptron::new(&sizes(observation + NUMBERS, 1), 1.0, &mut Stream::new(seed, name));
         let critics = ["critic/one", "critic/two"].map(critic);
         let optimiser = |network: &Perceptron| {
-            // As in the paper: no gradient clipping.
+            // No gradient clipping, as in the paper.
             let settings = AdamSettings { epsilon: 1e-8, norm_max: None, ..AdamSettings::default() };
             Adam::new(network.parameters().len(), settings)
         };
@@ -68,7 +68,7 @@ impl Td3Learner {
         }
     }
 
-    /// One optimiser step on transitions drawn from a buffer, in the calling thread pool.
+    /// Takes one optimiser step on transitions drawn from a buffer, in the calling thread pool.
     pub fn update(&mut self, replay: &Replay<Numbers>, settings: &Td3, stream: &mut Stream) -> Td3Losses {
         let minibatch = replay.draw(settings.minibatch, stream);
         let noise: Vec<Numbers> =
@@ -76,11 +76,11 @@ impl Td3Learner {
         self.step(&minibatch, &noise, settings)
     }
 
-    /// One optimiser step on the given transitions, with the given noise on the target policy's
+    /// Takes one optimiser step on these transitions, with this noise on the target policy's
     /// actions.
     ///
     /// # Panics
-    /// If there is not one pair of noise values for each transition.
+    /// If the numbers of noise values and transitions differ.
     pub fn step(&mut self, minibatch: &Minibatch<Numbers>, noise: &[Numbers], settings: &Td3) -> Td3Losses {
         assert_eq!(minibatch.len(), noise.len());
         let targets = self.targets(minibatch, noise, settings);
@@ -104,7 +104,7 @@ impl Td3Learner {
         Td3Losses { critic, actor: Some(actor) }
     }
 
-    /// The target value of each step: its reward plus the smaller of the target critics' values of
+    /// The target value of each step: its reward plus the smaller of the target critics' values for
     /// a noisy action of the target policy.
     fn targets(&self, minibatch: &Minibatch<Numbers>, noise: &[Numbers], settings: &Td3) -> Vec<f32> {
         let size = self.actor.sizes()[0];
@@ -136,7 +136,7 @@ impl Td3Learner {
         shards.concat()
     }
 
-    /// Half the mean squared error of a critic, and its gradient with respect to the critic's
+    /// Half a critic's mean squared error, and its gradient with respect to the critic's
     /// parameters.
     fn critic_slope(&self, which: usize, minibatch: &Minibatch<Numbers>, targets: &[f32]) -> Slope {
         let (critic, size) = (&self.critics[which], self.actor.sizes()[0]);
@@ -160,9 +160,9 @@ impl Td3Learner {
         Slope::sum(shards.map(of_shard).collect::<Vec<Slope>>())
     }
 
-    /// The gradient, with respect to the policy's parameters, of the negative mean value of its
-    /// actions according to the first critic, over the transitions in which boats followed the
-    /// action; and that loss.
+    /// The negative mean value of the policy's actions according to the first critic, over
+    /// transitions whose action the boat followed, and its gradient with respect to the policy's
+    /// parameters.
     #[must_use]
     pub fn actor_gradient(&self, minibatch: &Minibatch<Numbers>) -> (Vec<f32>, f32) {
         let (critic, size) = (&self.critics[0], self.actor.sizes()[0]);
@@ -201,7 +201,7 @@ pub fn action(output: &[f32]) -> Numbers {
     std::array::from_fn(|i| tanh(output[i]))
 }
 
-/// An action with exploration noise.
+/// Adds exploration noise to an action.
 pub fn explored(action: Numbers, deviation: f32, stream: &mut Stream) -> Numbers {
     action.map(|number| (number + deviation * stream.normal() as f32).clamp(-1.0, 1.0))
 }
@@ -211,7 +211,7 @@ pub fn drawn(stream: &mut Stream) -> Numbers {
     [0; NUMBERS].map(|_| stream.between(-1.0, 1.0) as f32)
 }
 
-/// Noise on a component of the target policy's action, from a standard normal number.
+/// Noise for one component of the target policy's action, from a standard normal number.
 fn smoothing(settings: &Td3, normal: f64) -> f32 {
     (settings.smoothing * normal as f32).clamp(-settings.smoothing_max, settings.smoothing_max)
 }
@@ -226,7 +226,7 @@ fn with_actions(observations: &[f32], actions: &[Numbers], size: usize) -> Vec<f
     rows
 }
 
-/// Moves a network by a share of the way to another.
+/// Moves a network's parameters towards another's by this share.
 fn approach(target: &mut Perceptron, network: &Perceptron, share: f32) {
     let numbers = target.parameters_mut().iter_mut().zip(network.parameters());
     numbers.for_each(|(target, number)| *target += share * (number - *target));

@@ -1,7 +1,7 @@
-//! Advantages: how much better than expected a step turned out (generalised advantage estimation,
-//! Schulman and others, ICLR 2016).
+//! Generalised advantage estimation (Schulman and others, ICLR 2016): how much better than expected
+//! each step turned out.
 
-/// The data of rows of steps, each slice steps × rows.
+/// Rows of steps; each slice is steps × rows.
 #[derive(Clone, Copy, Debug)]
 pub struct Steps<'a> {
     /// The number of rows.
@@ -10,15 +10,15 @@ pub struct Steps<'a> {
     pub rewards: &'a [f32],
     /// The expected value before each step.
     pub values: &'a [f32],
-    /// The expected value after each step; if the step cut an episode off, that of its last state.
+    /// The expected value after each step, still in the same episode.
     pub next_values: &'a [f32],
-    /// Whether the game was over after the step, with an expected value of 0.
+    /// Whether the step ended the game, so that the expected value is 0.
     pub over: &'a [bool],
-    /// Whether the episode ended with the step, so that the next step belongs to another one.
+    /// Whether the step ended the episode, so that the next step belongs to another one.
     pub ended: &'a [bool],
 }
 
-/// The advantage of every step, steps × rows; plus the values they are the returns to learn.
+/// The advantage of every step, steps × rows. Added to `values`, they give the returns to learn.
 #[must_use]
 pub fn advantages(steps: Steps<'_>, discount: f32, lambda: f32) -> Vec<f32> {
     let Steps { rows, rewards, values, next_values, over, ended } = steps;
@@ -64,7 +64,7 @@ mod tests {
                     break;
                 }
             }
-            assert!((f64::from(got) - want).abs() < 1e-5, "{first}: {got} not {want}");
+            assert!((f64::from(got) - want).abs() < 1e-5, "{first}: got {got}, want {want}");
         }
     }
 }

@@ -1,4 +1,4 @@
-//! A choice among discrete actions by their logits.
+//! Choice among discrete actions by their logits.
 
 /// Computes the log probabilities of actions.
 pub fn log_probabilities(logits: &[f32], out: &mut [f32]) {
@@ -8,7 +8,7 @@ pub fn log_probabilities(logits: &[f32], out: &mut [f32]) {
     out.iter_mut().zip(logits).for_each(|(out, logit)| *out = logit - less);
 }
 
-/// The action selected by a uniform number from 0 to 1, given the log probabilities.
+/// The action that a uniform random number from 0 to 1 selects.
 #[must_use]
 pub fn drawn(log_probabilities: &[f32], unit: f64) -> usize {
     let mut left = unit;
@@ -19,7 +19,7 @@ pub fn drawn(log_probabilities: &[f32], unit: f64) -> usize {
     chosen.unwrap_or_else(|| likeliest(log_probabilities))
 }
 
-/// The action with the largest logit; ties go to the first.
+/// The action with the largest logit. Ties go to the first.
 #[must_use]
 pub fn likeliest(logits: &[f32]) -> usize {
     (1..logits.len()).fold(0, |best, i| if logits[i] > logits[best] { i } else { best })

@@ -1,5 +1,4 @@
-//! Proximal policy optimisation (Schulman and others, arXiv 1707.06347): updates a policy and its
-//! value estimates from played samples.
+//! Proximal policy optimisation (Schulman and others, arXiv 1707.06347).
 
 mod advantage;
 pub mod choice;
@@ -13,12 +12,12 @@ use primitives::stream::Stream;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// A policy and its critic, with their optimisers: the whole learning state.
+/// A policy and its critic with their optimisers: the whole learning state.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ActorCritic {
     /// From an observation to the logit of each action.
     pub actor: Perceptron,
-    /// From a state, or the observation, to the value of the rest of the episode, in the units of
+    /// From a state, or the observation, to the value of the rest of the episode, in units of
     /// [`ActorCritic::scale`].
     pub critic: Perceptron,
     /// The unit of values: the standard deviation of returns.
@@ -36,13 +35,13 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// The standard deviation; 1 before any returns.
+    /// The standard deviation; 1 without returns so far.
     #[must_use]
     pub fn deviation(&self) -> f32 {
         if self.count < 2.0 { 1.0 } else { (self.squares / self.count).sqrt().max(1e-3) as f32 }
     }
 
-    /// Adds returns; older ones count less.
+    /// Adds returns. Older ones count less.
     fn see(&mut self, returns: &[f32]) {
         const MEMORY: f64 = 1e6;
         let forget = (MEMORY / (self.count + returns.len() as f64)).min(1.0);
@@ -56,7 +55,7 @@ impl Scale {
     }
 }
 
-/// Samples, one entry of each slice per sample.
+/// Samples; each slice has one entry per sample.
 #[derive(Clone, Copy, Debug)]
 pub struct Batch<'a> {
     /// The policy's observations, samples × values.
@@ -65,7 +64,7 @@ pub struct Batch<'a> {
     pub states: &'a [f32],
     /// The chosen actions.
     pub actions: &'a [u16],
-    /// The log probabilities of the actions when chosen.
+    /// The log probabilities of the actions when they were chosen.
     pub log_probabilities: &'a [f32],
     /// The advantages.
     pub advantages: &'a [f32],
@@ -81,10 +80,10 @@ pub struct Batch<'a> {
 /// A policy's learning objective.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lesson {
-    /// To repeat what turned out better than expected, within limits: PPO.
+    /// Repeat what turned out better than expected, within limits (PPO).
     Reinforcement,
-    /// To repeat the sampled actions whatever their result: behaviour cloning, by the
-    /// cross-entropy.
+    /// Repeat the sampled actions regardless of their results: behaviour cloning with a
+    /// cross-entropy loss.
     Imitation,
 }
 
@@ -97,9 +96,9 @@ pub struct Statistics {
     pub value_loss: f32,
     /// Entropy of the policy, nats.
     pub entropy: f32,
-    /// Divergence of the new policy from the old one, nats.
+    /// KL divergence of the new policy from the old one, nats.
     pub divergence: f32,
-    /// The share of samples that were clipped.
+    /// Share of clipped samples.
     pub clipped: f32,
     /// Number of epochs.
     pub epochs: f32,
@@ -124,7 +123,7 @@ impl ActorCritic {
     /// Learns from samples, in the calling thread pool; `stream` shuffles them.
     ///
     /// # Panics
-    /// If a slice does not match the number of actions.
+    /// If the length of a slice does not match.
     pub fn update(&mut self, batch: &Batch<'_>, settings: &Ppo, rate: f32, stream: &mut Stream) -> Statistics {
         let count = batch.actions.len();
         let (observation, state) = (self.actor.sizes()[0], self.critic.sizes()[0]);
@@ -165,7 +164,7 @@ impl ActorCritic {
         let samples = (counted().count(), minibatch.len());
         let advantages = Normal::of(counted().map(|i| batch.advantages[i]));
         let of_shard = |shard: &[u32]| self.shard(batch, shard, samples, advantages, settings);
-        // Shards of a fixed size, summed in order: the same bits for any number of threads.
+        // Shards of a fixed size, summed in order, give the same bits on any number of threads.
         let shards: Vec<Shard> = minibatch.par_chunks(SHARD).map(of_shard).collect();
         let mut shards = shards.into_iter();
         let Some(mut all) = shards.next() else { return Sums::default() };
@@ -201,10 +200,10 @@ impl ActorCritic {
         let of_rows = shard.iter().zip(trace.output().chunks_exact(actions)).zip(by_logits.chunks_exact_mut(actions));
         for ((i, logits), by) in of_rows {
             let i = *i as usize;
-            // A tagged boat's actions have no effect; policies that also learnt from them drove out
-            // to sea. The critic does learn from these samples: before it did, its values of being
-            // tagged were meaningless, and policies that won 16 games of 20 against Pav01 won none
-            // after another half a million samples.
+            // A tagged boat's actions have no effect; policies that learnt from them drove out of
+            // the field. The critic does learn from these samples: before it did, it misjudged
+            // being tagged, and policies that won 16 of 20 games against Pav01 won none after
+            // another half a million samples.
             if !batch.counts[i] {
                 continue;
             }
@@ -214,7 +213,7 @@ impl ActorCritic {
             match batch.lesson {
                 Lesson::Reinforcement => policy_gradient(&logs, action, (was, advantage), settings, by, &mut sums),
                 // Without imitation, a million samples did not reach the level of a hundred
-                // thousand samples of imitation.
+                // thousand with it.
                 Lesson::Imitation => imitation_gradient(&logs, action, by, &mut sums),
             }
             by.iter_mut().for_each(|number| *number *= per_counted);
@@ -223,8 +222,7 @@ impl ActorCritic {
         self.actor.backward(&trace, &mut by_logits, &mut actor, None);
         self.critic.forward(&rows(batch.states, self.critic.sizes()[0]), &mut trace);
         let deviation = self.scale.deviation();
-        // In standard deviations of returns, so that rewards of any scale are learnt at Adam's
-        // pace.
+        // In standard deviations of returns, so that Adam learns rewards of any scale at its pace.
         let off = |(i, value): (&u32, &f32)| value - batch.returns[*i as usize] / deviation;
         let mut by_values: Vec<f32> = shard.iter().zip(trace.output()).map(off).collect();
         sums.value = by_values.iter().map(|off| 0.5 * off * off).sum();
@@ -282,8 +280,7 @@ impl Normal {
     }
 }
 
-/// The gradient of a sample's loss with respect to its logits: the clipped objective less the
-/// entropy bonus.
+/// The gradient of a sample's loss with respect to its logits: clipped objective and entropy bonus.
 fn policy_gradient(
     logs: &[f32],
     action: usize,
@@ -297,7 +294,7 @@ fn policy_gradient(
     let limited = ratio.clamp(1.0 - settings.clip, 1.0 + settings.clip);
     let (free, held) = (ratio * advantage, limited * advantage);
     let entropy = -logs.iter().map(|log| libm::expf(*log) * log).sum::<f32>();
-    // Where the clipped objective is smaller, the gradient is zero.
+    // Where the clipped term is smaller, the gradient is zero.
     let by_log = if free <= held { -ratio * advantage } else { 0.0 };
     for (i, (by, log)) in by.iter_mut().zip(logs).enumerate() {
         let probability = libm::expf(*log);
@@ -358,7 +355,11 @@ mod tests {
                     loss(&logits, action, f64::from(was), f64::from(advantage), &settings)
                 };
                 let want = (at(STEP) - at(-STEP)) / (2.0 * STEP);
-                assert!((f64::from(by[i]) - want).abs() < TOLERANCE, "{change} {advantage} {i}: {}, not {want}", by[i]);
+                assert!(
+                    (f64::from(by[i]) - want).abs() < TOLERANCE,
+                    "{change} {advantage} {i}: got {}, want {want}",
+                    by[i]
+                );
             }
         }
     }
@@ -381,7 +382,7 @@ mod tests {
                 entropy(logits)
             };
             let want = (at(STEP) - at(-STEP)) / (2.0 * STEP);
-            assert!((f64::from(by[i]) - want).abs() < TOLERANCE, "{i}: {}, not {want}", by[i]);
+            assert!((f64::from(by[i]) - want).abs() < TOLERANCE, "{i}: got {}, want {want}", by[i]);
         }
     }
 

@@ -1,4 +1,4 @@
-//! Rewards: events and states of a game converted to numbers for learning boats.
+//! Rewards for learning boats, from events and states of a game.
 //!
 //! [`Rewards`] are data, read from `scenarios/rewards/*.toml`; the type declares the keys.
 
@@ -13,22 +13,22 @@ use scenario::{Diagnostics, Document, ScenarioFile};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What is worth how much to a boat: the sum of all that follows.
+/// The reward of a boat: the sum of all parts below.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Rewards {
-    /// What the own boat does, and what happens to it.
+    /// Events of the boat itself.
     pub boat: Worth,
-    /// What any boat of the own team does, this one included.
+    /// Events of any boat of its team, including itself.
     pub team: Worth,
-    /// What any boat of the enemies does.
+    /// Events of any enemy.
     pub enemy: Worth,
     /// The end of the game, for every boat of a team.
     pub end: End,
-    /// For being on the way: see [`Potential`].
+    /// Progress towards a goal; see [`Potential`].
     pub potential: Potential,
-    /// For coming nearer to a place: see [`Place`].
+    /// Approach to a place; see [`Place`].
     pub place: Place,
-    /// Each second of the game.
+    /// Reward per second of the game.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub second: f64,
 }
@@ -41,97 +41,97 @@ impl ScenarioFile for Rewards {
     fn check(diagnostics: &mut Diagnostics, document: &Document<Rewards>) -> Option<Rewards> {
         let rewards = document.raw;
         if rewards == Rewards::default() && document.is_sound("") {
-            let message = "everything is worth 0, expected a number for one thing at least".to_owned();
+            let message = "all rewards are 0, expected at least one other value".to_owned();
             diagnostics.note(document.at(""), message);
         }
         document.is_faultless(diagnostics).then_some(rewards)
     }
 }
 
-/// What events of a boat are worth.
+/// Rewards for events of a boat.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Worth {
-    /// It took the enemies' flag.
+    /// The boat grabs the enemies' flag.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub grab: f64,
-    /// It brought that home.
+    /// The boat captures that flag by bringing it home.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub capture: f64,
-    /// It tagged an enemy.
+    /// The boat tags an enemy.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub tag: f64,
-    /// It tagged an enemy that carried a flag: instead of `tag`.
+    /// The boat tags an enemy that carries a flag; replaces `tag`.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub tag_carrier: f64,
-    /// It was tagged by an enemy.
+    /// An enemy tags the boat.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub tagged: f64,
-    /// It was tagged by an enemy while it carried a flag: instead of `tagged`.
+    /// An enemy tags the boat while it carries a flag; replaces `tagged`.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub tagged_carrying: f64,
-    /// It was untagged.
+    /// The boat is untagged.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub untagged: f64,
-    /// It left the field.
+    /// The boat leaves the field.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub left_field: f64,
-    /// It came nearer to another boat than the collision distance.
+    /// The boat comes closer to another boat than the collision distance.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub collided: f64,
 }
 
-/// What the end of a game is worth.
+/// Rewards for the end of a game.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct End {
-    /// For a game won; one that is lost costs as much.
+    /// Reward for a win; its negative for a defeat.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub win: f64,
-    /// For every point more than the enemies have.
+    /// Reward for each point of the lead; negative when behind.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub point: f64,
 }
 
-/// Potential-based shaping (Ng, Harada and Russell, ICML 1999): the discounted gain of a potential that depends on the state alone, and
-/// is 0 at the end of a game. It does not change which policy is the best one.
+/// Potential-based shaping (Ng, Harada and Russell, ICML 1999): the discounted gain of a potential that depends only on the state and is
+/// 0 at the end of a game. It does not change which policy is best.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Potential {
-    /// At the enemies' flag; 0 where that is a field's width away. A carrier has as much, and again as much when it has brought
-    /// the flag home. A tagged boat has none.
+    /// Value at the enemies' flag, falling to 0 one field width away. A carrier keeps this value and gains the same again on the way home.
+    /// A tagged boat has none.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub attack: f64,
-    /// Of a tagged boat: less than nothing by this much for a field's width from where it is untagged.
+    /// Penalty of a tagged boat one field width from where it is untagged, proportional to that distance.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub untag: f64,
 }
 
-/// What it is worth to be in a place: in each step a boat gets what that gains, and what it loses is taken from it. Where a reward a step
-/// later is worth γ, it is as if each step in the place were worth (1 - γ) of this, with the place as a potential. Unlike [`Potential`]
-/// it says what a boat is to do: it is for policies that do one thing alone. To a tagged boat all places are worth nothing.
+/// Values of places: in each step a boat receives the gain in value, and loses any loss. If a reward one step later is worth γ, each step
+/// in the place is in effect worth (1 - γ) times its value, with the place as a potential. Unlike [`Potential`], it defines the boat's
+/// task: use it for policies with a single task. A tagged boat receives nothing for places.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Place {
-    /// At the enemies' flag, or anywhere with it; 0 a field's width away.
+    /// Value at the enemies' flag, or anywhere while carrying it; 0 one field width away.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub flag: f64,
-    /// At home, where a flag is brought and a tagged boat is untagged; 0 a field's width away.
+    /// Value at home, where flags are brought and tagged boats are untagged; 0 one field width away.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub home: f64,
-    /// At the nearest intruder, an untagged enemy on the own side; 0 a field's width away, and where there is none.
+    /// Value at the nearest intruder, an untagged enemy on the boat's side; 0 one field width away or without an intruder.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub intruder: f64,
-    /// An eighth of the field's width before the own flag, towards the untagged enemy that is nearest to it, or where that enemy is, if
-    /// that is nearer; 0 a quarter of the field's width away.
+    /// Value an eighth of the field's width from the boat's own flag towards the untagged enemy nearest to the flag, or at that enemy if it is
+    /// nearer; 0 a quarter of the field's width away.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub guard: f64,
-    /// The same with an untagged mate on the enemies' side in place of the flag: the one whose nearest untagged enemy is nearest.
+    /// The same for an untagged mate on the enemies' side instead of the flag: the mate with the closest untagged enemy.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub shield: f64,
-    /// A quarter of the field's width from every untagged enemy, or more; 0 where one is.
+    /// Value when every untagged enemy is at least a quarter of the field's width away; 0 at an enemy.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub clear: f64,
 }
 
 impl Place {
-    /// The potential of a boat with this progress.
+    /// The value of a boat's place.
     #[must_use]
     pub fn of(&self, boat: &BoatProgress) -> f64 {
         if boat.tagged {
@@ -149,7 +149,7 @@ impl Place {
 }
 
 impl Potential {
-    /// The value of the place of a boat with this progress.
+    /// The potential of a boat.
     #[must_use]
     pub fn of(&self, boat: &BoatProgress) -> f64 {
         if boat.tagged {
@@ -163,15 +163,14 @@ impl Potential {
 }
 
 impl Rewards {
-    /// Whether positions relative to other boats matter: [`Among`].
+    /// Whether the positions of other boats matter; see [`Among`].
     #[must_use]
     pub fn mind_others(&self) -> bool {
         let Place { intruder, guard, shield, clear, .. } = self.place;
         [intruder, guard, shield, clear].iter().any(|worth| *worth != 0.0)
     }
 
-    /// Adds the worth of events to the boats' rewards. `carrying` is whether each boat carried a
-    /// flag before them.
+    /// Adds the rewards for events. `carrying` states whether each boat carried a flag before them.
     pub fn add_events(&self, scenario: &Scenario, events: &[Logged], carrying: &[bool], rewards: &mut [f64]) {
         let team_of = |vehicle: VehicleId| scenario.team_of(vehicle);
         let mut add = |vehicle: VehicleId, worth: fn(&Worth) -> f64| {

@@ -1,13 +1,12 @@
-//! The progress of a boat and its position among the others, from which potentials and places are
-//! computed.
+//! The progress of a boat and its position among the others: the input of potentials and places.
 
 use primitives::frame::Ned;
 use primitives::id::TeamId;
 use rules::field::Field;
 
-/// A guarding place has worth within this distance, as a share of the field's width.
+/// Distance up to which a guarding place has value, as a share of the field's width.
 const REACH: f64 = 0.25;
-/// A guard's distance from the guarded place towards the enemy, as a share of the field's width.
+/// A guard's distance from the flag or mate, towards the enemy, as a share of the field's width.
 const STAND_OFF: f64 = 0.125;
 
 /// A boat on the field.
@@ -32,8 +31,8 @@ pub struct BoatProgress {
     pub carrying: bool,
     /// Distance from the nearest enemy flag, in field widths.
     pub from_flag: f64,
-    /// Distance from the nearest own flag, where by most rules a flag is brought and a tagged boat
-    /// is untagged, in field widths.
+    /// Distance from the nearest flag of its own, in field widths. Under most rules flags are
+    /// brought there and tagged boats are untagged there.
     pub from_home: f64,
     /// Its position among the others, if requested.
     pub among: Among,
@@ -42,22 +41,21 @@ pub struct BoatProgress {
 /// A boat's position among the others, each value from 0 to 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Among {
-    /// Nearness to the nearest intruder, an untagged enemy on its side: 1 at the intruder, 0 a
-    /// field's width away or without one.
+    /// Nearness to the nearest intruder, an untagged enemy on the boat's side: 1 there, 0 a field's
+    /// width away or without an intruder.
     pub at_intruder: f64,
-    /// Nearness to the place that guards the own flag: see [`Place::guard`](super::Place::guard).
+    /// Nearness to the place that guards its own flag; see [`Place::guard`](super::Place::guard).
     pub on_guard: f64,
-    /// Nearness to the place that shields a mate: see [`Place::shield`](super::Place::shield).
+    /// Nearness to the place that shields a mate; see [`Place::shield`](super::Place::shield).
     pub at_shield: f64,
     /// Distance from the nearest untagged enemy: 0 there, 1 from a quarter of the field's width on.
     pub clear: f64,
 }
 
-/// Computes each boat's progress. With `among_others` also its position among the others; otherwise
-/// that is 0, and costs nothing.
+/// Computes each boat's progress, with `among_others` including its position among the others.
 ///
 /// # Panics
-/// If a team is not one of the field's two.
+/// If a boat's team is not one of the field's two.
 pub fn progress(field: &Field, boats: &[Placed], among_others: bool, out: &mut [BoatProgress]) {
     let width_m = field.plan.width_m;
     for (boat, out) in boats.iter().zip(out.iter_mut()) {
@@ -76,10 +74,10 @@ pub fn progress(field: &Field, boats: &[Placed], among_others: bool, out: &mut [
 /// The places from which flags and mates are protected.
 struct Posts {
     /// By team, the place that guards its flag; of several flags, the one nearest to an untagged
-    /// enemy. None if no enemy is untagged.
+    /// enemy. None without untagged enemies.
     flag: [Option<Ned>; 2],
-    /// Untagged boats on the enemies' side: index, distance of the nearest untagged enemy, m, and
-    /// the place that shields it from that enemy.
+    /// Untagged boats on the enemies' side: index, distance of the nearest untagged enemy in
+    /// metres, and the place that shields the boat from that enemy.
     mates: Vec<(usize, f64, Ned)>,
 }
 
@@ -116,18 +114,18 @@ impl Posts {
     }
 }
 
-/// The home of the team's flag nearest to a place.
+/// The home of the team's nearest flag.
 fn flag_near(field: &Field, team: TeamId, at: Ned) -> Ned {
-    field.nearest_own_flag(team, at).expect("each of the two teams has a flag")
+    field.nearest_own_flag(team, at).expect("each team has a flag")
 }
 
-/// The position of the team's untagged enemy that is nearest to a place.
+/// The position of the team's nearest untagged enemy.
 fn nearest_enemy(boats: &[Placed], team: TeamId, to: Ned) -> Option<Ned> {
     let enemies = boats.iter().filter(|boat| boat.team != team && !boat.tagged);
     enemies.map(|boat| boat.at).min_by(|a, b| a.distance(to).total_cmp(&b.distance(to)))
 }
 
-/// The point at distance `off_m` from one place towards another, or the latter if it is nearer.
+/// The point at distance `off_m` from `from` towards `to`, or `to` if it is nearer.
 fn between(from: Ned, to: Ned, off_m: f64) -> Ned {
     let away_m = from.distance(to);
     if away_m <= off_m { to } else { from + (to - from).scaled(off_m / away_m) }
@@ -140,7 +138,7 @@ mod tests {
     use primitives::id::TeamId;
     use rules::field::{Field, Flag, Plan, Walls};
 
-    /// 160 m by 80 m: flags at (20, 40) and (140, 40), the first team's side up to 80 m.
+    /// 160 m by 80 m, with flags at (20, 40) and (140, 40). The first team's side ends at 80 m.
     fn field() -> Field {
         Field::new(Plan {
             name: "test".to_owned(),
@@ -156,7 +154,7 @@ mod tests {
         })
     }
 
-    /// Boats at (m along, m across): the first two of the first team; whether each is tagged.
+    /// Boats at (m along, m across), each tagged or not; the first two belong to the first team.
     fn seen(boats: [(f64, f64, bool); 4]) -> [BoatProgress; 4] {
         let field = field();
         let boats: Vec<Placed> = boats
@@ -173,7 +171,7 @@ mod tests {
     }
 
     fn close(got: f64, want: f64) {
-        assert!((got - want).abs() < 1e-12, "{got}, not {want}");
+        assert!((got - want).abs() < 1e-12, "got {got}, want {want}");
     }
 
     #[test]
@@ -188,7 +186,7 @@ mod tests {
 
     #[test]
     fn the_nearest_untagged_enemy_on_the_own_side_is_an_intruder() {
-        // Of the two on the first team's side one is tagged; the other is 32 m and 40 m away.
+        // One of the two on the first team's side is tagged. The other is 32 m and 40 m away.
         let boats = seen([(70.0, 72.0, false), (30.0, 40.0, false), (70.0, 40.0, false), (70.0, 72.0, true)]);
         close(boats[0].among.at_intruder, 0.8);
         close(boats[1].among.at_intruder, 0.75);
@@ -197,7 +195,7 @@ mod tests {
 
     #[test]
     fn a_flag_is_guarded_from_an_eighth_of_the_field_before_it_towards_the_nearest_enemy() {
-        // The enemy nearest to the flag at (20, 40) is straight ahead: the place is (40, 40), or
+        // The enemy nearest to the flag at (20, 40) is straight ahead, so the place is (40, 40), or
         // the enemy's position.
         for (enemy_along_m, boat_along_m, want) in
             [(90.0, 40.0, 1.0), (90.0, 50.0, 0.75), (90.0, 85.0, 0.0), (30.0, 40.0, 0.75), (30.0, 30.0, 1.0)]
@@ -221,8 +219,8 @@ mod tests {
         };
         // From (100, 40) 20 m towards (150, 40) is (120, 40), 10 m from the boat at (110, 40).
         close(shield((100.0, 40.0, false))[0].at_shield, 0.75);
-        // A boat does not shield itself, and the mate's only shield target is the boat at (110,
-        // 40): its place is (130, 40).
+        // A boat does not shield itself. The other mate's only target is the boat at (110, 40), so
+        // its place is (130, 40).
         close(shield((100.0, 40.0, false))[1].at_shield, 0.25);
         for at_home_or_tagged in [(70.0, 40.0, false), (100.0, 40.0, true)] {
             close(shield(at_home_or_tagged)[0].at_shield, 0.0);

@@ -1,4 +1,4 @@
-//! Evaluation of a policy: games against an opponent, from both sides.
+//! Evaluation of a policy in games against an opponent, from both sides.
 
 use super::learner::greedy;
 use super::{outputs, pool};
@@ -10,11 +10,11 @@ use serde::{Deserialize, Serialize};
 /// The results of games.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Played {
-    /// The number of games won, drawn and lost.
+    /// The numbers of games won, drawn and lost.
     pub results: [u32; 3],
-    /// The mean points per game, those of the policy first.
+    /// Mean points per game, first the policy's.
     pub points: [f64; 2],
-    /// The mean number per game of field exits by the policy's boats.
+    /// Mean number of field exits by the policy's boats per game.
     pub left_field: f64,
 }
 
@@ -33,7 +33,7 @@ impl Played {
         played
     }
 
-    /// The share of games won, a draw counting half.
+    /// The share of games won; a draw counts half.
     #[must_use]
     pub fn won(&self) -> f64 {
         let [won, drawn, lost] = self.results.map(f64::from);
@@ -41,7 +41,7 @@ impl Played {
     }
 }
 
-/// Plays one game for each seed with the likeliest actions of a policy, or its continuous ones.
+/// Plays one game per seed with a policy's likeliest actions, or its continuous ones.
 ///
 /// # Errors
 /// [`SetupError`] if the setup cannot be played.
@@ -59,7 +59,7 @@ pub fn evaluate(
     while ended.iter().any(Option::is_none) {
         let observations = environment.observations();
         let logits = pool.install(|| outputs(actor, observations));
-        // Greedy, not sampled: a boat with the policy on board does the same.
+        // Greedy rather than sampled, as on board a boat.
         let chosen = logits.chunks_exact(logits.len() / rows).map(|output| greedy(is_discrete, output));
         let actions: Vec<Action> = chosen.collect();
         environment.step(&actions)?;

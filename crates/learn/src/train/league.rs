@@ -1,25 +1,24 @@
-//! The league: opponents of a learning policy, drawn by how often they win.
+//! The league: a learning policy's opponents, drawn by how often they win.
 
 use crate::environment::Finished;
 use crate::training::{self, Stage};
 use scenario::policy::{PartialSpec, PolicyModel};
 use serde::{Deserialize, Serialize};
 
-/// Least draw weight of an opponent that never wins, as a share of an equal part.
+/// Draw weight of an opponent that never wins, as a fraction of an equal share.
 const LEAST: f64 = 0.1;
-/// Decay of a past game's weight per later game.
+/// Decay of a game's weight per later game.
 const MEMORY: f64 = 0.98;
 
 /// A past version of the policy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct PastSelf {
-    /// Samples that it had learnt from.
+    /// Samples learnt by then.
     pub(super) samples: u64,
-    /// Its ONNX file.
     onnx: Vec<u8>,
 }
 
-/// The results against an opponent.
+/// Results against an opponent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Record {
     games: f64,
@@ -30,8 +29,8 @@ struct Record {
 /// The opponents of a stage.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct League {
-    /// In the order of the setup's opponents: the policy itself in self-play, the strategies, and
-    /// past policies.
+    /// In the order of the setup's opponents: the policy itself in self-play, strategies, past
+    /// policies.
     records: Vec<Record>,
     /// The number of records that are not past policies.
     fixed: usize,
@@ -41,7 +40,7 @@ pub(super) struct League {
 }
 
 impl League {
-    /// Sets the opponents of another stage; past policies stay.
+    /// Sets the opponents of the next stage; past policies are kept.
     pub(super) fn begin(&mut self, fixed: usize) {
         self.fixed = fixed;
         self.kept = self.past.len();
@@ -55,12 +54,11 @@ impl League {
         self.kept = self.past.len();
     }
 
-    /// The stored past policies.
     pub(super) fn past(&self) -> impl Iterator<Item = PolicyModel> {
         self.past.iter().filter_map(PastSelf::model)
     }
 
-    /// Stores a policy and returns it as an opponent.
+    /// Stores a past policy, up to `most` of them, and returns it as an opponent.
     pub(super) fn keep(&mut self, samples: u64, onnx: Vec<u8>, most: usize) -> Option<PolicyModel> {
         self.past.push(PastSelf { samples, onnx });
         self.kept += 1;
@@ -70,12 +68,10 @@ impl League {
         self.past.last().and_then(PastSelf::model)
     }
 
-    /// The number of samples of the newest past policy.
     pub(super) fn newest(&self) -> u64 {
         self.past.last().map_or(0, |past| past.samples)
     }
 
-    /// Records the results of games.
     pub(super) fn see(&mut self, finished: &[Finished]) {
         for one in finished {
             let Some(record) = self.records.get_mut(one.standing.side.opponent) else { continue };
@@ -92,7 +88,7 @@ impl League {
         }
     }
 
-    /// The draw weights of the opponents, in the setup's order.
+    /// The opponents' draw weights, in the setup's order.
     pub(super) fn weights(&self, stage: &Stage, league: &training::League) -> Vec<f64> {
         let plays_itself = self.fixed > stage.opponent.len();
         let strategies = usize::from(plays_itself)..self.fixed;
@@ -115,9 +111,9 @@ impl League {
 }
 
 impl Record {
-    /// The learning value of an opponent, from its share of wins.
+    /// How much there is to learn from an opponent, from its share of wins.
     fn urgency(self, priority: f64) -> f64 {
-        // With a prior of one win in two games.
+        // The prior is one win in two games.
         let lost = (self.lost + 1.0) / (self.games + 2.0);
         LEAST + (1.0 - LEAST) * libm::pow(lost, priority)
     }

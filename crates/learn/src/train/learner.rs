@@ -1,4 +1,4 @@
-//! The learner of a training: the policy of one algorithm with its whole learning state.
+//! The learner of a training: a policy with the whole learning state of its algorithm.
 
 use super::off_policy::OffPolicy;
 use crate::environment::Setup;
@@ -13,7 +13,7 @@ use onnx::NetworkError;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// The policy of one algorithm with its whole learning state.
+/// A policy with the whole learning state of its algorithm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Learner {
     /// Proximal policy optimisation.
@@ -25,7 +25,6 @@ pub enum Learner {
 }
 
 impl Learner {
-    /// A new learner with a training's algorithm for these games and this number of actions.
     pub(super) fn new(training: &Training, setup: &Setup, actions: usize) -> Learner {
         let (hidden, seed) = (&training.network.hidden, training.seed);
         let observation = setup.observation_size();
@@ -62,7 +61,6 @@ impl Learner {
         }
     }
 
-    /// The policy as an ONNX file.
     pub(super) fn onnx(&self, metadata: BTreeMap<String, String>) -> Result<Vec<u8>, NetworkError> {
         match self {
             Learner::Ppo(learner) => learner.actor.onnx("logits", metadata),
@@ -71,7 +69,7 @@ impl Learner {
         }
     }
 
-    /// Discards data of the previous stage: transitions with other games, rewards and helms.
+    /// Discards transitions of the previous stage, whose games, rewards and helms differ.
     pub(super) fn begin_stage(&mut self) {
         match self {
             Learner::Ppo(_) => {}
@@ -81,8 +79,8 @@ impl Learner {
     }
 }
 
-/// Converts a policy's output to an action without exploration: the likeliest or most valuable of
-/// discrete actions.
+/// Converts a policy's output to an action without exploration: the likeliest or most valuable
+/// discrete action, or the continuous one.
 pub(super) fn greedy(is_discrete: bool, output: &[f32]) -> Action {
     if is_discrete { Action::likeliest(output) } else { Action::Continuous(action(output)) }
 }

@@ -2,27 +2,27 @@
 
 use crate::ppo::Statistics;
 
-/// Statistics of an update, averaged over its samples. Values that an algorithm lacks are none.
+/// Averages over the samples of an update. None where the algorithm has no such value.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Learnt {
-    /// The loss of the policy; for TD3 the negative value that its critic expects of its actions,
-    /// in scaled rewards.
+    /// The policy's loss. For TD3, the negative value of its actions according to the critic, in
+    /// scaled rewards.
     pub policy_loss: Option<f32>,
-    /// Value loss: half the mean squared error, in units of the standard deviation of returns for
-    /// PPO and in scaled rewards for TD3; the mean Huber loss in scaled rewards for double DQN.
+    /// Half the mean squared error for PPO, in standard deviations of returns, and for TD3, in
+    /// scaled rewards. For double DQN, the mean Huber loss in scaled rewards.
     pub value_loss: Option<f32>,
     /// Entropy of the policy, nats.
     pub entropy: Option<f32>,
-    /// Divergence of the new policy from the old one, nats.
+    /// KL divergence of the new policy from the old one, nats.
     pub divergence: Option<f32>,
-    /// The share of samples that were clipped.
+    /// Share of clipped samples.
     pub clipped: Option<f32>,
-    /// Number of epochs; with a replay buffer, the number of samples drawn per sample stored.
+    /// Epochs; with a replay buffer, samples drawn per sample stored.
     pub epochs: Option<f32>,
 }
 
 impl Learnt {
-    /// All values with their names in tables and curves.
+    /// All values with their names in tables and charts.
     #[must_use]
     pub fn named(&self) -> [(&'static str, Option<f32>); 6] {
         [

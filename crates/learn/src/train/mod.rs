@@ -1,4 +1,4 @@
-//! Training: plays with the policy and learns from the samples, stage by stage.
+//! Training: plays with a policy and learns from the samples, stage by stage.
 
 mod evaluation;
 mod league;
@@ -27,27 +27,27 @@ use state::State;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// The metadata keys of a model's origin.
+/// Metadata keys for a model's origin.
 const SAMPLES: &str = "squall.samples";
 /// First seed of evaluation games, beyond any training seed.
 const EVALUATION_SEED: u64 = 1 << 62;
-/// Seed spacing between the environments of a training, as a power of two.
+/// Seed spacing between a training's environments, as a power of two.
 const SEEDS_BITS: u32 = 24;
-/// All games restart after this many times their length, so that a training can be resumed there.
+/// All games restart after this many times their length, so that the training can be resumed there.
 const LENGTHS: i64 = 4;
 
 /// A training in progress.
 pub struct Trainer {
     training: Training,
     setups: Vec<Setup>,
-    /// The setups of the evaluation's opponents, each with its file's stem.
+    /// The setup against each opponent of the evaluation, with its file's stem.
     judges: Vec<(String, Setup)>,
     threads: usize,
     pool: rayon::ThreadPool,
     environment: VectorEnvironment,
-    /// Watches of episodes, by their number in the training.
+    /// Watches of episodes by their number.
     watches: Option<Watches>,
-    /// Updates from one restart of all games to the next, by stage.
+    /// By stage: updates between restarts of all games.
     updates_per_epoch: Vec<u64>,
     state: State,
 }
@@ -59,28 +59,26 @@ pub struct Progress {
     pub samples: u64,
     /// Index of the stage.
     pub stage: usize,
-    /// Statistics of the optimisers.
+    /// Optimiser statistics.
     pub learnt: Learnt,
-    /// The mean reward of a step.
+    /// Mean reward per step.
     pub reward: f32,
-    /// The episodes that ended, each with the opponent's name. Their numbers are those of
-    /// [`Trainer::watch`].
+    /// The episodes that ended, each with its opponent's name; numbered as in [`Trainer::watch`].
     pub finished: Vec<(Finished, String)>,
-    /// The evaluation of the current policy, if one was due.
+    /// The evaluation of the current policy if one was due.
     pub evaluated: Option<Evaluated>,
-    /// Whether it is the best policy so far.
+    /// Whether the current policy is the best so far.
     pub is_best: bool,
-    /// Whether the training can be resumed from here: see [`Trainer::state`].
+    /// Whether the training can be resumed from here; see [`Trainer::state`].
     pub can_be_resumed: bool,
 }
 
-/// The result of playing and learning once.
 struct Update {
-    /// Samples in which boats followed their actions.
+    /// Samples whose action the boat followed.
     counted: u64,
     /// All samples.
     transitions: u64,
-    /// The mean reward of a step.
+    /// Mean reward per step.
     reward: f32,
     finished: Vec<Finished>,
     learnt: Learnt,
@@ -90,16 +88,15 @@ impl Trainer {
     /// Starts a training on `threads` threads.
     ///
     /// # Errors
-    /// [`SetupError`], if a file cannot be used or a setup cannot be played.
+    /// [`SetupError`] if a file cannot be used or a setup cannot be played.
     pub fn new(training: Training, threads: usize) -> Result<Trainer, SetupError> {
         Trainer::with(training, threads, None)
     }
 
-    /// Resumes a training from [`Trainer::state`], with the same results as without the
-    /// interruption.
+    /// Resumes a training from [`Trainer::state`]. The results are those without an interruption.
     ///
     /// # Errors
-    /// [`StateError`], if the state is from another training or version, or a file cannot be used.
+    /// [`StateError`] if the state belongs to another training or version, or a file cannot be used.
     pub fn resume(training: Training, threads: usize, state: &[u8]) -> Result<Trainer, StateError> {
         let state = State::read(state, &training)?;
         Ok(Trainer::with(training, threads, Some(state))?)
@@ -112,8 +109,8 @@ impl Trainer {
         let judges = judges(&training, setups.last())?;
         let size = setups.first().map_or(0, Setup::observation_size);
         if let Some(other) = setups.iter().map(Setup::observation_size).find(|other| *other != size) {
-            let (found, allowed) = (format!("of {other} numbers"), format!("{size}, as in the first stage"));
-            return Err(SetupError::Field { field: "the observation of a stage", found, allowed });
+            let (found, allowed) = (other.to_string(), format!("{size}, as in the first stage"));
+            return Err(SetupError::Field { field: "the observation size of a stage", found, allowed });
         }
         let (actions, algorithm) = (setups.last().and_then(Setup::actions), training.algorithm());
         if actions.is_some() != algorithm.is_discrete() {
@@ -138,17 +135,17 @@ impl Trainer {
         Ok(Trainer { training, setups, judges, threads, pool, environment, watches, updates_per_epoch, state })
     }
 
-    /// Adds watches to the episodes from now on, except those of evaluations. Episodes are numbered
-    /// through a training as whole games; where games end early, a number may recur with another
-    /// seed. Watches do not affect learning.
+    /// Adds watches for all episodes from now on except those of evaluations. Numbers count up
+    /// through a training as if games were played to the end; where games end early, a number may
+    /// recur with another seed. Watches do not affect learning.
     ///
     /// # Errors
     /// [`SetupError::NoStart`] if a game cannot begin.
     ///
     /// # Panics
-    /// If there was an update since the training was started or resumed: games would restart.
+    /// After an update since the training was started or resumed: games would restart.
     pub fn watch(&mut self, watches: Watches) -> Result<(), SetupError> {
-        assert_eq!(self.state.updates_of_epoch, 0, "games are seen from their start on");
+        assert_eq!(self.state.updates_of_epoch, 0, "watches must be added before the first update");
         self.watches = Some(watches);
         self.environment = environment(&self.training, &self.setups, &self.state, self.threads, self.watches.as_ref())?;
         Ok(())
@@ -166,7 +163,7 @@ impl Trainer {
         &self.state.learner
     }
 
-    /// Samples learnt from so far, and those of all stages.
+    /// The number of samples learnt so far, and of all stages.
     #[must_use]
     pub fn samples(&self) -> (u64, u64) {
         (self.state.samples, self.training.stage.iter().map(|stage| stage.samples).sum())
@@ -184,13 +181,13 @@ impl Trainer {
         self.state.best.as_ref()
     }
 
-    /// Whether all stages are over.
+    /// Whether all stages are complete.
     #[must_use]
     pub fn is_over(&self) -> bool {
         self.state.stage >= self.training.stage.len()
     }
 
-    /// The state to resume a training from, valid wherever [`Progress::can_be_resumed`].
+    /// The state from which a training can be resumed; valid where [`Progress::can_be_resumed`].
     #[must_use]
     pub fn state(&self) -> Vec<u8> {
         self.state.write(&self.training)
@@ -199,7 +196,7 @@ impl Trainer {
     /// The current policy as an ONNX file.
     ///
     /// # Errors
-    /// If a weight is not finite: the training has failed.
+    /// If a weight is not finite, because the training has diverged.
     pub fn model(&self) -> Result<Vec<u8>, onnx::NetworkError> {
         let mut metadata = BTreeMap::from(self.spec().metadata());
         let Training { name, seed, .. } = &self.training;
@@ -213,7 +210,7 @@ impl Trainer {
         self.state.learner.onnx(metadata)
     }
 
-    /// The policy's observation and action spaces and its period.
+    /// The policy's spaces and period.
     #[must_use]
     pub fn spec(&self) -> PolicySpec {
         let Training { observation, action, period_s, .. } = self.training;
@@ -227,7 +224,7 @@ impl Trainer {
     /// has non-finite weights.
     ///
     /// # Panics
-    /// If all stages are over.
+    /// If all stages are complete.
     pub fn update(&mut self) -> Result<Progress, SetupError> {
         let stage = self.state.stage;
         let mut stream = Stream::new(self.training.seed.wrapping_add(self.state.updates), "update");
@@ -257,7 +254,6 @@ impl Trainer {
         Ok(Progress { samples, stage, learnt, reward, finished, evaluated, is_best, can_be_resumed })
     }
 
-    /// The name of a stage's opponent.
     fn opponent_name(&self, stage: usize, opponent: usize) -> String {
         match self.environment.setup().opponents.get(opponent) {
             Some((_, Player::Policy)) => "itself".to_owned(),
@@ -267,7 +263,7 @@ impl Trainer {
         }
     }
 
-    /// Evaluates the policy and adds it to the league when due.
+    /// Evaluates the policy and adds it to the league if due.
     fn after_update(&mut self) -> Result<(Option<Evaluated>, bool), SetupError> {
         let Training { league, evaluation, .. } = &self.training;
         let plays_past = self.training.stage[self.state.stage].past_selves > 0.0;
@@ -290,7 +286,7 @@ impl Trainer {
         }
         let evaluated = Evaluated { samples: self.state.samples, stage: self.state.stage, played };
         let won = evaluated.won();
-        // By evaluation games with the same seeds each time: returns of self-play say little.
+        // By evaluation games with the same seeds each time, since returns of self-play say little.
         let is_best = self.state.best.as_ref().is_none_or(|best| won >= best.won);
         if is_best {
             self.state.best = Some(Best { samples: self.state.samples, won, onnx: self.model().map_err(diverged)? });
@@ -299,7 +295,7 @@ impl Trainer {
         Ok((Some(evaluated), is_best))
     }
 
-    /// Starts the next stage, or restarts all games, when due: the state of the games is then
+    /// Starts the next stage or restarts all games if due; the state of the games is then
     /// irrelevant.
     fn begin_anew(&mut self, evaluated: Option<&Evaluated>) -> Result<bool, SetupError> {
         let state = &mut self.state;
@@ -309,8 +305,8 @@ impl Trainer {
         if !is_over && state.updates_of_epoch < self.updates_per_epoch[state.stage] {
             return Ok(false);
         }
-        // Resuming at any other point would require the state of every helm in every game. Where
-        // all games restart, the state is only the learner and the opponents.
+        // Elsewhere, resuming would require the state of every helm in every game. After a restart
+        // of all games, the state is only the learner and the opponents.
         (state.epoch, state.updates_of_epoch) = (state.epoch + 1, 0);
         if is_over {
             (state.stage, state.samples_of_stage) = (state.stage + 1, 0);
@@ -326,7 +322,7 @@ impl Trainer {
     }
 }
 
-/// Plays and learns once by PPO; `done` is this share of all samples.
+/// Plays and learns once by PPO, after this share (`done`) of all samples.
 fn update_by_ppo(
     learner: &mut ActorCritic,
     environment: &mut VectorEnvironment,
@@ -356,7 +352,7 @@ fn update_by_ppo(
     Ok(Update { counted, transitions, reward, finished: rollout.finished, learnt })
 }
 
-/// New games of a training's current stage.
+/// Starts the games of the current stage.
 fn environment(
     training: &Training,
     setups: &[Setup],
@@ -364,7 +360,7 @@ fn environment(
     threads: usize,
     watches: Option<&Watches>,
 ) -> Result<VectorEnvironment, SetupError> {
-    // After the last stage nothing is played.
+    // Nothing is played after the last stage.
     let mut setup = setups[state.stage.min(setups.len() - 1)].clone();
     setup.opponents.extend(state.league.past().map(|model| (0.0, Player::Model(model))));
     let stage = &training.stage[state.stage.min(setups.len() - 1)];
@@ -376,13 +372,12 @@ fn environment(
     VectorEnvironment::watched(setup, training.games as usize, threads, seed, watches)
 }
 
-/// The number of the first episode after this many restarts of all games.
 fn first_number(training: &Training, epoch: u64) -> u64 {
     epoch * LENGTHS as u64 * u64::from(training.games)
 }
 
-/// The evaluation games: those of the last stage against each of its opponents. No learner needs a
-/// teacher or a critic's truth there.
+/// The evaluation games: those of the last stage, against each opponent of the evaluation. They
+/// need neither a teacher nor the truth for a critic.
 fn judges(training: &Training, last: Option<&Setup>) -> Result<Vec<(String, Setup)>, SetupError> {
     let mut judges = vec![];
     for path in &training.evaluation.opponents {
@@ -417,7 +412,7 @@ fn pool(threads: usize) -> rayon::ThreadPool {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started")
 }
 
-/// The network's output for every row of an input, in the calling thread pool.
+/// The network's output for every row of the input, in the calling thread pool.
 fn outputs(network: &Perceptron, input: &[f32]) -> Vec<f32> {
     let sizes = network.sizes();
     let (from, to) = (sizes[0], sizes[sizes.len() - 1]);

@@ -1,5 +1,5 @@
-//! An update of an off-policy algorithm: explorative steps of all games fill the replay buffer,
-//! then the optimisers take steps on samples drawn from it.
+//! An update of an off-policy algorithm: exploring games fill the replay buffer, then the
+//! optimisers take steps on samples drawn from it.
 
 use super::learnt::Learnt;
 use super::{Update, outputs};
@@ -13,7 +13,7 @@ use primitives::stream::Stream;
 use rayon::ThreadPool;
 use serde::{Deserialize, Serialize};
 
-/// A learner with its settings and its replay buffer.
+/// A learner with its settings and replay buffer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OffPolicy<L, S, A> {
     /// The networks and their optimisers.
@@ -36,15 +36,15 @@ impl OffPolicy<Td3Learner, Td3, Numbers> {
         let OffPolicy { learner, settings, replay } = self;
         let actor = &learner.actor;
         let choose = |observations: &[f32], counts: &[bool], known: usize| -> Vec<Numbers> {
-            // TD3 and double DQN are included because entries of the 2023 games used them, so that
-            // their paper's results can be reproduced.
+            // Entries of the 2023 games used TD3 and double DQN; with both, their paper's results
+            // can be reproduced.
             if is_new && known < settings.warm_up {
                 return counts.iter().map(|_| td3::drawn(stream)).collect();
             }
             let outputs = pool.install(|| outputs(actor, observations));
             let explored = |(output, counts): (&[f32], &bool)| {
-                // The action of a boat that does not follow it has no effect: critics learn that
-                // from all actions.
+                // The action of a boat that does not follow it has no effect: critics learn this
+                // for every action.
                 if *counts {
                     td3::explored(td3::action(output), settings.exploration, stream)
                 } else {
@@ -76,7 +76,7 @@ impl OffPolicy<Td3Learner, Td3, Numbers> {
 }
 
 impl OffPolicy<DqnLearner, Dqn, u16> {
-    /// Plays and learns once, at this total number of samples.
+    /// Plays and learns once, after this total number of samples.
     pub(super) fn update(
         &mut self,
         environment: &mut VectorEnvironment,
@@ -90,7 +90,7 @@ impl OffPolicy<DqnLearner, Dqn, u16> {
             let outputs = pool.install(|| outputs(network, observations));
             let explored = |(values, counts): (&[f32], &bool)| {
                 // The action of a boat that does not follow it has no effect: the network learns
-                // that from all actions.
+                // this for every action.
                 dqn::explored(values, if *counts { epsilon } else { 1.0 }, stream) as u16
             };
             outputs.chunks_exact(outputs.len() / counts.len()).zip(counts).map(explored).collect()
@@ -114,8 +114,8 @@ impl OffPolicy<DqnLearner, Dqn, u16> {
     }
 }
 
-/// Plays this many steps of all games; stores those of boats that a policy controls in the buffer.
-/// `choose` receives the observations, which of them count, and the number of transitions.
+/// Plays this many steps of all games and stores those of boats that a policy controls. `choose`
+/// receives the observations, which of them count, and the number of transitions.
 fn play<A: Copy>(
     environment: &mut VectorEnvironment,
     steps: usize,

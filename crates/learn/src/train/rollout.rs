@@ -1,4 +1,4 @@
-//! A rollout: steps of all games with the current policy, and the samples from them.
+//! A rollout: steps of all games with the current policy as samples.
 
 use super::outputs;
 use crate::environment::{Finished, SetupError, VectorEnvironment};
@@ -7,7 +7,7 @@ use crate::training::Ppo;
 use agent::Action;
 use primitives::stream::Stream;
 
-/// The played steps, each list steps × rows.
+/// Played steps; each list is steps × rows.
 pub(super) struct Rollout {
     rows: usize,
     observations: Vec<f32>,
@@ -18,14 +18,14 @@ pub(super) struct Rollout {
     next_values: Vec<f32>,
     rewards: Vec<f32>,
     counts: Vec<bool>,
-    /// Whether a policy controls the row's boat at all.
+    /// Whether a policy controls the row's boat.
     sailed: Vec<bool>,
     over: Vec<bool>,
     ended: Vec<bool>,
     pub(super) finished: Vec<Finished>,
 }
 
-/// The steps of boats that a policy controls, for an update.
+/// The steps of boats that a policy controls.
 pub(super) struct Samples {
     pub(super) observations: Vec<f32>,
     pub(super) states: Vec<f32>,
@@ -104,7 +104,7 @@ impl Rollout {
         Ok(rollout)
     }
 
-    /// Records the teacher's actions in the last step; steps without a corresponding action are not
+    /// Records the teacher's actions in the last step. Steps without a corresponding action are not
     /// learnt.
     fn take_taught(&mut self, environment: &VectorEnvironment) {
         let (rows, per_game) = environment.rows();
@@ -121,7 +121,6 @@ impl Rollout {
         self.log_probabilities.resize(self.actions.len(), 0.0);
     }
 
-    /// Draws the actions of a step.
     fn choose(
         &mut self,
         observations: &[f32],

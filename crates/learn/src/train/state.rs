@@ -1,4 +1,4 @@
-//! The state to resume a training from.
+//! The state from which a training is resumed.
 
 use super::evaluation::Played;
 use super::league::League;
@@ -9,14 +9,14 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 use xxhash_rust::xxh3::xxh3_64;
 
-/// The state of a training at a restart of all games.
+/// A training's state at a restart of all games.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct State {
     pub(super) learner: Learner,
     pub(super) updates: u64,
     /// Updates since the last restart of all games.
     pub(super) updates_of_epoch: u64,
-    /// Number of restarts of all games.
+    /// Restarts of all games.
     pub(super) epoch: u64,
     pub(super) samples: u64,
     pub(super) stage: usize,
@@ -29,16 +29,16 @@ pub(super) struct State {
 /// An evaluation of a policy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Evaluated {
-    /// Samples that the policy had learnt from.
+    /// Samples learnt by then.
     pub samples: u64,
     /// Index of the stage.
     pub stage: usize,
-    /// The results of its games, by the name of the opponent.
+    /// The results by the opponent's name.
     pub played: Vec<(String, Played)>,
 }
 
 impl Evaluated {
-    /// The share of all games won, a draw counting half.
+    /// The share of all games won; a draw counts half.
     #[must_use]
     pub fn won(&self) -> f64 {
         self.played.iter().map(|(_, played)| played.won()).sum::<f64>() / self.played.len().max(1) as f64
@@ -48,15 +48,15 @@ impl Evaluated {
 /// The best policy of a training.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Best {
-    /// Samples that it had learnt from.
+    /// Samples learnt by then.
     pub samples: u64,
-    /// The share of all evaluation games won, a draw counting half.
+    /// The share of all evaluation games won; a draw counts half.
     pub won: f64,
     /// Its ONNX file.
     pub onnx: Vec<u8>,
 }
 
-/// The beginning of a state, which identifies the training.
+/// The beginning of a state: it identifies the training.
 #[derive(PartialEq, Serialize, Deserialize)]
 struct Head {
     version: String,
@@ -74,17 +74,17 @@ impl Head {
 /// Why a training cannot be resumed.
 #[derive(Debug, Error)]
 pub enum StateError {
-    /// Not a valid state.
-    #[error("it is no state of a training, or a damaged one")]
+    /// Not the state of a training.
+    #[error("it is not the state of a training, or it is damaged")]
     Damaged,
-    /// The state is from another version of the program.
-    #[error("it was made by version {found}, expected {}", primitives::VERSION)]
+    /// The state was written by another version.
+    #[error("it was written by version {found}, expected {}", primitives::VERSION)]
     Version {
-        /// The version found.
+        /// The version in the state.
         found: String,
     },
     /// The state is from another training.
-    #[error("it is the state of another training: the training file has changed since it was written")]
+    #[error("it is the state of another training: the training file has changed since")]
     Other,
     /// A setup cannot be played.
     #[error(transparent)]
@@ -115,13 +115,13 @@ impl State {
     }
 
     pub(super) fn read(bytes: &[u8], training: &Training) -> Result<State, StateError> {
-        // The version comes first: in another version the rest may have another format.
+        // Read first, because other versions may use another format after it.
         let (version, _) = postcard::take_from_bytes::<String>(bytes).map_err(|_| StateError::Damaged)?;
         if version != primitives::VERSION {
             return Err(StateError::Version { found: version });
         }
-        // A flipped bit in a weight is a valid number: without a checksum it would silently change
-        // the policy.
+        // A flipped bit in a weight is a valid number. The checksum keeps it from changing the
+        // policy silently.
         let (bytes, sum) = bytes.split_last_chunk().ok_or(StateError::Damaged)?;
         if xxh3_64(bytes) != u64::from_le_bytes(*sum) {
             return Err(StateError::Damaged);

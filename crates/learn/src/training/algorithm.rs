@@ -1,4 +1,4 @@
-//! The learning algorithm of a training: the one whose table is in its file.
+//! The learning algorithm of a training, selected by the table in its file.
 
 use super::{Dqn, Ppo, Td3, Training};
 
@@ -14,7 +14,7 @@ pub enum Algorithm {
 }
 
 impl Training {
-    /// The algorithm that it learns by.
+    /// The algorithm of the training.
     #[must_use]
     pub fn algorithm(&self) -> Algorithm {
         match (self.td3, self.dqn) {
@@ -26,7 +26,7 @@ impl Training {
 }
 
 impl Algorithm {
-    /// The name of its table.
+    /// The name of the algorithm's table.
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
@@ -36,7 +36,7 @@ impl Algorithm {
         }
     }
 
-    /// Whether its actions are discrete rather than continuous.
+    /// Whether actions are discrete rather than continuous.
     #[must_use]
     pub fn is_discrete(&self) -> bool {
         !matches!(self, Algorithm::Td3(_))
@@ -52,7 +52,7 @@ impl Algorithm {
         }
     }
 
-    /// The value of a reward one step later.
+    /// Value of a reward one step later.
     #[must_use]
     pub fn discount(&self) -> f32 {
         match self {

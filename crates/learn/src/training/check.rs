@@ -1,4 +1,4 @@
-//! Checks a training file and all the files it names.
+//! Checks a training file and all files it names.
 
 use super::{Stage, Training};
 use crate::rewards::Rewards;
@@ -6,7 +6,6 @@ use scenario::sea::Sea;
 use scenario::{Diagnostics, Document, Scenario, StrategyFiles};
 use std::path::PathBuf;
 
-/// Checks a training.
 pub(super) fn training(diagnostics: &mut Diagnostics, document: &Document<Training>) -> Option<Training> {
     let mut training = document.raw.clone();
     let mut strategies = StrategyFiles::default();
@@ -51,7 +50,7 @@ pub(super) fn training(diagnostics: &mut Diagnostics, document: &Document<Traini
     document.is_faultless(diagnostics).then_some(training)
 }
 
-/// Reads the files that a stage names. Returns its game.
+/// Checks the files that a stage names. Returns its game.
 fn files(
     diagnostics: &mut Diagnostics,
     document: &Document<Training>,
@@ -77,12 +76,9 @@ fn check_opponents(diagnostics: &mut Diagnostics, document: &Document<Training>,
         return;
     }
     let has_strategies = stage.strategies > 0.0 && !stage.opponent.is_empty();
-    // In the first stage there may be no past policies yet; the policy then plays against itself.
+    // The first stage may start without past policies; the policy then plays against itself.
     if !has_strategies && stage.self_play == 0.0 && stage.past_selves == 0.0 {
-        let message = format!(
-            "stage {:?} has nobody to play against, expected an opponent, self_play or past_selves",
-            stage.name
-        );
+        let message = format!("stage {:?} has no opponents, expected opponent, self_play or past_selves", stage.name);
         diagnostics.note(document.at(at), message);
     }
     let names = &document.raw.stage[..i];
@@ -97,7 +93,7 @@ fn check_teams(diagnostics: &mut Diagnostics, document: &Document<Training>, at:
     if scenario.teams.len() != 2 || count(0) != count(1) {
         let sizes: Vec<String> = (0..scenario.teams.len()).map(|team| count(team).to_string()).collect();
         let message = format!(
-            "game {} has teams of {} boats, expected two of as many: policies play either side",
+            "game {} has teams of {} boats, expected two teams of equal size, because policies play both sides",
             scenario.name,
             sizes.join(" and ")
         );

@@ -1,4 +1,4 @@
-//! Checks the algorithm of a training: there is exactly one, and it supports the action space.
+//! Checks the algorithm of a training: exactly one, with a suitable action space.
 
 use super::{Algorithm, CriticInput, Training};
 use scenario::{Diagnostics, Document};
@@ -6,12 +6,12 @@ use scenario::{Diagnostics, Document};
 /// The tables of algorithms.
 const TABLES: [&str; 3] = ["ppo", "td3", "dqn"];
 
-/// Reports faults of the algorithm.
 pub(super) fn check(diagnostics: &mut Diagnostics, document: &Document<Training>) {
     let training = &document.raw;
     let mut said = TABLES.into_iter().filter(|table| document.has(table));
     if let (Some(one), Some(other)) = (said.next(), said.next()) {
-        let message = format!("{other} is a second algorithm beside {one}, expected one of {}", TABLES.join(", "));
+        let message =
+            format!("{other} is a second algorithm besides {one}, expected only one of {}", TABLES.join(", "));
         diagnostics.note(document.at(other), message);
         return;
     }
@@ -36,7 +36,6 @@ pub(super) fn check(diagnostics: &mut Diagnostics, document: &Document<Training>
     }
 }
 
-/// Reports settings that only PPO supports.
 fn check_ppo_alone(diagnostics: &mut Diagnostics, document: &Document<Training>, name: &str) {
     let critic = "network.critic";
     if document.is_sound(critic) && document.raw.network.critic != CriticInput::Observation {
@@ -46,7 +45,7 @@ fn check_ppo_alone(diagnostics: &mut Diagnostics, document: &Document<Training>,
     for i in 0..document.raw.stage.len() {
         let teacher = format!("stage.{i}.teacher");
         if document.has(&teacher) {
-            let message = format!("teacher is here, expected none with {name}: it is imitated with ppo");
+            let message = format!("teacher is set, expected none with {name}: only ppo imitates a teacher");
             diagnostics.note(document.at(&teacher), message);
         }
     }

@@ -1,4 +1,4 @@
-//! Training files: a policy's games, its networks and its learning algorithm.
+//! Training files: a policy's games, networks and learning algorithm.
 //!
 //! [`Training`] is data, read from `scenarios/training/*.toml`; the type declares the keys.
 
@@ -21,42 +21,42 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// How a policy is trained.
+/// The training of a policy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Training {
     /// The training file's stem.
     #[schemars(skip)]
     pub name: String,
-    /// What it is meant for, in a line.
+    /// Purpose, in one line.
     #[schemars(extend("default" = ""))]
     pub about: String,
-    /// What the policy is given.
+    /// The policy's observations.
     pub observation: ObservationSpace,
-    /// What it chooses.
+    /// The policy's actions.
     #[schemars(extend("default" = "pyquaticus"))]
     pub action: ActionSpace,
-    /// The time from one decision of the policy to the next, s: a multiple of the games' `decision_s`.
+    /// Time between two decisions of the policy, s: a multiple of the games' `decision_s`.
     #[schemars(range(min = 0.01, max = 10), extend("default" = 0.5))]
     pub period_s: f64,
-    /// Games that are played side by side.
+    /// Number of games played in parallel.
     #[schemars(range(min = 1, max = 65536), extend("default" = 64))]
     pub games: u32,
-    /// The seed: with the file and the version it names the weights that come of it, to the bit.
+    /// Random seed. With the file and the version it determines the weights to the bit.
     #[schemars(range(min = 0, max = i64::MAX), extend("default" = 1))]
     pub seed: u64,
     /// The networks.
     pub network: Layers,
-    /// How the policy learns: proximal policy optimisation, where the file has no table of another algorithm.
+    /// Proximal policy optimisation, used if the file has no table of another algorithm.
     pub ppo: Ppo,
-    /// How it learns instead, with continuous actions.
+    /// TD3 instead, for continuous actions.
     pub td3: Option<Td3>,
-    /// How it learns instead, with discrete actions.
+    /// Double DQN instead, for discrete actions.
     pub dqn: Option<Dqn>,
-    /// What past policies are kept as opponents, for stages that have them.
+    /// Past policies as opponents, for stages that use them.
     pub league: League,
-    /// How it is seen how good a policy is; the best one is kept.
+    /// How the policy is evaluated; the best one is kept.
     pub evaluation: Evaluation,
-    /// What is played, one stage after the other.
+    /// The stages, in order.
     #[schemars(length(min = 1, max = 100))]
     pub stage: Vec<Stage>,
 }
@@ -71,14 +71,14 @@ impl ScenarioFile for Training {
     }
 }
 
-/// What a critic is given, who learns what the rest of a game is worth. It is of use in training alone.
+/// The critic's input. A critic estimates the value of the rest of a game, in training only.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum CriticInput {
-    /// What the policy is given.
+    /// The policy's observation.
     #[default]
     Observation,
-    /// That and the truth about all boats, the flags and the sea, which no policy is given (a central critic: Lowe and others,
+    /// The observation and the truth about all boats, the flags and the sea, which no policy receives (a central critic: Lowe and others,
     /// NeurIPS 2017).
     Truth,
 }
@@ -86,45 +86,45 @@ pub enum CriticInput {
 /// The networks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Layers {
-    /// Numbers of each hidden layer.
+    /// Width of each hidden layer.
     #[schemars(length(min = 1, max = 8), inner(range(min = 1, max = 1024)), extend("default" = [128, 128]))]
     pub hidden: Vec<usize>,
-    /// What the critic is given.
+    /// The critic's input.
     #[schemars(extend("default" = "observation"))]
     pub critic: CriticInput,
 }
 
-/// How updates are made: proximal policy optimisation (Schulman and others, arXiv 1707.06347).
+/// Settings of proximal policy optimisation (Schulman and others, arXiv 1707.06347).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Ppo {
-    /// Steps of every game to an update.
+    /// Steps of every game per update.
     #[schemars(range(min = 1, max = 65536), extend("default" = 64))]
     pub steps: usize,
-    /// How far one step of the optimiser goes, at first.
+    /// Initial learning rate of the optimiser.
     #[schemars(range(min = 0, max = 1), extend("default" = 0.0003))]
     pub learning_rate: f32,
-    /// The share of it that is left at the end of the last stage; it falls evenly.
+    /// Share of the learning rate left at the end of the last stage; it falls linearly.
     #[schemars(range(min = 0, max = 1), extend("default" = 0.1))]
     pub learning_rate_end: f32,
-    /// Beyond this change of an action's probability, in parts of it, there is nothing to gain.
+    /// Relative change of an action's probability beyond which there is nothing to gain.
     #[schemars(range(min = 0.001, max = 1), extend("default" = 0.2))]
     pub clip: f32,
-    /// How often the samples are gone through.
+    /// Passes over the samples.
     #[schemars(range(min = 1, max = 100), extend("default" = 4))]
     pub epochs: u32,
-    /// Samples to a step of the optimiser.
+    /// Samples per optimiser step.
     #[schemars(range(min = 1, max = 1_000_000), extend("default" = 2048))]
     pub minibatch: usize,
-    /// What a nat of the policy's entropy is worth.
+    /// Value of one nat of the policy's entropy.
     #[schemars(range(min = 0, max = 10), extend("default" = 0.01))]
     pub entropy: f32,
-    /// An update ends early when the policy has become as different as this, nats. Default 0.03.
+    /// An update ends early once the policy has diverged by this much, nats. Default 0.03.
     #[schemars(range(min = 0, max = 100), extend("default" = 0.03))]
     pub divergence_max: f32,
-    /// What a reward one step later is worth.
+    /// Value of a reward one step later.
     #[schemars(range(min = 0, max = 1), extend("default" = 0.995))]
     pub discount: f32,
-    /// How far advantages look beyond what is expected next: the λ of generalised advantage estimation.
+    /// The λ of generalised advantage estimation: how far advantages look ahead.
     #[schemars(range(min = 0, max = 1), extend("default" = 0.95))]
     pub lambda: f32,
 }
@@ -149,81 +149,80 @@ impl Default for Ppo {
 /// Past policies as opponents.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct League {
-    /// One is kept each time that the policy has learnt from so many samples.
+    /// Samples between two policies that are kept.
     #[schemars(range(min = 1000, max = 1_000_000_000), extend("default" = 500_000))]
     pub every_samples: u64,
-    /// How many are kept, the newest ones.
+    /// Maximum number of policies kept; the oldest are discarded.
     #[schemars(range(min = 1, max = 1000), extend("default" = 20))]
     pub most: usize,
-    /// Opponents are drawn by how often they win, to this power: 0 draws all as often (prioritised fictitious self-play, Vinyals
-    /// and others, Nature 2019). Every opponent is drawn a little.
+    /// Opponents are drawn by their share of wins to this power; 0 draws all equally (prioritised fictitious self-play, Vinyals and others,
+    /// Nature 2019). Every opponent keeps a small probability.
     #[schemars(range(min = 0, max = 10), extend("default" = 1))]
     pub priority: f64,
 }
 
-/// How it is seen how good a policy is.
+/// How policies are evaluated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Evaluation {
-    /// It is looked at each time that the policy has learnt from so many samples.
+    /// Samples between two evaluations.
     #[schemars(range(min = 1000, max = 1_000_000_000), extend("default" = 200_000))]
     pub every_samples: u64,
-    /// Games against each opponent, half of them on each side, of the same seeds every time.
+    /// Games against each opponent, half on each side, with the same seeds every time.
     #[schemars(range(min = 2, max = 100_000), extend("default" = 20))]
     pub games: u32,
-    /// The strategy files of the opponents, in the game of the last stage. The best policy is the one that wins most of all
-    /// these games, draws counting half.
+    /// The opponents' strategy files, in the game of the last stage. The best policy wins the largest share of all these games; draws
+    /// count half.
     #[schemars(with = "Vec<FilePath>", length(min = 1, max = 100))]
     pub opponents: Vec<PathBuf>,
 }
 
-/// A stage: what is played until it is over.
+/// A stage of a training.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Stage {
     /// Its name.
     #[schemars(with = "Name")]
     pub name: String,
-    /// The game file: two teams of as many boats. The strategies of its teams play no part.
+    /// The game file, with two teams of equal size. Its teams' strategies are ignored.
     #[schemars(with = "FilePath")]
     pub game: PathBuf,
-    /// The sea file. Default the game's.
+    /// The sea file. Default: the game's.
     #[schemars(with = "Option<FilePath>")]
     pub sea: Option<PathBuf>,
     /// The rewards file.
     #[schemars(with = "FilePath")]
     pub rewards: PathBuf,
-    /// The strategy file through whose helms actions reach the boats, with a behaviour of the kind `policy` in every role.
-    /// Default none: actions are orders.
+    /// The strategy file whose helms carry out actions, with a behaviour of kind `policy` in every role. Default none: actions are orders.
     #[schemars(with = "Option<FilePath>")]
     pub helm: Option<PathBuf>,
-    /// A strategy that plays the policy's boats in this stage, so that the policy learns to do as it does (behaviour cloning) and the
-    /// critic what comes of it. Default none: the policy plays.
+    /// A strategy that plays the policy's boats in this stage. The policy learns to imitate it (behaviour cloning), and the critic learns
+    /// the results. Default none: the policy plays.
     pub teacher: Option<Teacher>,
-    /// The strategy file of its mates: the policy sails one boat of its team, each by turns, and this strategy the others. Default none:
-    /// the policy sails all.
+    /// The mates' strategy file. The policy controls one boat of its team, each in turn, and this strategy the others. Default none: the
+    /// policy controls all boats.
     #[schemars(with = "Option<FilePath>")]
     pub mates: Option<PathBuf>,
-    /// How often the policy plays against itself as it is, in comparison with the other opponents.
+    /// Relative frequency of games against the current policy.
     #[schemars(range(min = 0, max = 1_000_000), extend("default" = 0))]
     pub self_play: f64,
-    /// How often it plays against one that it was, all of them together.
+    /// Relative frequency of games against past policies, all together.
     #[schemars(range(min = 0, max = 1_000_000), extend("default" = 0))]
     pub past_selves: f64,
-    /// How often it plays against one of the `opponent`s, all of them together.
+    /// Relative frequency of games against the `opponent`s, all together.
     #[schemars(range(min = 0, max = 1_000_000), extend("default" = 1))]
     pub strategies: f64,
-    /// Strategies that it plays against.
+    /// Strategies as opponents.
     #[schemars(length(max = 100))]
     pub opponent: Vec<Opponent>,
-    /// So many different starts come round again: their seas and boats are made once. Default a new one every game.
+    /// Number of different starts, which repeat; each one's sea and boats are created once. Default: a new start for every game.
     #[schemars(range(min = 1, max = 1_000_000))]
     pub starts: Option<u32>,
-    /// An episode is cut off after this time, s. Default whole games.
+    /// Time after which an episode is cut off, s. Default: whole games.
     #[schemars(range(min = 1, max = 86400))]
     pub episode_max_s: Option<f64>,
-    /// It is over when the policy has learnt from so many samples in it.
+    /// Samples after which the stage ends.
     #[schemars(range(min = 1, max = 1_000_000_000_000_u64))]
     pub samples: u64,
-    /// Or earlier, when an evaluation gives this share of games won, draws counting half. Default never.
+    /// Share of games won in an evaluation that ends the stage early; draws count half. Default: never.
     #[schemars(range(min = 0, max = 1))]
     pub until_won: Option<f64>,
 }
@@ -231,19 +230,19 @@ pub struct Stage {
 /// A strategy to imitate.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Teacher {
-    /// Its file.
+    /// The strategy file.
     #[schemars(with = "FilePath")]
     pub strategy: PathBuf,
-    /// With `action = "options"`: which option each of its modes is. A mode that is not named here is the option of its own name, or
-    /// nothing to learn from.
+    /// With `action = "options"`: the option of each mode. Other modes take the option with their own name, if any; without one, they are
+    /// not imitated.
     #[schemars(extend("default" = {}))]
     pub options: BTreeMap<String, String>,
 }
 
-/// A strategy to play against.
+/// A strategy as an opponent.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Opponent {
-    /// Its file.
+    /// The strategy file.
     #[schemars(with = "FilePath")]
     pub strategy: PathBuf,
 }

@@ -1,5 +1,5 @@
-//! TD3 and double DQN: steps compared with an independent implementation, gradients with finite
-//! differences, the same bits for any number of threads, and learning success.
+//! TD3 and double DQN: their steps match an independent implementation, their gradients match
+//! finite differences, threads do not affect results, and they learn.
 
 mod step;
 mod toy;
@@ -10,7 +10,7 @@ use learn::off_policy::dqn::DqnLearner;
 use learn::off_policy::td3::{NUMBERS, Numbers, Td3Learner};
 use primitives::stream::Stream;
 
-/// Random transitions of a game with observations of three numbers; every third does not count.
+/// Random transitions with observations of three numbers; every third does not count.
 fn random<A>(count: usize, stream: &mut Stream, action: impl Fn(&mut Stream) -> A) -> Minibatch<A> {
     let mut rows = || (0..3 * count).map(|_| stream.normal() as f32).collect();
     Minibatch {
@@ -27,14 +27,14 @@ fn numbers(stream: &mut Stream) -> Numbers {
     [0; NUMBERS].map(|_| stream.between(-1.0, 1.0) as f32)
 }
 
-/// Checks a gradient against finite differences of the loss for each parameter.
+/// Compares a gradient with finite differences of the loss, parameter by parameter.
 fn assert_slopes<L: Clone>(
     learner: &L,
     network: impl Fn(&mut L) -> &mut Perceptron,
     gradient_and_loss: impl Fn(&L) -> (Vec<f32>, f32),
 ) {
     const STEP: f32 = 1e-2;
-    // For slopes of about 0.1, from finite differences in single precision.
+    // For slopes of about 0.1 from finite differences in single precision.
     const TOLERANCE: f32 = 1e-3;
     let (gradient, _) = gradient_and_loss(learner);
     assert!(gradient.iter().any(|slope| slope.abs() > 30.0 * TOLERANCE), "{gradient:?}");
@@ -45,7 +45,7 @@ fn assert_slopes<L: Clone>(
             gradient_and_loss(&learner).1
         };
         let want = (at(STEP) - at(-STEP)) / (2.0 * STEP);
-        assert!((slope - want).abs() < TOLERANCE, "parameter {i}: {slope}, not {want}");
+        assert!((slope - want).abs() < TOLERANCE, "parameter {i}: got {slope}, want {want}");
     }
 }
 

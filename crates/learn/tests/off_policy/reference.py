@@ -1,10 +1,10 @@
-"""Two optimiser steps of TD3 and of double DQN in numpy, double precision: what `main.rs` beside this compares the program with.
+"""Two optimiser steps of TD3 and of double DQN in numpy, in double precision, as the reference for `step.rs`.
 
     python crates/learn/tests/off_policy/reference.py > crates/learn/tests/off_policy/reference.txt
 
-Written from the papers (Fujimoto, van Hoof and Meger 2018; van Hasselt, Guez and Silver 2016; Kingma and Ba 2015) with nothing of the
-program's but its order of parameters: layer by layer, for each input its weight to every output, then the biases. Weights, transitions and
-noise are sines of a count, which both sides make; `numbers` has their single precision. Lines of the output are a name and its numbers.
+Written from the papers (Fujimoto, van Hoof and Meger 2018; van Hasselt, Guez and Silver 2016; Kingma and Ba 2015). Only the order of
+parameters is the program's: layer by layer, for each input its weights to all outputs, then the biases. Weights, transitions and noise
+are sines of a count, computed by both; `numbers` rounds them to single precision. Each output line has a name and its numbers.
 """
 
 import numpy as np
@@ -19,7 +19,7 @@ def numbers(count, phase, size):
 
 
 class Network:
-    """One hidden layer with the hyperbolic tangent."""
+    """A network with one hidden layer and hyperbolic tangents."""
 
     def __init__(self, inputs, outputs, phase):
         self.shapes = [(inputs, HIDDEN), (HIDDEN,), (HIDDEN, outputs), (outputs,)]

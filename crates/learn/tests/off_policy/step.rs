@@ -1,4 +1,4 @@
-//! Two steps of each optimiser compared with numbers from numpy: see `reference.py`.
+//! Two steps of each optimiser match numpy; see `reference.py`.
 
 use learn::nn::Perceptron;
 use learn::off_policy::Minibatch;
@@ -7,10 +7,10 @@ use learn::off_policy::td3::{NUMBERS, Numbers, Td3Learner};
 use learn::training::{Dqn, Td3};
 
 const ROWS: usize = 300;
-/// For numbers of about 1, which two steps of 0.001 change; Squall's are in single precision.
+/// For values of about 1 that two steps of 0.001 change, in single precision.
 const TOLERANCE: f64 = 1e-5;
 
-/// Same as `numbers` of `reference.py`.
+/// The same as `numbers` in `reference.py`.
 fn numbers(count: usize, phase: f64, size: f64) -> Vec<f32> {
     (0..count).map(|i| (size * libm::sin(1.3 * i as f64 + phase)) as f32).collect()
 }
@@ -39,12 +39,14 @@ fn pairs(phase: f64, size: f64) -> Vec<Numbers> {
 /// Compares numbers with a line of `reference.txt`.
 fn assert_reference(name: &str, got: &[f32]) {
     let mut lines = include_str!("reference.txt").lines().map(|line| line.split(' '));
-    let mut line = lines.find(|line| line.clone().next() == Some(name)).unwrap_or_else(|| panic!("no line {name}"));
+    let mut line = lines
+        .find(|line| line.clone().next() == Some(name))
+        .unwrap_or_else(|| panic!("reference.txt has no line {name}"));
     line.next();
     let want: Vec<f64> = line.map(|number| number.parse().expect("a number")).collect();
     assert_eq!(got.len(), want.len(), "{name}");
     for (i, (got, want)) in got.iter().zip(want).enumerate() {
-        assert!((f64::from(*got) - want).abs() < TOLERANCE, "{name} {i}: {got}, not {want}");
+        assert!((f64::from(*got) - want).abs() < TOLERANCE, "{name} {i}: got {got}, want {want}");
     }
 }
 
@@ -65,7 +67,7 @@ fn two_steps_of_td3_are_those_of_numpy() {
     assert_eq!(first.actor, None);
     assert_reference("td3.critic_loss.1", &[first.critic]);
     assert_reference("td3.critic_loss.2", &[second.critic]);
-    assert_reference("td3.actor_loss.2", &[second.actor.expect("every second step is one of the policy")]);
+    assert_reference("td3.actor_loss.2", &[second.actor.expect("every second step updates the policy")]);
     assert_reference("td3.actor", learner.actor.parameters());
     assert_reference("td3.target_actor", learner.target_actor.parameters());
     for i in 0..2 {

@@ -1,4 +1,4 @@
-//! Small problems with known answers, learnt from random transitions.
+//! Small problems with known solutions, learnt from random transitions.
 
 use learn::nn::Trace;
 use learn::off_policy::dqn::DqnLearner;
@@ -16,15 +16,15 @@ fn moved(place: f32, action: f32) -> f32 {
     (place + 0.3 * action).clamp(-1.0, 1.0)
 }
 
-/// Random steps on the line. The cost is the square of the distance from the middle, plus a cost
-/// for a second component other than 0.5. In a fifth of the steps the action is ignored.
+/// Random steps on the line. The cost is the squared distance from the middle, plus a cost for a
+/// second component other than 0.5. A fifth of the steps ignore the action.
 fn steps_on_a_line(count: usize) -> Replay<td3::Numbers> {
     let (mut replay, stream) = (Replay::new(1, count), &mut Stream::new(2, "test/line"));
     for i in 0..count {
         let (place, action, counts) = (stream.between(-1.0, 1.0) as f32, td3::drawn(stream), i % 5 != 0);
         let next = moved(place, if counts { action[0] } else { 1.0 });
         let cost = next * next + if counts { 0.5 * (action[1] - 0.5) * (action[1] - 0.5) } else { 0.0 };
-        // Steps with ignored actions begin farther out, as a tagged boat is another state.
+        // Steps that ignore the action start farther out, since being tagged is another state.
         let mark = if counts { 0.0 } else { 3.0 };
         replay.push(Transition {
             observation: &[place + mark],
@@ -67,27 +67,32 @@ fn td3_learns_to_go_to_the_middle_of_a_line_and_stay_there() {
         for _ in 0..6 {
             learner.actor.forward(&[place], &mut trace);
             let [go, idle] = td3::action(trace.output());
-            assert!((idle - 0.5).abs() < 0.25, "from {start}, at {place}: {idle}, not 0.5");
+            assert!((idle - 0.5).abs() < 0.25, "from {start}, at {place}: got {idle}, want 0.5");
             place = moved(place, go);
         }
-        assert!(place.abs() < 0.1, "from {start} it came to {place}");
+        assert!(place.abs() < 0.1, "from {start} to {place}");
     }
-    // In the middle no further cost arises; at the end of the line one step's cost and the
-    // following ones.
+    // No further cost arises in the middle. At the end of the line it is one step's cost and those
+    // that follow.
     let value = |place: f32| {
         let mut trace = Trace::default();
         learner.critics[0].forward(&[place, (-place / 0.3).clamp(-1.0, 1.0), 0.5], &mut trace);
         trace.output()[0]
     };
     let want = -(0.7_f32.powi(2) + 0.8 * 0.4_f32.powi(2) + 0.64 * 0.1_f32.powi(2));
-    // The smaller of two critics underestimates a little.
-    assert!(value(0.0).abs() < 0.15 && (value(1.0) - want).abs() < 0.15, "{} {}, not {want}", value(0.0), value(1.0));
+    // The smaller of two critics underestimates slightly.
+    assert!(
+        value(0.0).abs() < 0.15 && (value(1.0) - want).abs() < 0.15,
+        "got {} {}, want {want}",
+        value(0.0),
+        value(1.0)
+    );
 }
 
-/// The last place of a row of places, whose arrival wins.
+/// The last place in a row; reaching it wins.
 const LAST: usize = 7;
 
-/// Random steps in a row of places, to the left and to the right.
+/// Random steps to the left and right in a row of places.
 fn steps_in_a_row(count: usize) -> Replay<u16> {
     let (mut replay, stream) = (Replay::new(LAST, count), &mut Stream::new(2, "test/row"));
     let shown = |place: usize| -> [f32; LAST] { std::array::from_fn(|i| if i == place { 1.0 } else { 0.0 }) };
@@ -124,7 +129,7 @@ fn double_dqn_learns_what_every_place_in_a_row_is_worth() {
         let right = 0.8_f32.powi((LAST - 1 - place) as i32);
         let left = 0.8_f32.powi((LAST - place.saturating_sub(1)) as i32);
         for (value, want) in trace.output().iter().zip([left, right]) {
-            assert!((value - want).abs() < 0.05, "{place}: {:?}, not {left} and {right}", trace.output());
+            assert!((value - want).abs() < 0.05, "place {place}: got {:?}, want {left} and {right}", trace.output());
         }
     }
 }

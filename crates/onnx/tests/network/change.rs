@@ -1,10 +1,10 @@
-//! Truncated or modified files are rejected or evaluated, without panics and with little memory.
+//! Truncated and modified files are rejected or evaluated, without panics and with little memory.
 
 use crate::{MODELS, file};
 use onnx::Network;
 use proptest::prelude::*;
 
-/// Reads a file, and evaluates it if valid.
+/// Reads a file, and evaluates it if it is valid.
 fn try_file(bytes: &[u8]) {
     match Network::read(bytes) {
         Ok(mut network) => network.evaluate(&vec![0.5; network.input_size()]),
@@ -20,7 +20,7 @@ fn a_file_cut_anywhere_is_refused() {
     for model in ["operators", "old_operators", "two_inputs"] {
         let bytes = file(model);
         for length in 0..bytes.len() {
-            // Truncated before optional fields, it is still valid.
+            // Truncated before optional fields, the file is still valid.
             if let Ok(network) = Network::read(&bytes[..length]) {
                 assert!(network.metadata().len() < 2, "{model} of {length} bytes");
             }

@@ -10,7 +10,7 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// Absolute and relative tolerance against ONNX Runtime. Both round each sum, in different orders.
+/// Absolute and relative tolerance against ONNX Runtime, which rounds its sums in another order.
 const ERROR_MAX: f32 = 1e-5;
 
 const MODELS: [&str; 5] = ["operators", "old_operators", "two_inputs", "sb3_torchscript", "sb3_dynamo"];
@@ -26,19 +26,19 @@ fn folder() -> PathBuf {
 }
 
 fn file(model: &str) -> Vec<u8> {
-    std::fs::read(folder().join(format!("{model}.onnx"))).expect("the model")
+    std::fs::read(folder().join(format!("{model}.onnx"))).expect("the model can be read")
 }
 
 fn cases(model: &str) -> Vec<Case> {
-    let text = std::fs::read(folder().join(format!("{model}.json"))).expect("its numbers");
-    serde_json::from_slice(&text).expect("rows with their outputs")
+    let text = std::fs::read(folder().join(format!("{model}.json"))).expect("the expected values can be read");
+    serde_json::from_slice(&text).expect("the expected values are valid")
 }
 
 #[track_caller]
 fn assert_close(got: &[f32], want: &[f32], of: &str) {
     assert_eq!(got.len(), want.len(), "numbers of {of}");
     for (i, (got, want)) in got.iter().zip(want).enumerate() {
-        assert!((got - want).abs() <= ERROR_MAX * (1.0 + want.abs()), "{of}, number {i}: {got}, expected {want}");
+        assert!((got - want).abs() <= ERROR_MAX * (1.0 + want.abs()), "{of}, number {i}: got {got}, want {want}");
     }
 }
 
@@ -53,7 +53,7 @@ fn every_output_is_that_of_onnx_runtime() {
             assert!(network.is_finite());
             assert_eq!(network.outputs().len(), case.outputs.len(), "outputs of {model}");
             for (name, want) in &case.outputs {
-                let got = network.output_named(name).unwrap_or_else(|| panic!("{model}: no {name}"));
+                let got = network.output_named(name).unwrap_or_else(|| panic!("{model} has no output {name}"));
                 assert_close(got, want, &format!("{model}, row {i}, {name}"));
             }
         }
@@ -75,7 +75,7 @@ fn a_network_says_what_it_takes_and_gives_and_what_its_file_says() {
     assert_eq!(network.output_named("values"), None);
 }
 
-/// The bits of the policy's output for its first row: the same on every machine and with every
+/// The bits of the policy's output for its first row, the same on every machine and with every
 /// compiler.
 #[test]
 fn a_network_gives_the_same_bits_everywhere() {
@@ -139,7 +139,7 @@ fn a_network_can_be_given_to_another_thread() {
 }
 
 #[test]
-#[should_panic(expected = "numbers of the network's input")]
+#[should_panic(expected = "length of the network's input")]
 fn a_row_of_another_size_is_a_mistake() {
     Network::read(&file("sb3_dynamo")).unwrap().evaluate(&[0.0; 44]);
 }

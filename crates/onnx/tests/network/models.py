@@ -1,12 +1,11 @@
 #!/usr/bin/env python3
-"""Makes the models and numbers in this folder that need no trainer; the numbers of all are ONNX Runtime's.
+"""Creates the models in this folder that need no trainer, and the expected outputs of all, with ONNX Runtime.
 
     python -m venv venv && venv/bin/pip install onnx==1.23.2 onnxruntime==1.32.0 numpy
     venv/bin/python models.py
 
-`sb3_torchscript.onnx` and `sb3_dynamo.onnx` are the logits of one policy: PPO of Stable-Baselines3 2.9.2 with layers of 48,
-exported by both exporters of PyTorch 2.15 (`dynamo=False`; `dynamo=True, external_data=False`), without what these note about
-lines of source.
+`sb3_torchscript.onnx` and `sb3_dynamo.onnx` are the logits of one policy: PPO of Stable-Baselines3 2.9.2 with layers of 48, from
+both exporters of PyTorch 2.15 (`dynamo=False`; `dynamo=True, external_data=False`), without their notes about source lines.
 """
 
 import json
@@ -31,7 +30,7 @@ def integers(*values):
 
 
 class Graph:
-    """Nodes and constants, each node's output an output of the model if `shape` is given."""
+    """Nodes and constants. With `shape`, each node's output is an output of the model."""
 
     def __init__(self):
         self.nodes, self.constants, self.outputs = [], [], []
@@ -113,7 +112,7 @@ def operators():
 
 
 def old_operators():
-    """Version 9, where bounds and axes are attributes, and weights stand among the inputs; numbers not as raw data."""
+    """A model of version 9: bounds and axes are attributes, weights are among the inputs, and numbers are not raw data."""
     graph = Graph()
     node, constant = graph.node, graph.constant
     weights, bias = constant("weights", normal(4, 6), listed=True), constant("bias", normal(4), listed=True)
@@ -143,7 +142,7 @@ def two_inputs():
 
 
 def run(name):
-    """Writes rows of inputs and what ONNX Runtime makes of each."""
+    """Writes rows of inputs, with the outputs of ONNX Runtime."""
     session = onnxruntime.InferenceSession(HERE / f"{name}.onnx", providers=["CPUExecutionProvider"])
     cases = []
     for i in range(ROWS):

@@ -1,4 +1,4 @@
-//! Perceptrons as files: a written one can be read, and an inconsistent one is not written.
+//! Perceptrons as files: written ones can be read, and inconsistent ones are not written.
 
 use crate::assert_close;
 use onnx::{Activation, Head, Layer, Network, Normalisation, Perceptron};
@@ -8,7 +8,6 @@ use serde_json::json;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// A number from `least` to `most`.
 fn between(random: &mut ChaCha8Rng, least: f32, most: f32) -> f32 {
     least + (most - least) * (random.next_u32() >> 8) as f32 / (1 << 24) as f32
 }
@@ -40,7 +39,7 @@ fn rows() -> Vec<Vec<f32>> {
     (0..5).map(|_| (0..9).map(|_| between(&mut random, -3.0, 3.0)).collect()).collect()
 }
 
-/// A layer in double precision, by its definition.
+/// A layer in double precision, straight from its definition.
 fn plain(layer: &Layer, input: &[f64]) -> Vec<f64> {
     let output = |j: usize| {
         let weights = &layer.weights[j * layer.inputs..(j + 1) * layer.inputs];
@@ -50,7 +49,7 @@ fn plain(layer: &Layer, input: &[f64]) -> Vec<f64> {
 }
 
 fn plain_outputs(policy: &Perceptron, row: &[f32]) -> Vec<Vec<f32>> {
-    let normalisation = policy.normalisation.as_ref().expect("it has one");
+    let normalisation = policy.normalisation.as_ref().expect("the policy has a normalisation");
     let factors = normalisation.mean.iter().zip(&normalisation.scale);
     let normalised = row.iter().zip(factors).map(|(x, (mean, scale))| f64::from(x - mean) * f64::from(*scale));
     let mut last: Vec<f64> = normalised.collect();
@@ -138,7 +137,7 @@ fn what_does_not_fit_together_is_not_written() {
             "tensor `hidden.1.weight`: found 259 numbers, expected 260 for the shape 13 x 20",
         ),
         (|p| _ = p.hidden[0].biases.pop(), "tensor `hidden.0.bias`: found 19 numbers, expected 20"),
-        (|p| _ = p.hidden.remove(1), "node `head.0` (Gemm): found the shape 1 x 20 before 13 x 17 weights"),
+        (|p| _ = p.hidden.remove(1), "node `head.0` (Gemm): found the shape 1 x 20 with 13 x 17 weights"),
         (|p| p.heads.clear(), "the model: found no output, expected at least one"),
         (|p| p.heads[1].name = "logits".to_owned(), "tensor `logits`: found a second definition"),
         (|p| p.heads[0].layer.weights[3] = f32::NAN, "tensor `head.0.weight`: found a number that is NaN or infinite"),

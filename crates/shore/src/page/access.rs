@@ -1,13 +1,12 @@
-//! Access control of the page: accepted host names, origins, and the tokens that permit actions.
+//! Access control of the page: accepted host names and origins, and the tokens for actions.
 //!
-//! A web page from elsewhere that is open on this machine can send requests to this machine too: by
-//! its address, or by a name made to resolve to it. `Host` and `Origin`, which browsers set and
-//! pages cannot, reveal them.
+//! Another web page that is open on this machine can send requests here too: to the address, or to
+//! a name that resolves to it. `Host` and `Origin` reveal that, because browsers set them and pages
+//! cannot.
 
 use super::view::Access;
 use std::net::{IpAddr, SocketAddr};
 
-/// The rules for accepting requests.
 #[derive(Clone, Debug)]
 pub(super) struct AccessControl {
     bound: SocketAddr,
@@ -15,61 +14,61 @@ pub(super) struct AccessControl {
     tokens: Tokens,
 }
 
-/// The tokens that a page must present to act.
+/// The tokens that pages need for actions.
 #[derive(Clone, Debug)]
 pub(super) struct Tokens {
     /// The token to control the game; `None` permits every page.
     pub(super) control: Option<String>,
-    /// The token to operate real boats. Without it not even another user of this machine may.
+    /// The token to operate real boats. Other users of this machine need it too.
     pub(super) operate: String,
 }
 
 impl AccessControl {
-    /// The rules of a server at this address, with additional host names and the tokens.
+    /// The rules for a server at this address.
     pub(super) fn new(bound: SocketAddr, hosts: &[String], tokens: Tokens) -> AccessControl {
         AccessControl { bound, hosts: hosts.iter().map(|host| host.to_ascii_lowercase()).collect(), tokens }
     }
 
-    /// Checks that a request with this `Host` header is meant for this server.
+    /// Checks that a request with this `Host` header is for this server.
     ///
     /// # Errors
-    /// The reason for the rejection, and a remedy.
+    /// The reason, and a remedy.
     pub(super) fn check_host(&self, host: Option<&str>) -> Result<(), String> {
-        let Some(host) = host else { return Err("The request does not say which host it is for.\n".to_owned()) };
+        let Some(host) = host else { return Err("The request has no Host header.\n".to_owned()) };
         let host = host.to_ascii_lowercase();
         let name = name_of(&host);
         if self.hosts.iter().any(|known| *known == host || *known == name) || self.is_own(name) {
             return Ok(());
         }
         Err(format!(
-            "This server is not known as {name:?}: it may have been asked by a page that should not. If it should be, \
-             begin it with --host {name}.\n"
+            "This server is not known as {name:?}, so another web page may have sent the request. To allow this name, \
+             start the server with --host {name}.\n"
         ))
     }
 
     fn is_own(&self, name: &str) -> bool {
         match name.parse::<IpAddr>() {
-            // If the server listens on all addresses, no attacker can use an address as a name for
-            // it.
+            // If the server listens on all addresses, any address will do: attackers control only
+            // names.
             Ok(ip) => ip.is_loopback() || ip == self.bound.ip() || self.bound.ip().is_unspecified(),
             Err(_) => name == "localhost",
         }
     }
 
-    /// Checks that a websocket is opened by our own page, or by a client that is not a browser.
+    /// Checks that our own page opens the WebSocket, or a client other than a browser.
     ///
     /// # Errors
-    /// The reason for the rejection.
+    /// The reason.
     pub(super) fn check_origin(host: Option<&str>, origin: Option<&str>) -> Result<(), String> {
         let Some(origin) = origin else { return Ok(()) };
         let site = origin.split_once("://").map(|(_, site)| site);
         match (site, host) {
             (Some(site), Some(host)) if site.eq_ignore_ascii_case(host) => Ok(()),
-            _ => Err(format!("A page of {origin:?} has no business here.\n")),
+            _ => Err(format!("Pages from {origin:?} may not connect to this server.\n")),
         }
     }
 
-    /// The access of a page with this query in its address.
+    /// The access that a page's address grants by its query.
     pub(super) fn access(&self, query: Option<&str>) -> Access {
         let shown = value(query, "token");
         let is_shown = |token: &String| shown.as_ref().is_some_and(|shown| is_same(shown, token.as_bytes()));
@@ -95,7 +94,7 @@ fn name_of(host: &str) -> &str {
     host.rsplit_once(':').map_or(host, |(name, _)| name)
 }
 
-/// Whether two byte strings are equal, in constant time.
+/// Compares byte strings in constant time.
 fn is_same(a: &[u8], b: &[u8]) -> bool {
     let differences = a.iter().zip(b).fold(0, |all, (a, b)| std::hint::black_box(all | (a ^ b)));
     a.len() == b.len() && differences == 0
@@ -117,7 +116,7 @@ mod tests {
         AccessControl::new(bound.parse().expect("an address"), &hosts, tokens)
     }
 
-    /// The cases of one check in `access_cases.csv`: the two other columns, where `none` means
+    /// The cases of one check in `access_cases.csv`: its other two columns, where `none` means
     /// absent, and the expected result.
     fn cases(check: &str) -> Vec<([Option<String>; 2], bool)> {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/src/page/access_cases.csv");

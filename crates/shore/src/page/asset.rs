@@ -1,4 +1,4 @@
-//! The files of the page: the folder `web`, built into the program.
+//! The files of the page, built in from the folder `web`.
 
 use axum::body::Body;
 use axum::http::header::{self, HeaderMap, HeaderName, HeaderValue};
@@ -7,8 +7,8 @@ use include_dir::{Dir, include_dir};
 
 static WEB: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/web");
 
-/// Headers of every response. The page consists of its own files only, talks to its own server
-/// only, and cannot be framed, which would let another page redirect clicks to it.
+/// Headers of every response. The page uses only its own files and its own server. It cannot be
+/// framed, because another page could then redirect clicks to it.
 const HEADERS: [(HeaderName, &str); 5] = [
     (
         header::CONTENT_SECURITY_POLICY,
@@ -21,7 +21,6 @@ const HEADERS: [(HeaderName, &str); 5] = [
     (HeaderName::from_static("cross-origin-resource-policy"), "same-origin"),
 ];
 
-/// The response for this path of the page.
 pub(super) fn answer(path: &str) -> Response<Body> {
     let name = match path.trim_start_matches('/') {
         "" => "index.html",
@@ -29,23 +28,21 @@ pub(super) fn answer(path: &str) -> Response<Body> {
     };
     match WEB.get_file(name) {
         Some(file) => own(name, Body::from(file.contents())),
-        None => text(StatusCode::NOT_FOUND, "There is no such file.\n"),
+        None => text(StatusCode::NOT_FOUND, "No such file.\n"),
     }
 }
 
-/// A response with a file of this name.
+/// A response with this file.
 pub(super) fn own(name: &str, contents: Body) -> Response<Body> {
     plain(StatusCode::OK, kind(name), contents)
 }
 
-/// A redirect to another path.
 pub(super) fn elsewhere(path: &'static str) -> Response<Body> {
-    let mut response = text(StatusCode::TEMPORARY_REDIRECT, "What there is to see is there.\n");
+    let mut response = text(StatusCode::TEMPORARY_REDIRECT, "Redirecting.\n");
     response.headers_mut().insert(header::LOCATION, HeaderValue::from_static(path));
     response
 }
 
-/// A plain-text response.
 pub(super) fn text(status: StatusCode, words: &str) -> Response<Body> {
     plain(status, "text/plain; charset=utf-8", Body::from(words.to_owned()))
 }

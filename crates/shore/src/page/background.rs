@@ -1,24 +1,24 @@
-//! The background of the chart, below the field: an image of the site, or its shoreline as GeoJSON.
+//! The background of the chart below the field: an image of the site, or its shoreline as GeoJSON.
 //!
-//! Both are placed by WGS 84 latitude and longitude: GeoJSON has no other system since RFC 7946,
-//! and an image has a world file. The page aligns them with the field by the field's datum.
+//! Both use WGS 84: GeoJSON has no other reference system since RFC 7946, and an image has a world
+//! file. The page places them relative to the field's datum.
 
 use primitives::input_file;
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// Size limit of a file, bytes.
+/// Maximum size of a file, bytes.
 const BYTES_MAX: u64 = 16 << 20;
-/// Size limit of a world file, bytes: it contains six numbers.
+/// Maximum size of a world file, bytes; it holds six numbers.
 const WORLD_BYTES_MAX: u64 = 4096;
-/// The longest side of an image, pixels: browsers draw none larger.
+/// Maximum length of an image's sides, pixels; browsers draw none larger.
 const SIDE_MAX: usize = 8192;
-/// The maximum number of positions of a shoreline.
+/// Maximum number of positions in a shoreline.
 const POSITIONS_MAX: usize = 200_000;
-/// The maximum extent of a background, degrees.
+/// Maximum extent of a background, degrees.
 const EXTENT_MAX_DEG: f64 = 5.0;
-/// The maximum length of a place name, characters.
+/// Maximum length of a place name, characters.
 const NAME_MAX: usize = 60;
 /// Extensions of world files, which replace the image's own.
 const WORLD_FILES: [&str; 6] = ["pgw", "pngw", "jgw", "jpgw", "jpegw", "wld"];
@@ -26,13 +26,13 @@ const WORLD_FILES: [&str; 6] = ["pgw", "pngw", "jgw", "jpgw", "jpegw", "wld"];
 /// The background of the field.
 #[derive(Debug)]
 pub struct Background {
-    /// The message defined in `PROTOCOL.md`.
+    /// The message to pages; see `PROTOCOL.md`.
     pub(super) json: String,
-    /// The media type of an image, and its bytes.
+    /// An image's media type and bytes.
     pub(super) image: Option<(&'static str, Vec<u8>)>,
 }
 
-/// Why a background file is rejected.
+/// Why a background is rejected.
 #[derive(Debug, Error)]
 pub enum BackgroundError {
     /// The file cannot be read.
@@ -48,7 +48,7 @@ pub enum BackgroundError {
     Bad {
         /// The file.
         path: PathBuf,
-        /// The problem, and what is allowed.
+        /// The problem, with the values allowed.
         problem: String,
     },
 }
@@ -57,7 +57,7 @@ impl Background {
     /// Reads an image (PNG or JPEG) with its world file, or GeoJSON.
     ///
     /// # Errors
-    /// [`BackgroundError`] if it cannot be read, has another format, is too large, or has invalid
+    /// [`BackgroundError`] if the file cannot be read, is too large, or has an unknown format or invalid
     /// coordinates.
     pub fn read(path: &Path) -> Result<Background, BackgroundError> {
         let bytes = read(path, BYTES_MAX)?;
@@ -72,12 +72,16 @@ impl Background {
                 let json = json!({"name": name, "areas": areas, "lines": lines, "points": points}).to_string();
                 return Ok(Background { json, image: None });
             }
-            _ => return Err(bad("is of no known kind, expected PNG or JPEG with a world file, or GeoJSON".to_owned())),
+            _ => {
+                return Err(
+                    bad("has an unknown format, expected PNG or JPEG with a world file, or GeoJSON".to_owned()),
+                );
+            }
         };
         let size = imagesize::blob_size(&bytes).map_err(|e| bad(format!("is damaged: {e}")))?;
         let (width, height) = (size.width, size.height);
         if !(1..=SIDE_MAX).contains(&width) || !(1..=SIDE_MAX).contains(&height) {
-            return Err(bad(format!("has {width} x {height} pixels, expected 1 to {SIDE_MAX} each way")));
+            return Err(bad(format!("has {width} x {height} pixels, expected 1 to {SIDE_MAX} on each side")));
         }
         let (world_path, world) = world_file(path)?;
         let world = world_matrix(&world, [width as f64, height as f64])
@@ -91,15 +95,14 @@ fn read(path: &Path, bytes_max: u64) -> Result<Vec<u8>, BackgroundError> {
     input_file::read(path, bytes_max).map_err(|source| BackgroundError::Read { path: path.to_owned(), source })
 }
 
-/// The path and text of the world file beside an image.
 fn world_file(image: &Path) -> Result<(PathBuf, String), BackgroundError> {
     let found = WORLD_FILES.iter().map(|end| image.with_extension(end)).find(|path| path.exists());
     let Some(path) = found else {
         let names: Vec<String> =
             WORLD_FILES.iter().map(|end| image.with_extension(end).display().to_string()).collect();
         let problem = format!(
-            "has no world file beside it, which says where on the globe it is, expected one of {} (GIS programs write it \
-             when they export an image, in WGS 84)",
+            "has no world file beside it, expected one of {} (GIS programs write it \
+             when they export an image in WGS 84)",
             names.join(", ")
         );
         return Err(BackgroundError::Bad { path: image.to_owned(), problem });
@@ -108,23 +111,23 @@ fn world_file(image: &Path) -> Result<(PathBuf, String), BackgroundError> {
     Ok((path, text))
 }
 
-/// The six numbers of a world file in file order a, d, b, e, c, f: longitude = a column + b row +
-/// c, latitude = d column + e row + f. c and f refer to the centre of the first pixel.
+/// The six numbers of a world file in the order a, d, b, e, c, f: longitude = a column + b row + c,
+/// latitude = d column + e row + f. c and f refer to the centre of the first pixel.
 fn world_matrix(text: &str, [width, height]: [f64; 2]) -> Result<[f64; 6], String> {
     let mut numbers = [0.0; 6];
     let mut words = text.split_ascii_whitespace();
     for (at, number) in numbers.iter_mut().enumerate() {
-        let word = words.next().ok_or_else(|| format!("has {at} numbers, expected 6, a line each"))?;
+        let word = words.next().ok_or_else(|| format!("has {at} numbers, expected 6, one per line"))?;
         // Some programs write decimal commas.
         let parsed = word.replace(',', ".").parse().ok().filter(|number: &f64| number.is_finite());
         *number = parsed.ok_or_else(|| format!("line {}: {word:?} is not a number", at + 1))?;
     }
     if words.next().is_some() {
-        return Err("has more than 6 numbers, expected 6, a line each".to_owned());
+        return Err("has more than 6 numbers, expected 6, one per line".to_owned());
     }
     let [a, d, b, e, c, f] = numbers;
     if a * e - b * d == 0.0 {
-        return Err("lines 1 to 4 give pixels no size".to_owned());
+        return Err("lines 1 to 4 give the pixels no size".to_owned());
     }
     let mut extent = Extent::default();
     for [column, row] in [[-0.5, -0.5], [width - 0.5, -0.5], [width - 0.5, height - 0.5], [-0.5, height - 0.5]] {
@@ -158,13 +161,13 @@ impl Extent {
             return Ok(());
         }
         Err(format!(
-            "reaches from [{}, {}] to [{}, {}], expected at most {EXTENT_MAX_DEG} degrees each way: cut it to the site",
+            "extends from [{}, {}] to [{}, {}], expected at most {EXTENT_MAX_DEG} degrees each way: crop it to the site",
             low[0], low[1], high[0], high[1]
         ))
     }
 }
 
-/// The shapes in a GeoJSON file, as positions: longitude and latitude in degrees.
+/// The shapes in a GeoJSON file. Positions are longitude and latitude, degrees.
 #[derive(Default)]
 struct Shoreline {
     /// Polygons as rings; all but the first ring are holes.
@@ -177,28 +180,28 @@ struct Shoreline {
 
 impl Shoreline {
     fn parse(bytes: &[u8]) -> Result<Shoreline, String> {
-        let value: Value = serde_json::from_slice(bytes).map_err(|e| format!("is no JSON: {e}"))?;
+        let value: Value = serde_json::from_slice(bytes).map_err(|e| format!("is not JSON: {e}"))?;
         let mut shoreline = Shoreline::default();
         shoreline.check_reference_system(&value)?;
         shoreline.object(&value, "")?;
         if shoreline.positions == 0 {
-            return Err("shows nothing: there are no positions".to_owned());
+            return Err("has no positions, expected at least one".to_owned());
         }
         shoreline.extent.check()?;
         Ok(shoreline)
     }
 
-    /// Files older than RFC 7946 may use another reference system.
+    /// Files from before RFC 7946 may use another reference system.
     fn check_reference_system(&self, value: &Value) -> Result<(), String> {
         let Some(name) = value["crs"]["properties"]["name"].as_str() else { return Ok(()) };
         if name.ends_with("CRS84") || name.ends_with(":4326") {
             return Ok(());
         }
-        Err(format!("crs is {name:?}, expected WGS 84 (EPSG:4326): export it so"))
+        Err(format!("crs is {name:?}, expected WGS 84 (EPSG:4326): export it in WGS 84"))
     }
 
     fn object(&mut self, value: &Value, at: &str) -> Result<(), String> {
-        let object = value.as_object().ok_or_else(|| format!("{} is no object", named(at)))?;
+        let object = value.as_object().ok_or_else(|| format!("{} is not an object", named(at)))?;
         match object.get("type").and_then(Value::as_str) {
             Some("FeatureCollection") => self.each(object, "features", at, Shoreline::object),
             Some("Feature") if object.get("geometry").is_none_or(Value::is_null) => Ok(()),
@@ -215,12 +218,12 @@ impl Shoreline {
         take: fn(&mut Shoreline, &Value, &str) -> Result<(), String>,
     ) -> Result<(), String> {
         let at = within(at, key);
-        let list = object.get(key).and_then(Value::as_array).ok_or_else(|| format!("{at} is no list"))?;
+        let list = object.get(key).and_then(Value::as_array).ok_or_else(|| format!("{at} is not a list"))?;
         list.iter().enumerate().try_for_each(|(i, value)| take(self, value, &format!("{at}[{i}]")))
     }
 
     fn geometry(&mut self, value: &Value, at: &str, name: &str) -> Result<(), String> {
-        let object = value.as_object().ok_or_else(|| format!("{} is no object", named(at)))?;
+        let object = value.as_object().ok_or_else(|| format!("{} is not an object", named(at)))?;
         let kind = object.get("type").and_then(Value::as_str).unwrap_or_default();
         let (coordinates, place) = (object.get("coordinates").unwrap_or(&Value::Null), within(at, "coordinates"));
         match kind {
@@ -247,7 +250,7 @@ impl Shoreline {
             }
             _ => {
                 return Err(format!(
-                    "{} is {}, expected a type of GeoJSON such as \"FeatureCollection\" or \"Polygon\"",
+                    "{} is {}, expected a GeoJSON type such as \"FeatureCollection\" or \"Polygon\"",
                     within(at, "type"),
                     object.get("type").unwrap_or(&Value::Null)
                 ));
@@ -283,12 +286,12 @@ impl Shoreline {
     fn position(&mut self, value: &Value, at: &str) -> Result<[f64; 2], String> {
         self.positions += 1;
         if self.positions > POSITIONS_MAX {
-            return Err(format!("has more than {POSITIONS_MAX} positions: simplify it, or cut it to the site"));
+            return Err(format!("has more than {POSITIONS_MAX} positions: simplify it, or crop it to the site"));
         }
         let numbers = list(value, at)?.iter().map(Value::as_f64).collect::<Option<Vec<f64>>>();
         // The third number is a height.
         let [lon, lat, ..] = numbers.unwrap_or_default()[..] else {
-            return Err(format!("{at} is no position, expected [longitude, latitude]"));
+            return Err(format!("{at} is not a position, expected [longitude, latitude]"));
         };
         self.extent.add([lon, lat]).map_err(|problem| format!("{at} {problem}"))?;
         Ok([lon, lat])
@@ -296,7 +299,7 @@ impl Shoreline {
 }
 
 fn list<'a>(value: &'a Value, at: &str) -> Result<&'a Vec<Value>, String> {
-    value.as_array().ok_or_else(|| format!("{at} is no list"))
+    value.as_array().ok_or_else(|| format!("{at} is not a list"))
 }
 
 fn named(at: &str) -> &str {
@@ -307,7 +310,6 @@ fn within(at: &str, key: &str) -> String {
     if at.is_empty() { key.to_owned() } else { format!("{at}.{key}") }
 }
 
-/// The name of a feature.
 fn name_of(feature: &Value) -> String {
     feature["properties"]["name"].as_str().unwrap_or_default().to_owned()
 }
@@ -324,7 +326,7 @@ mod tests {
     fn read_in(files: &[(&str, &[u8])]) -> Result<Background, String> {
         let dir = tempfile::tempdir().expect("a directory");
         for (name, bytes) in files {
-            fs::write(dir.path().join(name), bytes).expect("it is written");
+            fs::write(dir.path().join(name), bytes).expect("the file can be written");
         }
         let read = Background::read(&dir.path().join(files[0].0));
         read.map_err(|e| e.to_string().replace(&dir.path().display().to_string(), ""))
@@ -333,8 +335,8 @@ mod tests {
     #[test]
     fn an_image_is_placed_by_its_world_file() {
         let world = b"0.001\n0\n0\n-0.001\n-73.9\n41.3\n";
-        let background = read_in(&[("site.png", PNG), ("site.pgw", world)]).expect("it is good");
-        let json: Value = serde_json::from_str(&background.json).expect("it is JSON");
+        let background = read_in(&[("site.png", PNG), ("site.pgw", world)]).expect("the background is valid");
+        let json: Value = serde_json::from_str(&background.json).expect("the message is JSON");
         let image = json!({"width": 1, "height": 1, "world": [0.001, 0.0, 0.0, -0.001, -73.9, 41.3]});
         assert_eq!(json, json!({"name": "site.png", "image": image}));
         assert_eq!(background.image, Some(("image/png", PNG.to_vec())));
@@ -342,7 +344,7 @@ mod tests {
             (vec![("site.png", PNG)], "has no world file beside it"),
             (vec![("site.png", PNG), ("site.wld", b"1 2 3".as_slice())], "/site.wld: has 3 numbers, expected 6"),
             (vec![("site.png", PNG), ("site.wld", b"1 0 0 x 5 6")], "line 4: \"x\" is not a number"),
-            (vec![("site.png", PNG), ("site.wld", b"0 0 0 0 5 6")], "give pixels no size"),
+            (vec![("site.png", PNG), ("site.wld", b"0 0 0 0 5 6")], "give the pixels no size"),
             (
                 vec![("site.png", PNG), ("site.wld", b"1 0 0 -1 712345 4512345")],
                 "a corner of the image is at [712344.5, ",
@@ -358,12 +360,12 @@ mod tests {
         huge[16..20].copy_from_slice(&100_000_u32.to_be_bytes());
         assert!(read_in(&[("site.png", &huge)]).expect_err("huge").contains("100000 x 1 pixels, expected 1 to 8192"));
         let svg = read_in(&[("site.svg", b"<svg onload='alert(1)'/>")]).expect_err("no SVG");
-        assert!(svg.contains("of no known kind, expected PNG or JPEG with a world file, or GeoJSON"), "{svg}");
+        assert!(svg.contains("has an unknown format, expected PNG or JPEG with a world file, or GeoJSON"), "{svg}");
     }
 
     fn geojson(value: &Value) -> Result<Value, String> {
         let read = read_in(&[("site.geojson", value.to_string().as_bytes())]);
-        read.map(|background| serde_json::from_str(&background.json).expect("it is JSON"))
+        read.map(|background| serde_json::from_str(&background.json).expect("the message is JSON"))
     }
 
     #[test]
@@ -377,7 +379,8 @@ mod tests {
                 {"type": "MultiLineString", "coordinates": [[[-73.9, 41.3], [-73.8, 41.3]]]},
             ]}},
         ]);
-        let shown = geojson(&json!({"type": "FeatureCollection", "features": features})).expect("it is good");
+        let shown =
+            geojson(&json!({"type": "FeatureCollection", "features": features})).expect("the shoreline is valid");
         let want = json!({"name": "site.geojson", "areas": [[ring, ring]], "points": [[-73.9, 41.3, "Dock"]],
             "lines": [[[-73.9, 41.3], [-73.8, 41.3]]]});
         assert_eq!(shown, want);
@@ -395,12 +398,12 @@ mod tests {
                 line(json!([[0, 1], [712_345.5, 4_512_345]])),
                 format!("{place} is at [712345.5, 4512345], expected [longitude"),
             ),
-            (line(json!([[0, 1], ["0", 1]])), format!("{place} is no position, expected [longitude, latitude]")),
-            (line(json!([[0, 1], 3])), format!("{place} is no list")),
-            (line(json!([[0, 1], [10, 1]])), "reaches from [0, 1] to [10, 1], expected at most 5 degrees".to_owned()),
-            (line(json!([])), "shows nothing".to_owned()),
-            (json!({"type": "Topology"}), "type is \"Topology\", expected a type of GeoJSON".to_owned()),
-            (json!({"type": "FeatureCollection"}), "features is no list".to_owned()),
+            (line(json!([[0, 1], ["0", 1]])), format!("{place} is not a position, expected [longitude, latitude]")),
+            (line(json!([[0, 1], 3])), format!("{place} is not a list")),
+            (line(json!([[0, 1], [10, 1]])), "extends from [0, 1] to [10, 1], expected at most 5 degrees".to_owned()),
+            (line(json!([])), "has no positions".to_owned()),
+            (json!({"type": "Topology"}), "type is \"Topology\", expected a GeoJSON type".to_owned()),
+            (json!({"type": "FeatureCollection"}), "features is not a list".to_owned()),
             (
                 json!({"type": "Point", "coordinates": [1, 2], "crs": {"properties": {"name": "urn:ogc:def:crs:EPSG::3857"}}}),
                 "crs is \"urn:ogc:def:crs:EPSG::3857\", expected WGS 84".to_owned(),
@@ -411,7 +414,7 @@ mod tests {
             assert!(error.contains(&want), "{error}");
         }
         let deep = format!("{{\"type\":\"Polygon\",\"coordinates\":{}", "[".repeat(100_000));
-        assert!(read_in(&[("site.geojson", deep.as_bytes())]).expect_err("deep").contains("is no JSON"));
+        assert!(read_in(&[("site.geojson", deep.as_bytes())]).expect_err("deep").contains("is not JSON"));
     }
 
     proptest! {

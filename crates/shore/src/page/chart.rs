@@ -1,4 +1,4 @@
-//! The chart: everything that stays constant during a game, as the page draws it.
+//! The chart: everything constant during a game, as the page draws it.
 //!
 //! x is east and y is north, both in metres from the datum; bearings are compass degrees.
 
@@ -9,7 +9,7 @@ use rules::field::{Obstacle, Walls};
 use scenario::{Drawn, Scenario, Source, Vehicle};
 use serde_json::{Map, Value, json};
 
-/// The chart of a game in the format of `PROTOCOL.md`.
+/// The chart of a game, as `PROTOCOL.md` defines it.
 pub(super) fn chart(scenario: &Scenario, water: &Water) -> Value {
     let rules = &scenario.rules;
     let drawn = |Drawn { parameter, value }: &Drawn| (parameter.clone(), json!(value));

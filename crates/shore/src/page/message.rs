@@ -1,4 +1,4 @@
-//! Messages from the server to a page, as `PROTOCOL.md` defines them.
+//! Messages from the server to pages, as defined in `PROTOCOL.md`.
 
 use super::rose::Helm;
 use super::view::Access;
@@ -11,12 +11,12 @@ use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// Curves over time of a recorded game, as a page draws them. Unknown numbers are null.
+/// Curves over time of a recorded game. Unknown values are null.
 #[derive(Clone, Debug, Default, Serialize)]
 pub(super) struct Curves<'a> {
     pub(super) vehicle: Option<&'a str>,
     pub(super) other: Option<&'a str>,
-    /// The times of the samples.
+    /// Times of the samples.
     pub(super) t_s: Vec<f64>,
     /// Points by team and sample.
     pub(super) score: Vec<Vec<u32>>,
@@ -32,16 +32,15 @@ pub(super) struct BoatCurves {
     pub(super) ordered_speed_m_s: Vec<f64>,
     pub(super) heading_deg: Vec<f64>,
     pub(super) ordered_heading_deg: Vec<f64>,
-    /// The distance to the nearest flag of another team, wherever that flag is.
+    /// Distance to the nearest flag of another team, wherever that flag is.
     pub(super) flag_m: Vec<f64>,
-    /// The error of its own position estimate.
+    /// Error of its own position estimate.
     pub(super) error_m: Vec<f64>,
 }
 
 /// The version of the protocol.
 pub(super) const PROTOCOL: u32 = 1;
 
-/// A message to a page.
 #[derive(Clone, Debug, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub(super) enum PageMessage<'a> {
@@ -134,13 +133,13 @@ pub(super) enum PageMessage<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Mode {
-    /// A game in progress: actions affect all pages.
+    /// A game in progress, where actions affect all pages.
     Live,
-    /// A recording: each page has its own playback.
+    /// A recording, with a separate playback for each page.
     Replay,
 }
 
-/// An event, with a sentence that describes it.
+/// An event with a sentence that describes it.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct EventMessage<'a> {
     #[serde(flatten)]
@@ -149,25 +148,24 @@ pub(super) struct EventMessage<'a> {
 }
 
 impl<'a> EventMessage<'a> {
-    /// The event in the page's format.
+    /// Converts an event.
     pub(super) fn new(event: &'a EventOutcome) -> EventMessage<'a> {
         let text = match (event.event.as_str(), &event.vehicle) {
-            ("failsafe", Some(vehicle)) => format!("{vehicle} is STOPPED by its gateway"),
+            ("failsafe", Some(vehicle)) => format!("{vehicle} is in failsafe"),
             _ => event.sentence(),
         };
         EventMessage { event, text }
     }
 }
 
-/// A time in seconds, rounded for people: 120 rather than 120.00000000000001, the result of
-/// multiplying by 1e-9.
+/// A time in seconds, rounded: 120 instead of 120.00000000000001, the result of multiplying by
+/// 1e-9.
 pub(super) fn seconds(time: SimTime) -> f64 {
     time.0 as f64 / 1e9
 }
 
 impl PageMessage<'_> {
-    /// The first message to a page: the game of this name, with an optional sentence about its
-    /// origin.
+    /// The first message to a page: the game, and optionally a sentence about its origin.
     pub(super) fn hello<'a>(
         version: &'a str,
         mode: Mode,
@@ -180,7 +178,7 @@ impl PageMessage<'_> {
         PageMessage::Hello { protocol: PROTOCOL, version, mode, rights, operates, game, about, definitions, chart }
     }
 
-    /// The estimated position of a boat at this time.
+    /// A boat's estimated position.
     pub(super) fn estimate<'a>(vehicle: &'a str, boat: &OwnBoat, at: SimTime) -> PageMessage<'a> {
         let nav = &boat.nav;
         PageMessage::Estimate {
@@ -194,7 +192,6 @@ impl PageMessage<'_> {
         }
     }
 
-    /// The message as sent.
     pub(super) fn json(&self) -> String {
         serde_json::to_string(self).expect("a plain struct is JSON")
     }
@@ -207,7 +204,7 @@ mod tests {
     use serde_json::{Value, json};
 
     fn value(tell: &PageMessage<'_>) -> Value {
-        serde_json::from_str(&tell.json()).expect("it is JSON")
+        serde_json::from_str(&tell.json()).expect("the message is JSON")
     }
 
     #[test]
@@ -227,7 +224,7 @@ mod tests {
             "text": "a is tagged by b"});
         assert_eq!(value(&tell)["kind"], "events");
         assert_eq!(value(&tell)["events"][0], want);
-        assert_eq!(value(&tell)["events"][1]["text"], "a is STOPPED by its gateway");
+        assert_eq!(value(&tell)["events"][1]["text"], "a is in failsafe");
     }
 
     #[test]

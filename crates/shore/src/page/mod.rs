@@ -1,9 +1,9 @@
-//! The live page: a web server that shows a game, or a recording of one, to browsers.
+//! The page: a web server that shows a running game or a recording in browsers.
 //!
 //! [`Page`] serves the files of the page and talks to each browser as defined in `PROTOCOL.md`. It
 //! shows a [`View`]: `live::LiveView` or [`replay::ReplayView`]. Each page has its own [`Viewer`],
-//! which is asked for the next message whenever the page can take one. A slow page therefore gets
-//! fewer frames and delays no other.
+//! which supplies the next message whenever the page can take one. A slow page therefore gets fewer
+//! frames and delays no other.
 
 mod access;
 mod asset;
@@ -41,18 +41,18 @@ use std::time::Duration;
 use thiserror::Error;
 use tokio::sync::watch;
 
-/// The settings of the page's server.
+/// Settings of the page's server.
 pub struct PageSettings {
     /// The address to listen on; port 0 chooses any free port.
     pub listen: SocketAddr,
-    /// The token that a page must present to act; `None` permits every page.
+    /// The token that pages need for actions. `None` permits every page.
     pub token: Option<String>,
-    /// Additional host names of the server. They require a token, since users of such a name come
-    /// from other machines.
+    /// Additional host names of the server. They require a token, because their users come from
+    /// other machines.
     pub hosts: Vec<String>,
     /// The background drawn below the field.
     pub background: Option<Background>,
-    /// Set by the caller to end the server.
+    /// Set by the caller to stop the server.
     pub stop: Arc<AtomicBool>,
 }
 
@@ -61,20 +61,20 @@ pub struct PageSettings {
 pub enum PageError {
     /// Every machine on the network could act.
     #[error(
-        "the page would be open to the network at {0}: listen on a loopback address such as 127.0.0.1, or give a token \
-         (--page-token-file) that those who may act have to show"
+        "the page would be open to the network at {0}: listen on a loopback address such as 127.0.0.1, or require a \
+         token for actions (--page-token-file)"
     )]
     Open(SocketAddr),
     /// Every user of the name could act: a proxy in front of a loopback address may admit anyone.
     #[error(
-        "the page would be open to all who reach it as {0:?} (--host): give a token (--page-token-file) that those who may \
-         act have to show"
+        "the page would be open to everyone who reaches it as {0:?} (--host): require a token for actions \
+         (--page-token-file)"
     )]
     Named(String),
     /// An empty token.
     #[error("the page's token is empty")]
     EmptyToken,
-    /// The server cannot listen there.
+    /// The server cannot listen on this address.
     #[error("the page cannot listen on {address}: {source}")]
     Listen {
         /// The address.
@@ -83,11 +83,11 @@ pub enum PageError {
         source: std::io::Error,
     },
     /// The server's thread cannot be started.
-    #[error("the page's server cannot begin: {0}")]
+    #[error("cannot start the page's server: {0}")]
     Begin(std::io::Error),
 }
 
-/// A web server in its own thread; on drop, it closes the connections to all pages.
+/// A web server in its own thread. Dropping it closes the connections to all pages.
 pub struct Page {
     address: SocketAddr,
     operator_token: String,
@@ -97,26 +97,26 @@ pub struct Page {
     thread: Option<JoinHandle<()>>,
 }
 
-/// The number of hexadecimal digits of a generated token: 128 bits.
+/// Hexadecimal digits of a generated token: 128 bits.
 const OPERATOR_TOKEN_DIGITS: usize = 32;
-/// The interval of checks whether the server should end.
+/// Interval of checks whether the server should stop.
 const LOOK_AGAIN: Duration = Duration::from_millis(50);
 /// How long pages have to receive the close message.
 const GOODBYE: Duration = Duration::from_millis(200);
 
 impl Page {
-    /// Checks that the page could be opened.
+    /// Checks whether the page could be opened.
     ///
     /// # Errors
-    /// [`PageError`] if it cannot or must not listen there.
+    /// [`PageError`] if it cannot or must not listen on the address.
     pub fn check(settings: &PageSettings) -> Result<(), PageError> {
         listener(settings).map(drop)
     }
 
-    /// Listens, and serves pages without a view.
+    /// Listens and serves pages, still without a view.
     ///
     /// # Errors
-    /// [`PageError`] if it cannot or must not listen there.
+    /// [`PageError`] if it cannot or must not listen on the address.
     pub fn open(settings: PageSettings) -> Result<Page, PageError> {
         let (listener, address) = listener(&settings)?;
         let PageSettings { token, hosts, background, stop, .. } = settings;
@@ -149,20 +149,19 @@ impl Page {
         Ok(Page { address, operator_token, shown: Some(shown), report, ended, thread: Some(thread) })
     }
 
-    /// The address it listens on.
+    /// The address on which it listens.
     #[must_use]
     pub fn address(&self) -> SocketAddr {
         self.address
     }
 
-    /// The token that a page must present to operate real boats: the configured one, or else a
-    /// generated one.
+    /// The token that pages need to operate real boats: the configured or a generated one.
     #[must_use]
     pub fn operator_token(&self) -> &str {
         &self.operator_token
     }
 
-    /// Publishes a report with its games; only the first call has an effect.
+    /// Publishes a report with its games. Only the first call has an effect.
     pub fn publish(&self, report: Arc<dyn Report>) {
         self.report.get_or_init(|| report);
     }
@@ -175,7 +174,7 @@ impl Page {
     }
 }
 
-/// The listener for pages, and its address.
+/// The listener, and its address.
 fn listener(PageSettings { listen, token, hosts, .. }: &PageSettings) -> Result<(TcpListener, SocketAddr), PageError> {
     if token.as_ref().is_some_and(String::is_empty) {
         return Err(PageError::EmptyToken);
@@ -198,10 +197,10 @@ fn listener(PageSettings { listen, token, hosts, .. }: &PageSettings) -> Result<
 impl Drop for Page {
     fn drop(&mut self) {
         self.ended.store(true, Ordering::Relaxed);
-        // Pages notice that the channel has ended.
+        // Pages notice that the channel has closed.
         self.shown = None;
         if let Some(thread) = self.thread.take() {
-            // A server that panicked has reported that itself.
+            // A server that panicked has already reported it.
             drop(thread.join());
         }
     }
@@ -238,7 +237,7 @@ mod tests {
                 stop: Arc::default(),
             })
         };
-        let error = open(None).err().expect("it is refused").to_string();
+        let error = open(None).err().expect("the page is refused").to_string();
         assert!(["boat.local", "--host", "--page-token-file"].iter().all(|word| error.contains(word)), "{error}");
         assert!(open(Some("secret")).is_ok());
     }

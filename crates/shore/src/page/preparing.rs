@@ -1,4 +1,4 @@
-//! A view shown until a game is available: the progress, or the reason for a failure.
+//! A view until a game is available: the progress, or the reason for a failure.
 
 use super::message::{Mode, PageMessage};
 use super::request::PageRequest;
@@ -20,7 +20,7 @@ struct Said {
 }
 
 impl PreparingView {
-    /// Shows the progress.
+    /// Shows progress.
     #[must_use]
     pub fn new(text: &str) -> PreparingView {
         PreparingView::of(text, false)
@@ -53,7 +53,7 @@ impl View for PreparingView {
     }
 }
 
-/// The viewer of one waiting page.
+/// The view of one waiting page.
 struct PreparingViewer {
     said: Arc<Mutex<Said>>,
     sent: Option<Said>,

@@ -1,30 +1,30 @@
-//! A report on the page: its files, and the games behind it, each of which a page can open.
+//! A report on the page: its files, and its games, which pages can open.
 
 use super::view::View;
 use std::sync::{Arc, OnceLock};
 use tokio::sync::watch;
 
-/// A summary of many games: of a tournament, a sweep, a training.
+/// A summary of many games: a tournament, a sweep or a training.
 pub trait Report: Send + Sync {
     /// The path of its page.
     fn page(&self) -> &'static str;
 
-    /// The report's own file at this path of the page, such as `/report.json`, if it exists. It may
-    /// take its time.
+    /// The report's own file at this path, such as `/report.json`, if any. May take some time.
     fn file(&self, path: &str) -> Option<Vec<u8>>;
 
-    /// The view for a game; `name` may be any text, and an unknown one shows why there is no game.
+    /// The view of a game. `name` may be any text; for an unknown game the view shows why there is
+    /// none.
     fn game(&self, name: &str) -> Shown;
 }
 
 /// A report that may be set after the page has started.
 pub(super) type LateReport = Arc<OnceLock<Arc<dyn Report>>>;
 
-/// The view that one page shows now, if any. It lasts until the server ends.
+/// The current view of one page, if any. It lasts until the server stops.
 #[derive(Clone)]
 pub struct Shown {
     pub(super) receiver: watch::Receiver<Option<Arc<dyn View>>>,
-    /// Keeps the game of a report open while a page shows it.
+    /// Keeps a report's game open while a page shows it.
     _kept: Option<Arc<Showing>>,
 }
 
@@ -35,7 +35,7 @@ impl Shown {
     }
 }
 
-/// The view of all pages that open one game; it can change.
+/// The view of all pages that open one game. It can change.
 pub struct Showing(watch::Sender<Option<Arc<dyn View>>>);
 
 impl Showing {

@@ -1,53 +1,53 @@
-//! Requests of a page to its server, as `PROTOCOL.md` defines them.
+//! Requests from a page to its server, as defined in `PROTOCOL.md`.
 
 use super::view::Access;
 use messages::Control;
 use messages::external::OperatorCommand;
 use serde::Deserialize;
 
-/// A message from a page, as it stands in `PROTOCOL.md`.
+/// A message from a page, as defined in `PROTOCOL.md`.
 #[derive(Clone, Debug, PartialEq, Deserialize, strum::IntoStaticStr)]
 #[serde(tag = "do", rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
 pub enum PageRequest {
-    /// A frame is drawn.
+    /// A frame has been drawn.
     Ack,
-    /// Whose helm and estimate are wanted.
+    /// Selects a boat for `helm` and `estimate`.
     Select {
         /// The vehicle's name.
         vehicle: Option<String>,
-        /// Whether with utilities.
+        /// Whether to include utilities.
         #[serde(default)]
         functions: bool,
     },
-    /// Whether the mode of every boat is wanted.
+    /// Requests the modes of all boats.
     Modes {
-        /// Whether.
+        /// False ends the request.
         wanted: bool,
     },
-    /// The score over time, and curves of a boat. Of a recording only.
+    /// Requests the score over time and a boat's curves; recordings only.
     Curves {
-        /// The vehicle's name; none is the score alone.
+        /// The vehicle's name. None: only the score.
         vehicle: Option<String>,
-        /// To which other vehicle the range is wanted.
+        /// The other vehicle for the range.
         other: Option<String>,
     },
-    /// Something for the whole game.
+    /// Controls the whole game.
     Control {
-        /// What.
+        /// The command.
         what: Control,
     },
-    /// So many simulated seconds a second.
+    /// Sets the speed, simulated seconds per second.
     Speed {
-        /// None is as fast as can be.
+        /// None: unlimited.
         factor: Option<f64>,
     },
-    /// On by so many decisions.
+    /// Steps by a number of decisions.
     Step {
-        /// May be negative.
+        /// Negative values step back.
         by: i64,
     },
-    /// To another time.
+    /// Goes to another time.
     Seek {
         /// Simulated time, s.
         t_s: f64,
@@ -61,7 +61,7 @@ pub enum PageRequest {
         /// Speed, m/s.
         speed_m_s: f64,
     },
-    /// No longer steers it.
+    /// Stops steering a boat.
     LetGo {
         /// The vehicle's name.
         vehicle: String,
@@ -70,10 +70,10 @@ pub enum PageRequest {
     Operate {
         /// The vehicle's name.
         vehicle: String,
-        /// What it is to do.
+        /// The command.
         command: OperatorCommand,
     },
-    /// Has a real boat sail a mission by itself.
+    /// Lets a real boat follow a mission on its own.
     Mission {
         /// The vehicle's name.
         vehicle: String,
@@ -83,13 +83,13 @@ pub enum PageRequest {
 }
 
 impl PageRequest {
-    /// Its name in the protocol.
+    /// The request's name in the protocol.
     #[must_use]
     pub fn name(&self) -> &'static str {
         self.into()
     }
 
-    /// The access that a page needs for it in a live game.
+    /// The access that the request needs in a live game.
     #[must_use]
     pub fn needs(&self) -> Access {
         match self {
@@ -103,7 +103,7 @@ impl PageRequest {
             | PageRequest::Speed { .. }
             | PageRequest::Drive { .. }
             | PageRequest::LetGo { .. } => Access::Control,
-            // As at the gateway, a page that may stop all boats may stop one.
+            // As at the gateway: a page that may stop all boats may stop one.
             PageRequest::Operate { command, .. } if !command.needs_token() => Access::Control,
             PageRequest::Operate { .. } | PageRequest::Mission { .. } => Access::Operate,
         }
@@ -123,8 +123,8 @@ mod tests {
     #[test]
     fn what_the_protocol_lists_is_understood() {
         let cases = concat!(env!("CARGO_MANIFEST_DIR"), "/src/page/request_cases.txt");
-        for line in std::fs::read_to_string(cases).expect("the cases").lines() {
-            let (text, want) = line.split_once(" is ").expect("a message, and what it is");
+        for line in std::fs::read_to_string(cases).expect("the cases can be read").lines() {
+            let (text, want) = line.split_once(" is ").expect("a message and its meaning");
             let ask: PageRequest = serde_json::from_str(text).unwrap_or_else(|e| panic!("{text}: {e}"));
             assert_eq!(format!("{ask:?}"), want);
             assert!(text.contains(&format!("{:?}", ask.name())), "{text}");

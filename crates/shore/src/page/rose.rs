@@ -1,4 +1,4 @@
-//! The rose: a helm's evaluation as the page draws it, with utilities in whole per cents.
+//! The rose: a helm's evaluation as the page draws it, with utilities as whole percentages.
 
 use super::message::PageMessage;
 use messages::helm::{BehaviourReport, HelmReport, PolicyReport, VariableReport};
@@ -6,7 +6,7 @@ use primitives::VehicleId;
 use scenario::Scenario;
 use serde::Serialize;
 
-/// A helm's report in the format of `PROTOCOL.md`.
+/// A helm's report, as defined in `PROTOCOL.md`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(super) struct Helm {
     pub(super) at_s: f64,
@@ -38,7 +38,7 @@ pub(super) struct Policy {
     pub(super) observed: Vec<(String, f32)>,
 }
 
-/// The number of actions listed for a policy, the likeliest ones.
+/// Number of actions listed per policy, the likeliest first.
 const ACTIONS: usize = 4;
 
 impl Policy {
@@ -69,7 +69,7 @@ pub(super) struct Function {
 }
 
 impl Helm {
-    /// A valid report with names in place of numbers, with utilities if requested.
+    /// A valid report with names instead of numbers, with utilities if requested.
     pub(super) fn new(scenario: &Scenario, report: &HelmReport, has_utilities: bool) -> Helm {
         let percents = |utilities: &[f32]| utilities.iter().map(|utility| whole(f64::from(*utility))).collect();
         let function = |function: &messages::helm::FunctionReport| Function {
@@ -102,11 +102,11 @@ impl Helm {
 /// The state of a helm at a decision.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct HelmAnswer {
-    /// Its report.
+    /// The report, if any.
     pub report: Option<HelmReport>,
-    /// Why no report is available.
+    /// Why there is no report.
     pub reason: Option<String>,
-    /// Whether it was recomputed, not received from the helm.
+    /// Whether it was recomputed rather than received from the helm.
     pub computed: bool,
     /// Whether the recomputed order equals the recorded one.
     pub agrees: Option<bool>,
@@ -117,15 +117,15 @@ pub(super) fn helm_text(scenario: &Scenario, vehicle: VehicleId, functions: bool
     let HelmAnswer { report, mut reason, computed, agrees } = answer;
     let sound = report.as_ref().filter(|report| is_sound(report, vehicle, scenario.vehicles.len()));
     if report.is_some() && sound.is_none() {
-        reason = Some("the answer makes no sense".to_owned());
+        reason = Some("the reply is invalid".to_owned());
     }
     let helm = sound.map(|report| Helm::new(scenario, report, functions));
-    let reason = if helm.is_some() { None } else { reason.or_else(|| Some("nobody says why".to_owned())) };
+    let reason = if helm.is_some() { None } else { reason.or_else(|| Some("no reason given".to_owned())) };
     let name = scenario.vehicles.get(vehicle.index()).map_or("", |vehicle| &vehicle.name);
     PageMessage::Helm { vehicle: name, report: helm.as_ref(), reason: reason.as_deref(), computed, agrees }.json()
 }
 
-/// Whether a report is consistent and about this vehicle: answers from agents are not trusted.
+/// Whether a report is consistent and about this vehicle. Replies from agents are not trusted.
 #[must_use]
 pub fn is_sound(report: &HelmReport, vehicle: VehicleId, vehicles: usize) -> bool {
     let is_grid = (1..=3600).contains(&report.courses)
@@ -140,7 +140,7 @@ pub fn is_sound(report: &HelmReport, vehicle: VehicleId, vehicles: usize) -> boo
         })
 }
 
-/// The weighted sum of all functions, scaled from its minimum to its maximum; `None` without
+/// The weighted sum of all functions, scaled from its minimum to its maximum. `None` without
 /// functions.
 fn collective(report: &HelmReport) -> Option<Vec<u8>> {
     report.functions.iter().find(|function| !function.utilities.is_empty())?;
@@ -222,8 +222,8 @@ pub(super) mod tests {
     fn reports_that_make_no_sense_are_told_from_those_that_do() {
         let good = report(vec![function(1.0, &[0.0; 4])]);
         assert!(is_sound(&good, VehicleId(0), 2) && is_sound(&report(vec![]), VehicleId(0), 2));
-        assert!(!is_sound(&good, VehicleId(1), 2), "of another boat");
-        assert!(!is_sound(&good, VehicleId(0), 1), "about a boat that is not there");
+        assert!(!is_sound(&good, VehicleId(1), 2), "a report on another boat");
+        assert!(!is_sound(&good, VehicleId(0), 1), "a contact that does not exist");
         for bad in [
             report(vec![function(1.0, &[0.0; 3])]),
             HelmReport { courses: usize::MAX, ..report(vec![]) },

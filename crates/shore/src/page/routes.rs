@@ -28,22 +28,22 @@ use tokio::sync::oneshot;
 use tokio::time::sleep;
 use tokio_io_timeout::TimeoutStream;
 
-/// The maximum number of pages without a token.
+/// Maximum number of pages without a token.
 const PAGES_MAX: usize = 64;
-/// The maximum number of operators' pages: other pages cannot take their room.
+/// Maximum number of operators' pages; others cannot take their slots.
 const OPERATORS_MAX: usize = 8;
-/// The maximum number of connections that are not websockets yet.
+/// Maximum number of connections that are not WebSockets yet.
 const CONNECTIONS_MAX: usize = 192;
-/// A connection that receives nothing for this long is closed. Websockets are pinged more often.
+/// A connection that receives nothing for this long is closed. WebSockets are pinged more often.
 const SILENCE: Duration = Duration::from_secs(60);
-/// A connection that accepts no bytes for this long, with some to send, is closed.
+/// A connection with bytes to send that accepts none for this long is closed.
 const DEAF: Duration = Duration::from_secs(20);
-/// The time to wait after a failed accept.
+/// Wait after a failed accept.
 const AGAIN: Duration = Duration::from_millis(200);
-/// Timeout of a request, from the connection's start or the previous response.
+/// Timeout of a request, from the start of the connection or the previous response.
 const REQUEST: Duration = Duration::from_secs(10);
 
-/// The state that all requests share.
+/// The state shared by all requests.
 #[derive(Clone)]
 struct AppState {
     access_control: Arc<AccessControl>,
@@ -55,21 +55,21 @@ struct AppState {
 }
 
 impl AppState {
-    /// Runs `get` on the report, in a thread that may block; `None` without a report.
+    /// Runs `get` on the report in a thread that may block. `None` without a report.
     async fn of_report<T: Send + 'static>(&self, get: impl FnOnce(&dyn Report) -> T + Send + 'static) -> Option<T> {
         let report = Arc::clone(self.report.get()?);
-        // A thread that panicked has reported that itself.
+        // A thread that panicked has already reported it.
         tokio::task::spawn_blocking(move || get(&*report)).await.ok()
     }
 
-    /// Room for a page with this address and query, and its access.
+    /// A slot for a page with this address and query, and its access.
     fn admit(&self, from: IpAddr, query: Option<&str>) -> (Room, Access) {
         let access = self.access_control.access(query);
         (admit(if access == Access::Operate { &self.operators } else { &self.viewers }, from), access)
     }
 }
 
-/// Room for a connection, and a signal that another one needs it.
+/// A slot for a connection, and a signal that another one needs it.
 pub(super) type Room = (Slot, oneshot::Receiver<()>);
 
 fn admit(connections: &Connections, from: IpAddr) -> Room {
@@ -78,7 +78,6 @@ fn admit(connections: &Connections, from: IpAddr) -> Room {
     (connections.admit(from, move || close.send(()).unwrap_or_default()), closed)
 }
 
-/// Serves requests until the server ends.
 pub(super) async fn serve(
     listener: std::net::TcpListener,
     access_control: AccessControl,
@@ -92,9 +91,9 @@ pub(super) async fn serve(
         report,
         background: background.map(Arc::new),
         viewers: Connections::new(PAGES_MAX),
-        // Separate room for operators: an E-stop must not queue behind observers. If there are too
-        // many pages, none is refused. The idlest makes room and comes back after half a minute, so
-        // that one page too many does not make all of them come and go.
+        // Operators have separate slots: an E-stop must not queue behind observers. With too many
+        // pages, none is refused. The idlest one is displaced and reconnects after half a minute,
+        // so that one page too many does not make all of them reconnect.
         operators: Connections::new(OPERATORS_MAX),
     };
     let site = Router::new()
@@ -113,9 +112,9 @@ pub(super) async fn serve(
             let served = serve_connection(stream, site.clone(), slot, from.ip());
             tokio::spawn(async move {
                 tokio::select! {
-                    // An error ends the connection of one browser only.
+                    // An error ends only one browser's connection.
                     ended = served => drop(ended),
-                    // Another connection needs the room; an error means that the room is free
+                    // Another connection needs the slot; an error means that the slot is free
                     // again.
                     Ok(()) = closed => {}
                 }
@@ -129,7 +128,7 @@ pub(super) async fn serve(
     Ok(())
 }
 
-/// Serves one connection. `axum::serve` would wait for ever for an incomplete request.
+/// Serves one connection. `axum::serve` would wait forever for an incomplete request.
 async fn serve_connection(
     stream: TcpStream,
     site: Router,
@@ -152,7 +151,7 @@ async fn serve_connection(
     server.serve_connection_with_upgrades(TokioIo::new(Box::pin(stream)), TowerToHyperService::new(site)).await
 }
 
-/// Rejects requests not meant for this server, and adds security headers to responses.
+/// Rejects requests for other servers, and adds security headers to responses.
 async fn check(State(app): State<AppState>, request: Request, next: Next) -> Response<Body> {
     let mut response = match app.access_control.check_host(text_of(request.headers(), &HOST)) {
         Ok(()) => next.run(request).await,
@@ -164,7 +163,7 @@ async fn check(State(app): State<AppState>, request: Request, next: Next) -> Res
 
 async fn file(State(app): State<AppState>, method: Method, uri: Uri) -> Response<Body> {
     if method != Method::GET && method != Method::HEAD {
-        return asset::text(StatusCode::METHOD_NOT_ALLOWED, "There are only files here.\n");
+        return asset::text(StatusCode::METHOD_NOT_ALLOWED, "Only GET and HEAD are allowed.\n");
     }
     if let Some(response) = background_file(app.background.as_deref(), uri.path()) {
         return response;
@@ -179,7 +178,7 @@ async fn file(State(app): State<AppState>, method: Method, uri: Uri) -> Response
     }
 }
 
-/// The background that the page draws below the field; `null` if there is none.
+/// The background below the field; `null` without one.
 fn background_file(background: Option<&Background>, path: &str) -> Option<Response<Body>> {
     let image = background.and_then(|background| background.image.as_ref());
     match path {
@@ -199,7 +198,9 @@ async fn upgrade(
     uri: Uri,
     upgrade: Result<WebSocketUpgrade, WebSocketUpgradeRejection>,
 ) -> Response<Body> {
-    let Ok(upgrade) = upgrade else { return asset::text(StatusCode::BAD_REQUEST, "Only websockets here.\n") };
+    let Ok(upgrade) = upgrade else {
+        return asset::text(StatusCode::BAD_REQUEST, "Only WebSocket connections are allowed.\n");
+    };
     if let Err(reason) = AccessControl::check_origin(text_of(&headers, &HOST), text_of(&headers, &ORIGIN)) {
         return asset::text(StatusCode::FORBIDDEN, &reason);
     }
@@ -213,7 +214,7 @@ async fn upgrade(
     upgrade.on_upgrade(move |socket| socket::serve(socket, game.unwrap_or(app.shown), access, room))
 }
 
-/// A header as text. A header that is not text counts as a wrong one.
+/// A header as text. One that is not text counts as wrong.
 fn text_of<'a>(headers: &'a HeaderMap, name: &HeaderName) -> Option<&'a str> {
     headers.get(name).map(|value| value.to_str().unwrap_or("?"))
 }

@@ -6,25 +6,26 @@ use super::view::{Access, Budget, Outgoing, Viewer};
 use std::collections::VecDeque;
 use std::time::Instant;
 
-/// The maximum number of frames sent and not drawn yet.
+/// Maximum number of frames sent and not yet drawn.
 const UNDRAWN_MAX: u8 = 2;
 /// After this much text, bytes, a ping checks that it has arrived. The page acknowledges drawn
 /// frames, but not text.
 const UNCONFIRMED_MAX: usize = 4096;
-/// Upper bound of queued refusals; a page that sends bad requests faster than it reads misses some.
+/// Maximum number of queued refusals. A page that sends bad requests faster than it reads misses
+/// some.
 const REFUSALS_MAX: usize = 8;
 
 /// The session with one page.
 pub struct PageSession {
     viewer: Box<dyn Viewer>,
     access: Access,
-    /// The number of frames sent and not drawn yet.
+    /// Frames sent and not yet drawn.
     undrawn: u8,
     /// Text sent since the last ping, bytes.
     unconfirmed: usize,
-    /// The last ping made, and the last one returned.
+    /// The last ping sent, and the last one returned.
     pings: (u64, u64),
-    /// Refusals to be sent: the request, and the reason.
+    /// Refusals to send: the request and the reason.
     refusals: VecDeque<(String, String)>,
 }
 
@@ -44,7 +45,7 @@ impl PageSession {
     pub fn receive(&mut self, text: &str, now: Instant) {
         let ask: PageRequest = match serde_json::from_str(text) {
             Ok(ask) => ask,
-            Err(e) => return self.refuse("message", format!("not understood: {e}")),
+            Err(e) => return self.refuse("message", format!("invalid message: {e}")),
         };
         if ask == PageRequest::Ack {
             self.undrawn = self.undrawn.saturating_sub(1);
@@ -53,10 +54,8 @@ impl PageSession {
         let is_allowed = self.viewer.mode() == Mode::Replay || self.access >= ask.needs();
         if !is_allowed {
             let reason = match self.access {
-                Access::Watch => "this page may only look: open it by its address with the token",
-                _ => {
-                    "this page may only look at real boats and stop them: open it by its address with the operator's token"
-                }
+                Access::Watch => "this page may only watch: open it with the token",
+                _ => "this page may only watch and stop real boats: open it with the operator's token",
             };
             return self.refuse(ask.name(), reason.to_owned());
         }
@@ -67,10 +66,10 @@ impl PageSession {
 
     /// Handles a binary message from the page.
     pub fn receive_binary(&mut self) {
-        self.refuse("message", "not a text".to_owned());
+        self.refuse("message", "binary messages are not allowed".to_owned());
     }
 
-    /// The next message to the page, if there is one.
+    /// The next message to the page, if any.
     pub fn next_message(&mut self, now: Instant) -> Option<Outgoing> {
         if let Some((what, reason)) = self.refusals.pop_front() {
             return Some(Outgoing::Text(PageMessage::Refused { what: &what, reason: &reason }.json()));
@@ -84,19 +83,19 @@ impl PageSession {
         outgoing
     }
 
-    /// What the page can take now: limits the frames and text in flight, so that none arrives late.
+    /// What the page can take now. Limits the frames and text in flight, so that none arrives late.
     fn budget(&self) -> Budget {
         let (made, back) = self.pings;
         match self.undrawn < UNDRAWN_MAX {
             false => Budget::None,
-            // Messages that can wait (helms) wait for room on the connection: an E-stop must not
+            // Messages that can wait (helms) wait for space on the connection: an E-stop must not
             // queue behind pictures.
             true if back < made || self.unconfirmed >= UNCONFIRMED_MAX => Budget::Frames,
             true => Budget::All,
         }
     }
 
-    /// A ping to send after the last message, if one is due. The page returns it at once.
+    /// A ping to send after the last message, if due. The page returns it immediately.
     pub fn ping(&mut self) -> Option<u64> {
         if self.unconfirmed < UNCONFIRMED_MAX {
             return None;
@@ -105,12 +104,11 @@ impl PageSession {
         Some(self.pings.0)
     }
 
-    /// The last ping made.
     pub(super) fn last_ping(&self) -> u64 {
         self.pings.0
     }
 
-    /// Handles a returned ping: everything sent before it has arrived.
+    /// Handles a returned ping: everything before it has arrived.
     pub fn receive_pong(&mut self, ping: u64) {
         let (made, back) = self.pings;
         self.pings.1 = back.max(ping.min(made));
@@ -135,7 +133,7 @@ mod tests {
     use proptest::prelude::*;
     use std::sync::{Arc, Mutex};
 
-    /// A viewer that offers a frame at every call and records the requests it receives.
+    /// A viewer that offers a frame at every call and records its requests.
     struct TestViewer {
         mode: Mode,
         asked: Arc<Mutex<Vec<PageRequest>>>,
@@ -175,7 +173,7 @@ mod tests {
         session.receive(r#"{"do":"ack"}"#, now);
         assert_eq!(session.next_message(now), Some(Outgoing::now(&[3])));
         assert_eq!(session.next_message(now), None);
-        // A page that acknowledges more frames than it got receives no more than two.
+        // A page that acknowledges more frames than it received gets no more than two.
         (0..9).for_each(|_| session.receive(r#"{"do":"ack"}"#, now));
         assert_eq!(std::iter::from_fn(|| session.next_message(now)).take(9).count(), 2);
     }
@@ -185,15 +183,15 @@ mod tests {
         let (mut session, _) = session(Mode::Live, Access::Watch);
         assert_eq!((session.budget(), session.ping()), (Budget::All, None));
         session.unconfirmed = UNCONFIRMED_MAX - 1;
-        assert_eq!((session.budget(), session.ping()), (Budget::All, None), "a short one does not matter");
+        assert_eq!((session.budget(), session.ping()), (Budget::All, None), "short texts do not count");
         session.unconfirmed = UNCONFIRMED_MAX;
-        assert_eq!(session.budget(), Budget::Frames, "frames go on");
+        assert_eq!(session.budget(), Budget::Frames, "frames continue");
         assert_eq!((session.ping(), session.ping(), session.last_ping()), (Some(1), None, 1));
         session.receive_pong(0);
-        assert_eq!(session.budget(), Budget::Frames, "an older ping says nothing of it");
+        assert_eq!(session.budget(), Budget::Frames, "an older ping does not confirm it");
         session.receive_pong(1);
         assert_eq!(session.budget(), Budget::All);
-        // A page that returns pings it never got has not received later messages.
+        // A page that returns pings it never received has not received later messages.
         session.receive_pong(u64::MAX);
         session.unconfirmed = UNCONFIRMED_MAX;
         assert_eq!((session.ping(), session.budget()), (Some(2), Budget::Frames));

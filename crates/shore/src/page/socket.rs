@@ -1,4 +1,4 @@
-//! A websocket: the I/O shell around the session of one page.
+//! A WebSocket: the I/O shell around the session of one page.
 
 use super::report::Shown;
 use super::routes::Room;
@@ -12,24 +12,22 @@ use std::pin::pin;
 use std::time::Duration;
 use tokio::time::{Instant, sleep_until, timeout};
 
-/// Size limit of a message from a page, bytes.
+/// Maximum size of a message from a page, bytes.
 pub(super) const RECEIVED_MAX: usize = 16 * 1024;
 /// Timeout of the close message.
 const CLOSE_LIMIT: Duration = Duration::from_millis(100);
-/// The interval of pings.
+/// Interval of pings.
 const PING: Duration = Duration::from_secs(15);
 /// A page silent for this long is disconnected.
 const DEAD: Duration = Duration::from_secs(45);
-/// The minimum interval of messages: a game at full speed changes more often than a page can draw.
+/// Minimum interval of messages: a game at full speed changes more often than a page can draw.
 const MIN_INTERVAL: Duration = Duration::from_millis(4);
 
-/// Why the session with a page ends.
 enum End {
-    /// The page has left.
     Gone,
     /// The server closes.
     Closed,
-    /// Another page needs the room.
+    /// Another page needs the slot.
     Displaced,
 }
 
@@ -43,11 +41,11 @@ struct Socket {
 struct Incoming {
     stream: SplitStream<WebSocket>,
     slot: Slot,
-    /// When its last message arrived.
+    /// When the last message arrived.
     last_received: std::time::Instant,
 }
 
-/// Talks to a page until the page leaves, the server closes, or another page needs the room.
+/// Talks to a page until the page leaves, the server closes, or another page needs the slot.
 pub(super) async fn serve(socket: WebSocket, shown: Shown, access: Access, (slot, displaced): Room) {
     let (sink, stream) = socket.split();
     let mut socket = Socket { sink, incoming: Incoming { stream, slot, last_received: clock::now() } };
@@ -58,7 +56,7 @@ pub(super) async fn serve(socket: WebSocket, shown: Shown, access: Access, (slot
     let goodbye = match end {
         End::Gone => return,
         End::Closed => None,
-        End::Displaced => Some(CloseFrame { code: close_code::AGAIN, reason: "another page needs the room".into() }),
+        End::Displaced => Some(CloseFrame { code: close_code::AGAIN, reason: "another page needs the slot".into() }),
     };
     // The page may have left already.
     drop(timeout(CLOSE_LIMIT, socket.sink.send(Message::Close(goodbye))).await);
@@ -137,11 +135,11 @@ impl Socket {
         }
     }
 
-    /// Sends a message. While a page is slow to accept it, no messages queue up behind it: the next
-    /// one is made afterwards. Messages from the page are still received meanwhile, since one may
-    /// be an E-stop. A connection that accepts nothing at all times out by itself.
+    /// Sends a message. While a page is slow to accept it, no other messages queue up; the next one
+    /// is created afterwards. Messages from the page are still received, because one may be an
+    /// E-stop. A connection that accepts nothing at all times out.
     async fn send(&mut self, message: Message, session: &mut PageSession) -> Result<(), End> {
-        // It is sent completely: a partial message cannot be withdrawn.
+        // It is sent completely, because a partial message cannot be withdrawn.
         let mut sending = pin!(self.sink.send(message));
         loop {
             tokio::select! {
@@ -183,7 +181,7 @@ fn message(outgoing: Outgoing) -> Message {
     }
 }
 
-/// Browsers automatically return the same bytes, in order of arrival.
+/// Browsers return the same bytes automatically, in order of arrival.
 fn ping(number: u64) -> Message {
     Message::Ping(number.to_be_bytes().to_vec().into())
 }

@@ -1,4 +1,4 @@
-//! Views of a page: a running game, or a recording.
+//! Views of a page: a running game or a recording.
 
 use super::message::Mode;
 use super::request::PageRequest;
@@ -6,39 +6,39 @@ use axum::body::Bytes;
 use std::time::{Duration, Instant};
 use tokio::sync::watch;
 
-/// The interval of messages with continuously changing values.
+/// Interval of messages with continuously changing values.
 pub(super) const SEND_INTERVAL: Duration = Duration::from_millis(200);
-/// The interval of helm reports to a page.
+/// Interval of helm reports to a page.
 pub(super) const HELM_INTERVAL: Duration = Duration::from_millis(500);
-/// The interval of modes of all boats to a page.
+/// Interval of all boats' modes to a page.
 pub(super) const MODES_INTERVAL: Duration = Duration::from_secs(1);
-/// The interval of a boat's estimated position to a page.
+/// Interval of a boat's estimated position to a page.
 pub(super) const ESTIMATE_INTERVAL: Duration = Duration::from_millis(100);
-/// The time between past frames for trails, simulated s.
+/// Time between past frames for trails, simulated s.
 pub(super) const TRAIL_STEP_S: f64 = 0.5;
-/// The length of trails, simulated s.
+/// Length of trails, simulated s.
 pub(super) const TRAIL_S: f64 = 60.0;
 
 /// A view that pages show.
 pub trait View: Send + Sync {
     /// Opens a viewer for one page.
     fn open_viewer(&self, access: Access) -> Box<dyn Viewer>;
-    /// Notifies viewers that there may be something new.
+    /// Notifies viewers of possible news.
     fn news(&self) -> &Changes;
 }
 
-/// The access of a page; each level includes the ones before it.
+/// The access of a page. Each level includes those before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Access {
-    /// Watch.
+    /// Watch only.
     Watch,
-    /// Control the game: pause it, stop its boats, steer those that people steer.
+    /// Control the game: pause it, stop its boats, steer those that people may steer.
     Control,
-    /// Operate real boats: arm them, give them tasks.
+    /// Operate real boats: arm them and give them tasks.
     Operate,
 }
 
-/// One page's view. It receives the time as an argument and never blocks.
+/// One page's view. Receives the time as an argument and never blocks.
 pub trait Viewer: Send {
     /// Whether this is a game or a recording.
     fn mode(&self) -> Mode;
@@ -46,24 +46,24 @@ pub trait Viewer: Send {
     /// Handles a request that the page's access permits.
     ///
     /// # Errors
-    /// The reason for a refusal.
+    /// Why the request is refused.
     fn ask(&mut self, ask: &PageRequest, now: Instant) -> Result<(), String>;
 
-    /// The next message, if there is one; replaceable messages only within the budget.
+    /// The next message, if any; replaceable messages only within the budget.
     fn next_message(&mut self, now: Instant, budget: Budget) -> Option<Outgoing>;
 
     /// When the next message is due without further events.
     fn due(&self, now: Instant) -> Option<Instant>;
 }
 
-/// Which replaceable messages may be sent to a page now.
+/// The replaceable messages that may be sent to a page now.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Budget {
     /// Nothing.
     None,
     /// Frames.
     Frames,
-    /// Frames, and the repeated messages about the selected boat.
+    /// Frames and the repeated messages about the selected boat.
     All,
 }
 
@@ -72,20 +72,20 @@ pub enum Budget {
 pub enum Outgoing {
     /// JSON.
     Text(String),
-    /// A past frame, with its leading byte.
+    /// A past frame with its leading byte.
     Past(Bytes),
-    /// A current frame, with its leading byte. The page acknowledges it once drawn.
+    /// A current frame with its leading byte. The page acknowledges it once drawn.
     Now(Bytes),
 }
 
 impl Outgoing {
-    /// A past frame, from its CDR.
+    /// Marks the CDR of a past frame.
     #[must_use]
     pub fn past(cdr: &[u8]) -> Outgoing {
         Outgoing::Past(marked(2, cdr))
     }
 
-    /// A current frame, from its CDR.
+    /// Marks the CDR of a current frame.
     #[must_use]
     pub fn now(cdr: &[u8]) -> Outgoing {
         Outgoing::Now(marked(1, cdr))
@@ -100,5 +100,5 @@ pub(super) fn marked(byte: u8, cdr: &[u8]) -> Bytes {
     bytes.into()
 }
 
-/// Notifies viewers of possible news; can be sent from any thread.
+/// Notifies viewers of possible news, from any thread.
 pub type Changes = watch::Sender<()>;

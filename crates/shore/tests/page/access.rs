@@ -1,4 +1,4 @@
-//! Which clients are admitted, and which may act.
+//! Which clients may connect, and which may act.
 
 use super::client::{Client, get};
 use super::replay::show;
@@ -33,9 +33,9 @@ fn the_page_is_served_under_its_own_names_and_sealed() {
             "referrer-policy: no-referrer",
             "cache-control: no-cache",
         ] {
-            assert!(low.contains(header), "{header} in {answer}");
+            assert!(low.contains(header), "no {header} in {answer}");
         }
-        assert!(status != 403 || answer.contains("not known as"), "it says why: {answer}");
+        assert!(status != 403 || answer.contains("not known as"), "no reason in {answer}");
     }
     drop(page);
 }
@@ -58,12 +58,12 @@ fn other_pages_open_no_websocket() {
 fn with_a_token_only_those_who_show_it_have_rights() {
     let page = page(show(), Some("a secret"), &[]);
     for (path, rights) in [("/ws", false), ("/ws?token=guess", false), ("/ws?token=a%20secret", true)] {
-        let mut client = Client::connect(page.address(), path, &[]).expect("all may look");
+        let mut client = Client::connect(page.address(), path, &[]).expect("everyone may watch");
         assert_eq!(client.text()["rights"], rights, "{path}");
     }
 }
 
-/// Sends a seek, and waits until the server has received it.
+/// Sends a seek and waits until the server has received it.
 fn seek(client: &mut Client, t_s: f64) {
     client.send(&format!(r#"{{"do":"seek","t_s":{t_s}}}"#));
     client.until("player", |player| player["t_s"] == t_s);
@@ -76,7 +76,7 @@ fn of_too_many_pages_the_one_that_idles_longest_makes_room_for_a_newcomer() {
     seek(&mut clients[0], 3.0);
     let mut newcomer = open_viewer(&page);
     assert_eq!(newcomer.text()["kind"], "hello");
-    assert_eq!(clients[1].close_code(), Some(AGAIN), "it is told why");
+    assert_eq!(clients[1].close_code(), Some(AGAIN), "the page learns why");
     clients.remove(1);
     clients.iter_mut().for_each(|client| seek(client, 4.0));
     seek(&mut newcomer, 4.0);
@@ -85,12 +85,12 @@ fn of_too_many_pages_the_one_that_idles_longest_makes_room_for_a_newcomer() {
 #[test]
 fn those_who_only_look_keep_nobody_out_who_may_act() {
     let page = page(show(), Some("secret"), &[]);
-    let come = || Client::connect(page.address(), "/ws?token=secret", &[]).expect("there is room");
+    let come = || Client::connect(page.address(), "/ws?token=secret", &[]).expect("a slot is free");
     let mut operators: Vec<Client> = (0..8).map(|_| come()).collect();
     let onlookers: Vec<Client> = (0..200).map(|_| open_viewer(&page)).collect();
     operators.iter_mut().for_each(|operator| assert_eq!(operator.text()["rights"], true));
     operators[1..].iter_mut().for_each(|operator| seek(operator, 3.0));
-    // One more takes the room of another.
+    // One more displaces another.
     let mut another = come();
     seek(&mut another, 3.0);
     assert_eq!(operators[0].close_code(), Some(AGAIN));
@@ -102,9 +102,9 @@ fn those_who_only_look_keep_nobody_out_who_may_act() {
 fn a_request_that_does_not_come_to_its_end_is_not_waited_for() {
     let page = page(show(), None, &[]);
     let end = now() + Duration::from_secs(25);
-    let mut line = TcpStream::connect(page.address()).expect("somebody listens");
-    line.set_read_timeout(Some(Duration::from_millis(100))).expect("a socket has time-outs");
-    line.write_all(b"GET / HTTP/1.1\r\nHost: localhost\r\nX-Slow: ").expect("it listens");
+    let mut line = TcpStream::connect(page.address()).expect("the server listens");
+    line.set_read_timeout(Some(Duration::from_millis(100))).expect("the timeout is valid");
+    line.write_all(b"GET / HTTP/1.1\r\nHost: localhost\r\nX-Slow: ").expect("the server listens");
     let is_cut =
         std::iter::from_fn(|| (now() < end).then(|| (line.write(b"x"), line.read(&mut [0; 64])))).find_map(|tried| {
             match tried {
@@ -113,7 +113,7 @@ fn a_request_that_does_not_come_to_its_end_is_not_waited_for() {
                 (_, Ok(_)) => None,
             }
         });
-    assert_eq!(is_cut, Some(true), "a byte now and then keeps it open");
+    assert_eq!(is_cut, Some(true), "a byte from time to time kept the connection open");
 }
 
 #[test]

@@ -9,7 +9,7 @@ use tungstenite::client::IntoClientRequest;
 use tungstenite::http::{HeaderName, HeaderValue};
 use tungstenite::{Error, Message, WebSocket};
 
-/// Timeout of every wait.
+/// Limit of every wait.
 const LIMIT: Duration = Duration::from_secs(30);
 /// How long silence must last to count.
 const QUIET: Duration = Duration::from_secs(1);
@@ -19,17 +19,17 @@ pub(crate) struct Client {
 }
 
 impl Client {
-    /// A websocket at this path with these headers, or the status of the response.
+    /// Opens a WebSocket at this path with these headers, or returns the status of the response.
     pub(crate) fn connect(address: SocketAddr, path: &str, headers: &[(&str, &str)]) -> Result<Client, u16> {
-        let mut request = format!("ws://{address}{path}").into_client_request().expect("a sound request");
+        let mut request = format!("ws://{address}{path}").into_client_request().expect("a valid request");
         for (name, value) in headers {
             let name: HeaderName = name.parse().expect("a header");
             request.headers_mut().insert(name, HeaderValue::from_str(value).expect("a value"));
         }
-        let stream = TcpStream::connect(address).expect("somebody listens");
+        let stream = TcpStream::connect(address).expect("the server listens");
         match tungstenite::client(request, stream) {
             Ok((socket, _)) => {
-                socket.get_ref().set_read_timeout(Some(Duration::from_millis(20))).expect("a socket has time-outs");
+                socket.get_ref().set_read_timeout(Some(Duration::from_millis(20))).expect("the timeout is valid");
                 Ok(Client { socket })
             }
             Err(tungstenite::HandshakeError::Failure(Error::Http(response))) => Err(response.status().as_u16()),
@@ -38,7 +38,7 @@ impl Client {
     }
 
     pub(crate) fn send(&mut self, json: &str) {
-        self.socket.send(Message::text(json)).expect("the server takes it");
+        self.socket.send(Message::text(json)).expect("the server accepts it");
     }
 
     pub(crate) fn send_raw(&mut self, message: Message) -> Result<(), Error> {
@@ -49,7 +49,7 @@ impl Client {
         self.send(r#"{"do":"ack"}"#);
     }
 
-    /// The next message within `limit`, if any; an error if the server has closed.
+    /// The next message within `limit`, if any, or an error if the server has closed.
     fn next_within(&mut self, limit: Duration) -> Result<Option<Message>, Error> {
         let end = now() + limit;
         while now() < end {
@@ -65,18 +65,18 @@ impl Client {
 
     /// The next message, which must arrive.
     pub(crate) fn next(&mut self) -> Message {
-        self.next_within(LIMIT).expect("it is open").expect("something comes in time")
+        self.next_within(LIMIT).expect("the connection is open").expect("a message arrives in time")
     }
 
     /// The next message, which must be text.
     pub(crate) fn text(&mut self) -> Value {
         match self.next() {
             Message::Text(text) => serde_json::from_str(&text).expect("texts are JSON"),
-            other => panic!("a text is expected, not {other:?}"),
+            other => panic!("expected text, got {other:?}"),
         }
     }
 
-    /// The next text of a kind that passes `is_good`; skips everything else, and acknowledges
+    /// The next text of this kind that passes `is_good`. Skips everything else and acknowledges
     /// frames.
     pub(crate) fn until(&mut self, kind: &str, is_good: impl Fn(&Value) -> bool) -> Value {
         let end = now() + LIMIT;
@@ -94,10 +94,10 @@ impl Client {
                 _ => {}
             }
         }
-        panic!("no such {kind} in time; the last was {last}");
+        panic!("no such {kind} in time; last: {last}");
     }
 
-    /// The next frame with its leading byte; skips texts.
+    /// The next frame with its leading byte. Skips texts.
     pub(crate) fn frame(&mut self) -> Vec<u8> {
         loop {
             if let Message::Binary(bytes) = self.next() {
@@ -134,14 +134,14 @@ impl Client {
     }
 }
 
-/// Requests a file as a browser does: the status and body of the response.
+/// Requests a file as a browser does. Returns the status and body of the response.
 pub(crate) fn get(address: SocketAddr, path: &str, host: &str) -> (u16, String) {
-    let mut stream = TcpStream::connect(address).expect("somebody listens");
+    let mut stream = TcpStream::connect(address).expect("the server listens");
     stream.set_read_timeout(Some(LIMIT)).expect("a socket has time-outs");
     let request = format!("GET {path} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n");
-    stream.write_all(request.as_bytes()).expect("it listens");
+    stream.write_all(request.as_bytes()).expect("the server listens");
     let mut answer = String::new();
-    stream.read_to_string(&mut answer).expect("it answers in words");
+    stream.read_to_string(&mut answer).expect("the response is text");
     let status = answer.split(' ').nth(1).and_then(|status| status.parse().ok()).expect("a status");
     (status, answer)
 }

@@ -1,4 +1,4 @@
-//! A game on a network, seen by pages: with a test sim, and over the real network.
+//! A game on a network, shown on pages: with a test sim, over the real network.
 
 use super::client::{Client, get};
 use super::source::{frame, own_boat, report, scenario, seq_of};
@@ -29,7 +29,7 @@ use std::time::Duration;
 const LIMIT: Duration = Duration::from_secs(30);
 const BLUE_ONE: VehicleId = VehicleId(0);
 
-/// A sim that plays nothing and publishes what a test asks for.
+/// A sim that plays nothing and publishes what a test requests.
 pub(crate) struct Sim {
     pub(crate) bus: Bus,
     pub(crate) port: u16,
@@ -75,7 +75,7 @@ fn steered(file: &str) -> Scenario {
 }
 
 fn json<T: serde::Serialize>(value: &T) -> Vec<u8> {
-    serde_json::to_vec(value).expect("it is JSON")
+    serde_json::to_vec(value).expect("the value is JSON")
 }
 
 impl Sim {
@@ -85,9 +85,9 @@ impl Sim {
 
     fn paced(port: u16, name: &str, scenario: Scenario, pace: &str) -> Sim {
         let net = Net { listen: vec![format!("tcp/127.0.0.1:{port}")], token: token(), ..Net::default() };
-        let game = GameName::new(name).expect("a good name");
+        let game = GameName::new(name).expect("a valid name");
         let bus = Bus::hub(&net, &game, &scenario).expect("the port is free");
-        let publisher = |key: String| bus.publisher(key, Priority::Normal).expect("it publishes");
+        let publisher = |key: String| bus.publisher(key, Priority::Normal).expect("the bus is open");
         let (frames, run) = (publisher(topic::frame(&game)), publisher(topic::run(&game)));
         let pictures = publisher(topic::picture(&game, &scenario, TeamId(0)));
         let events = Arc::new(Watched::new(vec![]));
@@ -96,7 +96,7 @@ impl Sim {
             GameInfo { version: primitives::VERSION.to_owned(), pace: pace.to_owned(), scenario: scenario.clone() };
         let wave = PlaneWave { amplitude_m: 0.25, ..PlaneWave::default() };
         let fixed = |key: String, answer: Vec<u8>| {
-            bus.answer(key, move |question| question.answer(answer.clone())).expect("it answers")
+            bus.answer(key, move |question| question.answer(answer.clone())).expect("the bus is open")
         };
         let sent = Arc::clone(&events);
         let [heard, asked] = [Arc::clone(&controls), Arc::clone(&controls)];
@@ -105,17 +105,17 @@ impl Sim {
             fixed(topic::scenario(&game), json(&info)),
             fixed(topic::water(&game), json(&Water { waves: vec![wave] })),
             bus.answer(topic::events(&game), move |question| question.answer(sent.visit(|events| json(events))))
-                .expect("it answers"),
+                .expect("the bus is open"),
             bus.answer(topic::helm(&game, &scenario, BLUE_ONE), |question| {
                 let asked: HelmQuestion = serde_json::from_slice(question.payload()).expect("a question");
                 let mode = format!("functions:{}", asked.functions);
                 question.answer(json(&Some(HelmReport { mode, ..report(BLUE_ONE) })));
             })
-            .expect("it answers"),
+            .expect("the bus is open"),
             bus.subscribe(topic::control(&game), move |bytes| {
                 heard.visit(|all| all.push(serde_json::from_slice(bytes).expect("a control")));
             })
-            .expect("it listens"),
+            .expect("the bus is open"),
             bus.answer(topic::control(&game), move |query| {
                 let Checked::Granted(control) = Guard::default().check(query.key(), query.payload(), |_| true) else {
                     panic!("a control")
@@ -123,12 +123,12 @@ impl Sim {
                 asked.visit(|all| all.push(control));
                 query.answer(token::answer(&ControlReply::Ok(())));
             })
-            .expect("it answers"),
+            .expect("the bus is open"),
             bus.subscribe(topic::matching(&game, "policy/*"), move |bytes| {
                 proposed.visit(|all| all.push(codec::decode(bytes).expect("a proposal")));
             })
-            .expect("it listens"),
-            bus.show_alive(topic::alive(&game, &bus.id())).expect("it is alive"),
+            .expect("the bus is open"),
+            bus.show_alive(topic::alive(&game, &bus.id())).expect("the bus is open"),
         ];
         Sim { bus, port, frames, run, pictures, scenario, events, controls, proposals, _standing: standing }
     }
@@ -136,17 +136,17 @@ impl Sim {
     fn show(&self, seq: u64, events: &[Logged]) {
         let mut frame = frame(&self.scenario, seq);
         frame.events = events.iter().map(|logged| EventRecord::from(*logged)).collect();
-        self.frames.send(&frame).expect("it is open");
+        self.frames.send(&frame).expect("the bus is open");
     }
 
     fn tell_run(&self, phase: Phase) {
         let run = RunState { phase, now_s: 7.0, pace: "1x".to_owned(), rate: 1.0, ..RunState::default() };
-        self.run.send_json(json(&run)).expect("it is open");
+        self.run.send_json(json(&run)).expect("the bus is open");
     }
 
     /// Waits until the page's server subscribes to frames.
     fn wait_for_subscribers(&self) {
-        wait_until("the page listens", || self.frames.is_heard() && self.run.is_heard());
+        wait_until("the page subscribes", || self.frames.is_heard() && self.run.is_heard());
     }
 
     pub(crate) fn close(self) {
@@ -167,7 +167,7 @@ fn port() -> u16 {
 
 fn live(port: u16, game: Option<&str>) -> Arc<dyn View> {
     let net = Net { connect: vec![format!("tcp/127.0.0.1:{port}")], token: token(), ..Net::default() };
-    let game = game.map(|name| GameName::new(name).expect("a good name"));
+    let game = game.map(|name| GameName::new(name).expect("a valid name"));
     let show = LiveView::open(net.into(), game, Box::new(|_| ()), |_| Err("no missions here".to_owned()));
     Arc::new(show.expect("a thread"))
 }
@@ -197,7 +197,7 @@ fn a_page_sees_frames_their_past_and_how_the_run_stands() {
     let (sim, page, mut client) = meet("pav01_vs_pav01.toml");
     sim.tell_run(Phase::Paused);
     client.until("state", |state| state["phase"] == "paused" && state["now_s"] == 7.0 && state["can_speed"] == true);
-    // One after the other: in a burst some would be dropped, perhaps the last.
+    // One by one: in a burst some would be dropped, perhaps the last.
     for seq in 0..=100 {
         sim.show(seq, &[]);
         let shown = std::iter::from_fn(|| {
@@ -206,9 +206,9 @@ fn a_page_sees_frames_their_past_and_how_the_run_stands() {
             Some(frame)
         })
         .find(|frame| seq_of(frame) == seq);
-        assert_eq!(shown.expect("the newest comes")[0], 1);
+        assert_eq!(shown.expect("the newest frame arrives")[0], 1);
     }
-    // A new page gets the past frames first.
+    // A new page receives the past frames first.
     let mut newcomer = open_viewer(&page);
     assert_eq!(newcomer.text()["chart"]["waves"][0]["amplitude_m"], 0.25);
     let past: Vec<u64> =
@@ -227,7 +227,7 @@ fn events_come_with_frames_and_missed_ones_are_asked_for() {
     sim.events.visit(|events| *events = vec![outcome(2), outcome(4)]);
     sim.show(1, &[tagged(2)]);
     client.until("events", |events| events["events"][0]["tick"] == 2);
-    // The frame between is lost, with its event.
+    // The frame in between is lost with its event.
     sim.show(3, &[]);
     let news = client.until("events", |events| events["events"].as_array().is_some_and(|all| !all.is_empty()));
     let last = news["events"].as_array().and_then(|all| all.last()).expect("an event");
@@ -250,9 +250,9 @@ fn what_pages_ask_of_a_game_reaches_it_if_they_have_rights() {
     for (ask, why) in [
         (r#"{"do":"speed","factor":0}"#, "expected 0.01 to 1000"),
         (r#"{"do":"speed","factor":1001}"#, "expected 0.01 to 1000"),
-        (r#"{"do":"speed","factor":null}"#, "only a game in lockstep"),
-        (r#"{"do":"seek","t_s":0}"#, "cannot be wound"),
-        (r#"{"do":"step","by":1}"#, "cannot be wound"),
+        (r#"{"do":"speed","factor":null}"#, "only a game in lockstep can"),
+        (r#"{"do":"seek","t_s":0}"#, "cannot be rewound"),
+        (r#"{"do":"step","by":1}"#, "cannot be rewound"),
     ] {
         client.send(ask);
         let refused = client.until("refused", |_| true);
@@ -264,7 +264,7 @@ fn what_pages_ask_of_a_game_reaches_it_if_they_have_rights() {
     assert_eq!(observer.text()["rights"], false);
     observer.send(r#"{"do":"control","what":"stop"}"#);
     assert_eq!(observer.until("refused", |_| true)["what"], "control");
-    let mut master = Client::connect(locked.address(), "/ws?token=secret", &[]).expect("all may look");
+    let mut master = Client::connect(locked.address(), "/ws?token=secret", &[]).expect("everyone may watch");
     master.send(r#"{"do":"control","what":"halt"}"#);
     assert!(sim.controls.wait(LIMIT, |all| all.last() == Some(&Control::Halt)));
     sim.controls.visit(|all| assert!(!all.contains(&Control::Stop)));
@@ -276,8 +276,9 @@ fn idle_connections_keep_no_page_out_and_its_e_stop_goes_through() {
     let port = port();
     let sim = Sim::open(port, "pond", steered("pav01_vs_pav01.toml"));
     let page = super::page(live(port, None), None, &[]);
-    let idle: Vec<TcpStream> = (0..300).map(|_| TcpStream::connect(page.address()).expect("it listens")).collect();
-    // A browser fetches the page and its files first, then opens the websocket.
+    let idle: Vec<TcpStream> =
+        (0..300).map(|_| TcpStream::connect(page.address()).expect("the server listens")).collect();
+    // A browser fetches the page and its files before it opens the WebSocket.
     let (status, _) = get(page.address(), "/", &page.address().to_string());
     assert_eq!(status, 200);
     let mut client = open_viewer(&page);
@@ -301,7 +302,7 @@ fn a_game_in_lockstep_goes_as_fast_as_can_be_if_asked() {
     sim.close();
 }
 
-/// Another server in the same game.
+/// Another server for the same game.
 fn live_again(sim: &Sim) -> Arc<dyn View> {
     live(sim.port, Some("pond"))
 }
@@ -326,13 +327,16 @@ fn one_page_at_a_time_steers_a_boat_that_can_be_steered() {
     assert_eq!(other.until("refused", |_| true)["what"], "drive");
     other.send(r#"{"do":"drive","vehicle":"blue_two","course_deg":0,"speed_m_s":1}"#);
     let refused = other.until("refused", |_| true);
-    assert!(refused["reason"].as_str().is_some_and(|reason| reason.contains("heeds no policy")), "{refused}");
+    assert!(
+        refused["reason"].as_str().is_some_and(|reason| reason.contains("does not accept an external policy")),
+        "{refused}"
+    );
     one.send(r#"{"do":"let_go","vehicle":"blue_one"}"#);
     other.until("drive", |drive| drive["by"].is_null());
     other.send(steer);
     other.until("drive", |drive| drive["by"] == "you");
     one.until("drive", |drive| drive["by"] == "other");
-    // After two seconds of silence, it has lost the lock.
+    // After two seconds of silence, the page has lost the lock.
     one.until("drive", |drive| drive["by"].is_null());
     one.send(steer);
     other.until("drive", |drive| drive["by"] == "other");
@@ -345,7 +349,7 @@ fn one_page_at_a_time_steers_a_boat_that_can_be_steered() {
 fn a_selected_boat_tells_what_its_helm_thinks_and_where_it_believes_to_be() {
     let (sim, page, mut client) = meet("pav01_vs_pav01.toml");
     let mut other = open_viewer(&page);
-    assert!(!sim.pictures.is_heard(), "nobody looks at a boat yet");
+    assert!(!sim.pictures.is_heard(), "no page selects a boat yet");
     client.send(r#"{"do":"select","vehicle":"blue_one","functions":true}"#);
     other.send(r#"{"do":"select","vehicle":"red_one","functions":false}"#);
     let helm = client.until("helm", |helm| helm["report"]["mode"] == "functions:true");
@@ -355,15 +359,15 @@ fn a_selected_boat_tells_what_its_helm_thinks_and_where_it_believes_to_be() {
     wait_until("the picture of its team is wanted", || sim.pictures.is_heard());
     let stamp = Stamp { valid_ns: SimTime::from_s(2.0), seq: 20, version: Picture::VERSION };
     let picture = Picture { stamp, own: vec![own_boat(BLUE_ONE)], ..Picture::default() };
-    sim.pictures.send(&picture).expect("it is open");
+    sim.pictures.send(&picture).expect("the bus is open");
     let estimate = client.until("estimate", |_| true);
     assert_eq!(
         (&estimate["vehicle"], &estimate["x"], &estimate["at_s"]),
         (&json!("blue_one"), &json!(4.0), &json!(2.0))
     );
     client.send(r#"{"do":"select","vehicle":null}"#);
-    // The other page selects a red boat, so blue's picture is no longer wanted.
-    wait_until("nobody looks at it any more", || !sim.pictures.is_heard());
+    // The other page selects a red boat, so blue's picture is no longer needed.
+    wait_until("no page selects it any more", || !sim.pictures.is_heard());
     sim.close();
 }
 
@@ -372,10 +376,10 @@ fn gateways_tell_and_real_boats_keep_their_pace() {
     let (sim, _page, mut client) = meet("mixed_2v2.toml");
     let external = sim.scenario.vehicles.iter().find(|v| v.source == scenario::Source::External);
     let name = external.expect("a real boat").name.clone();
-    let game = GameName::new("pond").expect("a good name");
-    let gateway = sim.bus.publisher(topic::status(&game, &name), Priority::Normal).expect("it publishes");
+    let game = GameName::new("pond").expect("a valid name");
+    let gateway = sim.bus.publisher(topic::status(&game, &name), Priority::Normal).expect("the bus is open");
     let status = GatewayStatus { vehicle: name.clone(), state: "armed".to_owned(), ..GatewayStatus::default() };
-    gateway.send_json(json(&status)).expect("it is open");
+    gateway.send_json(json(&status)).expect("the bus is open");
     let sent = client.until("status", |_| true);
     assert_eq!((&sent["vehicle"], &sent["status"]["state"]), (&json!(name), &json!("armed")));
     client.send(r#"{"do":"speed","factor":4}"#);
@@ -392,23 +396,23 @@ fn an_e_stop_goes_straight_to_gateways_too_with_a_game_and_after_it() {
     let externals: Vec<String> =
         sim.scenario.externals().map(|at| sim.scenario.vehicles[at.index()].name.clone()).collect();
     for (vehicle, control) in externals.iter().zip([control, Some("localhost:99999".to_owned())]) {
-        let game = GameName::new("pond").expect("a good name");
-        let publisher = sim.bus.publisher(topic::status(&game, vehicle), Priority::Normal).expect("it publishes");
+        let game = GameName::new("pond").expect("a valid name");
+        let publisher = sim.bus.publisher(topic::status(&game, vehicle), Priority::Normal).expect("the bus is open");
         let status = GatewayStatus { vehicle: vehicle.clone(), control, ..GatewayStatus::default() };
-        publisher.send_json(json(&status)).expect("it is open");
+        publisher.send_json(json(&status)).expect("the bus is open");
         client.until("status", |status| status["vehicle"] == vehicle.as_str());
     }
     let is_stopped = |client: &mut Client| {
         client.send(r#"{"do":"control","what":"e_stop"}"#);
-        let (stream, _) = gateway.accept().expect("it is bound");
-        // Its status is queried meanwhile.
+        let (stream, _) = gateway.accept().expect("the page connects");
+        // Meanwhile the gateway's status is queried.
         let mut lines = BufReader::new(&stream).lines().map(|line| line.expect("a request"));
         assert!(lines.any(|line| line == "{\"body\":{\"fleet\":\"e_stop\"}}"));
         let reply = OperatorReply { refused: None, status: GatewayStatus::default() };
-        (&stream).write_all(&[token::answer(&reply), b"\n".to_vec()].concat()).expect("it listens");
+        (&stream).write_all(&[token::answer(&reply), b"\n".to_vec()].concat()).expect("the page reads the reply");
     };
     is_stopped(&mut client);
-    assert!(sim.controls.wait(LIMIT, |all| all.last() == Some(&Control::EStop)), "and the game is told");
+    assert!(sim.controls.wait(LIMIT, |all| all.last() == Some(&Control::EStop)), "the game receives the E-stop too");
     // Other requests wait their turn.
     for _ in 0..200 {
         client.send(r#"{"do":"control","what":"pause"}"#);
@@ -418,14 +422,14 @@ fn an_e_stop_goes_straight_to_gateways_too_with_a_game_and_after_it() {
     client.until("state", |state| state["phase"] == "gone");
     is_stopped(&mut client);
     client.send(r#"{"do":"control","what":"halt"}"#);
-    client.until("refused", |refused| refused["what"] == "control" && refused["reason"] == "there is no game now");
+    client.until("refused", |refused| refused["what"] == "control" && refused["reason"] == "the game is gone");
 }
 
 #[test]
 fn a_game_that_goes_is_gone_and_the_next_is_another() {
     let port = port();
     let (_page, mut client) = visit(live(port, None));
-    assert_eq!(client.rest(), [], "there is no game yet");
+    assert_eq!(client.rest(), [], "no game has been found yet");
     let first = Sim::open(port, "pond", scenario("pav01_vs_pav01.toml"));
     assert_eq!(client.until("hello", |_| true)["game"], "pond");
     first.wait_for_subscribers();
@@ -439,7 +443,7 @@ fn a_game_that_goes_is_gone_and_the_next_is_another() {
     assert_eq!(client.until("hello", |_| true)["game"], "lake");
     client.until("events", |events| events["reset"] == true);
     client.until("state", |state| state["phase"] == "waiting");
-    second.controls.visit(|all| assert_eq!(all.len(), 0, "what was asked of the first game is not done to the second"));
+    second.controls.visit(|all| assert_eq!(all.len(), 0, "the second game received a command for the first"));
     second.close();
 }
 
@@ -447,15 +451,15 @@ fn a_game_that_goes_is_gone_and_the_next_is_another() {
 fn noise_on_the_network_is_ignored() {
     let (sim, _page, mut client) = meet("pav01_vs_pav01.toml");
     for noise in [&b""[..], b"ahoy", &[0, 1, 0, 0], &[0; 64], &[255; 200]] {
-        sim.frames.send_raw(noise.to_vec()).expect("it is open");
-        sim.run.send_raw(noise.to_vec()).expect("it is open");
+        sim.frames.send_raw(noise.to_vec()).expect("the bus is open");
+        sim.run.send_raw(noise.to_vec()).expect("the bus is open");
     }
     let mut odd = frame(&sim.scenario, 1);
     odd.stamp.valid_ns = SimTime(i64::MIN);
-    sim.frames.send(&odd).expect("it is open");
+    sim.frames.send(&odd).expect("the bus is open");
     odd = frame(&sim.scenario, 1);
     odd.events = vec![EventRecord { tick: 1, at_ns: SimTime(1), kind: 8, subject: 900, object: 901 }];
-    sim.frames.send(&odd).expect("it is open");
+    sim.frames.send(&odd).expect("the bus is open");
     sim.show(2, &[tagged(1)]);
     let events = client.until("events", |events| events["events"].as_array().is_some_and(|all| !all.is_empty()));
     assert_eq!(events["events"][0]["event"], "untagged");

@@ -1,4 +1,4 @@
-//! The page's server, seen from a browser: over TCP, with websockets.
+//! The page's server as a browser sees it: over TCP, with WebSockets.
 
 mod access;
 mod client;
@@ -44,5 +44,5 @@ fn visit(show: Arc<dyn View>) -> (Page, Client) {
 
 /// A page connected to the server.
 fn open_viewer(page: &Page) -> Client {
-    Client::connect(page.address(), "/ws", &[]).expect("all may look")
+    Client::connect(page.address(), "/ws", &[]).expect("everyone may watch")
 }

@@ -20,11 +20,11 @@ const SIMULATED: &str = "blue_two";
 /// The commands that a gateway received.
 type Told = Arc<Watched<Vec<OperatorCommand>>>;
 
-/// A gateway that arms after `takes`, refuses a release, and cannot prove the token.
+/// A gateway that takes `takes` to arm, refuses a release, and cannot prove the token.
 fn gateway(bus: &Bus, takes: Duration) -> (Told, Declaration) {
     let told = Told::default();
     let noted = Arc::clone(&told);
-    let key = topic::operate(&GameName::new("pond").expect("a good name"), BOAT);
+    let key = topic::operate(&GameName::new("pond").expect("a valid name"), BOAT);
     let answer = move |question: bus::Query| {
         let Checked::Granted(command) = Guard::default().check(question.key(), question.payload(), |_| true) else {
             panic!("a command")
@@ -37,13 +37,13 @@ fn gateway(bus: &Bus, takes: Duration) -> (Told, Declaration) {
         let status = GatewayStatus { vehicle: BOAT.to_owned(), state: "armed".to_owned(), ..GatewayStatus::default() };
         question.answer(token::answer(&OperatorReply { refused, status }));
     };
-    let standing = bus.answer(key, answer).expect("it answers");
+    let standing = bus.answer(key, answer).expect("the bus is open");
     (told, standing)
 }
 
 fn operator(page: &Page) -> Client {
     let path = format!("/ws?token={}", page.operator_token());
-    Client::connect(page.address(), &path, &[]).expect("all may look")
+    Client::connect(page.address(), &path, &[]).expect("everyone may watch")
 }
 
 fn command(vehicle: &str, command: &str) -> String {
@@ -61,7 +61,7 @@ fn only_who_shows_the_operators_token_arms_and_everybody_who_may_stop_disarms() 
         let refused = control.until("refused", |_| true);
         assert!(refused["reason"].as_str().is_some_and(|reason| reason.contains("operator's token")), "{refused}");
     }
-    assert!(told.visit(|told| told.is_empty()), "nothing of it reaches the gateway");
+    assert!(told.visit(|told| told.is_empty()), "no command reaches the gateway");
     control.send(r#"{"do":"control","what":"release"}"#);
     control.until("refused", |refused| refused["what"] == "control");
     operator.send(r#"{"do":"control","what":"release"}"#);
@@ -93,9 +93,9 @@ fn only_who_shows_the_operators_token_arms_and_everybody_who_may_stop_disarms() 
 #[test]
 fn no_flood_of_commands_keeps_a_stop_waiting() {
     let (sim, page, mut control) = meet("mixed_2v2.toml");
-    // A separate process has its own link. It takes longer than the timeout of an answer.
+    // A separate process has its own link. It takes longer than a reply's timeout.
     let net = Net { connect: vec![format!("tcp/127.0.0.1:{}", sim.port)], token: token(), ..Net::default() };
-    let other = Bus::leaf(&net).expect("the sim is there");
+    let other = Bus::leaf(&net).expect("the sim is reachable");
     let (_, standing) = gateway(&other, Duration::from_secs(4));
     let mut operator = operator(&page);
     operator.until("hello", |_| true);
@@ -114,8 +114,8 @@ fn no_flood_of_commands_keeps_a_stop_waiting() {
 fn what_is_drawn_below_the_field_is_served_and_null_without() {
     let dir = tempfile::tempdir().expect("a directory");
     let file = dir.path().join("site.geojson");
-    std::fs::write(&file, r#"{"type":"Point","coordinates":[-73.9,41.3]}"#).expect("it is written");
-    let with = Background::read(&file).expect("it is good");
+    std::fs::write(&file, r#"{"type":"Point","coordinates":[-73.9,41.3]}"#).expect("the file can be written");
+    let with = Background::read(&file).expect("the background is valid");
     for (background, want) in
         [(Some(with), r#"{"areas":[],"lines":[],"name":"site.geojson","points":[[-73.9,41.3,""]]}"#), (None, "null")]
     {

@@ -1,4 +1,4 @@
-//! A recording, replayed by pages.
+//! A recording replayed on pages.
 
 use super::source::{Rememberer, bytes_of_recording, recorded, recorded_in, seq_of, two_minutes};
 use super::{open_viewer, page, visit};
@@ -33,7 +33,7 @@ fn a_replay_says_hello_tells_all_events_and_stands_at_the_beginning() {
     let first = client.frame();
     assert_eq!((first[0], seq_of(&first)), (1, 0));
     client.ack();
-    assert_eq!(client.rest(), [], "it stands");
+    assert_eq!(client.rest(), [], "the replay is paused");
 }
 
 #[test]
@@ -57,7 +57,7 @@ fn seeking_brings_the_past_and_the_moment() {
         (r#"{"do":"seek","t_s":-5}"#, 0),
     ] {
         client.send(ask);
-        let shown = std::iter::from_fn(|| Some(client.frame())).find(|frame| frame[0] == 1).expect("one comes");
+        let shown = std::iter::from_fn(|| Some(client.frame())).find(|frame| frame[0] == 1).expect("a frame arrives");
         assert_eq!(seq_of(&shown), want, "{ask}");
         client.ack();
     }
@@ -131,7 +131,7 @@ fn curves_are_of_the_whole_recording() {
     assert_eq!((&score["vehicle"], &score["boat"], &score["range_m"]), (&json!(null), &json!(null), &json!(null)));
     let times = score["t_s"].as_array().expect("times");
     assert_eq!((times.len(), &times[1200]), (1201, &json!(120.0)));
-    assert_eq!(score["score"].as_array().map(Vec::len), Some(2), "one for each team");
+    assert_eq!(score["score"].as_array().map(Vec::len), Some(2), "one per team");
     client.send(r#"{"do":"curves","vehicle":"blue_one","other":"red_one"}"#);
     let curves = client.until("curves", |curves| curves["vehicle"] == "blue_one");
     for key in ["speed_m_s", "ordered_speed_m_s", "heading_deg", "ordered_heading_deg", "flag_m", "error_m"] {
@@ -162,7 +162,8 @@ fn what_a_recording_cannot_do_is_refused() {
 fn a_frame_that_is_damaged_is_left_out_and_all_others_are_shown() {
     let mut bytes = bytes_of_recording(4);
     let frame = Recording::of(bytes.clone()).expect("a recording").frame(1).bytes;
-    let place = bytes.windows(frame.len()).position(|window| window == frame).expect("it is in it");
+    let place =
+        bytes.windows(frame.len()).position(|window| window == frame).expect("the recording contains the frame");
     // The encapsulation of a message identifies it as CDR.
     bytes[place] = 0xff;
     let recorded = recorded_in(bytes);
@@ -205,7 +206,7 @@ fn any_room() -> impl Strategy<Value = Budget> {
     prop::sample::select(vec![Budget::None, Budget::Frames, Budget::All])
 }
 
-/// Whether it is a repeated message about the selected boat.
+/// Whether this is a repeated message about the selected boat.
 fn is_of_selected(said: &Outgoing) -> bool {
     let kinds = [r#"{"kind":"helm""#, r#"{"kind":"estimate""#];
     matches!(said, Outgoing::Text(text) if kinds.iter().any(|kind| text.starts_with(kind)))
@@ -218,10 +219,10 @@ fn what_can_wait_waits_until_there_is_room() {
     while viewer.next_message(now, Budget::All).is_some() {}
     viewer
         .ask(&PageRequest::Select { vehicle: Some("red_one".to_owned()), functions: true }, now)
-        .expect("it is there");
+        .expect("the boat exists");
     let said: Vec<Outgoing> = std::iter::from_fn(|| viewer.next_message(now, Budget::Frames)).collect();
     assert!(!said.iter().any(is_of_selected), "{said:?}");
-    let estimate = viewer.next_message(now, Budget::All).expect("it has waited");
+    let estimate = viewer.next_message(now, Budget::All).expect("an estimate is waiting");
     assert!(is_of_selected(&estimate), "{estimate:?}");
 }
 
@@ -238,7 +239,7 @@ proptest! {
             drop(viewer.ask(&ask, now));
             now += Duration::from_millis(wait_ms);
             let said: Vec<Outgoing> = std::iter::from_fn(|| viewer.next_message(now, room)).take(1000).collect();
-            prop_assert!(said.len() < 1000, "it has no end of things to say after {ask:?}");
+            prop_assert!(said.len() < 1000, "the messages do not end after {ask:?}");
             let frames: Vec<u64> = said.iter().filter_map(|said| match said {
                 Outgoing::Past(bytes) | Outgoing::Now(bytes) => Some(seq_of(bytes)),
                 Outgoing::Text(_) => None,

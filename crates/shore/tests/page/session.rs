@@ -9,10 +9,10 @@ use std::sync::mpsc::{Sender, channel};
 use std::time::{Duration, Instant};
 use tungstenite::Message;
 
-/// A view that sends without pause, ignores the budget, and passes requests on.
+/// A view that sends continuously, ignores the budget, and passes requests on.
 struct Talker(Sender<PageRequest>, Changes);
 
-/// A viewer of it.
+/// The viewer of `Talker`.
 struct Ear(Sender<PageRequest>);
 
 impl View for Talker {
@@ -39,7 +39,7 @@ impl Viewer for Ear {
     }
 }
 
-/// The frames in flight to a page that draws nothing.
+/// The numbers of the frames sent to a page that draws nothing.
 fn frames(messages: &[Message]) -> Vec<u64> {
     let bytes = messages.iter().filter_map(|message| match message {
         Message::Binary(bytes) if bytes.first() == Some(&1) => Some(bytes),
@@ -53,27 +53,27 @@ fn a_page_that_draws_nothing_gets_two_frames() {
     let (_page, mut client) = visit(show());
     client.send(r#"{"do":"control","what":"resume"}"#);
     let messages: Vec<Message> = std::iter::from_fn(|| Some(client.next())).take(20).collect();
-    assert_eq!(frames(&messages).len(), 2, "while it plays for seconds");
+    assert_eq!(frames(&messages).len(), 2, "after seconds of playing");
     client.send(r#"{"do":"control","what":"pause"}"#);
     let paused = client.until("player", |player| player["playing"] == false);
     assert!(frames(&client.rest()).is_empty());
     client.ack();
     let newest = (paused["t_s"].as_f64().expect("a time") * 10.0 + 1e-6) as u64;
-    assert_eq!(frames(&client.rest()), [newest], "those between are left out");
+    assert_eq!(frames(&client.rest()), [newest], "the frames in between are skipped");
 }
 
 #[test]
 fn a_page_is_heard_while_it_takes_nothing() {
     let (asked, asks) = channel();
     let (_page, mut client) = visit(Arc::new(Talker(asked, Changes::default())));
-    // The connection's buffers are full once the page has read nothing for a while.
+    // The connection's buffers fill up once the page has read nothing for a while.
     assert!(asks.recv_timeout(Duration::from_secs(1)).is_err());
     for ask in [r#"{"do":"control","what":"halt"}"#, r#"{"do":"control","what":"e_stop"}"#] {
         client.send(ask);
-        let want: PageRequest = serde_json::from_str(ask).expect("an ask");
+        let want: PageRequest = serde_json::from_str(ask).expect("a valid request");
         assert_eq!(asks.recv_timeout(Duration::from_secs(10)), Ok(want));
     }
-    // The message partly sent meanwhile arrives complete.
+    // The message sent partly meanwhile arrives complete.
     (0..40).for_each(|_| assert_eq!(client.next(), Message::text("x".repeat(1 << 20))));
 }
 
@@ -110,10 +110,10 @@ fn garbage_is_refused_and_survived() {
         Message::text("[".repeat(10_000)),
         Message::binary(vec![0; 100]),
     ] {
-        rude.send_raw(garbage).expect("it listens on");
+        rude.send_raw(garbage).expect("the server still listens");
         assert_eq!(rude.until("refused", |_| true)["what"], "message");
     }
-    // A message that is too long ends the session of this page only.
+    // A message that is too long ends only this page's session.
     drop(rude.send_raw(Message::text("x".repeat(17 * 1024))));
     assert!(rude.is_hung_up_on());
     polite.send(r#"{"do":"seek","t_s":5}"#);

@@ -19,7 +19,7 @@ pub(crate) fn scenario(file: &str) -> Scenario {
     scenario::load(&file).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// The frame of a decision in a game of ten decisions a second.
+/// The frame of a decision in a game with ten decisions per second.
 pub(crate) fn frame(scenario: &Scenario, seq: u64) -> Frame {
     Frame {
         stamp: Stamp { valid_ns: SimTime(100_000_000 * seq as i64), seq, version: Frame::VERSION },
@@ -62,25 +62,22 @@ pub(crate) fn report(vehicle: VehicleId) -> HelmReport {
     }
 }
 
-/// A recording of two minutes.
 pub(crate) fn two_minutes() -> Arc<Recorded> {
     static RECORDED: OnceLock<Arc<Recorded>> = OnceLock::new();
     Arc::clone(RECORDED.get_or_init(|| recorded(1201)))
 }
 
-/// A recording of `frames` frames without an end record, with an event in the eleventh, one set of
-/// pictures, and a failsafe.
+/// A recording of `frames` frames without an end record. The eleventh frame has an event; there is
+/// one set of pictures and a failsafe.
 pub(crate) fn recorded(frames: u64) -> Arc<Recorded> {
     recorded_in(bytes_of_recording(frames))
 }
 
-/// The recording in these bytes.
 pub(crate) fn recorded_in(bytes: Vec<u8>) -> Arc<Recorded> {
     let recording = Recording::of(bytes).expect("a recording");
     Arc::new(Recorded::new(Arc::new(recording), "made_up.mcap".to_owned()))
 }
 
-/// The bytes of such a recording.
 pub(crate) fn bytes_of_recording(frames: u64) -> Vec<u8> {
     let scenario = scenario("pav01_vs_pav01.toml");
     let picture = |team: u8| {
@@ -115,12 +112,15 @@ pub(crate) fn bytes_of_recording(frames: u64) -> Vec<u8> {
         },
         water: Water::default(),
     };
-    let mut writer = Writer::begin(Cursor::new(Vec::new()), &header.opening()).expect("it begins");
-    (0..frames).map(decision).chain([status]).for_each(|entry| writer.write(&entry, 1).expect("it is written"));
-    writer.end(recording::Facts::new()).expect("it ends").into_inner()
+    let mut writer = Writer::begin(Cursor::new(Vec::new()), &header.opening()).expect("the recording can be written");
+    (0..frames)
+        .map(decision)
+        .chain([status])
+        .for_each(|entry| writer.write(&entry, 1).expect("the recording can be written"));
+    writer.end(recording::Facts::new()).expect("the recording can be written").into_inner()
 }
 
-/// Helms that report only the decision they were asked about.
+/// Helms that report only the decision asked for.
 pub(crate) struct Rememberer;
 
 impl Helms for Rememberer {

@@ -15,16 +15,16 @@ use primitives::{SimTime, VehicleId};
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
-/// Limit of messages read before the game continues.
+/// Maximum number of messages read before the game continues.
 const MESSAGES_MAX: usize = 1024;
-/// Limit of questions answered before the game continues.
+/// Maximum number of questions answered before the game continues.
 const ANSWERS_MAX: usize = 4;
 
 impl GameServer<'_> {
-    /// Processes incoming messages, waiting up to `limit` for the first. Commands come first.
+    /// Handles incoming messages, commands first. Waits up to `limit` for the first one.
     pub(in crate::node) fn listen(&mut self, limit: Duration) {
-        // Before and after waiting: time outside the wait is the sim's own work, and if it exceeds
-        // a second the sim was suspended.
+        // Before and after waiting: the rest of the time is the sim's own work. If that exceeds a
+        // second, the sim was suspended.
         self.time.pass(clock::now(), Duration::ZERO);
         let mut next = self.inbox.next_within(limit);
         self.time.pass(clock::now(), limit);
@@ -32,7 +32,7 @@ impl GameServer<'_> {
         self.answer();
         // Messages may arrive faster than they are read: the game continues anyway.
         for _ in 0..MESSAGES_MAX {
-            // Before each message: a flood delays an E-stop by at most one of them.
+            // Before each message, so that a flood delays an E-stop by at most one of them.
             self.obey();
             let Some(incoming) = next else { return };
             self.take_in(incoming);
@@ -41,7 +41,8 @@ impl GameServer<'_> {
         next.into_iter().for_each(|incoming| self.take_in(incoming));
     }
 
-    /// Answers some of the waiting questions. They take time, and the sender can wait or ask again.
+    /// Answers some of the waiting questions. Answers take time, and the sender can wait or ask
+    /// again.
     fn answer(&mut self) {
         let questions: Vec<(Question, Query)> =
             std::iter::from_fn(|| self.questions.take_now()).take(ANSWERS_MAX).collect();
@@ -79,11 +80,11 @@ impl GameServer<'_> {
                 }
             }
             Incoming::Gone(node) => {
-                // A gateway reconnects with the same boat at once; nothing waits for it, so no
+                // A gateway reconnects with the same boat at once, and nothing waits for it, so no
                 // patience is needed.
                 self.gateways.gone(&node);
-                // Links may have timed out while the sim was suspended: the patience then decides
-                // whether agents come back.
+                // Links may have timed out while the sim was suspended; the patience then decides
+                // whether agents return.
                 if !self.time.is_recovering() {
                     let vehicles = self.agents.gone(&node);
                     self.lose_agents(vehicles);
@@ -133,7 +134,7 @@ impl GameServer<'_> {
         self.refusals.add(Refusal::BadNumber, u64::from(taken.is_err()));
     }
 
-    /// Publishes a gateway's report about a boat, if the gateway has joined for that boat.
+    /// Publishes a gateway's report about a boat if the gateway has joined for that boat.
     fn pass_on_report(&mut self, ticket: u64, vehicle: VehicleId, what: Reported, message: Vec<u8>) {
         if !self.gateways.vehicles_of(ticket).any(|own| own == vehicle) {
             return self.refusals.count(Refusal::NotYours);
@@ -142,7 +143,7 @@ impl GameServer<'_> {
         if !what.is_about(&message, vehicle, &name) {
             return self.refusals.count(Refusal::Garbage);
         }
-        // A closed session is detected at the next picture.
+        // The next picture detects a closed session.
         let passed_on = match (what, self.reports.get(&(vehicle, what))) {
             (_, None) => Ok(()),
             (Reported::Status, Some(publisher)) => publisher.send_json(message.clone()),
@@ -153,8 +154,8 @@ impl GameServer<'_> {
         self.record_message(format!("{what}/{name}"), schema, message);
     }
 
-    /// Simulated time by the clock: that of the open decision plus the time since. Used only for
-    /// fixes, which would otherwise seem up to a decision older than they are.
+    /// Simulated time by the clock: the open decision's time plus the time since. Only for fixes,
+    /// which would otherwise seem up to a decision older than they are.
     fn moment(&self) -> SimTime {
         let factor = if self.pace == Pace::Lockstep { 0.0 } else { self.pacing.speed().unwrap_or(0.0) };
         let passed = self.opened.map_or(0.0, |opened| clock::since(opened).as_secs_f64() * factor);
@@ -172,14 +173,13 @@ impl GameServer<'_> {
         query.answer(token::answer(&reply));
     }
 
-    /// Handles a join request on the key of a team or boat: with keys, access control permits no
-    /// other.
+    /// Handles a join request on the key of a team or boat; access control permits no other.
     fn join_at(&mut self, key: &str, request: &JoinRequest) -> JoinReply {
         let place = topic::join(&self.game, self.contest.scenario(), request.role, &request.vehicles);
         match request.role {
-            _ if place != key => {
-                JoinReply::Refused { reason: format!("who joins with these vehicles asks at {place}, not at {key}") }
-            }
+            _ if place != key => JoinReply::Refused {
+                reason: format!("requests to join with these vehicles belong at {place}, not at {key}"),
+            },
             Role::Gateway => self.gateways.join(request, random_number(), self.contest.now()),
             Role::Agent => self.join_agent(request),
         }
@@ -189,7 +189,7 @@ impl GameServer<'_> {
         let reply = self.agents.join(request, random_number(), self.contest.now());
         if let JoinReply::Granted { vehicles, .. } = &reply {
             for vehicle in vehicles {
-                // Any order in force came from another agent.
+                // The order in force came from another agent.
                 self.contest.hold(*vehicle);
                 self.contest.regain_agent(*vehicle);
                 self.heard[vehicle.index()] = self.time.worked();
@@ -218,7 +218,7 @@ impl GameServer<'_> {
             Control::EStop => self.contest.e_stop(true),
             Control::Release => {
                 self.contest.e_stop(false);
-                // A closed session is detected at the next picture.
+                // The next picture detects a closed session.
                 drop(self.released.send_json(b"true".to_vec()));
             }
             Control::Halt => self.contest.halt(true),
@@ -226,7 +226,7 @@ impl GameServer<'_> {
             pacing if self.pacing.change(pacing) => {}
             _ => {
                 self.refusals.count(Refusal::OutOfPlace);
-                reply = Err("this game, as it is paced and stands now, cannot do that".to_owned());
+                reply = Err("the game's pace or state does not allow this".to_owned());
             }
         }
         self.is_news = true;

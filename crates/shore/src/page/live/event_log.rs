@@ -1,23 +1,21 @@
-//! The event log of a running game: events from frames as they arrive, and from the sim after
-//! missed frames.
+//! The event log of a running game: events from frames, and from the sim after missed frames.
 
 use scenario::outcome::EventOutcome;
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-/// The maximum number of events kept; the oldest are dropped first.
+/// Maximum number of events kept; the oldest are dropped first.
 const EVENTS_MAX: usize = 20_000;
-/// The minimum time between two queries to the sim.
+/// Minimum time between two queries to the sim.
 const ASK_AGAIN: Duration = Duration::from_secs(1);
 
-/// The position of a reader in the log.
+/// A reader's position in the log.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct EventCursor {
     revision: u64,
     next: u64,
 }
 
-/// The events so far.
 #[derive(Clone, Debug, Default)]
 pub(super) struct EventLog {
     events: VecDeque<EventOutcome>,
@@ -30,12 +28,12 @@ pub(super) struct EventLog {
 }
 
 impl EventLog {
-    /// A log that still lacks all events so far.
+    /// A log that still lacks all earlier events.
     pub(super) fn new() -> EventLog {
         EventLog { has_gap: true, revision: 1, ..EventLog::default() }
     }
 
-    /// Adds an event from a frame, unless the sim has listed it already.
+    /// Adds an event from a frame, unless the sim has already listed it.
     pub(super) fn add(&mut self, event: EventOutcome) {
         let mut recent = self.events.iter().rev().take_while(|known| known.tick >= event.tick);
         if !recent.any(|known| *known == event) {
@@ -44,7 +42,7 @@ impl EventLog {
         }
     }
 
-    /// Records that a frame was missed, with its events.
+    /// Records that a frame and its events were missed.
     pub(super) fn note_gap(&mut self) {
         self.has_gap = true;
     }
@@ -59,7 +57,7 @@ impl EventLog {
         asks
     }
 
-    /// Replaces all events up to a moment with those from the sim. Later ones from frames stay.
+    /// Replaces all events up to a moment with those from the sim. Later events from frames stay.
     pub(super) fn replace(&mut self, mut all: Vec<EventOutcome>) {
         let last = all.last().map_or(0, |event| event.tick);
         let later = |event: &&EventOutcome| event.tick > last || (event.tick == last && !all.contains(event));
@@ -76,7 +74,7 @@ impl EventLog {
     }
 
     /// The unread events, whether they replace all earlier ones, and the reader's new position.
-    /// `None` if the reader is up to date.
+    /// `None` if there is nothing to read.
     pub(super) fn unread(
         &self,
         cursor: EventCursor,
@@ -104,7 +102,7 @@ mod tests {
         EventOutcome { tick, at_s: 0.0, event: word.into(), vehicle: None, other: None, team: None }
     }
 
-    /// The events that a reader gets; each is returned once.
+    /// The events that a reader receives.
     fn read(event_log: &EventLog, cursor: &mut EventCursor) -> (bool, Vec<u64>) {
         let Some((reset, unread, next)) = event_log.unread(*cursor) else { return (false, vec![]) };
         let sent = (reset, unread.map(|event| event.tick).collect());
@@ -131,10 +129,10 @@ mod tests {
         event_log.add(event(5, "a"));
         read(&event_log, &mut cursor);
         event_log.add(event(9, "c"));
-        // The sim's answer is older than the last frame, and contains more events before it.
+        // The sim's reply is older than the last frame, and has more events before it.
         event_log.replace(vec![event(5, "a"), event(7, "b")]);
         assert_eq!(read(&event_log, &mut cursor), (true, vec![5, 7, 9]));
-        // An answer without news changes nothing; an event of a later frame is not added twice.
+        // A reply without news changes nothing. An event of a later frame is not added twice.
         event_log.replace(vec![event(5, "a"), event(7, "b"), event(9, "c"), event(9, "d")]);
         event_log.add(event(9, "d"));
         assert_eq!(read(&event_log, &mut cursor), (false, vec![9]));

@@ -1,4 +1,4 @@
-//! A buffer of frames: the newest one to show, and some past ones for trails.
+//! A buffer of frames: the newest one to show, and past ones for trails.
 
 use crate::page::view::{TRAIL_S, TRAIL_STEP_S, marked};
 use axum::body::Bytes;
@@ -7,15 +7,13 @@ use primitives::SimTime;
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-/// The period over which the frame rate is measured.
+/// Period over which the frame rate is measured.
 const METER: Duration = Duration::from_secs(1);
 
-/// The frames of a game.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FrameBuffer {
-    /// The number of frames so far, which is also the number of the newest, counted from 1.
+    /// The number of frames so far, and the number of the newest, counted from 1.
     pub(super) count: u64,
-    /// The stamp of the newest frame.
     pub(super) stamp: Stamp,
     /// Whether the game is over.
     pub(super) is_over: bool,
@@ -28,7 +26,7 @@ pub(super) struct FrameBuffer {
 }
 
 impl FrameBuffer {
-    /// Adds a frame with its CDR; returns whether frames before it were missed.
+    /// Adds a frame with its CDR. Returns whether frames before it were missed.
     pub(super) fn take(&mut self, frame: &Frame, cdr: &[u8], now: Instant) -> bool {
         let (at, seq) = (frame.stamp.valid_ns, frame.stamp.seq);
         let missed = self.count > 0 && seq > self.stamp.seq.saturating_add(1);
@@ -42,14 +40,13 @@ impl FrameBuffer {
             self.past.pop_front();
         }
         // The sim's own bytes: the page decodes CDR by the `.msg` texts in the first message, so no
-        // second encoding can get out of step.
+        // second encoding can diverge.
         (self.stamp, self.is_over, self.newest) = (frame.stamp, frame.over, marked(1, cdr));
         (self.count, self.came) = (self.count + 1, Some(now));
         self.measure(now);
         missed
     }
 
-    /// The newest frame, with its leading byte.
     pub(super) fn newest(&self) -> Bytes {
         self.newest.clone()
     }
@@ -60,7 +57,6 @@ impl FrameBuffer {
         before.map(|(_, bytes)| bytes.clone()).collect()
     }
 
-    /// The recent frame rate, Hz.
     pub(super) fn rate_hz(&self, now: Instant) -> f64 {
         let is_late = self.counted.is_none_or(|(since, _)| now.saturating_duration_since(since) > 2 * METER);
         if is_late { 0.0 } else { self.rate_hz }
@@ -106,7 +102,7 @@ mod tests {
     fn a_gap_is_noticed_and_a_new_beginning_forgets_the_past() {
         let start = clock::now();
         let mut frames = FrameBuffer::default();
-        assert!(!frames.take(&frame(7), &[], start), "what was before the first is not missed here");
+        assert!(!frames.take(&frame(7), &[], start), "frames before the first are not missed");
         assert!(!frames.take(&frame(8), &[], start) && frames.take(&frame(10), &[], start));
         assert!(!frames.take(&frame(0), &[], start));
         assert!(frames.past().is_empty());

@@ -1,4 +1,4 @@
-//! Finds the game, subscribes to its topics, publishes commands from pages, and searches again when
+//! Finds the game, subscribes to its topics and publishes commands from pages. Searches again when
 //! the game has gone.
 
 use super::live_state::LiveGame;
@@ -21,24 +21,24 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// The interval between searches for a missing game.
+/// Interval between searches for a missing game.
 const LOOK_AGAIN: Duration = Duration::from_millis(250);
-/// The interval of checks for timeouts.
+/// Interval of checks for timeouts.
 const ROUND: Duration = Duration::from_millis(50);
-/// After this many failed attempts the session is opened anew, since it may be the cause.
+/// After this many failed attempts the session is reopened, because it may be the cause.
 const ATTEMPTS: u64 = 20;
-/// Upper bound of queued requests to the sim.
+/// Maximum number of queued requests to the sim.
 const REQUESTS: usize = 16;
 /// Timeout of a query.
 const ANSWER: Duration = Duration::from_secs(2);
-/// How long a sim's token may be missing, at first or after a cut: a briefly cut link does not mean
-/// that the sim has gone.
+/// How long a sim's token may be missing, at first or after a cut: a short interruption does not
+/// mean that the sim has gone.
 const PATIENCE: Patience =
     Patience { silence: Duration::from_secs(5), missing: Duration::from_secs(1), unheard: Duration::from_secs(1) };
-/// The minimum interval between estimates, however fast the game is.
+/// Minimum interval between estimates, however fast the game is.
 const PICTURE_AGAIN: Duration = Duration::from_millis(50);
 
-/// Watches for the game in a thread.
+/// Watches for the game in its own thread.
 pub(super) struct GameWatcher {
     pub(super) shared: Arc<SharedState>,
     pub(super) place: Place,
@@ -46,7 +46,6 @@ pub(super) struct GameWatcher {
     pub(super) commands: Inbox<Command>,
 }
 
-/// A session in one game.
 struct GameSession {
     bus: Bus,
     game: Arc<LiveGame>,
@@ -62,7 +61,7 @@ impl GameWatcher {
         let mut session = None;
         let (mut said, mut attempts) = (String::new(), 0_u64);
         while !self.shared.is_closing() {
-            // Commands for a game that has gone must not reach the next one.
+            // Commands to a game that has gone must not reach the next one.
             while self.commands.take_now().is_some() {}
             match self.find(&mut session) {
                 Ok(found) => {
@@ -71,7 +70,7 @@ impl GameWatcher {
                     session = None;
                 }
                 Err(missing) => {
-                    // A permanent refusal may still pass when another game takes its place.
+                    // A permanent refusal may still end when another game takes this one's place.
                     let reason = missing.to_string();
                     if reason != said {
                         (self.shared.tell)(&format!("no game to show: {reason}"));
@@ -87,28 +86,28 @@ impl GameWatcher {
         }
     }
 
-    /// Connects to a game, if one exists. The session stays open for the next attempt.
+    /// Connects to a game, if any. The session stays open for the next attempt.
     fn find(&self, session: &mut PlacedSession) -> Result<GameSession, Missing> {
         let (bus, name, info) = game_search::find_game(&self.place, self.game.as_ref(), session)?;
-        // Older sims do not answer; the water is then drawn flat.
+        // Older sims do not reply; the water is then drawn flat.
         let water = bus.ask(&topic::water(&name), Vec::new(), ANSWER)?;
         let water: Water = water.and_then(|bytes| serde_json::from_slice(&bytes).ok()).unwrap_or_default();
         Ok(GameSession::begin(&self.shared, bus, LiveGame::new(name, info, &water))?)
     }
 
-    /// Serves the game until it has gone.
     fn run_until_gone(&self, mut session: GameSession) {
         let left = Arc::new(Watched::new(false));
         let queries =
             QueryThread { shared: Arc::clone(&self.shared), bus: session.bus.clone(), game: Arc::clone(&session.game) };
         let until = Arc::clone(&left);
         // The game is shown even without these threads.
-        let no_thread = |e: &std::io::Error| (self.shared.tell)(&format!("no thread to ask the game from: {e}"));
+        let no_thread =
+            |e: &std::io::Error| (self.shared.tell)(&format!("cannot start a thread for queries to the game: {e}"));
         let query_thread = NodeThread::start(move || queries.ask(&until)).inspect_err(no_thread);
         let (requests, requested) = inbox(REQUESTS);
         let (shared, bus, game) = (Arc::clone(&self.shared), session.bus.clone(), session.game.name.clone());
         let until = Arc::clone(&left);
-        // The sim may answer slowly, and a stop must not wait for that.
+        // The sim may reply slowly, and a stop must not wait for that.
         let request_thread =
             NodeThread::start(move || request(&shared, &bus, &game, (&requested, &until))).inspect_err(no_thread);
         while !self.shared.is_closing() && session.sim.state() == SimState::Alive {
@@ -133,7 +132,7 @@ fn request(shared: &SharedState, bus: &Bus, game: &GameName, (requested, left): 
     while !left.visit(|left| *left) {
         let Some(control) = requested.take(ROUND) else { continue };
         if let Err(error) = bus::control(bus, game, control) {
-            (shared.tell)(&format!("{control:?} was asked for on the page: {error}"));
+            (shared.tell)(&format!("{control:?} from the page failed: {error}"));
         }
     }
 }
@@ -171,7 +170,7 @@ impl GameSession {
         }
     }
 
-    /// Publishes set-points of steered boats, stamped with the newest frame.
+    /// Publishes set-points for steered boats, stamped with the newest frame.
     fn steer(&mut self, shared: &SharedState) {
         let (steering, stamp) = {
             let mut state = shared.state.lock();
@@ -190,14 +189,13 @@ impl GameSession {
         }
     }
 
-    /// Releases the steering of silent pages.
     fn expire_steering(&self, shared: &SharedState) {
         if shared.state.lock().steering_locks.expire(clock::now()) {
             shared.news.send_replace(());
         }
     }
 
-    /// Subscribes to the pictures of exactly the teams whose boats are selected.
+    /// Subscribes to the pictures of exactly those teams whose boats are selected.
     fn update_picture_subscriptions(&mut self, shared: &Arc<SharedState>) {
         let (wanted, generation) = {
             let mut state = shared.state.lock();
@@ -218,7 +216,6 @@ impl GameSession {
     }
 }
 
-/// The subscriptions of one game.
 #[derive(Clone)]
 struct Subscriptions {
     shared: Arc<SharedState>,
@@ -226,7 +223,7 @@ struct Subscriptions {
 }
 
 impl Subscriptions {
-    /// Updates the state, if it still belongs to this game.
+    /// Changes the state if it still belongs to this game.
     fn update(&self, change: impl FnOnce(&mut super::live_state::LiveState)) {
         let mut state = self.shared.state.lock();
         if state.generation == self.generation {

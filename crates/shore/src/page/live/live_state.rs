@@ -21,20 +21,19 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// After this long without a frame, a game whose sim publishes no run state counts as paused.
+/// Without a frame for this long, a game whose sim publishes no run state counts as paused.
 const STILL: Duration = Duration::from_secs(2);
 
 /// The constant data of a game.
 pub(super) struct LiveGame {
-    /// Its name.
     pub(super) name: GameName,
-    /// Its sim's description.
+    /// The sim's description.
     pub(super) info: GameInfo,
-    /// Its chart as JSON.
+    /// As JSON.
     pub(super) chart: Value,
 }
 
-/// The report of a helm, encoded for pages.
+/// A helm's report, encoded for pages.
 #[derive(Clone, Debug)]
 pub(super) struct HelmMessage {
     pub(super) light: String,
@@ -56,7 +55,7 @@ pub(super) struct LiveState {
     pub(super) generation: u64,
     /// Whether the game has gone.
     pub(super) is_gone: bool,
-    /// The state of its run, if its sim publishes it.
+    /// The run state, if the sim publishes it.
     pub(super) run: Option<RunState>,
     /// Increases with each change of the run.
     pub(super) run_news: u64,
@@ -67,13 +66,13 @@ pub(super) struct LiveState {
     pub(super) statuses: Latest<GatewayStatus>,
     pub(super) operating: Operating,
     pub(super) steering_locks: SteeringLocks,
-    /// The set-points for steered boats: course, rad, and speed, m/s.
+    /// Set-points for steered boats: course, rad, and speed, m/s.
     pub(super) steering: BTreeMap<VehicleId, (f64, f64)>,
     /// By page: the selected boat, and whether utilities are wanted.
     pub(super) selected: BTreeMap<u64, (VehicleId, bool)>,
     /// The pages that want the modes of all boats.
     pub(super) listed: BTreeSet<u64>,
-    /// By vehicle, the last mode reported by its helm, and its time, s.
+    /// By vehicle: the mode that its helm last reported.
     pub(super) modes: Vec<Option<String>>,
     pub(super) modes_at_s: f64,
     /// Increases with each change of the modes.
@@ -87,22 +86,19 @@ impl LiveGame {
         LiveGame { name, info, chart }
     }
 
-    /// The scenario of the game.
     pub(super) fn scenario(&self) -> &Scenario {
         &self.info.scenario
     }
 
-    /// The name of a vehicle.
     pub(super) fn name_of(&self, vehicle: VehicleId) -> &str {
         &self.scenario().vehicles[vehicle.index()].name
     }
 
-    /// Whether the game runs in lockstep rather than by the clock.
+    /// Whether the game runs in lockstep rather than in real time.
     pub(super) fn is_lockstep(&self) -> bool {
         self.info.pace == "lockstep"
     }
 
-    /// Whether the game has real boats.
     pub(super) fn has_real_boats(&self) -> bool {
         self.scenario().externals().next().is_some()
     }
@@ -123,17 +119,15 @@ impl LiveState {
     /// The current game, or an error if it has gone.
     pub(super) fn on(&self) -> Result<Arc<LiveGame>, String> {
         let game = self.game.clone().filter(|_| !self.is_gone);
-        game.ok_or_else(|| "there is no game now".to_owned())
+        game.ok_or_else(|| "the game is gone".to_owned())
     }
 
-    /// Marks the game as gone.
     pub(super) fn end(&mut self) {
         (self.is_gone, self.run_news, self.bus) = (true, self.run_news + 1, None);
         self.steering_locks = SteeringLocks::default();
         self.steering.clear();
     }
 
-    /// Stores a frame with its CDR.
     pub(super) fn take_frame(&mut self, frame: &Frame, cdr: &[u8], now: Instant) {
         let Some(game) = self.game.clone() else { return };
         if !is_of(frame, game.scenario()) {
@@ -147,7 +141,6 @@ impl LiveState {
         }
     }
 
-    /// Stores the state of the run.
     pub(super) fn take_run(&mut self, run: RunState) {
         let gist = |run: &RunState| {
             let recording = run.recording.as_ref().map(|recording| (recording.file.clone(), recording.failed.clone()));
@@ -158,7 +151,6 @@ impl LiveState {
         self.run = Some(run);
     }
 
-    /// Stores a team's picture.
     pub(super) fn take_picture(&mut self, picture: &Picture) {
         let selected: Vec<VehicleId> = self.selected.values().map(|(vehicle, _)| *vehicle).collect();
         for boat in picture.own.iter().filter(|boat| selected.contains(&boat.vehicle)) {
@@ -190,7 +182,7 @@ impl LiveState {
         (0..count).map(VehicleId::at).collect()
     }
 
-    /// Stores the mode in a helm's report, if it has one.
+    /// Stores the mode in a helm's report, if any.
     pub(super) fn take_mode(&mut self, vehicle: VehicleId, report: Option<&HelmReport>) {
         let Some(game) = &self.game else { return };
         self.modes.resize(game.scenario().vehicles.len(), None);
@@ -228,7 +220,7 @@ impl LiveState {
     }
 }
 
-/// Whether a frame fits the game: its time, boats, flags and teams.
+/// Whether a frame fits the game in time, boats, flags and teams.
 fn is_of(frame: &Frame, scenario: &Scenario) -> bool {
     (SimTime::ZERO..SimTime::NEVER).contains(&frame.stamp.valid_ns)
         && frame.vehicles.len() == scenario.vehicles.len()

@@ -1,7 +1,7 @@
 //! A running game, shown to pages that may also control it.
 //!
 //! One thread finds the game, subscribes to it, and searches again when it has gone
-//! (`game_watcher`). Another queries data that is not published (`query_thread`). Both write the
+//! (`game_watcher`). Another queries data that are not published (`query_thread`). Both write the
 //! state that all viewers read (`live_state`). Stops have their own threads (`stopping`).
 
 mod event_log;
@@ -28,13 +28,13 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use stopping::Stopping;
 use viewer::PageViewer;
 
-/// Upper bound of commands queued for the network.
+/// Maximum number of commands queued for the network.
 const COMMANDS_MAX: usize = 64;
 
 /// Reports a failure to a person, in one sentence.
 pub type Tell = Box<dyn Fn(&str) + Send + Sync>;
 
-/// Parses the text of a mission file; the error says what is wrong.
+/// Parses the text of a mission file. The error states what is wrong.
 pub type ReadMission = fn(&str) -> Result<Mission, String>;
 
 /// A game on the network, shown to pages.
@@ -42,9 +42,9 @@ pub struct LiveView {
     shared: Arc<SharedState>,
 }
 
-/// The state that the threads and all viewers share.
+/// The state shared by the threads and all viewers.
 struct SharedState {
-    /// Lock only briefly.
+    /// Lock it only briefly.
     state: Mutex<LiveState>,
     news: Changes,
     commands: InboxSender<Command>,
@@ -57,19 +57,18 @@ struct SharedState {
     is_closing: AtomicBool,
 }
 
-/// A command to the game.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Command {
     /// For the whole game, except commands that stop boats.
     Control(Control),
-    /// New set-points of steered boats are in the state.
+    /// The state has new set-points for steered boats.
     Steer,
 }
 
 impl LiveView {
     /// Searches for a game at `place` (the named one, or the only one running) until dropped.
-    /// `tell` receives what is missing, whenever that changes, and the sim's refusals;
-    /// `read_mission` parses mission files from operators.
+    /// `tell` receives what is missing, whenever that changes, and refusals from the sim.
+    /// `read_mission` parses operators' mission files.
     ///
     /// # Errors
     /// If the system cannot start a thread.
@@ -97,7 +96,7 @@ impl LiveView {
 
 impl Drop for LiveView {
     fn drop(&mut self) {
-        // The thread may be waiting for an answer; it ends by itself.
+        // The thread may be waiting for a reply; it ends by itself.
         self.shared.is_closing.store(true, Ordering::Relaxed);
     }
 }
@@ -114,7 +113,6 @@ impl View for LiveView {
 }
 
 impl SharedState {
-    /// An empty state.
     fn new(commands: InboxSender<Command>, tell: Tell, read_mission: ReadMission) -> std::io::Result<SharedState> {
         Ok(SharedState {
             state: Mutex::default(),

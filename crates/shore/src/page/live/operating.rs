@@ -1,6 +1,6 @@
 //! Operator commands to the gateways of real boats. Each goes over the game's network in its own
-//! thread. Per boat, one command that needs the token and one that stops it can be under way at a
-//! time, so that no number of commands delays a stop.
+//! thread. Per boat, one command that needs the token and one that stops it can be in progress, so
+//! that no number of commands delays a stop.
 
 use super::SharedState;
 use super::live_state::{LiveGame, LiveState};
@@ -12,7 +12,7 @@ use primitives::VehicleId;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
 
-/// Upper bound of replies queued for a page; a page that does not read misses some.
+/// Maximum number of replies queued for a page; a page that does not read misses some.
 const REPLIES_MAX: usize = 16;
 
 /// The result of a command.
@@ -20,21 +20,21 @@ const REPLIES_MAX: usize = 16;
 pub(super) struct Operated {
     pub(super) vehicle: VehicleId,
     pub(super) command: &'static str,
-    /// The reason for a refusal.
+    /// Why it was refused.
     pub(super) refused: Option<String>,
 }
 
 /// The commands to the boats of a game.
 #[derive(Default)]
 pub(super) struct Operating {
-    /// Commands under way: the boat, and whether they need the token.
+    /// Commands in progress: the boat, and whether they need the token.
     under_way: BTreeSet<(VehicleId, bool)>,
-    /// Results by connected page, of its own commands.
+    /// By page: the results of its own commands.
     replies: BTreeMap<u64, VecDeque<Operated>>,
 }
 
 impl Operating {
-    /// Removes the next reply to a page.
+    /// Takes the next reply for a page.
     pub(super) fn reply(&mut self, page: u64) -> Option<Operated> {
         self.replies.get_mut(&page)?.pop_front()
     }
@@ -44,13 +44,13 @@ impl Operating {
         self.replies.remove(&page);
     }
 
-    /// Starts a command, unless one of its kind is under way to the same boat.
+    /// Starts a command, unless one of its kind is in progress for the same boat.
     fn begin(&mut self, page: u64, vehicle: VehicleId, command: &OperatorCommand) -> Result<(), String> {
         self.replies.entry(page).or_default();
         if self.under_way.insert((vehicle, command.needs_token())) {
             return Ok(());
         }
-        Err("its gateway has not answered the command before yet".to_owned())
+        Err("its gateway has not answered the previous command yet".to_owned())
     }
 
     fn end(&mut self, page: u64, needs_token: bool, operated: Operated) {
@@ -61,7 +61,7 @@ impl Operating {
     }
 }
 
-/// Sends a command to the gateway of a boat. The reply goes to the page that sent the command.
+/// Sends a command to a boat's gateway. The reply goes to the page that sent the command.
 pub(super) fn operate(
     shared: &Arc<SharedState>,
     state: &mut LiveState,
@@ -72,9 +72,9 @@ pub(super) fn operate(
     let game = state.on()?;
     let vehicle = game.scenario().vehicle_named(name).map_err(|e| e.to_string())?;
     if !game.scenario().externals().any(|external| external == vehicle) {
-        return Err(format!("{name} is simulated: it has no gateway"));
+        return Err(format!("{name} is simulated and has no gateway"));
     }
-    let Some(bus) = state.bus.clone() else { return Err("there is no game now".to_owned()) };
+    let Some(bus) = state.bus.clone() else { return Err("the game is gone".to_owned()) };
     state.operating.begin(page, vehicle, &command)?;
     // A stop takes every path, and this query is one of them. The latest command counts.
     let stop = StopCommand::of(&command);
@@ -88,18 +88,18 @@ pub(super) fn operate(
     let thread = start_thread("page-operate", move || {
         let reply = ask(&bus, &game, vehicle, &command);
         if let (Err(_), Some(stop)) = (&reply, stop) {
-            // Without the token no answer counts, but the boat's status does.
+            // Without the token no reply counts, but the boat's status does.
             at_work.stops.wait(ANSWER, |orders| orders.is_shown(&named, stop));
         }
         let mut state = at_work.state.lock();
-        // No page waits for the reply of a game that has gone.
+        // No page waits for a reply from a game that has gone.
         if state.generation == generation {
             let refused = match reply {
                 Ok(OperatorReply { refused, status }) => {
                     state.statuses.insert(vehicle, Arc::new(status));
                     refused
                 }
-                // The boat's status shows that it arrived by another path.
+                // The boat's status shows that the command arrived by another path.
                 Err(_) if stop.is_some_and(|stop| at_work.stops.visit(|orders| orders.is_shown(&named, stop))) => None,
                 Err(reason) => Some(reason),
             };
@@ -110,7 +110,7 @@ pub(super) fn operate(
     });
     thread.map_err(|e| {
         state.operating.under_way.remove(&(vehicle, needs_token));
-        format!("there is no thread for it: {e}")
+        format!("cannot start a thread: {e}")
     })
 }
 
@@ -126,7 +126,7 @@ fn ask(bus: &Bus, game: &LiveGame, vehicle: VehicleId, command: &OperatorCommand
     }
 }
 
-/// The name of a command in the protocol.
+/// A command's name in the protocol.
 fn word(command: &OperatorCommand) -> &'static str {
     match command {
         OperatorCommand::Status => "status",
@@ -156,17 +156,17 @@ mod tests {
         }
         assert_eq!(operating.begin(7, VehicleId(2), &OperatorCommand::Arm), Ok(()), "another boat");
         assert_eq!(operating.begin(7, BOAT, &OperatorCommand::Disarm), Ok(()));
-        assert!(operating.begin(7, BOAT, &OperatorCommand::EStop).is_err(), "a stop is under way");
+        assert!(operating.begin(7, BOAT, &OperatorCommand::EStop).is_err(), "a stop is in progress");
         let operated =
             |refused: Option<&str>| Operated { vehicle: BOAT, command: "arm", refused: refused.map(str::to_owned) };
         operating.end(7, true, operated(Some("missing: a fresh order")));
         assert_eq!(operating.begin(7, BOAT, &OperatorCommand::Arm), Ok(()));
-        assert_eq!(operating.reply(8), None, "it is for the page that asked");
+        assert_eq!(operating.reply(8), None, "the reply is for another page");
         assert_eq!(operating.reply(7), Some(operated(Some("missing: a fresh order"))));
         (0..2 * REPLIES_MAX).for_each(|_| operating.end(7, true, operated(None)));
         assert_eq!(std::iter::from_fn(|| operating.reply(7)).count(), REPLIES_MAX);
         operating.forget(7);
         operating.end(7, true, operated(None));
-        assert!(operating.replies.is_empty(), "nothing is kept for a page that is gone");
+        assert!(operating.replies.is_empty(), "no reply is kept for a page that has left");
     }
 }

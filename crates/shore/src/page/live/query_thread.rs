@@ -1,4 +1,4 @@
-//! Queries data of a game that is not published, in its own thread, since answers take time.
+//! Queries unpublished data from a game in its own thread, because replies take time.
 
 use super::SharedState;
 use super::live_state::{HelmMessage, LiveGame};
@@ -14,15 +14,15 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// The interval of checks for pending queries.
+/// Interval of checks for pending queries.
 const ROUND: Duration = Duration::from_millis(50);
-/// Timeout of a helm's answer.
+/// Timeout of a helm's reply.
 const HELM_ANSWER: Duration = Duration::from_secs(1);
-/// Answers of selected helms take at most one part in this many of the time.
+/// Selected helms may spend one part in this many of the time on replies.
 const SHARE: u32 = 5;
-/// The same for helms of which only the mode is wanted, for a list of all boats.
+/// The same for helms whose mode alone is wanted, for a list of all boats.
 const LIST_SHARE: u32 = 20;
-/// The interval between queries for a helm's mode.
+/// Interval between queries for a helm's mode.
 const LIST_INTERVAL: Duration = Duration::from_secs(2);
 /// Timeout of the sim's list of events.
 const EVENTS_ANSWER: Duration = Duration::from_secs(3);
@@ -34,7 +34,6 @@ pub(super) struct QueryThread {
     pub(super) game: Arc<LiveGame>,
 }
 
-/// Schedules queries to helms.
 #[derive(Default)]
 struct QuerySchedule {
     /// When each helm was last queried, and whether with utilities.
@@ -43,19 +42,18 @@ struct QuerySchedule {
     rest: Option<Instant>,
 }
 
-/// A query to a helm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Turn {
     vehicle: VehicleId,
-    /// Whether it asks for utilities.
+    /// Whether to include utilities.
     functions: bool,
-    /// Whether it asks only for the mode, for a boat that no page selects.
+    /// Whether only the mode is wanted, for a boat that no page selects.
     is_listed: bool,
 }
 
 impl QuerySchedule {
-    /// The helm to query now, if any: of those due, the one that has waited longest. Selected helms
-    /// come before those of which only the mode is wanted.
+    /// The helm to query now, if any: the one that has waited longest. Selected helms precede those
+    /// of which only the mode is wanted.
     fn next(&mut self, wanted: &BTreeMap<VehicleId, bool>, listed: &[VehicleId], now: Instant) -> Option<Turn> {
         self.asked.retain(|vehicle, _| wanted.contains_key(vehicle) || listed.contains(vehicle));
         if self.rest.is_some_and(|rest| now < rest) {
@@ -83,9 +81,8 @@ impl QuerySchedule {
         longest.map(|vehicle| Turn { vehicle: *vehicle, functions: false, is_listed: true })
     }
 
-    /// Records a query that lasted from `start` to `end`. In lockstep a game waits while a mind
-    /// answers, and one process may run all minds: after a long answer all have a rest. A paused
-    /// game waits for no mind.
+    /// Records a query from `start` to `end`. A lockstep game waits while a mind answers, and one
+    /// process may run all minds, so after a long reply all rest. A paused game waits for no mind.
     fn update(&mut self, turn: Turn, start: Instant, end: Instant, is_going: bool) {
         self.asked.insert(turn.vehicle, (start, turn.functions));
         let share = if turn.is_listed { LIST_SHARE } else { SHARE };
@@ -113,13 +110,13 @@ impl QueryThread {
         }
     }
 
-    /// Queries the sim for all events, if some were missed.
+    /// Queries the sim for all events if some were missed.
     fn ask_events(&self) {
         if !self.shared.state.lock().event_log.should_query(clock::now()) {
             return;
         }
         let answer = self.bus.ask(&topic::events(&self.game.name), Vec::new(), EVENTS_ANSWER);
-        // Older sims do not answer; the log then has only events from frames.
+        // Older sims do not reply; the log then has only events from frames.
         let events = answer.ok().flatten().and_then(|bytes| serde_json::from_slice::<Vec<EventOutcome>>(&bytes).ok());
         if let Some(events) = events {
             self.shared.state.lock().event_log.replace(events);
@@ -134,8 +131,8 @@ impl QueryThread {
         let name = self.game.name_of(vehicle);
         let answer = match answer.map(|bytes| serde_json::from_slice::<Option<HelmReport>>(&bytes)) {
             Some(Ok(Some(report))) => HelmAnswer { report: Some(report), ..HelmAnswer::default() },
-            Some(Ok(None)) => because(format!("the mind of {name} goes by no helm")),
-            Some(Err(_)) => because(format!("the mind of {name} is of another version of Squall")),
+            Some(Ok(None)) => because(format!("the mind of {name} has no helm")),
+            Some(Err(_)) => because(format!("the mind of {name} runs another version of Squall")),
             None => because(format!("no agent runs {name} now")),
         };
         self.shared.state.lock().take_mode(vehicle, answer.report.as_ref());
@@ -143,7 +140,7 @@ impl QueryThread {
             self.shared.news.send_replace(());
             return;
         }
-        // Encoding a full report takes long, so the state is not locked meanwhile.
+        // Encoding a full report takes long, so the state is unlocked meanwhile.
         let full = functions.then(|| helm_text(self.game.scenario(), vehicle, true, answer.clone()));
         let light = helm_text(self.game.scenario(), vehicle, false, answer);
         self.shared.state.lock().helms.insert(vehicle, Arc::new(HelmMessage { light, full }));
@@ -161,8 +158,7 @@ mod tests {
 
     const BOATS: [VehicleId; 3] = [VehicleId(0), VehicleId(1), VehicleId(2)];
 
-    /// Simulates queries for a while, each with the same answer time: the helms queried and when,
-    /// ms.
+    /// Simulates queries with equal reply times. Returns the helms queried, with times in ms.
     fn asked(wanted: &BTreeMap<VehicleId, bool>, took_ms: u64, until_ms: u64, is_going: bool) -> Vec<(VehicleId, u64)> {
         asked_and_listed((wanted, &[]), took_ms, until_ms, is_going)
     }
@@ -194,7 +190,7 @@ mod tests {
             let all = asked(&wanted, 400, 12_000, true);
             assert_eq!(all.iter().map(|(_, at_ms)| *at_ms).collect::<Vec<_>>(), [0, 2000, 4000, 6000, 8000, 10_000]);
             let schedule: Vec<VehicleId> = BOATS[..boats].iter().copied().cycle().take(all.len()).collect();
-            assert_eq!(all.iter().map(|(boat, _)| *boat).collect::<Vec<_>>(), schedule, "each gets its turn");
+            assert_eq!(all.iter().map(|(boat, _)| *boat).collect::<Vec<_>>(), schedule, "all are queried in turn");
         }
     }
 

@@ -7,12 +7,12 @@ use std::time::{Duration, Instant};
 /// A page silent for this long loses its locks.
 const SILENCE: Duration = Duration::from_secs(2);
 
-/// By boat: the page that steers it, and when the page last confirmed that.
+/// By boat: the page that steers it, and the page's last confirmation.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SteeringLocks(BTreeMap<VehicleId, (u64, Instant)>);
 
 impl SteeringLocks {
-    /// Acquires or confirms the lock for a page; returns whether it may steer.
+    /// Acquires or confirms a page's lock. Returns whether the page may steer.
     pub(super) fn acquire(&mut self, vehicle: VehicleId, page: u64, now: Instant) -> bool {
         self.expire(now);
         let (holder, at) = self.0.entry(vehicle).or_insert((page, now));
@@ -22,7 +22,7 @@ impl SteeringLocks {
         *holder == page
     }
 
-    /// Releases a page's lock; returns whether it held it.
+    /// Releases a page's lock. Returns whether the page held it.
     pub(super) fn release(&mut self, vehicle: VehicleId, page: u64) -> bool {
         let has = self.holder(vehicle) == Some(page);
         if has {
@@ -36,19 +36,18 @@ impl SteeringLocks {
         self.0.retain(|_, (holder, _)| *holder != page);
     }
 
-    /// Releases boats of silent pages; returns whether there were any.
+    /// Releases the boats of silent pages. Returns whether there were any.
     pub(super) fn expire(&mut self, now: Instant) -> bool {
         let before = self.0.len();
         self.0.retain(|_, (_, at)| now.saturating_duration_since(*at) < SILENCE);
         self.0.len() != before
     }
 
-    /// The page that steers this boat.
+    /// The page that steers a boat.
     pub(super) fn holder(&self, vehicle: VehicleId) -> Option<u64> {
         self.0.get(&vehicle).map(|(holder, _)| *holder)
     }
 
-    /// All steered boats.
     pub(super) fn held(&self) -> impl Iterator<Item = VehicleId> + '_ {
         self.0.keys().copied()
     }

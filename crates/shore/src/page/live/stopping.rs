@@ -11,16 +11,15 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
-/// The maximum number of concurrent threads; each ends within seconds.
+/// Maximum number of concurrent threads; each ends within seconds.
 const THREADS_MAX: usize = 256;
-/// The interval of checks whether the view closes.
+/// Interval of checks whether the view closes.
 const ROUND: Duration = Duration::from_millis(500);
 
-/// The number of running threads.
 #[derive(Default)]
 pub(super) struct Stopping(AtomicUsize);
 
-/// Stops boats. Gateways can be reached without a game.
+/// Stops boats. Gateways are reachable even without a game.
 pub(super) fn stop(shared: &Arc<SharedState>, state: &LiveState, control: Control) -> Result<(), String> {
     if control == Control::EStop && !shared.stops.gateways().is_empty() {
         shared.stops.stop(None, StopCommand::EStop);
@@ -32,7 +31,7 @@ pub(super) fn stop(shared: &Arc<SharedState>, state: &LiveState, control: Contro
     } else if let (Some(bus), Some(game)) = (state.bus.clone(), state.game.clone()) {
         begin(shared, move |shared| {
             let stopped = bus::control(&bus, &game.name, control);
-            stopped.err().iter().for_each(|e| (shared.tell)(&format!("{control:?} was asked for on the page: {e}")));
+            stopped.err().iter().for_each(|e| (shared.tell)(&format!("{control:?} from the page failed: {e}")));
         })?;
     }
     Ok(())
@@ -44,9 +43,9 @@ pub(super) fn tell_late(shared: &SharedState) {
         for news in shared.stops.news(ROUND) {
             let late = match news {
                 StopNews::Late { vehicle, command } => {
-                    format!("{} was asked for on the page: {vehicle} does not report it", command.operator_command())
+                    format!("{} from the page: {vehicle} does not confirm it", command.operator_command())
                 }
-                StopNews::Sim(Err(reason)) => format!("an E-stop was asked for on the page: {reason}"),
+                StopNews::Sim(Err(reason)) => format!("an E-stop from the page failed: {reason}"),
                 _ => continue,
             };
             (shared.tell)(&late);
@@ -59,7 +58,7 @@ fn begin(shared: &Arc<SharedState>, work: impl FnOnce(&SharedState) + Send + 'st
     let under_way = &shared.stopping.0;
     if under_way.fetch_add(1, Ordering::SeqCst) >= THREADS_MAX {
         under_way.fetch_sub(1, Ordering::SeqCst);
-        return Err(format!("{THREADS_MAX} stops are under way"));
+        return Err(format!("{THREADS_MAX} stops are already in progress"));
     }
     let at_work = Arc::clone(shared);
     let thread = start_thread("page-stop", move || {
@@ -68,7 +67,7 @@ fn begin(shared: &Arc<SharedState>, work: impl FnOnce(&SharedState) + Send + 'st
     });
     if let Err(e) = thread {
         under_way.fetch_sub(1, Ordering::SeqCst);
-        return Err(format!("there is no thread for it: {e}"));
+        return Err(format!("cannot start a thread: {e}"));
     }
     Ok(())
 }

@@ -15,37 +15,35 @@ use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 use std::time::Instant;
 
-/// One page's view of a running game.
 pub(super) struct PageViewer {
     shared: Arc<SharedState>,
     access: Access,
     page: u64,
-    /// The selected boat, and whether utilities are wanted; kept for the next game, if it has that
+    /// The selected boat, and whether utilities are wanted. Kept for the next game if it has that
     /// boat.
     selection: Option<(String, bool)>,
-    /// Whether the modes of all boats are wanted.
     wants_modes: bool,
     sent: Sent,
 }
 
-/// The messages sent to a page about one game.
+/// What has been sent to a page about one game.
 #[derive(Default)]
 struct Sent {
     /// The number of the game.
     generation: u64,
     events: super::event_log::EventCursor,
-    /// The number of the last run state sent, and when.
+    /// Number of the last run state sent, and when.
     run: Option<(u64, Instant)>,
     /// Steering locks as last sent, by boat.
     steering_locks: BTreeMap<VehicleId, &'static str>,
     statuses: Latest<GatewayStatus>,
     helm: Option<Arc<HelmMessage>>,
     estimate: Option<(Arc<(OwnBoat, SimTime)>, Instant)>,
-    /// The number of the last modes sent, and when.
+    /// Number of the last modes sent, and when.
     modes: Option<(u64, Instant)>,
-    /// The number of the newest frame sent; 0 for none.
+    /// Number of the newest frame sent; 0 for none.
     frame: u64,
-    /// The past frames to send before it, once a frame exists.
+    /// Past frames to send before the first current one.
     past: Option<VecDeque<Bytes>>,
 }
 
@@ -62,7 +60,7 @@ impl PageViewer {
         }
         let game = state.on()?;
         if control == Control::Release && game.has_real_boats() && self.access < Access::Operate {
-            return Err("real boats are released by who opens the page with the operator's token".to_owned());
+            return Err("only a page with the operator's token can release real boats".to_owned());
         }
         if control == Control::Release {
             self.shared.stops.cancel(None);
@@ -74,7 +72,7 @@ impl PageViewer {
         if self.shared.commands.offer(command) {
             return Ok(());
         }
-        Err("the network does not keep up: ask again".to_owned())
+        Err("the network is too slow: try again".to_owned())
     }
 
     fn select(&mut self, vehicle: Option<&str>, functions: bool) -> Result<(), String> {
@@ -99,12 +97,10 @@ impl PageViewer {
         let state = self.shared.state.lock();
         let game = state.on()?;
         if game.has_real_boats() {
-            return Err("a game with real boats keeps its pace".to_owned());
+            return Err("the speed of a game with real boats cannot be changed".to_owned());
         }
         match factor {
-            None if !game.is_lockstep() => {
-                Err("only a game in lockstep goes as fast as can be: this one goes by the clock".to_owned())
-            }
+            None if !game.is_lockstep() => Err("only a game in lockstep can run at unlimited speed".to_owned()),
             Some(factor) if !Control::SPEEDS.contains(&factor) => {
                 let (min, max) = (Control::SPEEDS.start(), Control::SPEEDS.end());
                 Err(format!("the speed is {factor}, expected {min} to {max}"))
@@ -119,16 +115,16 @@ impl PageViewer {
         let scenario = game.scenario();
         let vehicle = scenario.vehicle_named(name).map_err(|e| e.to_string())?;
         if !scenario.strategy_of(vehicle).is_steered() {
-            return Err(format!("the strategy of {name} heeds no policy: it cannot be steered from here"));
+            return Err(format!("{name} cannot be driven: its strategy does not accept an external policy"));
         }
         if !course_deg.is_finite() || !speed_m_s.is_finite() {
-            return Err("course and speed must be numbers".to_owned());
+            return Err("course and speed must be finite".to_owned());
         }
         let speed_m_s = speed_m_s.clamp(0.0, scenario.boat_of(vehicle).speed_max_m_s());
         let course_rad = course_deg.rem_euclid(360.0).to_radians();
         let had = state.steering_locks.holder(vehicle);
         if !state.steering_locks.acquire(vehicle, self.page, now) {
-            return Err(format!("somebody else steers {name}"));
+            return Err(format!("another page is driving {name}"));
         }
         let is_news = state.steering_locks.holder(vehicle) != had;
         let is_on_its_way = !state.steering.is_empty();
@@ -180,10 +176,8 @@ impl Viewer for PageViewer {
                 let mission = (self.shared.read_mission)(lines)?;
                 self.operate(vehicle, OperatorCommand::Mission(mission))
             }
-            PageRequest::Step { .. } | PageRequest::Seek { .. } => {
-                Err("a game that is being played cannot be wound".to_owned())
-            }
-            PageRequest::Curves { .. } => Err("curves are of recordings: this game is still being played".to_owned()),
+            PageRequest::Step { .. } | PageRequest::Seek { .. } => Err("a running game cannot be rewound".to_owned()),
+            PageRequest::Curves { .. } => Err("curves need a recording: this game is still running".to_owned()),
         }
     }
 
@@ -192,7 +186,7 @@ impl Viewer for PageViewer {
         let game = state.game.clone()?;
         if self.sent.generation != state.generation {
             self.sent = Sent { generation: state.generation, ..Sent::default() };
-            // The boat may not exist in this game; the page then selects another.
+            // This game may not have the boat; the page then selects another.
             drop(state.select(self.page, self.selection.as_ref()));
             if self.wants_modes {
                 state.listed.insert(self.page);
@@ -299,7 +293,7 @@ impl Sent {
         Some(PageMessage::Status { vehicle: game.name_of(*vehicle), status }.json())
     }
 
-    /// The next message about the boat that the page has selected.
+    /// The next message about the selected boat.
     fn next_selected(&mut self, state: &LiveState, game: &LiveGame, page: u64, now: Instant) -> Option<String> {
         let (vehicle, functions) = *state.selected.get(&page)?;
         let is_sent = |helm: &Arc<HelmMessage>| self.helm.as_ref().is_some_and(|sent| Arc::ptr_eq(sent, helm));
@@ -333,7 +327,7 @@ impl Sent {
         Some(PageMessage::Modes { at_s: state.modes_at_s, modes: &state.modes }.json())
     }
 
-    /// The newest frame, or before the first one, the next of the past frames.
+    /// The newest frame or, before the first one, the next past frame.
     fn next_frame(&mut self, state: &LiveState) -> Option<Outgoing> {
         if state.frames.count == self.frame {
             return None;
@@ -367,7 +361,7 @@ mod tests {
         let mut say = |budget| std::iter::from_fn(|| viewer.next_message(now, budget)).collect::<Vec<Outgoing>>();
         say(Budget::None);
         shared.state.lock().select(1, Some(&("red_one".to_owned(), false))).unwrap();
-        let light = "what it thinks".to_owned();
+        let light = "a helm report".to_owned();
         let helm = HelmMessage { light: light.clone(), full: None };
         shared.state.lock().helms.insert(VehicleId(2), Arc::new(helm));
         shared.state.lock().frames.take(&Frame::default(), &[], now);

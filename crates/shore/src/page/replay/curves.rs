@@ -1,4 +1,4 @@
-//! The curves of a recorded game over time, for the plots below its time line.
+//! The curves of a recorded game over time, for the plots below the time line.
 
 use crate::page::message::{BoatCurves, Curves, PageMessage};
 use analysis::{GameSeries, Sample};
@@ -9,9 +9,9 @@ use recording::Recording;
 use rules::Field;
 use std::sync::Arc;
 
-/// The maximum number of samples per boat sent to a page: more than a screen has pixels.
+/// Maximum number of samples per boat sent to a page: more than a screen has pixels.
 const SAMPLES: usize = 1500;
-/// The maximum number of samples kept for all boats together, about 140 bytes each.
+/// Maximum number of samples kept for all boats together, about 140 bytes each.
 const SAMPLES_MAX: usize = 400_000;
 
 /// Reads the curves from a recording on first use.
@@ -22,12 +22,12 @@ pub(super) struct Plotter {
 }
 
 impl Plotter {
-    /// A plotter for this recording, which reads nothing yet.
+    /// A plotter for this recording; reads nothing yet.
     pub(super) fn new(recording: Arc<Recording>) -> Plotter {
         Plotter { recording: Some(recording), series: None }
     }
 
-    /// The score, a boat's curves, and its range to another, as a message for the page.
+    /// The score, a boat's curves and its range to another, as a message to the page.
     pub(super) fn curves(&mut self, vehicle: Option<VehicleId>, other: Option<VehicleId>) -> String {
         let Some(recording) = &self.recording else { return PageMessage::Curves { curves: &Curves::default() }.json() };
         let series = self.series.get_or_insert_with(|| {
@@ -79,7 +79,7 @@ fn boat_curves(series: &GameSeries, field: &Field, vehicle: VehicleId) -> BoatCu
     }
 }
 
-/// The distance of a boat to the nearest flag of another team, which may be moving.
+/// A boat's distance to the nearest flag of another team, which may be moving.
 fn flag_distances(series: &GameSeries, field: &Field, vehicle: VehicleId) -> Vec<f64> {
     let boat = &series.boats[vehicle.index()];
     let mut carriers: Vec<Option<VehicleId>> = vec![None; field.flags.len()];
@@ -104,7 +104,7 @@ fn flag_distances(series: &GameSeries, field: &Field, vehicle: VehicleId) -> Vec
     distances
 }
 
-/// Rounds to millimetres, which suffice for a plot and keep the message short.
+/// Rounds to millimetres: enough for a plot, and a short message.
 fn rounded(value: f64) -> f64 {
     (value * 1000.0).round() / 1000.0
 }

@@ -1,4 +1,4 @@
-//! A recording, shown to pages: each has its own playback.
+//! A recording, shown to pages with separate playbacks.
 
 mod curves;
 mod playback;
@@ -24,11 +24,11 @@ pub struct ReplayView {
     news: Changes,
 }
 
-/// The state that all viewers of a recording share.
+/// The state shared by all viewers of a recording.
 struct SharedReplay {
     source: Arc<Recorded>,
     chart: Value,
-    /// A text about the origin of the game.
+    /// The origin of the game.
     about: Option<String>,
     queries: QueryThread,
     viewers: AtomicU64,

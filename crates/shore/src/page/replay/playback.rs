@@ -1,12 +1,11 @@
-//! The playback position in a recording, and its progress.
+//! The playback position in a recording, and how it moves.
 
 use primitives::SimTime;
 use std::time::{Duration, Instant};
 
-/// The limits of the playback speed, simulated seconds per second.
+/// Limits of the playback speed, simulated seconds per second.
 const SPEED: (f64, f64) = (0.01, 100.0);
 
-/// The state of a playback.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Playback {
     from: SimTime,
@@ -30,7 +29,7 @@ impl Playback {
         (self.at + SimTime::from_s(passed_s)).min(self.to)
     }
 
-    /// Whether it is advancing.
+    /// Whether the position is advancing.
     pub(super) fn is_playing(&self) -> bool {
         self.since.is_some()
     }
@@ -40,13 +39,13 @@ impl Playback {
         self.speed
     }
 
-    /// When a moment will be shown, without further commands; `None` if never.
+    /// When a moment will be shown without further commands; `None` if never.
     pub(super) fn when(&self, moment: SimTime) -> Option<Instant> {
         let ahead_s = (moment - self.at).as_s().max(0.0) / self.speed;
         self.since?.checked_add(Duration::try_from_secs_f64(ahead_s).ok()?)
     }
 
-    /// Plays; restarts from the beginning if it is at the end.
+    /// Plays. At the end, restarts from the beginning.
     pub(super) fn play(&mut self, now: Instant) {
         if self.since.is_none() {
             self.at = if self.at >= self.to { self.from } else { self.at };
@@ -54,13 +53,12 @@ impl Playback {
         }
     }
 
-    /// Pauses.
     pub(super) fn pause(&mut self, now: Instant) {
         self.at = self.at(now);
         self.since = None;
     }
 
-    /// Pauses if it has reached the end; returns whether it has just done so.
+    /// Pauses at the end. Returns whether the end has just been reached.
     pub(super) fn end(&mut self, now: Instant) -> bool {
         let ends = self.since.is_some() && self.at(now) >= self.to;
         if ends {
@@ -69,7 +67,7 @@ impl Playback {
         ends
     }
 
-    /// Jumps to another moment, and keeps playing or pausing.
+    /// Jumps to a moment and keeps playing or pausing.
     pub(super) fn seek(&mut self, moment: SimTime, now: Instant) {
         self.at = moment.clamp(self.from, self.to.max(self.from));
         self.since = self.since.map(|_| now);
@@ -93,7 +91,7 @@ mod tests {
         let start = clock::now();
         let later = |s: f64| start + Duration::from_secs_f64(s);
         let mut playback = Playback::new(SimTime::from_s(10.0), SimTime::from_s(20.0));
-        assert_eq!(playback.at(later(5.0)), SimTime::from_s(10.0), "it stands at first");
+        assert_eq!(playback.at(later(5.0)), SimTime::from_s(10.0), "a playback starts paused");
         playback.play(start);
         assert_eq!(playback.at(later(2.0)), SimTime::from_s(12.0));
         playback.set_speed(Some(4.0), later(2.0));

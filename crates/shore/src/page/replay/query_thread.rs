@@ -1,5 +1,5 @@
-//! A thread that computes data for replays that frames lack: helm reports, modes, curves. That may
-//! take a while.
+//! A thread that computes replay data missing from frames: helm reports, modes, curves. It may take
+//! a while.
 
 use super::curves::Plotter;
 use crate::page::message::{PageMessage, seconds};
@@ -13,19 +13,18 @@ use std::ops::Bound;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Recomputes helm reports of a recorded game. That may take a while.
+/// Recomputes helm reports of a recorded game, which may take a while.
 pub trait Helms: Send {
     /// The report of a boat's helm at a decision, with or without utilities.
     fn report(&mut self, vehicle: VehicleId, decision: u64, functions: bool) -> HelmAnswer;
 
-    /// The modes of all helms at a decision, by vehicle; `None` without a helm or mode.
+    /// The modes of all helms at a decision, by vehicle. `None` without a helm or a mode.
     fn modes(&mut self, decision: u64) -> Vec<Option<String>>;
 }
 
-/// A query of a viewer.
+/// A viewer's query.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Query {
-    /// The report of a helm.
     Helm(HelmRequest),
     /// The modes of all boats at a decision, with its time.
     Modes(u64, SimTime),
@@ -33,18 +32,15 @@ pub(super) enum Query {
     Curves(Option<VehicleId>, Option<VehicleId>),
 }
 
-/// A query for a helm's report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct HelmRequest {
-    /// The boat of the helm.
     pub(super) vehicle: VehicleId,
-    /// The decision.
     pub(super) decision: u64,
     /// Whether to include utilities.
     pub(super) functions: bool,
 }
 
-/// A viewer and a kind of query: it has at most one query of each kind.
+/// A viewer and a kind of query, of which it has at most one at a time.
 type Asker = (u64, u8);
 
 impl Query {
@@ -57,19 +53,19 @@ impl Query {
     }
 }
 
-/// Queued queries and finished answers.
+/// Queued queries and finished replies.
 #[derive(Default)]
 struct Queue {
     requests: BTreeMap<Asker, Query>,
     answers: BTreeMap<Asker, (Query, String)>,
-    /// The viewer and kind being answered, unless the viewer has left.
+    /// The viewer and kind of the query in progress, unless the viewer has left.
     current: Option<Asker>,
-    /// The last one served, so that all get their turn.
+    /// The last one served, so that each gets its turn.
     last: Asker,
     is_closed: bool,
 }
 
-/// The sources of the answers.
+/// The sources of replies.
 pub(super) struct Sources {
     pub(super) scenario: Scenario,
     /// `None` if helm reports cannot be recomputed.
@@ -77,26 +73,24 @@ pub(super) struct Sources {
     pub(super) plotter: Plotter,
 }
 
-/// The query thread.
 pub(super) struct QueryThread(Arc<Watched<Queue>>);
 
 impl QueryThread {
-    /// Starts the thread.
     pub(super) fn open(sources: Sources, news: Changes) -> QueryThread {
         let counter = Arc::new(Watched::<Queue>::default());
         let server = Arc::clone(&counter);
         let serve = move || serve(&server, sources, &news);
-        // Without a thread no query is answered; pages show that.
+        // Without a thread no query is answered, and pages show that.
         drop(std::thread::Builder::new().name("page-queries".to_owned()).spawn(serve));
         QueryThread(counter)
     }
 
-    /// Queues a viewer's query, in place of its earlier one of the same kind.
+    /// Queues a viewer's query, replacing its earlier one of the same kind.
     pub(super) fn request(&self, viewer: u64, query: Query) {
         self.0.visit(|queue| queue.requests.insert((viewer, query.kind()), query));
     }
 
-    /// Removes the newest report of a helm for a viewer, encoded for the page.
+    /// Takes the newest helm report for a viewer, encoded for the page.
     pub(super) fn take_helm(&self, viewer: u64) -> Option<(HelmRequest, String)> {
         match self.0.visit(|queue| queue.answers.remove(&(viewer, 0)))? {
             (Query::Helm(request), text) => Some((request, text)),
@@ -104,12 +98,11 @@ impl QueryThread {
         }
     }
 
-    /// Removes another answer for a viewer, encoded for the page.
+    /// Takes another reply for a viewer, encoded for the page.
     pub(super) fn take_other(&self, viewer: u64) -> Option<String> {
         self.0.visit(|queue| (1..=2).find_map(|kind| queue.answers.remove(&(viewer, kind)))).map(|(_, text)| text)
     }
 
-    /// Removes a viewer.
     pub(super) fn remove(&self, viewer: u64) {
         self.0.visit(|queue| {
             queue.requests.retain(|(of, _), _| *of != viewer);
@@ -136,7 +129,7 @@ fn serve(shared: &Watched<Queue>, mut sources: Sources, news: &Changes) {
         }
         let Some(query) = shared.visit(Queue::next) else { continue };
         let text = sources.answer(query);
-        // If the viewer has left meanwhile, the answer is dropped.
+        // If the viewer has left meanwhile, the reply is dropped.
         shared.visit(|queue| queue.current.take().map(|asker| queue.answers.insert(asker, (query, text))));
         news.send_replace(());
     }
@@ -148,9 +141,10 @@ impl Sources {
             Query::Helm(HelmRequest { vehicle, decision, functions }) => {
                 let answer = match &mut self.helms {
                     Some(helms) => helms.report(vehicle, decision, functions),
-                    None => {
-                        HelmAnswer { reason: Some("the recording does not tell".to_owned()), ..HelmAnswer::default() }
-                    }
+                    None => HelmAnswer {
+                        reason: Some("the recording does not contain this".to_owned()),
+                        ..HelmAnswer::default()
+                    },
                 };
                 helm_text(&self.scenario, vehicle, functions, answer)
             }
@@ -164,7 +158,6 @@ impl Sources {
 }
 
 impl Queue {
-    /// The next query in turn.
     fn next(&mut self) -> Option<Query> {
         let later = (Bound::Excluded(self.last), Bound::Unbounded);
         let after = self.requests.range(later).next().or_else(|| self.requests.iter().next());
@@ -180,7 +173,7 @@ mod tests {
     use std::path::Path;
     use std::sync::mpsc::{Receiver, Sender, channel};
 
-    /// Helms that signal when they start, and wait until they may continue.
+    /// Helms that signal their start and wait for permission to continue.
     struct SlowHelms(Sender<()>, Receiver<()>);
 
     impl Helms for SlowHelms {

@@ -8,25 +8,25 @@ use recording::{Damaged, Header, Recording, picture};
 use scenario::outcome::EventOutcome;
 use std::sync::Arc;
 
-/// A recording, ready to be shown.
+/// A recording ready for replay.
 pub struct Recorded {
     recording: Arc<Recording>,
     /// The file's name.
     pub(super) file: String,
-    /// The indices of valid frames in the recording, and their times.
+    /// Indices of valid frames in the recording, and their times.
     frames: Vec<usize>,
     times: Vec<SimTime>,
     damaged: Damaged,
-    /// By team, the time and location of every picture.
+    /// By team: time and location of every picture.
     pictures: Vec<Vec<(SimTime, usize)>>,
-    /// By vehicle, the same for every status from its gateway.
+    /// By vehicle: the same for every status from its gateway.
     statuses: Vec<Vec<(SimTime, usize)>>,
-    /// All events, including failsafes of gateways.
+    /// All events, including gateways' failsafes.
     pub(super) events: Vec<EventOutcome>,
 }
 
 impl Recorded {
-    /// Reads the whole recording once, and omits damaged frames.
+    /// Reads the whole recording once and skips damaged frames.
     #[must_use]
     pub fn new(recording: Arc<Recording>, file: String) -> Recorded {
         let scenario = recording.scenario();
@@ -56,7 +56,7 @@ impl Recorded {
         recorded
     }
 
-    /// Adds the failsafes of gateways to the events, at the time of their first report.
+    /// Adds gateways' failsafes to the events, at the time of their first report.
     fn add_failsafes(&mut self) {
         let scenario = self.recording.scenario();
         for (vehicle, sent) in scenario.vehicles.iter().zip(&self.statuses) {
@@ -90,7 +90,6 @@ impl Recorded {
         Arc::clone(&self.recording)
     }
 
-    /// The recording's header.
     pub(super) fn header(&self) -> &Header {
         self.recording.header()
     }
@@ -100,12 +99,12 @@ impl Recorded {
         &self.header().info
     }
 
-    /// Whether the file ends abruptly.
+    /// Whether the file is truncated.
     pub(super) fn is_cut(&self) -> bool {
         self.recording.is_cut()
     }
 
-    /// The omitted frames.
+    /// The number of skipped frames.
     #[must_use]
     pub fn damaged(&self) -> &Damaged {
         &self.damaged
@@ -117,7 +116,6 @@ impl Recorded {
         &self.times
     }
 
-    /// A frame as CDR.
     pub(super) fn frame_bytes(&self, frame: usize) -> Vec<u8> {
         self.recording.frame(self.frames[frame]).bytes
     }
@@ -131,14 +129,14 @@ impl Recorded {
         picture.own(vehicle).copied()
     }
 
-    /// The last status from a boat's gateway up to this time.
+    /// The last status from a boat's gateway up to a time.
     #[must_use]
     pub fn status(&self, vehicle: VehicleId, at: SimTime) -> Option<GatewayStatus> {
         self.status_at(last_until(self.statuses.get(vehicle.index())?, at)?)
     }
 }
 
-/// The location of the last of these up to `at`.
+/// The location of the last item up to `at`.
 fn last_until(sent: &[(SimTime, usize)], at: SimTime) -> Option<usize> {
     let after = sent.partition_point(|(when, _)| *when <= at);
     sent[..after].last().map(|(_, place)| *place)

@@ -16,12 +16,11 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// The bytes of a frame that hold the number of its decision: after the encapsulation and the time.
+/// The bytes of a frame that hold its decision number: after the encapsulation and the time.
 const DECISION: std::ops::Range<usize> = 12..20;
-/// The minimum interval between frames, at any playback speed.
+/// Minimum interval between frames at any playback speed.
 const FRAME_AGAIN: Duration = Duration::from_millis(10);
 
-/// One page's view of a recording.
 pub(super) struct PageViewer {
     shared: Arc<SharedReplay>,
     viewer: u64,
@@ -30,14 +29,13 @@ pub(super) struct PageViewer {
     greeting: VecDeque<String>,
     /// The playback as last sent, and when.
     sent_playback: Option<(Playback, Instant)>,
-    /// The frame shown last.
     shown: Option<usize>,
-    /// The past frames to send before the next one.
+    /// Past frames to send before the next one.
     past: VecDeque<usize>,
     selected: Option<(VehicleId, bool)>,
     requested: Option<(HelmRequest, Instant)>,
     estimated: Option<(usize, Instant)>,
-    /// Whether the modes of all boats are wanted, the decision for which they were last requested,
+    /// Whether the modes of all boats are wanted; the decision for which they were last requested,
     /// and when.
     wants_modes: bool,
     requested_modes: Option<(u64, Instant)>,
@@ -45,7 +43,6 @@ pub(super) struct PageViewer {
     gateways: Vec<(VehicleId, Option<GatewayStatus>)>,
     /// The frame for which statuses were last read, and when.
     looked: Option<(usize, Instant)>,
-    /// Statuses still to be sent.
     statuses: VecDeque<String>,
 }
 
@@ -77,7 +74,7 @@ impl PageViewer {
         }
     }
 
-    /// The frame to show at this moment: the last one up to it.
+    /// The frame to show at a moment: the last one up to it.
     fn frame_at(&self, moment: SimTime) -> Option<usize> {
         let times = self.shared.source.frame_times();
         let after = times.partition_point(|time| *time <= moment);
@@ -162,7 +159,7 @@ impl PageViewer {
         (answered.vehicle == vehicle).then_some(Outgoing::Text(text))
     }
 
-    /// The next message with the modes of all boats, or with curves.
+    /// The next message with all boats' modes, or with curves.
     fn next_other(&mut self, frame: usize, now: Instant) -> Option<Outgoing> {
         let is_due = |(before, at): (u64, Instant), decision| {
             before != decision && now.saturating_duration_since(at) >= MODES_INTERVAL
@@ -184,7 +181,7 @@ impl PageViewer {
         Ok(())
     }
 
-    /// The decision of a frame.
+    /// A frame's decision number.
     fn decision(&self, frame: usize) -> Option<u64> {
         let bytes = self.shared.source.frame_bytes(frame);
         Some(u64::from_le_bytes(bytes.get(DECISION)?.try_into().ok()?))
@@ -275,14 +272,14 @@ impl Viewer for PageViewer {
                 self.playback.set_speed(*factor, now);
             }
             PageRequest::Seek { .. } | PageRequest::Speed { .. } => {
-                return Err("not a number that makes sense".to_owned());
+                return Err("the value is out of range".to_owned());
             }
             PageRequest::Control { .. }
             | PageRequest::Drive { .. }
             | PageRequest::LetGo { .. }
             | PageRequest::Operate { .. }
             | PageRequest::Mission { .. } => {
-                return Err("this is a recording".to_owned());
+                return Err("a recording does not support this".to_owned());
             }
         }
         Ok(())
