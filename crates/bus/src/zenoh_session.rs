@@ -35,7 +35,7 @@ impl ZenohSession {
     pub(crate) fn hub(net: &Net, game: &GameName, scenario: &Scenario) -> Result<ZenohSession, BusError> {
         let files = OpenFiles::reserve(FILES_MAX);
         let nodes = nodes_max(files);
-        let what = format!("to listen on {}", net.endpoints(&net.listen).join(", "));
+        let what = format!("to listen on {}", net.listen.join(", "));
         let session = open(net.hub(game, scenario, nodes)?, what.clone())?;
         let begun = admission::begin(&session.0, net.ports(), files, nodes);
         begun.map_err(|e| BusError::Open { what, reason: reason(&e) })?;
@@ -45,7 +45,7 @@ impl ZenohSession {
     /// Connects to a hub.
     pub(crate) fn leaf(net: &Net) -> Result<ZenohSession, BusError> {
         let endpoints = net.endpoints(&net.connect);
-        open(net.leaf()?, format!("to connect to {}", endpoints.join(", "))).map_err(|error| {
+        open(net.leaf()?, format!("to connect to {}", net.connect.join(", "))).map_err(|error| {
             // zenoh does not report the cause.
             let of_keys = endpoints.iter().find_map(|endpoint| match &net.keys {
                 Some(keys) => keys::refusal(endpoint, keys),

@@ -1,7 +1,7 @@
 //! Keys of a game: which nodes are admitted, what each may do, and what the refused ones are told.
 
 use bus::keys::{Bundle, Identity, make};
-use bus::{Bus, BusError, Net, Priority, Query, Watched, clock};
+use bus::{Bus, BusError, Delivery, Net, Priority, Query, Watched, clock};
 use messages::topic::{self, GameName};
 use scenario::Scenario;
 use std::io::Write;
@@ -45,7 +45,11 @@ fn bundle(keys: &tempfile::TempDir, identity: &str) -> Option<Arc<Bundle>> {
 
 /// A hub, and its endpoint.
 fn hub(keys: Option<Arc<Bundle>>) -> (Result<Bus, BusError>, String) {
-    let endpoint = format!("tcp/127.0.0.1:{}", bus::free_port(false).expect("a port"));
+    hub_over("tcp", keys)
+}
+
+fn hub_over(transport: &str, keys: Option<Arc<Bundle>>) -> (Result<Bus, BusError>, String) {
+    let endpoint = format!("{transport}/127.0.0.1:{}", bus::free_port(false).expect("a port"));
     let net = Net { listen: vec![endpoint.clone()], keys, ..Net::default() };
     (Bus::hub(&net, &game(), &scenario()), endpoint)
 }
@@ -165,7 +169,8 @@ fn is_heard(from: &Bus, to: &Bus, word: &str, free: &str) -> bool {
         to.subscribe(key(word), move |_| of_word.visit(|(heard, _)| *heard = true)).expect("open"),
         to.subscribe(key(free), move |_| of_free.visit(|(_, heard)| *heard = true)).expect("open"),
     );
-    let publisher = |word| from.publisher(key(word), Priority::Normal).expect("open");
+    // Over QUIC in datagrams, which have the same rights as what is reliable.
+    let publisher = |word| from.publisher_with(key(word), Priority::Normal, Delivery::Newest).expect("open");
     let (asked, sure) = (publisher(word), publisher(free));
     let start = clock::now();
     while !heard.wait(Duration::from_millis(20), |(_, free)| *free) {
@@ -235,8 +240,17 @@ const ASKED: [(&str, &str); 11] = [
 
 #[test]
 fn each_may_do_what_its_part_needs_and_no_more() {
+    check_rights("tcp");
+}
+
+#[test]
+fn rights_over_quic_are_the_same() {
+    check_rights("quic");
+}
+
+fn check_rights(transport: &str) {
     let own = keys(&["127.0.0.1"], DAY);
-    let (sim, endpoint) = hub(bundle(&own, "sim"));
+    let (sim, endpoint) = hub_over(transport, bundle(&own, "sim"));
     let sim = sim.expect("it listens");
     let node = |identity: &str| leaf(&endpoint, bundle(&own, identity)).expect("it is let in");
     let nodes =
