@@ -18,7 +18,7 @@ pub(crate) struct Args {
 /// Which kind.
 #[derive(clap::Args)]
 pub(crate) struct SchemaArgs {
-    /// game, field, rules, boat, sea, strategy, tournament, gateway, rewards, training or sweep
+    /// Kind of file: game, field, rules, boat, sea, strategy, tournament, gateway, rewards, training or sweep
     kind: String,
 }
 

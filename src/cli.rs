@@ -26,7 +26,7 @@ Squall simulates boats that play capture the flag.
   squall run strategy_4_vs_3          a game in the terminal
   squall run surveyor_2v2 --sea gale --blue learned --view
   squall files                        games, seas and strategies by name
-  squall new strategy mine            a strategy of your own to change, and then
+  squall new strategy mine            your own strategy file, which you edit and play:
   squall run surveyor_2v2 --blue mine
   squall help                         everything else
 ";
@@ -34,14 +34,14 @@ Squall simulates boats that play capture the flag.
 /// Which shell.
 #[derive(clap::Args)]
 pub(crate) struct CompletionArgs {
-    /// The shell
+    /// Shell to print the script for
     shell: clap_complete::Shell,
 }
 
 /// Where to.
 #[derive(clap::Args)]
 pub(crate) struct ManArgs {
-    /// The folder for the pages
+    /// Folder for the man pages
     folder: PathBuf,
 }
 
@@ -62,7 +62,7 @@ pub(crate) fn command<T: CommandFactory>() -> Command {
             text.push_str(&format!("{group}:\n{lines}\n"));
         }
     }
-    text.push_str("squall COMMAND --help tells more, with examples.");
+    text.push_str("`squall COMMAND --help` prints details and examples.");
     command.help_template("{about}\n\n{usage-heading} {usage}{after-help}\n\nOptions:\n{options}").after_help(text)
 }
 

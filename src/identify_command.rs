@@ -14,20 +14,20 @@ use trial::identify::{self, Fit, Log, Setting, Step};
 /// Which boat, to which log.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// A boat file, or the name of a boat in scenarios/boats: where the search begins
+    /// Boat from which the fit starts: a file, or the name of a boat in scenarios/boats
     boat: String,
-    /// The recorded data: t_s, commands as for `trial --orders`, plus these columns of a trial: heading_deg, surge_m_s,
-    /// yaw_rate_deg_s and, if present, sway_m_s and x_m,y_m
+    /// Recorded data, as CSV. Columns: t_s, commands as for `squall trial --orders`, heading_deg, surge_m_s,
+    /// yaw_rate_deg_s and, if available, sway_m_s, x_m and y_m
     #[arg(long, value_name = "FILE")]
     log: PathBuf,
-    /// What to fit [default: surge_linear, surge_quadratic, sway_linear, yaw_linear, yaw_quadratic, yaw_lift,
-    /// port_gain, starboard_gain, lag, as far as the boat has them]
+    /// Parameters to fit, separated by commas [default: surge_linear, surge_quadratic, sway_linear, yaw_linear,
+    /// yaw_quadratic, yaw_lift, port_gain, starboard_gain and lag, if the boat has them]
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     fit: Vec<String>,
-    /// The model starts anew from the log this often, s
+    /// Length of a segment, s: the simulation restarts from the recorded data at the beginning of each one
     #[arg(long, value_name = "S", default_value_t = 20.0, value_parser = within(1.0, 3600.0, "s"))]
     segment_s: f64,
-    /// Writes the new boat to this file [default: BOAT_identified.toml here]
+    /// Writes the fitted boat to this file [default: BOAT_identified.toml in the current folder]
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Physics tick, s [default: 0.05]

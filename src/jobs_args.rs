@@ -5,7 +5,7 @@ use std::num::NonZeroUsize;
 /// Threads, from the command line.
 #[derive(clap::Args)]
 pub(crate) struct JobsArgs {
-    /// Worker threads; does not affect results [default: one for each core; at most four for each]
+    /// Number of worker threads; does not affect results [default: one per core; at most four per core]
     #[arg(long, value_name = "N")]
     jobs: Option<NonZeroUsize>,
 }

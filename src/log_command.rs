@@ -21,7 +21,7 @@ mod quality;
 #[derive(clap::Args)]
 #[command(after_help = AFTER_HELP)]
 pub(crate) struct Args {
-    /// The recording
+    /// Recording to analyse
     #[arg(required_unless_present_any = ["compare", "quality"])]
     file: Option<PathBuf>,
     /// Prints only the events
@@ -30,17 +30,17 @@ pub(crate) struct Args {
     /// Writes the summary, comparison or quality report to this file as JSON
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Prints a topic as CSV; `events` is also a topic
+    /// Prints this topic as CSV: a topic from the summary, or `events`
     #[arg(long, value_name = "TOPIC", conflicts_with = "compare")]
     csv: Option<String>,
-    /// Writes the CSV to this file
+    /// Writes the CSV to this file instead of standard output
     #[arg(long, value_name = "FILE", requires = "csv")]
     out: Option<PathBuf>,
-    /// Draws tracks, score, and every boat's speed, heading and navigation as SVG and PNG files in this folder
+    /// Plots tracks, score, and each boat's speed, heading and navigation as SVG and PNG files in this folder
     #[arg(long, value_name = "DIR")]
     plot: Option<PathBuf>,
-    /// Writes MOOS logs for the shoreside and every boat to this folder; if the name ends in .alog, only the shoreside
-    /// log
+    /// Writes MOOS logs for the shoreside and every boat to this folder; if the name ends in .alog, writes only the
+    /// shoreside log, to this file
     #[arg(long, value_name = "DIR", conflicts_with = "compare")]
     alog: Option<PathBuf>,
     /// Writes an animation of the game to this GIF file
@@ -51,18 +51,18 @@ pub(crate) struct Args {
     /// Compares two recordings, for example a game on the water and its simulation
     #[arg(long, num_args = 2, value_names = ["A", "B"], conflicts_with_all = ["file", "events"])]
     compare: Option<Vec<PathBuf>>,
-    /// Reports how sensibly boats play in all these recordings: chatter, standing still, edges, contacts, orbits
+    /// Reports the quality of play in these recordings: chatter, standing still, edges, contacts, orbits
     #[arg(long, num_args = 1.., value_name = "GAME")]
     #[arg(conflicts_with_all = ["file", "events", "csv", "plot", "alog", "gif", "compare"])]
     quality: Option<Vec<PathBuf>>,
-    /// Events in two recordings count as the same if they are closer than this, s
+    /// With --compare: maximum time between matching events, s
     #[arg(long, value_name = "S", default_value_t = 5.0, value_parser = within(0.0, 3600.0, "s"), requires = "compare")]
     tolerance_s: f64,
 }
 
 const AFTER_HELP: &str = "\
-Topics are in the summary. Tables have one row a message, except: pictures one a boat seen, inputs one an input, say one \
-a word, link one a sentence.";
+The summary lists the topics. A table has one row per message, with these exceptions: one per boat seen (pictures), \
+per input (inputs), per word (say) and per sentence (link).";
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     match (&args.compare, &args.quality, &args.file) {

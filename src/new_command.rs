@@ -23,10 +23,10 @@ const TEMPLATES: [(Kind, &str); 7] = [
 /// Which file.
 #[derive(clap::Args)]
 pub(crate) struct NewArgs {
-    /// strategy, boat, sea, game, sweep, training or tournament
+    /// Kind of file: strategy, boat, sea, game, sweep, training or tournament
     #[arg(value_parser = template)]
     kind: (Kind, &'static str),
-    /// Its name: a-z, 0-9 and _
+    /// Name of the new file: a-z, 0-9 and _
     #[arg(value_parser = name)]
     name: String,
 }
@@ -34,9 +34,9 @@ pub(crate) struct NewArgs {
 /// Which file.
 #[derive(clap::Args)]
 pub(crate) struct CopyArgs {
-    /// Its name, or its folder and name where several kinds have it, as in seas/calm
+    /// Name of the file, with its folder if several kinds share the name, as in seas/calm
     name: String,
-    /// The name of the copy [default: the same]
+    /// Name of the copy [default: the same name]
     #[arg(value_parser = name)]
     as_name: Option<String>,
 }

@@ -17,18 +17,18 @@ use std::time::Instant;
 /// Which model, and which of its decisions.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// A model, as ONNX
+    /// Policy: an ONNX model
     file: PathBuf,
     /// Explains a decision in this recording
     #[arg(long, value_name = "RECORDING", requires_all = ["vehicle", "at"])]
     game: Option<PathBuf>,
-    /// Of this boat, which a policy proposes to
+    /// With --game: name of the boat, which must use a policy
     #[arg(long, value_name = "NAME", requires = "game")]
     vehicle: Option<String>,
-    /// At this time of the game, seconds
+    /// With --game: time of the decision, s
     #[arg(long, value_name = "SECONDS", requires = "game", allow_negative_numbers = true)]
     at: Option<f64>,
-    /// Shows so many inputs, those first that the decision depends on most
+    /// Number of inputs to list, the most influential first
     #[arg(long, value_name = "COUNT", default_value_t = 12)]
     inputs: usize,
 }

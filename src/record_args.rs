@@ -8,10 +8,10 @@ use std::path::PathBuf;
 /// Whether and where `run` records.
 #[derive(Clone, clap::Args)]
 pub(crate) struct RecordArgs {
-    /// Records the game into this folder
+    /// Folder for the recording
     #[arg(long, value_name = "DIR", default_value = "runs")]
     record: PathBuf,
-    /// Does not record
+    /// Does not record the game
     #[arg(long, conflicts_with = "record")]
     no_record: bool,
 }

@@ -12,9 +12,9 @@ mod check;
 /// The recording, and how to replay it.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The recording
+    /// Recording to replay
     pub(crate) file: PathBuf,
-    /// Plays the game again from what it was given, without minds, and says whether the same comes of it
+    /// Reruns the game from its recorded inputs, without minds, and reports whether the result is identical
     #[arg(long)]
     pub(crate) check: bool,
 }

@@ -23,13 +23,13 @@ pub(crate) struct Args {
     play: GameArgs,
     #[command(flatten)]
     record: RecordArgs,
-    /// Plays the game twice, the second time with the strategies exchanged, and adds up the points
+    /// Plays the game a second time with the strategies exchanged, and adds up the points
     #[arg(long, conflicts_with = "exchange_strategies")]
     both_sides: bool,
-    /// Plays again whenever a file of the game is saved, until Ctrl-C
+    /// Plays again whenever a scenario file of the game changes, until Ctrl-C
     #[arg(long)]
     watch_files: bool,
-    /// Plays in this process, without a network: the same game, byte for byte
+    /// Plays in this process, without a network; the game is the same, byte for byte
     #[arg(long)]
     pub(crate) in_process: bool,
 }

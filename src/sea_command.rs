@@ -16,16 +16,16 @@ use trial::{Drift, Manoeuvre, Plan, Sample, Start, TrialBoat};
 /// Which sea, and for which boat.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The sea: a file or a name
+    /// Sea to describe: a file or a name
     #[arg(value_parser = crate::scenario_files::sea)]
     sea: PathBuf,
-    /// The boat that it is told for: a file, or the name of one in scenarios/boats
+    /// Boat for which effects are computed: a file, or the name of a boat in scenarios/boats
     #[arg(long, value_name = "BOAT", default_value = "surveyor_m1_8")]
     boat: String,
     /// Random seed for waves, gusts, eddies and the randomised values of sea and boat
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Draws spectrum, surface, wind and the drift of the boat into this file, as SVG [default: SEA.svg here]
+    /// Plots spectrum, surface, wind and the boat's drift to this SVG file [default: SEA.svg in the current folder]
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
 }

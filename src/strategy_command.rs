@@ -11,13 +11,13 @@ use std::process::ExitCode;
 /// Which file, and how it is shown.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// A strategy: a file or a name
+    /// Strategy to explain: a file or a name
     #[arg(required_unless_present = "reference", value_parser = crate::scenario_files::strategy)]
     file: Option<PathBuf>,
-    /// Writes the modes and what may run in them as a Graphviz graph
+    /// Prints the modes and their possible behaviours as a Graphviz graph
     #[arg(long)]
     dot: bool,
-    /// Prints every key and every name of strategy files, with what it means, as Markdown
+    /// Prints a reference of all keys and names in strategy files, as Markdown
     #[arg(long, conflicts_with_all = ["file", "dot"])]
     reference: bool,
 }

@@ -13,36 +13,36 @@ use std::process::ExitCode;
 /// Which sweep, and how.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The sweep: a file or a name
+    /// Sweep to run: a file or a name
     #[arg(value_parser = crate::scenario_files::file_of::<Sweep>)]
     sweep: PathBuf,
-    /// Games of each entry at each point, half of them on each side [default: as the file says]
+    /// Games per entry and point, half of them on each side [default: the number in the file]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
     games: Option<u32>,
-    /// The first seed [default: as the file says]
+    /// First seed [default: the seed in the file]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
     seed: Option<u64>,
     #[command(flatten)]
     jobs: JobsArgs,
-    /// The folder for the tables and the report [default: runs/sweep/NAME]
+    /// Folder for the tables and the report [default: runs/sweep/NAME]
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
-    /// Goes on with the sweep that this folder holds; what comes of it is the same as if it had never stopped. With --until and --find:
-    /// games of searches that the folder has are not played again
+    /// Resumes the sweep in the output folder; the results are the same as without interruption. With --until or
+    /// --find, reuses the games of earlier searches
     #[arg(long)]
     resume: bool,
-    /// Searches for the value of an axis at which this begins to hold, in place of playing all points, as in
-    /// "strategy_5.win_share < 0.5"; no more games at a value than a point has
+    /// Instead of playing all points, searches an axis for the value at which this condition begins to hold, for
+    /// example "strategy_5.win_share < 0.5"; plays at most one point's games per value
     #[arg(long, value_name = "CONDITION", conflicts_with = "find")]
     until: Option<String>,
-    /// With --until: the key of the axis to search along [default: the only one with numbers]
+    /// With --until: key of the axis to search [default: the only numeric axis]
     #[arg(long, value_name = "KEY", requires = "until")]
     along: Option<String>,
-    /// Draws games evenly from the space of the axes, says in how many of them this holds, and names them, as in
-    /// "strategy_5.contacts > 0"; `collision` and `out_of_bounds` are conditions on the first entry
+    /// Samples the axes uniformly, and lists the games that meet this condition, for example "strategy_5.contacts >
+    /// 0"; `collision` and `out_of_bounds` apply to the first entry
     #[arg(long, value_name = "CONDITION")]
     find: Option<String>,
-    /// With --find: how many games
+    /// With --find: number of games to play
     #[arg(long, value_name = "N", requires = "find", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     search_games: u32,
 }

@@ -22,28 +22,29 @@ use std::sync::atomic::AtomicBool;
 /// Which tournament, and how.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The tournament: a file or a name
+    /// Tournament to play: a file or a name
     #[arg(value_parser = crate::scenario_files::file_of::<Tournament>)]
     tournament: PathBuf,
-    /// Games of each pairing, half of them on each side [default: as the file says]
+    /// Games per pairing, half of them on each side [default: the number in the file]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
     games: Option<u32>,
-    /// The first seed [default: as the file says]
+    /// First seed [default: the seed in the file]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
     seed: Option<u64>,
     #[command(flatten)]
     jobs: JobsArgs,
-    /// Writes everything to this file, every game and what it takes to play it again; `squall view FILE` shows it
+    /// Writes the full report to this file as JSON, with all settings for replaying its games; `squall view FILE`
+    /// shows it
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Writes a line for each entry to this file
+    /// Writes one line per entry to this file as CSV
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Keeps the results in this folder and plays only what is not there: entries may join, and a tournament that was stopped goes on;
-    /// `squall view FOLDER` shows it
+    /// Keeps the results in this folder and plays only the missing games, so that you can add entries or resume a
+    /// stopped tournament; `squall view FOLDER` shows it
     #[arg(long, value_name = "FOLDER", conflicts_with = "quality")]
     league: Option<PathBuf>,
-    /// Says as well how sensibly boats play: chatter, standing still, edges, contacts, orbits
+    /// Also reports the quality of play: chatter, standing still, edges, contacts, orbits
     #[arg(long)]
     quality: bool,
 }

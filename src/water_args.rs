@@ -11,16 +11,16 @@ use std::path::{Path, PathBuf};
 /// The water, from the command line.
 #[derive(clap::Args)]
 pub(crate) struct WaterArgs {
-    /// The sea: a file or a name [default: salt water at rest, no wind]
+    /// Sea: a file or a name [default: salt water at rest, without wind]
     #[arg(long, value_name = "SEA", value_parser = scenario_files::sea)]
     sea: Option<PathBuf>,
     /// Random seed for waves, gusts and the randomised values of boat and sea
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
-    /// The mean current, in place of the sea's own, m/s
+    /// Mean current, instead of the sea's own, m/s
     #[arg(long, value_name = "M_S", value_parser = speed, default_value_if("current_toward_deg", clap::builder::ArgPredicate::IsPresent, "0"))]
     current_m_s: Option<f64>,
-    /// Where that current goes to, compass degrees
+    /// Direction towards which this current flows, compass degrees
     #[arg(long, value_name = "DEG", value_parser = degrees, default_value_t = 0.0, allow_negative_numbers = true, requires = "current_m_s")]
     current_toward_deg: f64,
 }

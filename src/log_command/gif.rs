@@ -34,16 +34,16 @@ const SAMPLES: usize = 6;
 /// Which stretch of a game a film shows, and how.
 #[derive(clap::Args)]
 pub(super) struct FilmArgs {
-    /// With --gif: from this moment of the game on, s [default: its beginning]
+    /// With --gif: start time in the game, s [default: the beginning]
     #[arg(long, value_name = "S", requires = "gif", value_parser = within(0.0, 1e7, "s"))]
     from: Option<f64>,
-    /// With --gif: up to this moment, s [default: its end]
+    /// With --gif: end time in the game, s [default: the end]
     #[arg(long, value_name = "S", requires = "gif", value_parser = within(0.0, 1e7, "s"))]
     to: Option<f64>,
-    /// With --gif: how much faster than it was played
+    /// With --gif: playback speed, as a multiple of real time
     #[arg(long, value_name = "FACTOR", requires = "gif", default_value = "10x", value_parser = game_args::speed)]
     speed: f64,
-    /// With --gif: how wide the picture is, pixels
+    /// With --gif: width of the animation, pixels
     #[arg(long, value_name = "PIXELS", requires = "gif", default_value_t = 800, value_parser = clap::value_parser!(u32).range(200..=2000))]
     width: u32,
 }

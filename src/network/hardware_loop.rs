@@ -18,14 +18,14 @@ use std::time::Duration;
 /// What `run` is asked of it.
 #[derive(Clone, clap::Args)]
 pub(crate) struct LoopArgs {
-    /// Emulated boats stand in for the real ones: they float in water of their own, speak the protocol of the gateway file and
-    /// are driven through gateways, which tell how they were in the end
+    /// Replaces real boats by emulated ones, which gateways drive over the protocol of the gateway file; prints the
+    /// gateways' final status
     #[arg(long, conflicts_with_all = ["in_process", "rehearse"])]
     emulate: bool,
-    /// How the gateways drive them: a gateway file or its name [default: a Surveyor, carefully]
+    /// Gateway file or name for the emulated boats [default: a Surveyor with careful limits]
     #[arg(long, value_name = "FILE", requires = "emulate", value_parser = crate::scenario_files::file_of::<gateway::config::Gateway>)]
     gateway: Option<PathBuf>,
-    /// Records what goes through each gateway into this folder, as NAME.mcap
+    /// Records the link traffic of each gateway to NAME.mcap in this folder
     #[arg(long, value_name = "DIR", requires = "emulate")]
     record_gateways: Option<PathBuf>,
 }

@@ -13,12 +13,12 @@ use std::process::ExitCode;
 /// Whose, and into which file.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The vehicle, by name
+    /// Name of the vehicle
     #[arg(long, value_name = "NAME")]
     vehicle: String,
     #[command(flatten)]
     leaf: LeafArgs,
-    /// Writes the utility of every course and speed, by behaviour and in all, into this file
+    /// Writes the utility of every course and speed, for each behaviour and in total, to this file
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
 }

@@ -10,16 +10,17 @@ use std::path::PathBuf;
 /// How a hub can be reached.
 #[derive(clap::Args, Clone, Debug)]
 pub(crate) struct HubArgs {
-    /// Endpoint to listen on, for example tcp/0.0.0.0:7447 [default: loopback port 7447, or any free one if it is taken]
+    /// Endpoint to listen on, for example tcp/0.0.0.0:7447 [default: loopback port 7447, or a free port if it is
+    /// taken]
     #[arg(long, value_name = "ENDPOINT")]
     pub(crate) listen: Vec<String>,
-    /// Be found by multicast on the local network (listens on all interfaces unless --listen says otherwise)
+    /// Announces the game by multicast on the local network; without --listen, listens on all interfaces
     #[arg(long)]
     lan: bool,
-    /// Lets other machines in although nothing protects the game from strangers on that network
+    /// Accepts other machines without keys: anyone on that network can see and stop the game
     #[arg(long)]
     insecure: bool,
-    /// A zenoh configuration (JSON5) to begin with: access control, interfaces, buffers
+    /// Base zenoh configuration (JSON5), for example for access control, interfaces or buffers
     #[arg(long, value_name = "FILE")]
     zenoh_config: Option<PathBuf>,
     #[command(flatten)]

@@ -18,39 +18,39 @@ pub(crate) struct Args {
 
 #[derive(clap::Subcommand)]
 enum KeysCommand {
-    /// Makes an authority of its own and a folder of keys for each part of a game.
+    /// Creates a certificate authority and a folder of keys for each part of a game.
     New(NewArgs),
-    /// Says whose keys these are, and how long they are valid.
+    /// Shows the owner and validity of keys.
     Show(ShowArgs),
 }
 
 #[derive(clap::Args)]
 struct NewArgs {
-    /// The folder to make them in
+    /// Folder to create the keys in
     folder: PathBuf,
-    /// Keys for the agents of this team; once for each team
+    /// Creates keys for the agents of this team; repeatable
     #[arg(long = "team", value_name = "NAME")]
     teams: Vec<String>,
-    /// Keys for the gateway of this boat; without a name, for any gateway
+    /// Creates keys for the gateway of this boat, or of any boat if no name is given; repeatable
     #[arg(long = "gateway", value_name = "BOAT", num_args = 0..=1, default_missing_value = "")]
     gateways: Vec<String>,
-    /// Keys for those who watch, and may stop boats
+    /// Creates keys for observers, who can also stop boats
     #[arg(long)]
     observer: bool,
-    /// Keys for those who control the game and operate boats
+    /// Creates keys for operators, who control the game and its boats
     #[arg(long)]
     operator: bool,
-    /// A name or address at which the sim will be reached, besides localhost [default: this machine's name and address]
+    /// Name or address of the sim, besides localhost; repeatable [default: this machine's name and address]
     #[arg(long = "host", value_name = "HOST")]
     hosts: Vec<String>,
-    /// How long they are valid, days
+    /// Validity of the keys, days
     #[arg(long, value_name = "DAYS", default_value_t = 90, value_parser = clap::value_parser!(u32).range(1..=3650))]
     days: u32,
 }
 
 #[derive(clap::Args)]
 struct ShowArgs {
-    /// Folders of keys
+    /// Folders with keys
     #[arg(required = true, value_name = "FOLDER")]
     folders: Vec<PathBuf>,
 }

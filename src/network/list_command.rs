@@ -16,7 +16,7 @@ use std::sync::Arc;
 pub(crate) struct Args {
     #[command(flatten)]
     leaf: LeafArgs,
-    /// Looks only where --connect or --lan says, not at the games of this machine
+    /// Searches only as --connect and --lan specify, and ignores the games on this machine
     #[arg(long)]
     elsewhere: bool,
 }

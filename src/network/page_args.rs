@@ -19,21 +19,21 @@ const TOKEN_VARIABLE: &str = "SQUALL_PAGE_TOKEN";
 /// Where the page is served.
 #[derive(clap::Args, Clone, Debug)]
 pub(crate) struct PageArgs {
-    /// Address of the page; beyond this machine, for example 0.0.0.0:8088, it needs a token [default: 127.0.0.1:8088, or
-    /// another port if that is taken]
+    /// Address and port of the page; if other machines can reach it, as with 0.0.0.0:8088, a token is required
+    /// [default: 127.0.0.1:8088, or a free port if it is taken]
     #[arg(long, value_name = "ADDRESS")]
     listen: Option<SocketAddr>,
-    /// The token that a page needs to pause, stop or drive; watching needs none. Every user of this machine can read it in
-    /// the list of processes: prefer --page-token-file
+    /// Token required to pause, stop or drive from the page, but not to watch. Other users of this machine can read
+    /// it in the process list: prefer --page-token-file
     #[arg(long, value_name = "TEXT")]
     token: Option<String>,
-    /// A file with that token [default: from SQUALL_PAGE_TOKEN]
+    /// File with the page's token [default: SQUALL_PAGE_TOKEN]
     #[arg(long, value_name = "FILE", conflicts_with = "token")]
     page_token_file: Option<PathBuf>,
-    /// An additional host name for the page; requires a token
+    /// Additional host name of the page; requires a token
     #[arg(long, value_name = "NAME")]
     host: Vec<String>,
-    /// A chart to draw below the field: GeoJSON, or PNG or JPEG with its world file
+    /// Chart to draw below the field: GeoJSON, or PNG or JPEG with a world file
     #[arg(long, value_name = "FILE")]
     chart: Option<PathBuf>,
     /// Opens the page in the browser

@@ -29,15 +29,15 @@ pub(crate) struct Args {
     run: run_command::Args,
     #[command(flatten)]
     pace: PaceArgs,
-    /// Shows the game on a page, and its recording when it is over; in lockstep at 10x unless --speed says otherwise
+    /// Shows the game on a page, then its recording; in lockstep, limits the speed to 10x unless --speed is given
     #[arg(long, conflicts_with_all = ["in_process", "both_sides", "watch_files"])]
     view: bool,
     #[command(flatten)]
     page: PageArgs,
-    /// For how many boats one agent process decides
+    /// Number of boats per agent process
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
     agents_per_process: u16,
-    /// Plays with the keys in this folder, as `squall keys new` makes them: links are encrypted, and all show certificates
+    /// Folder with keys from `squall keys new`: encrypts all links, and authenticates every node by certificate
     #[arg(long, value_name = "FOLDER")]
     keys: Option<PathBuf>,
     #[command(flatten)]

@@ -22,18 +22,18 @@ pub(crate) struct Args {
     play: GameArgs,
     #[command(flatten)]
     pace: PaceArgs,
-    /// Records the game into this new file
+    /// Records the game to this file, which must not exist
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
-    /// The game's name on the network [default: the file's name and a random number]
+    /// Name of the game on the network [default: the file name and a random number]
     #[arg(long, value_name = "NAME", value_parser = GameName::new)]
     game: Option<GameName>,
-    /// Serves only the game's water with these boats, without a referee; for `squall gateway emulate`
+    /// Simulates only the water and these boats, without a referee, for `squall gateway emulate`
     #[arg(long, value_name = "NAME", num_args = 1..)]
     afloat: Vec<String>,
     #[command(flatten)]
     hub: HubArgs,
-    /// Reports everything as JSON lines on standard output, and stops when standard input ends
+    /// Prints all reports as JSON lines, and stops when standard input ends
     #[arg(long, hide = true)]
     for_parent: bool,
 }

@@ -20,14 +20,15 @@ mod training;
 /// What is shown, and where the page is served.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The report of a tournament (its JSON), or the folder of a league, a sweep or a training; or a recording [default: a running game]
+    /// What to show: the JSON report of a tournament, the folder of a league, sweep or training, or a recording
+    /// [default: a running game]
     #[arg(conflicts_with_all = ["game", "connect"])]
     report: Option<PathBuf>,
     #[command(flatten)]
     leaf: LeafArgs,
     #[command(flatten)]
     page: PageArgs,
-    /// Stops when standard input ends; shows the recordings that it names, one a line
+    /// Stops when standard input ends; shows the recordings that it names, one per line
     #[arg(long, hide = true)]
     for_parent: bool,
 }

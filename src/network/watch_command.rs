@@ -30,7 +30,7 @@ pub(crate) struct Args {
     /// Shows this vehicle's helm instead of the field: mode, decision, behaviours
     #[arg(long, value_name = "NAME")]
     helm: Option<String>,
-    /// Pictures a second
+    /// Updates per second
     #[arg(long, value_name = "HZ", default_value_t = 5, value_parser = clap::value_parser!(u8).range(1..=30))]
     rate: u8,
 }

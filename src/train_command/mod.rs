@@ -23,24 +23,24 @@ const STATE_BYTES_MAX: u64 = 4 << 30;
 /// What is trained, and where it goes.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The training: a file or a name
+    /// Training to run: a file or a name
     #[arg(value_parser = crate::scenario_files::file_of::<learn::training::Training>)]
     training: PathBuf,
-    /// The folder for the policy and all tables [default: runs/train/NAME]
+    /// Folder for the policy and all tables [default: runs/train/NAME]
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
-    /// Goes on with the training that this folder holds; what comes of it is the same as if it had never stopped
+    /// Resumes the training in the output folder; the result is the same as without interruption
     #[arg(long)]
     resume: bool,
-    /// Stops after so many samples, as Ctrl-C does
+    /// Stops after this many samples, as Ctrl-C does
     #[arg(long, value_name = "SAMPLES")]
     until: Option<u64>,
-    /// Another seed than the file's: another training
+    /// Random seed [default: the seed in the file]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
     seed: Option<u64>,
     #[command(flatten)]
     jobs: JobsArgs,
-    /// Records each Nth episode into the folder's games/, for `squall replay`; the policy is the same with or without
+    /// Records every Nth episode to games/ in the output folder, for `squall replay`; does not affect the policy
     #[arg(long, value_name = "N")]
     record_every: Option<NonZeroU64>,
 }

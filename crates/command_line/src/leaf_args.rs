@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// The keys of a game.
 #[derive(clap::Args, Clone, Debug)]
 pub struct KeysArgs {
-    /// This node's keys, for a game that uses keys: a folder created by `squall keys new`
+    /// Folder with this node's keys, created by `squall keys new`; required if the game uses keys
     #[arg(long, value_name = "FOLDER")]
     keys: Option<PathBuf>,
 }
@@ -41,7 +41,8 @@ pub fn restart_with_threads_for_keys() -> Result<()> {
 /// The token of a game.
 #[derive(clap::Args, Clone, Debug)]
 pub struct TokenArgs {
-    /// A file with the game's token, as `squall sim` shows it [default: from SQUALL_TOKEN, or of the game on this machine]
+    /// File with the game's token, which `squall sim` prints [default: SQUALL_TOKEN, or the token of the game on this
+    /// machine]
     #[arg(long, value_name = "FILE")]
     token_file: Option<PathBuf>,
 }
@@ -70,16 +71,16 @@ pub fn text_of(file: Option<&Path>, variable: &str) -> Result<Option<(String, St
 /// How to reach a hub.
 #[derive(clap::Args, Clone, Debug)]
 pub struct LeafArgs {
-    /// Where the sim is, for example tcp/192.168.1.5:7447 [default: the game on this machine]
+    /// Endpoint of the sim, for example tcp/192.168.1.5:7447 [default: the game on this machine]
     #[arg(long, value_name = "ENDPOINT")]
     connect: Vec<String>,
-    /// Find the sim by multicast on the local network
+    /// Finds the sim by multicast on the local network
     #[arg(long, conflicts_with = "connect")]
     lan: bool,
-    /// A zenoh configuration (JSON5) to begin with: access control, interfaces, buffers
+    /// Base zenoh configuration (JSON5), for example for access control, interfaces or buffers
     #[arg(long, value_name = "FILE")]
     zenoh_config: Option<PathBuf>,
-    /// The game's name [default: the only one there]
+    /// Name of the game [default: the only game found]
     #[arg(long, value_name = "NAME", value_parser = GameName::new)]
     pub game: Option<GameName>,
     #[command(flatten)]

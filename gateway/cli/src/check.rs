@@ -34,22 +34,24 @@ const GAME_WAIT: Duration = Duration::from_secs(5);
 /// Which boat.
 #[derive(clap::Args)]
 pub struct Args {
-    /// Where the boat is: tcp://HOST:PORT, udp://HOST:PORT, udp-listen://0.0.0.0:14550, serial:///dev/ttyUSB0?baud=38400 (4800 to 921600)
+    /// Link to the boat: tcp://HOST:PORT, udp://HOST:PORT, udp-listen://0.0.0.0:14550 or
+    /// serial:///dev/ttyUSB0?baud=38400 (4800 to 921600 baud)
     #[arg(long, value_name = "URL")]
     link: String,
-    /// How long to listen, s [default: 10, and 30 with --vehicle]
+    /// How long to listen, s [default: 10, or 30 with --vehicle]
     #[arg(long, value_name = "S", value_parser = seconds)]
     for_s: Option<f64>,
-    /// Makes the pre-flight check of this vehicle, for the field of its game
+    /// Runs the pre-flight check for this vehicle on the field of its game
     #[arg(long, value_name = "NAME")]
     vehicle: Option<String>,
-    /// By which gateway file it will be driven, a file or a name [default: a Surveyor with careful limits]
+    /// Gateway file or name with which the boat will be driven [default: a Surveyor with careful limits]
     #[arg(long, value_name = "FILE", value_parser = command_line::scenario_files::file_of::<gateway::config::Gateway>)]
     config: Option<PathBuf>,
-    /// Guides through compass swing and propeller test, under remote control; asks before each
+    /// Guides you through a compass swing and a propeller test by remote control; asks before each
     #[arg(long, requires = "vehicle")]
     guided: bool,
-    /// Where the report goes [default: runs/preflight-NAME.json, and the same as .txt]
+    /// Writes the report to this JSON file, and a text copy to a .txt file beside it [default:
+    /// runs/preflight-NAME.json]
     #[arg(long, value_name = "FILE", requires = "vehicle")]
     report: Option<PathBuf>,
     #[command(flatten)]

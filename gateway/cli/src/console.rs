@@ -32,29 +32,29 @@ const LOOK: Duration = Duration::from_millis(100);
 
 const HELP: &str = "\
   (empty line), estop     E-stop of all boats
-  all estop               the same; also all disarm, all release, all status
-  NAME estop              E-stop of one boat; NAME disarm puts it into standby
+  all estop               the same; or all disarm, all release, all status
+  NAME estop              E-stop of one boat; NAME disarm puts it in standby
   NAME arm, NAME release  and every other command of `{gateway} tell`
-  status                  how all boats are, and how long ago they were heard
-  quit                    ends; so does the end of the input
+  status                  states of all boats, and the time since their last reports
+  quit                    exits, like the end of the input
 ";
 
 /// Which game, and which gateways.
 #[derive(clap::Args)]
 #[command(after_help = program::text(concat!(
-    "It reads commands from standard input, one a line, and prints what boats\n",
-    "report, with the time since it was asked for:\n",
+    "Reads commands from standard input, one per line, and prints the boats'\n",
+    "reports with the time since each command:\n",
     "  blue_one  e-stopped  after 63 ms\n",
     "Type help for the commands. An empty line is an E-stop of all boats.\n\n",
-    "It ends with 0 if every boat has reported the stops that were asked for.\n\n",
+    "Exits with code 0 if every boat has confirmed all requested stops.\n\n",
     "Examples:\n",
     "  {gateway} console --game day\n",
     "  {gateway} console --connect tcp/10.0.0.5:7447 --gateway 10.0.0.21:7001\n",
     "  echo all estop | {gateway} console --game day",
 )))]
 pub struct Args {
-    /// A gateway's control port, as it shows it; of each boat one [default: those of this machine's gateways, and those
-    /// that the game names]
+    /// Address of a gateway's control port, as the gateway prints it; at most one per boat [default: those of the
+    /// gateways on this machine and in the game]
     #[arg(long, value_name = "HOST:PORT")]
     gateway: Vec<SocketAddr>,
     #[command(flatten)]

@@ -9,11 +9,11 @@ use std::process::ExitCode;
 const COMMIT: &str = env!("SQUALL_COMMIT");
 const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (", env!("SQUALL_COMMIT"), ")");
 
-/// Connects a real boat with Squall's games: checks it, drives it, stops it.
+/// Connects a real boat to Squall's games: checks, drives and stops it.
 #[derive(Parser)]
 #[command(name = "squall-gateway", version = VERSION, max_term_width = 100)]
 struct Cli {
-    /// Colours: auto, always or never
+    /// When to use colours: auto, always or never
     #[arg(long, global = true, value_name = "WHEN", default_value_t = ColorChoice::Auto, hide_possible_values = true, display_order = 1000)]
     color: ColorChoice,
     #[command(subcommand)]

@@ -9,7 +9,7 @@ use std::process::ExitCode;
 /// Which recording.
 #[derive(clap::Args)]
 pub struct Args {
-    /// The recording
+    /// Recording to replay
     file: PathBuf,
 }
 

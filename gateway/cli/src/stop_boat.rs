@@ -28,12 +28,13 @@ const EVENTS_MAX: usize = 4096;
 /// Which boat.
 #[derive(clap::Args)]
 pub struct Args {
-    /// Where the boat is: tcp://HOST:PORT, udp://HOST:PORT, udp-listen://0.0.0.0:14550, serial:///dev/ttyUSB0?baud=38400 (4800 to 921600)
+    /// Link to the boat: tcp://HOST:PORT, udp://HOST:PORT, udp-listen://0.0.0.0:14550 or
+    /// serial:///dev/ttyUSB0?baud=38400 (4800 to 921600 baud)
     link: String,
-    /// What the boat speaks
+    /// Protocol of the boat
     #[arg(long, value_name = "PROTOCOL", value_enum, default_value_t = ProtocolArg::Surveyor)]
     protocol: ProtocolArg,
-    /// How long to try, s
+    /// How long to try to stop the boat, s
     #[arg(long, value_name = "S", default_value_t = 10.0, value_parser = seconds)]
     wait_s: f64,
 }

@@ -38,7 +38,8 @@ const STOP_MAX: Duration = Duration::from_secs(10);
 pub struct Args {
     #[command(flatten)]
     words: Words,
-    /// The gateway's control port, as it shows it [default: those of this machine's gateways, or by way of the game]
+    /// Address of the gateway's control port, as the gateway prints it [default: those of the gateways on this
+    /// machine, or else through the game]
     #[arg(long, value_name = "HOST:PORT")]
     gateway: Option<SocketAddr>,
     #[command(flatten)]
@@ -48,49 +49,49 @@ pub struct Args {
 /// A command in words.
 #[derive(clap::Args)]
 pub(super) struct Words {
-    /// The vehicle, by name; all of them with "all", for estop, disarm, release and status
+    /// Name of the vehicle, or "all" for estop, disarm, release and status
     pub(super) vehicle: String,
-    /// The command
+    /// Command to send
     pub(super) command: CommandArg,
-    /// For mission: a .sea file, its lines as the boat receives them (PSEAR, then OIWPL; index 0 is the recovery point)
+    /// For mission: .sea file with the sentences to send, PSEAR and then OIWPL; waypoint 0 is the recovery point
     file: Option<PathBuf>,
-    /// For hold-heading: the true heading, degrees
+    /// For hold-heading: true heading, degrees
     #[arg(long, value_name = "DEG", value_parser = within(0.0, 360.0, "degrees"))]
     heading_deg: Option<f64>,
-    /// For hold-heading: thrust ahead, % of all
+    /// For hold-heading: thrust ahead, per cent of full
     #[arg(long, value_name = "PCT", value_parser = within(0.0, 100.0, "per cent"))]
     thrust_pct: Option<f64>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum CommandArg {
-    /// Print its status
+    /// Prints the boat's status
     Status,
-    /// Follow orders, if everything that this needs is there
+    /// Lets agents drive the boat, if it is ready
     Arm,
-    /// Do not follow orders any more: standby
+    /// Puts the boat in standby and stops following orders
     Disarm,
-    /// Standby, and nothing else until it is released
+    /// Keeps the boat in standby until it is released
     Estop,
-    /// The E-stop is over; the boat stays safed
+    /// Ends the E-stop; the boat stays safed
     Release,
-    /// Keep the station by the boat's own controller
+    /// Keeps station, using the boat's own controller
     StationKeep,
-    /// Go to the emergency recovery point by the boat's own controller
+    /// Goes to the emergency recovery point, using the boat's own controller
     GoToErp,
-    /// Upload a mission and sail it by the boat's own controller
+    /// Uploads a mission and follows it, using the boat's own controller
     Mission,
-    /// Hold a heading at a thrust by the boat's own controller (mode C)
+    /// Holds a heading and a thrust, using the boat's own controller (mode C)
     HoldHeading,
-    /// The boat's own river navigation (mode N)
+    /// Starts the boat's own river navigation (mode N)
     RiverNav,
-    /// The boat's own autopilot (mode I)
+    /// Starts the boat's own autopilot (mode I)
     Autopilot,
-    /// Calibration of the boat's compass (mode 3)
+    /// Calibrates the boat's compass (mode 3)
     CalibrateCompass,
-    /// The boat's mode for depth (D)
+    /// Selects the boat's depth mode (mode D)
     Depth,
-    /// The boat's mode for the direction of gravity (S)
+    /// Selects the boat's gravity vector mode (mode S)
     GravityVector,
 }
 
