@@ -1,5 +1,6 @@
 //! The command line as a whole: grouped help, first steps, shell completion scripts, man pages.
 
+use command_line::number;
 use crate::screen;
 use anyhow::{Context, Result};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
@@ -69,7 +70,7 @@ pub(crate) fn command<T: CommandFactory>() -> Command {
 /// Parses the command line. On an unknown command it exits, and names the build that has the
 /// command, if there is one.
 pub(crate) fn matches<T: CommandFactory>() -> ArgMatches {
-    let mut command = command::<T>();
+    let mut command = number::with_negative_numbers(command::<T>());
     command.try_get_matches_from_mut(std::env::args_os()).unwrap_or_else(|error| {
         if let Some(ContextValue::String(name)) = error.get(ContextKind::InvalidSubcommand)
             && GROUPS.iter().any(|(_, names)| names.contains(&name.as_str()))
@@ -85,7 +86,7 @@ pub(crate) fn matches<T: CommandFactory>() -> ArgMatches {
 /// The message for a command that this build does not include.
 pub(crate) fn not_built(what: &str) -> String {
     format!(
-        "{what} is not in this program, which was built without the network: build it again without --no-default-features"
+        "{what} is unavailable because this program was built with --no-default-features; build it without that option"
     )
 }
 
@@ -117,7 +118,7 @@ pub(crate) fn man<T: CommandFactory>(args: &ManArgs) -> Result<ExitCode> {
     clap_mangen::generate_to(T::command(), &args.folder)
         .with_context(|| format!("cannot write man pages to {}", args.folder.display()))?;
     screen::print(&format!(
-        "man pages in {}; man {}/squall.1 shows the first\n",
+        "wrote man pages to {}; read the first with: man {}/squall.1\n",
         args.folder.display(),
         args.folder.display()
     ));

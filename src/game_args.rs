@@ -1,5 +1,6 @@
 //! Command line arguments that select a game and override its file; shared by `run` and `sim`.
 
+use command_line::number::whole;
 use crate::output_file;
 use crate::scenario_files;
 use anyhow::{Context, Result, bail};
@@ -15,7 +16,7 @@ pub(crate) struct GameArgs {
     #[arg(value_name = "GAME", value_parser = scenario_files::game)]
     scenario: PathBuf,
     /// Random seed [default: the seed in the game file]
-    #[arg(long)]
+    #[arg(long, value_parser = whole::<u64>(0, u64::MAX))]
     pub(crate) seed: Option<u64>,
     /// Sea to use instead of the game's: a file or a name, such as gale
     #[arg(long, value_name = "SEA", value_parser = scenario_files::sea)]
@@ -126,13 +127,13 @@ fn result_of(report: &Report) -> Result<serde_json::Value> {
 pub(crate) fn speed(text: &str) -> Result<f64, String> {
     let factor = text.strip_suffix('x').unwrap_or(text).parse().ok();
     let factor = factor.filter(|factor| (0.01..=1000.0).contains(factor));
-    factor.ok_or_else(|| format!("speed {text:?} is not a factor from 0.01x to 1000x such as 10x"))
+    factor.ok_or_else(|| format!("expected a factor from 0.01x to 1000x, such as 10x"))
 }
 
 /// Parses a team and its file.
 fn team_and_file(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
         Some((team, file)) if !team.is_empty() && !file.is_empty() => Ok((team.to_owned(), file.to_owned())),
-        _ => Err(format!("{text:?} is not TEAM=FILE")),
+        _ => Err(format!("expected TEAM=FILE")),
     }
 }

@@ -41,12 +41,12 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let (boat, path, drawn) = water_args::boat(&args.boat, args.water.seed)?;
     if let Some(first) = drawn.first() {
         let key = first.parameter.trim_start_matches("boat/");
-        bail!("{} leaves {key} to chance; identify starts from a boat of numbers, such as its base", path.display());
+        bail!("{}: {key} is randomised, but a fit needs fixed values; use the boat's base", path.display());
     }
     let out = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}_identified.toml", boat.name)));
     if out.canonicalize().is_ok_and(|out| path.canonicalize().is_ok_and(|path| path == out)) {
         bail!(
-            "--out {} is the boat that the search starts from and the new file builds on: choose another",
+            "--out {} is the boat from which the fit starts; choose another file",
             out.display()
         );
     }
@@ -61,17 +61,17 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let named = args.log.display().to_string();
     let progress = RefCell::new(Progress::without_end("steps"));
     let tell = |step: Step| {
-        let left = step.rms.map_or(String::new(), |rms| format!(", {rms:.3} standard deviations off"));
+        let left = step.rms.map_or(String::new(), |rms| format!(", residual {rms:.3} standard deviations"));
         progress.borrow_mut().add_with(|| format!("search {} of {}{left}", step.search, step.searches));
     };
     let fit = identify::fit(&boat, &log, &setting, &parameters, &tell);
     progress.borrow().end();
-    let fit = fit.with_context(|| format!("cannot fit {named}"))?;
+    let fit = fit.with_context(|| format!("cannot fit the boat to {named}"))?;
     screen::print(&table(&boat.name, &named, &fit));
     let text = identify::written(&fit, &base_of(&out, &path), &named);
     output_file::write(&out, "the boat", text)?;
-    scenario::load_boat(&out).with_context(|| format!("{} is written, but no sound boat", out.display()))?;
-    screen::print(&format!("boat in {}\n", out.display()));
+    scenario::load_boat(&out).with_context(|| format!("{} was written, but is not a valid boat", out.display()))?;
+    screen::print(&format!("fitted boat: {}\n", out.display()));
     Ok(ExitCode::SUCCESS)
 }
 
@@ -89,8 +89,8 @@ fn base_of(out: &Path, base: &Path) -> String {
 }
 
 fn table(boat: &str, log: &str, fit: &Fit) -> String {
-    let mut text = format!("{boat} fitted to {log}: {} numbers in {} segments\n", fit.measured, fit.segments);
-    text.push_str(&format!("  {:<18}{:>12}{:>12}   {:<12}{}\n", "", "was", "is", "± 95 %", "key"));
+    let mut text = format!("{boat} fitted to {log}: {} values in {} segments\n", fit.measured, fit.segments);
+    text.push_str(&format!("  {:<18}{:>12}{:>12}   {:<12}{}\n", "", "before", "after", "± 95 %", "key"));
     for estimate in &fit.estimates {
         text.push_str(&format!(
             "  {:<18}{:>12.4}{:>12.4} ± {:<12.4}{}.{}\n",
@@ -110,7 +110,7 @@ fn table(boat: &str, log: &str, fit: &Fit) -> String {
     }
     for confused in &fit.confused {
         text.push_str(&format!(
-            "  warning: {} and {} are hardly told apart (correlation {:.3}): fix one of them with --fit\n",
+            "  warning: {} and {} are indistinguishable (correlation {:.3}); omit one of them from --fit\n",
             confused.names[0], confused.names[1], confused.correlation
         ));
     }

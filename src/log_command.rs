@@ -69,24 +69,24 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         (Some(files), ..) => compare(args, files)?,
         (None, Some(files), _) => quality::print(files, args.json.as_deref())?,
         (None, None, Some(file)) => look_at(args, file)?,
-        (None, None, None) => anyhow::bail!("neither a recording nor --compare nor --quality"),
+        (None, None, None) => anyhow::bail!("expected a recording, --compare or --quality"),
     }
     Ok(ExitCode::SUCCESS)
 }
 
 fn look_at(args: &Args, file: &Path) -> Result<()> {
-    let bag = recording_file::open_any(file, "look at")?;
+    let bag = recording_file::open_any(file, "read")?;
     let wants_page = args.csv.is_none() && args.plot.is_none() && args.alog.is_none() && args.gif.is_none();
     if bag.kind() == Kind::Gateway {
         if let Some(topic) = &args.csv {
             return csv(args, file, (&bag, None), topic);
         }
         let asks_for_more = args.events || args.json.is_some() || !wants_page;
-        anyhow::ensure!(!asks_for_more, "{} is of a gateway, not of a game: only --csv is known of it", file.display());
+        anyhow::ensure!(!asks_for_more, "{} is the recording of a gateway, which supports only --csv", file.display());
         screen::print(&page::gateway(&bag));
         return Ok(());
     }
-    let recording = Recording::of_bag(bag).with_context(|| format!("cannot look at {}", file.display()))?;
+    let recording = Recording::of_bag(bag).with_context(|| format!("cannot read {}", file.display()))?;
     if let Some(topic) = &args.csv {
         csv(args, file, (recording.bag(), Some(recording.scenario())), topic)?;
     }
@@ -103,16 +103,16 @@ fn look_at(args: &Args, file: &Path) -> Result<()> {
         remarks.extend(series.damaged.remark().filter(|remark| !remarks.contains(remark)));
         remarks.extend(series.remark());
         let files = plot::write(dir, recording.header(), &series)?;
-        screen::remark(&format!("{files} plots in {}, each as SVG and PNG", dir.display()));
+        screen::remark(&format!("wrote {files} plots to {}, each as SVG and PNG", dir.display()));
     }
     if let Some(path) = &args.alog {
         let (files, damaged) = export::alog(&recording, path)?;
-        screen::remark(&format!("{files} MOOS log{} in {}", if files == 1 { "" } else { "s" }, path.display()));
+        screen::remark(&format!("wrote {files} MOOS log{} to {}", if files == 1 { "" } else { "s" }, path.display()));
         remarks.extend(damaged.remark().filter(|remark| !remarks.contains(remark)));
     }
     if let Some(path) = &args.gif {
         let (pictures, damaged) = gif::write(path, &recording, &args.film)?;
-        screen::remark(&format!("{pictures} pictures in {}", path.display()));
+        screen::remark(&format!("wrote {pictures} frames to {}", path.display()));
         remarks.extend(damaged.remark().filter(|remark| !remarks.contains(remark)));
     }
     remarks.iter().for_each(|remark| screen::remark(remark));
@@ -136,14 +136,14 @@ fn summary(args: &Args, recording: &Recording, wants_page: bool) -> Result<Damag
 
 fn csv(args: &Args, file: &Path, source: (&Bag, Option<&Scenario>), topic: &str) -> Result<()> {
     let damaged = export::csv(source, topic, args.out.as_deref())
-        .with_context(|| format!("cannot make a table of {}", file.display()))?;
+        .with_context(|| format!("cannot export {} as CSV", file.display()))?;
     damaged.remark().iter().for_each(|remark| screen::remark(remark));
     Ok(())
 }
 
 fn compare(args: &Args, files: &[PathBuf]) -> Result<()> {
-    let [a, b] = files else { anyhow::bail!("--compare takes two recordings") };
-    let recordings = [recording_file::open(a, "look at")?, recording_file::open(b, "look at")?];
+    let [a, b] = files else { anyhow::bail!("--compare requires two recordings") };
+    let recordings = [recording_file::open(a, "read")?, recording_file::open(b, "read")?];
     let series = recordings.each_ref().map(GameSeries::of);
     for (file, series) in files.iter().zip(&series) {
         if let Some(remark) = series.damaged.remark() {
@@ -160,7 +160,7 @@ fn compare(args: &Args, files: &[PathBuf]) -> Result<()> {
     if let Some(dir) = &args.plot {
         output_file::make_folder(dir)?;
         plot::write_comparison(dir, [a, b], series.each_ref(), &comparison)?;
-        screen::remark(&format!("compare.svg and compare.png in {}", dir.display()));
+        screen::remark(&format!("wrote compare.svg and compare.png to {}", dir.display()));
     }
     Ok(())
 }

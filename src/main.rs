@@ -137,7 +137,7 @@ fn main() -> ExitCode {
         Command::Replay(args) if args.check => replay_command::check(&args.file),
         #[cfg(not(feature = "network"))]
         Command::Replay(_) => {
-            Err(anyhow::anyhow!("{}; --check plays it again", cli::not_built("the page that shows recordings")))
+            Err(anyhow::anyhow!("{}; to verify the recording, use --check", cli::not_built("the page that shows recordings")))
         }
         Command::Tournament(args) => tournament_command::run(&args),
         Command::Sweep(args) => sweep_command::run(&args),

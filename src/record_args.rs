@@ -22,7 +22,7 @@ impl RecordArgs {
         if self.no_record {
             return Ok(None);
         }
-        output_file::make_folder(&self.record).context("nowhere to record")?;
+        output_file::make_folder(&self.record).context("cannot record")?;
         // The recorder creates the file. Whether it can be created is checked before the game.
         let file = recording::free_path(&self.record, &scenario.name, seed);
         output_file::check(&file, "the recording")?;

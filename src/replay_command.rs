@@ -26,7 +26,7 @@ pub(crate) fn check(file: &Path) -> Result<ExitCode> {
     let mut progress = Progress::of(frames as u64, "frames");
     let verdict = check::check(&recording, || progress.add());
     progress.end();
-    let verdict = verdict.with_context(|| format!("cannot play {} again", file.display()))?;
+    let verdict = verdict.with_context(|| format!("cannot rerun {}", file.display()))?;
     screen::print(&verdict.text);
     Ok(if verdict.is_same { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }

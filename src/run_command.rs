@@ -82,7 +82,7 @@ fn play_when_saved(args: &Args, player: &mut dyn Player) -> Result<ExitCode> {
         if let Err(error) = scenario.and_then(|scenario| play_once(args, player, &scenario, &stop)) {
             screen::complain(&explain::error(&error));
         }
-        screen::remark("waiting for a file of the game to be saved (Ctrl-C ends it)");
+        screen::remark("waiting for changes to the game's files (Ctrl-C to stop)");
         let Some(path) = watched.wait(&stop) else { return Ok(stop::interrupted()) };
         screen::remark(&format!("{} has changed", path.display()));
     }
@@ -119,7 +119,7 @@ fn play(
     if let Some(file) = &file {
         let is_whole = report.as_ref().is_some_and(|report| report.run.recording_problem.is_none());
         let recorded = if is_whole { "recorded" } else { "recorded in part" };
-        screen.line(&format!("{recorded}; look at it with: {} {}", LOOK, file.display()));
+        screen.line(&format!("{recorded}; show it with: {} {}", LOOK, file.display()));
     }
     Ok((file, report))
 }

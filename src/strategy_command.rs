@@ -27,7 +27,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         screen::print(&scenario::reference());
         return Ok(ExitCode::SUCCESS);
     }
-    let file = args.file.as_ref().ok_or_else(|| anyhow!("no file is given"))?;
+    let file = args.file.as_ref().ok_or_else(|| anyhow!("expected a strategy"))?;
     match scenario::load_strategy(file) {
         Ok(strategy) if args.dot => screen::print(&graph(&strategy)),
         Ok(strategy) => screen::print(&tables(&strategy)),

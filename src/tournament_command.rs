@@ -1,5 +1,6 @@
 //! `squall tournament`: plays every strategy against every other, in this process.
 
+use command_line::number::whole;
 use crate::jobs_args::JobsArgs;
 use crate::league_file::LeagueFile;
 use crate::progress::Progress;
@@ -26,10 +27,10 @@ pub(crate) struct Args {
     #[arg(value_parser = crate::scenario_files::file_of::<Tournament>)]
     tournament: PathBuf,
     /// Games per pairing, half of them on each side [default: the number in the file]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
+    #[arg(long, value_name = "N", value_parser = whole::<u32>(2, 1_000_000))]
     games: Option<u32>,
     /// First seed [default: the seed in the file]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
+    #[arg(long, value_name = "N", value_parser = whole::<u64>(0, i64::MAX as u64))]
     seed: Option<u64>,
     #[command(flatten)]
     jobs: JobsArgs,
@@ -106,7 +107,7 @@ fn play_all(args: &Args, plan: &Plan, stop: &AtomicBool, league: Option<&mut Lea
     let (mut records, games) =
         league.as_ref().map_or_else(|| (vec![], all()), |file| file.league.split(plan, &pairings));
     if league.is_some() {
-        screen::remark(&format!("{} of {} games were played before", records.len(), plan.games()));
+        screen::remark(&format!("{} of {} games already played", records.len(), plan.games()));
     }
     let jobs = args.jobs.threads(games.len());
     let mut progress = Progress::of_games(games.len() as u64);
@@ -153,11 +154,11 @@ fn play_judged(
 
 fn planned(args: &Args) -> Result<Plan> {
     let path = &args.tournament;
-    let context = || format!("no tournament in {}", path.display());
+    let context = || format!("cannot play the tournament {}", path.display());
     let file = load_file::<Tournament>(path).with_context(context)?;
     let games = args.games.unwrap_or(file.games);
     if !games.is_multiple_of(2) {
-        screen::remark(&format!("{games} games a pairing are {}: half of them on each side", games + 1));
+        screen::remark(&format!("{games} games per pairing become {}, half of them on each side", games + 1));
     }
     let tournament = Tournament { games, seed: args.seed.unwrap_or(file.seed), ..file };
     Plan::new(&tournament).with_context(context)

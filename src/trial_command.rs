@@ -139,7 +139,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     match (&args.orders, args.manoeuvre) {
         (Some(path), _) => replay(args, path, &boat, &mut trial_boat),
         (None, Some(named)) => manoeuvre(args, named, &boat, &mut trial_boat),
-        (None, None) => bail!("neither --orders nor --manoeuvre"),
+        (None, None) => bail!("expected --orders or --manoeuvre"),
     }
 }
 
@@ -164,7 +164,7 @@ fn manoeuvre(args: &Args, named: Manoeuvre, boat: &Boat, trial_boat: &mut TrialB
     let title = format!("{}: {}", boat.name, named.name().replace('_', " "));
     plot::write(&plot, &title, &sailed.samples)?;
     screen::print(&format!("{title}\n{}", table(&trial::measures(&plan, &sailed))));
-    screen::print(&format!("track in {}, plot in {}\n", csv.display(), plot.display()));
+    screen::print(&format!("track: {}, plot: {}\n", csv.display(), plot.display()));
     Ok(ExitCode::SUCCESS)
 }
 
@@ -182,10 +182,10 @@ fn replay(args: &Args, path: &Path, boat: &Boat, trial_boat: &mut TrialBoat) -> 
     let orders = Orders::of_sheet(&read_sheet(path)?, &Engine::new(boat))?;
     let duration = args.duration_s.map_or(orders.end(), SimTime::from_s);
     if duration < trial::ROW {
-        bail!("{}: the series ends where it begins; say with --duration-s how long its command holds", path.display());
+        bail!("{}: all commands have the same time; set the duration of the trial with --duration-s", path.display());
     }
     let samples = trial::replay(trial_boat, &orders, duration)?;
-    let csv = args.csv.as_deref().ok_or_else(|| anyhow!("--orders needs --csv FILE for the track"))?;
+    let csv = args.csv.as_deref().ok_or_else(|| anyhow!("--orders requires --csv FILE for the track"))?;
     write_track(csv, &samples, args.with_orders)?;
     if let Some(plot) = &args.plot {
         plot::write(plot, &format!("{}: {}", boat.name, path.display()), &samples)?;

@@ -55,18 +55,18 @@ impl LoopArgs {
             return Ok(None);
         }
         if names.is_empty() {
-            bail!("no boat of this game is real: --emulate has nothing to stand in for");
+            bail!("--emulate requires a game with at least one external boat");
         }
         let gateway = match &self.gateway {
             None => gateway::config::default_gateway(),
             Some(path) => scenario::load_file::<gateway::config::Gateway>(path)
-                .with_context(|| format!("cannot drive by {}", path.display()))?,
+                .with_context(|| format!("cannot use the gateway file {}", path.display()))?,
         };
         if let Some(folder) = &self.record_gateways {
             output_file::make_folder(folder)?;
             // Check first: a gateway that refuses to record would leave its boat out of the game.
             for file in names.iter().map(|name| folder.join(format!("{name}.mcap"))) {
-                drop(NewFile::create(&file).with_context(|| format!("cannot record into {}", file.display()))?);
+                drop(NewFile::create(&file).with_context(|| format!("cannot record to {}", file.display()))?);
             }
         }
         let port = free_port(false)?;
@@ -133,5 +133,5 @@ fn start_emulator(name: &str, gateway: &Gateway, (water, endpoint): (&str, &str)
     let mut emulator = ChildProcess::start(&format!("the emulator of {name}"), command, Stdio::piped())?;
     let addresses = emulator.lines(|line| line.strip_prefix("back seat at ").map(str::to_owned))?;
     let address = addresses.recv_timeout(WINDOW);
-    Ok((emulator, address.map_err(|_| anyhow!("the emulator of {name} does not report where it listens"))?))
+    Ok((emulator, address.map_err(|_| anyhow!("the emulator of {name} did not report its address"))?))
 }

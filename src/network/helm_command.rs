@@ -32,12 +32,12 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let report = helm_query::report_of_agent(&observer, vehicle, HelmQuestion { functions: true })?;
     let scenario = &observer.info.scenario;
     if report.functions.iter().any(|function| function.utilities.is_empty()) {
-        bail!("the helm of {} has not decided since it was asked; ask again", args.vehicle);
+        bail!("the helm of {} has made no decision since the query; try again", args.vehicle);
     }
     screen::print(&helm_page::page(scenario, &report));
     if let Some(path) = &args.csv {
         write_csv(path, scenario, &report)
-            .with_context(|| format!("cannot write the functions to {}", path.display()))?;
+            .with_context(|| format!("cannot write the utilities to {}", path.display()))?;
     }
     observer.bus.close();
     Ok(ExitCode::SUCCESS)

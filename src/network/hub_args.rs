@@ -42,8 +42,8 @@ impl HubArgs {
         let keys = self.keys.load()?;
         match (&keys, listen.iter().find(|endpoint| !bus::is_loopback(endpoint))) {
             (None, Some(open)) if !self.insecure => bail!(
-                "{open} can be reached from other machines, and whoever reaches it can see all of the game and stop it: make \
-                 keys with `squall keys new` and serve it with --keys, or say --insecure if nobody else is on that network"
+                "{open} can be reached from other machines, where anyone can see and stop the game: create keys with \
+                 `squall keys new` and use --keys, or use --insecure on a private network"
             ),
             _ => {}
         }
@@ -76,7 +76,7 @@ pub(crate) fn unique_game_name(scenario: &str) -> Result<GameName> {
 
 /// What users on other machines, or other users of this one, need to join and control a game.
 pub(crate) fn token_text(token: &Token) -> String {
-    format!("its token, for agents and operators elsewhere: {TOKEN_VARIABLE}={}", token.hex())
+    format!("token for agents and operators on other machines or accounts: {TOKEN_VARIABLE}={}", token.hex())
 }
 
 #[cfg(test)]

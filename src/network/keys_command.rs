@@ -1,5 +1,6 @@
 //! `squall keys`: creates and shows the keys of a game.
 
+use command_line::number::whole;
 use crate::screen;
 use anyhow::{Result, bail};
 use bus::keys::{self, Bundle, Identity};
@@ -44,7 +45,7 @@ struct NewArgs {
     #[arg(long = "host", value_name = "HOST")]
     hosts: Vec<String>,
     /// Validity of the keys, days
-    #[arg(long, value_name = "DAYS", default_value_t = 90, value_parser = clap::value_parser!(u32).range(1..=3650))]
+    #[arg(long, value_name = "DAYS", default_value_t = 90, value_parser = whole::<u32>(1, 3650))]
     days: u32,
 }
 
@@ -76,14 +77,14 @@ fn new(args: &NewArgs) -> Result<()> {
     identities.extend(args.observer.then_some(Identity::Observer));
     identities.extend(args.operator.then_some(Identity::Operator));
     if let [Identity::Sim] = identities[..] {
-        bail!("nobody could join: name the parts of the game by --team, --gateway, --observer, --operator");
+        bail!("no node could join; request keys with --team, --gateway, --observer or --operator");
     }
     identities.sort();
     identities.dedup();
     if let Some(there) =
         identities.iter().map(|identity| args.folder.join(identity.to_string())).find(|path| path.exists())
     {
-        bail!("{} is there already: new keys take the place of all old ones, so choose a new folder", there.display());
+        bail!("{} exists already; new keys replace all old ones, so choose a new folder", there.display());
     }
     let mut hosts: Vec<String> = ["localhost", "127.0.0.1", "::1"].map(str::to_owned).to_vec();
     if args.hosts.is_empty() {
@@ -94,8 +95,8 @@ fn new(args: &NewArgs) -> Result<()> {
     let folders = keys::make(&args.folder, &identities, &hosts, args.days * DAY)?;
     folders.iter().try_for_each(|folder| show(folder))?;
     screen::print(
-        "\nWho has a folder is who it says: copy each to the machine that needs it, and nowhere else. Give it to any command \
-         by --keys FOLDER.\nNobody can add to this set: for another part, or when a folder is lost, make a new set for all.\n",
+        "\nAnyone with a folder has its rights: copy each folder only to the machine that needs it, and use it with --keys \
+         FOLDER.\nA set cannot be extended: to add a part or replace a lost folder, create a new set for all machines.\n",
     );
     Ok(())
 }
@@ -103,7 +104,7 @@ fn new(args: &NewArgs) -> Result<()> {
 fn named(text: &str) -> Result<Identity> {
     match text.parse() {
         Ok(identity) => Ok(identity),
-        Err(_) => bail!("{text:?}: a name is 1 to 48 of the characters a-z A-Z 0-9 _ -"),
+        Err(_) => bail!("{text:?} is not a valid name, expected 1 to 48 of the characters a-z A-Z 0-9 _ -"),
     }
 }
 
@@ -112,7 +113,7 @@ fn show(folder: &Path) -> Result<()> {
     let [from, until] = bundle.valid();
     let mut text = format!("{}: {}, valid from {from} until {until}", folder.display(), bundle.identity());
     if !bundle.hosts().is_empty() {
-        write!(text, ", reached at {}", bundle.hosts().join(", ")).expect("a text can be written to");
+        write!(text, ", for the hosts {}", bundle.hosts().join(", ")).expect("a text can be written to");
     }
     screen::print(&(text + "\n"));
     Ok(())

@@ -1,5 +1,6 @@
 //! Command line arguments that define where the page is served.
 
+use command_line::number::address;
 use crate::screen;
 use anyhow::{Result, ensure};
 use command_line::leaf_args;
@@ -21,7 +22,7 @@ const TOKEN_VARIABLE: &str = "SQUALL_PAGE_TOKEN";
 pub(crate) struct PageArgs {
     /// Address and port of the page; if other machines can reach it, as with 0.0.0.0:8088, a token is required
     /// [default: 127.0.0.1:8088, or a free port if it is taken]
-    #[arg(long, value_name = "ADDRESS")]
+    #[arg(long, value_name = "ADDRESS", value_parser = address)]
     listen: Option<SocketAddr>,
     /// Token required to pause, stop or drive from the page, but not to watch. Other users of this machine can read
     /// it in the process list: prefer --page-token-file
@@ -105,7 +106,7 @@ impl PageArgs {
     /// address.
     pub(crate) fn open_browser(&self, page: &Page) {
         if self.open && open::that_detached(self.url(page)).is_err() {
-            screen::remark("no browser can be opened from here");
+            screen::remark("cannot open a browser");
         }
     }
 

@@ -1,5 +1,6 @@
 //! `squall run` across processes: a sim, agents, the page, and gateways for emulated boats.
 
+use command_line::number::whole;
 use super::child_process::{self, ChildProcess, option};
 use super::hardware_loop::{HardwareLoop, LoopArgs};
 use super::hub_args::{free_port, token_text, unique_game_name};
@@ -35,7 +36,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     page: PageArgs,
     /// Number of boats per agent process
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole::<u16>(1, u64::from(u16::MAX)))]
     agents_per_process: u16,
     /// Folder with keys from `squall keys new`: encrypts all links, and authenticates every node by certificate
     #[arg(long, value_name = "FOLDER")]
@@ -63,7 +64,7 @@ const SPEED_TO_WATCH: f64 = 10.0;
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     if args.page.is_given() && !args.view {
-        bail!("--listen, --token, --page-token-file, --host and --open say how the page is served: they need --view");
+        bail!("--listen, --token, --page-token-file, --host, --chart and --open require --view");
     }
     if args.run.in_process {
         return run_command::run(&args.run, &mut InProcess);
@@ -124,7 +125,7 @@ impl Player for Processes<'_> {
     fn end(&mut self, file: Option<&Path>, problems: &[String], (stop, screen): Shell) {
         let Some(mut page) = self.page.take() else { return };
         problems.iter().for_each(|problem| screen::remark(problem));
-        screen.line("the game is over; the page stays until Ctrl-C");
+        screen.line("the game is over; the page stays open until Ctrl-C");
         // The sim has ended, so the recording is complete.
         if let (Some(file), false) = (file, stop::is_set_soon(stop))
             && let Err(error) = page.send(&file.display().to_string())

@@ -69,7 +69,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     };
     let record = |path: &PathBuf| {
         GameRecorder::on_network(path.clone(), game.as_str(), &args.pace.pace.to_string(), env!("SQUALL_COMMIT"))
-            .with_context(|| format!("cannot record into {}", path.display()))
+            .with_context(|| format!("cannot record to {}", path.display()))
     };
     let mut recorder = args.record.as_ref().map(record).transpose()?;
     let settings = Settings {

@@ -48,10 +48,10 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         }
     });
     let (place, game) = (args.leaf.place()?, args.leaf.game.clone());
-    let live = LiveView::open(place, game, tell, gateway_cli::read_mission).context("cannot look for games")?;
+    let live = LiveView::open(place, game, tell, gateway_cli::read_mission).context("cannot search for games")?;
     let live = Arc::new(live);
     page.show(Arc::clone(&live) as Arc<dyn View>);
-    Screen::new(Names::default()).line(&format!("look at it on {} (Ctrl-C ends it)", args.page.url(&page)));
+    Screen::new(Names::default()).line(&format!("the page is at {} (Ctrl-C to stop)", args.page.url(&page)));
     args.page.open_browser(&page);
     let mut operators_know = args.page.has_token();
     while !stop::is_set_soon(&stop) {
@@ -71,7 +71,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 /// Shows a report or a recording until Ctrl-C.
 fn show_report(args: &Args, path: &Path) -> Result<ExitCode> {
     if args.for_parent {
-        bail!("a report is shown to people");
+        bail!("reports are not shown for a parent process");
     }
     let stop = stop::on_ctrl_c()?;
     let is_recording = path.extension().is_some_and(|end| end == "mcap");
@@ -86,7 +86,7 @@ fn show_report(args: &Args, path: &Path) -> Result<ExitCode> {
         page.publish(report);
         page
     };
-    Screen::new(Names::default()).line(&format!("{} at {} (Ctrl-C ends it)", path.display(), args.page.url(&page)));
+    Screen::new(Names::default()).line(&format!("{} at {} (Ctrl-C to stop)", path.display(), args.page.url(&page)));
     args.page.open_browser(&page);
     stop::wait(&stop);
     Ok(ExitCode::SUCCESS)

@@ -1,5 +1,6 @@
 //! `squall watch`: shows a running game, or one boat's helm, in the terminal.
 
+use command_line::number::whole;
 use crate::screen;
 use crate::stop;
 use crate::style::Names;
@@ -31,7 +32,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "NAME")]
     helm: Option<String>,
     /// Updates per second
-    #[arg(long, value_name = "HZ", default_value_t = 5, value_parser = clap::value_parser!(u8).range(1..=30))]
+    #[arg(long, value_name = "HZ", default_value_t = 5, value_parser = whole::<u8>(1, 30))]
     rate: u8,
 }
 

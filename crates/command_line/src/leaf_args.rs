@@ -146,7 +146,7 @@ fn local_endpoint(games: &[bus::Entry]) -> Result<String> {
         [entry] => Ok(entry.endpoint.clone()),
         several => {
             let names: Vec<&str> = several.iter().map(|entry| entry.game.as_str()).collect();
-            bail!("several games run on this machine: choose with --game among {}", names.join(", "))
+            bail!("several games run on this machine; select one with --game: {}", names.join(", "))
         }
     }
 }

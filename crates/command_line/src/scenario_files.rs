@@ -70,7 +70,7 @@ pub fn find_beside(word: &str, kind: Kind, beside: Option<&Path>) -> Result<Path
 fn unknown(word: &str, kind: Kind, folders: &[PathBuf]) -> anyhow::Error {
     let mut others = kinds().iter().copied().filter(|other| *other != kind);
     if let Some(other) = others.find(|other| names(*other).contains(word)) {
-        return anyhow!("there is no {kind} {word}, but a {other} of that name{}", where_it_goes(other));
+        return anyhow!("there is no {kind} {word}, but there is a {other} of that name{}", where_it_goes(other));
     }
     let mut known = names(kind);
     known.extend(folders.iter().flat_map(|folder| names_in(folder)));
@@ -84,17 +84,17 @@ fn unknown(word: &str, kind: Kind, folders: &[PathBuf]) -> anyhow::Error {
 /// The places where a file of a kind is accepted.
 fn where_it_goes(kind: Kind) -> String {
     let place = match kind.name() {
-        "game" => "squall run plays it",
-        "strategy" => "--blue and --red take it",
-        "sea" => "--sea takes it",
-        "field" => "--field takes it",
-        "tournament" => "squall tournament plays it",
-        "sweep" => "squall sweep plays it",
-        "training" => "squall train takes it",
-        "gateway" => "{gateway} surveyor --config takes it",
+        "game" => "play it with squall run",
+        "strategy" => "use it with --blue or --red",
+        "sea" => "use it with --sea",
+        "field" => "use it with --field",
+        "tournament" => "play it with squall tournament",
+        "sweep" => "run it with squall sweep",
+        "training" => "run it with squall train",
+        "gateway" => "use it with {gateway} surveyor --config",
         _ => return String::new(),
     };
-    format!(": {}", program::text(place))
+    format!("; {}", program::text(place))
 }
 
 /// The names of the built-in files of a kind.

@@ -172,7 +172,7 @@ impl Recorder {
         // If the thread has ended, it has already reported the reason.
         drop(self.queue.jobs.send(Job::End(result)));
         if thread.join().is_err() {
-            self.queue.shared.failed.get_or_init(|| "its thread broke down".to_owned());
+            self.queue.shared.failed.get_or_init(|| "its thread panicked".to_owned());
         }
     }
 }

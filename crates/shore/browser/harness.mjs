@@ -133,7 +133,7 @@ export class Program {
 
   /** Where its page is. */
   async url() {
-    return (await this.hears(/at it on (http:\S+)|at (http:\S+) \(Ctrl-C/)).slice(1).find(Boolean);
+    return (await this.hears(/at (http:\S+) \(Ctrl-C/))[1];
   }
 
   /** Ends it as Ctrl-C does, by force if it does not listen; its exit status. */

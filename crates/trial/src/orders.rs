@@ -80,7 +80,7 @@ fn pair_of(sheet: &Sheet) -> Result<(Pair, [usize; 2]), Mistake> {
         [one] => Ok(one),
         [] => {
             let message = format!(
-                "no columns of commands among {}, expected one of {}",
+                "no command columns among {}, expected one of {}",
                 sheet.heads().join(", "),
                 names(&Pair::ALL)
             );

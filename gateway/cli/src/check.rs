@@ -75,7 +75,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let check = &listener.check;
     if check.received().is_empty() {
         let (reason, counts) = (&listener.reason, counted(check));
-        bail!("nothing to be read from {address} in {for_s} s: {reason} ({counts})");
+        bail!("received nothing from {address} within {for_s} s: {reason} ({counts})");
     }
     let host = date_and_time(utc::now_ns()).1;
     terminal::print(&report(check, listener.now(), host));
@@ -86,7 +86,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let mut checks = boat_checks(check, (listener.now(), host), &gateway, water.as_ref());
     let path = args.report.clone().unwrap_or_else(|| Path::new("runs").join(format!("preflight-{vehicle}.json")));
     let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
-    std::fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
+    std::fs::create_dir_all(folder).with_context(|| format!("cannot create the folder {}", folder.display()))?;
     checks.extend(machine_checks(folder));
     checks.extend(guided_checks(&mut Guide::new(args.guided), &mut listener, &gateway));
     let now_ns = utc::now_ns();
@@ -94,7 +94,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let made = Report { vehicle: vehicle.clone(), link: address.to_string(), at_unix_s, at, checks };
     terminal::print(&format!("\n{}", made.text()));
     preflight_report::write(&path, &made)?;
-    terminal::remark(&format!("report in {}", path.display()));
+    terminal::remark(&format!("report: {}", path.display()));
     Ok(if made.faults().is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
@@ -132,7 +132,7 @@ pub(super) struct Listener {
 
 impl Listener {
     fn new((link, events): (Link, Receiver<LinkEvent>), stop: Arc<AtomicBool>, gateway: &Gateway) -> Listener {
-        let (start, reason) = (bus::clock::now(), "nothing came".to_owned());
+        let (start, reason) = (bus::clock::now(), "no data received".to_owned());
         Listener { check: SensorCheck::new(gateway), link, events, start, stop, reason, hello: String::new() }
     }
 

@@ -1,5 +1,6 @@
 //! `gateway console`: operator commands, line by line, over connections that stay open.
 
+use command_line::number::address;
 use super::log_line::full;
 use super::tell::{ALL, CommandArg, Port, Words, release_all, to_boat};
 use anyhow::{Result, bail};
@@ -55,7 +56,7 @@ const HELP: &str = "\
 pub struct Args {
     /// Address of a gateway's control port, as the gateway prints it; at most one per boat [default: those of the
     /// gateways on this machine and in the game]
-    #[arg(long, value_name = "HOST:PORT")]
+    #[arg(long, value_name = "HOST:PORT", value_parser = address)]
     gateway: Vec<SocketAddr>,
     #[command(flatten)]
     leaf: LeafArgs,
@@ -169,7 +170,7 @@ impl Console {
                     self.release_all();
                     Ok(())
                 }
-                _ => bail!("only estop, disarm, release and status go to all"),
+                _ => bail!("all accepts only estop, disarm, release and status"),
             };
         };
         let (console, asked) = (self.clone(), clock::now());
@@ -251,7 +252,7 @@ impl Console {
         self.client.join(bus, game, boats)?;
         self.session.visit(|session| *session = Some((bus.clone(), game.clone())));
         let boats = if boats.is_empty() { "no real boats".to_owned() } else { boats.join(", ") };
-        terminal::remark(&format!("in the game {}: {boats}", game.as_str()));
+        terminal::remark(&format!("joined the game {}: {boats}", game.as_str()));
         while !self.is_over.load(Ordering::Relaxed) && sim.state() == SimState::Alive {
             self.read_registry();
             clock::rest(LOOK_AGAIN);
@@ -288,7 +289,7 @@ fn show(news: &StopNews) {
             format!("{vehicle}  {}  after {} ms\n", brief(state), after.as_millis())
         }
         StopNews::Late { vehicle, command } => {
-            format!("{vehicle}  does not report {}: it is asked again\n", command.operator_command())
+            format!("{vehicle}  has not confirmed {}; sending it again\n", command.operator_command())
         }
         StopNews::Sim(Ok(after)) => format!("sim  obeys  after {} ms\n", after.as_millis()),
         StopNews::Sim(Err(reason)) => format!("sim  {reason}\n"),

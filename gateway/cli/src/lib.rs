@@ -50,7 +50,7 @@ pub enum Command {
 /// The gateway settings from this file, or the defaults.
 fn gateway_file(path: Option<&Path>) -> Result<Gateway> {
     let load = |path: &Path| {
-        scenario::load_file::<Gateway>(path).with_context(|| format!("cannot drive by {}", path.display()))
+        scenario::load_file::<Gateway>(path).with_context(|| format!("cannot use the gateway file {}", path.display()))
     };
     path.map_or_else(|| Ok(gateway::config::default_gateway()), load)
 }

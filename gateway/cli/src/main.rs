@@ -1,8 +1,8 @@
 //! `squall-gateway`: the gateway commands as a separate program, for the small computer on a boat.
 
-use clap::{ColorChoice, Parser};
+use clap::{ColorChoice, CommandFactory, FromArgMatches, Parser};
 use command_line::program::{self, Program};
-use command_line::{explain, leaf_args, scenario_files, terminal};
+use command_line::{explain, leaf_args, number, scenario_files, terminal};
 use std::process::ExitCode;
 
 /// The commit that the program was built from.
@@ -23,7 +23,8 @@ struct Cli {
 fn main() -> ExitCode {
     program::set(Program { name: "squall-gateway", gateway: "squall-gateway" });
     scenario_files::install(gateway_cli::KINDS);
-    let Cli { color, command } = Cli::parse();
+    let matches = number::with_negative_numbers(Cli::command()).get_matches();
+    let Cli { color, command } = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     terminal::set_colour(color);
     let done = leaf_args::restart_with_threads_for_keys().and_then(|()| gateway_cli::run(&command, COMMIT));
     done.unwrap_or_else(|error| {

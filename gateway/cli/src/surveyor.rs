@@ -5,7 +5,7 @@ use super::{guard, preflight_report};
 use anyhow::{Context, Result, anyhow};
 use bus::{Registration, Token};
 use command_line::leaf_args::LeafArgs;
-use command_line::number::seconds;
+use command_line::number::{address, seconds};
 use command_line::{program, stop};
 use gateway::bridge::Preflight;
 use gateway::config::Gateway;
@@ -87,10 +87,10 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
     let record = recording(args)?;
     let log = Log::new(args.for_parent);
     if args.dry_run {
-        log.remark("a dry run: the boat is sent nothing but standby".to_owned());
+        log.remark("dry run: the boat receives only standby".to_owned());
     }
     if let Some(operator) = &args.without_preflight {
-        log.remark(format!("WARNING: {operator} answers for arming without a pre-flight check"));
+        log.remark(format!("WARNING: {operator} is responsible for arming without a pre-flight check"));
     }
     let game = args.leaf.game.as_ref().map(|game| game.as_str().to_owned());
     let settings = Settings {
@@ -128,7 +128,7 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
             registration = bus::register_gateway(&entry).ok();
             log.remark(format!("operators reach this gateway at {control}, with or without a game"));
             if !args.for_parent && std::io::stdin().is_terminal() {
-                log.remark("Enter, in this terminal, is an E-stop of this boat".to_owned());
+                log.remark("press Enter in this terminal for an E-stop of this boat".to_owned());
                 let stop = OperatorCommand::EStop;
                 let stop = GatewayCommand::Boat { name: args.vehicle.clone(), command: stop };
                 // The log shows whether the command was carried out.
@@ -149,10 +149,9 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
 /// Parses the address of the control port. Others are given this address, so it must be a valid
 /// one.
 fn control_address(text: &str) -> Result<SocketAddr, String> {
-    let address: SocketAddr =
-        text.parse().map_err(|_| "expected an address and a port, as 127.0.0.1:8100".to_owned())?;
+    let address = address(text)?;
     if address.ip().is_unspecified() {
-        return Err(format!("others are told this address, and {} is none: name one of this machine's", address.ip()));
+        return Err("expected an address at which operators reach this machine, not all of its addresses".to_owned());
     }
     Ok(address)
 }
@@ -185,6 +184,6 @@ fn recording(args: &Args) -> Result<Option<PathBuf>> {
         return Ok(Some(path.clone()));
     }
     let folder = Path::new("runs");
-    std::fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
+    std::fs::create_dir_all(folder).with_context(|| format!("cannot create the folder {}", folder.display()))?;
     Ok(Some(folder.join(format!("gateway-{}-{}.mcap", args.vehicle, utc::file_stamp(utc::now_ns())))))
 }

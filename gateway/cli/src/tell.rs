@@ -10,7 +10,7 @@ use bus::stop::{StopClient, StopCommand, StopNews, StopOrders};
 use bus::{Bus, BusError, Token, ask_gateway, clock};
 use clap::ValueEnum;
 use command_line::leaf_args::LeafArgs;
-use command_line::number::within;
+use command_line::number::{address, within};
 use command_line::observer::Observer;
 use command_line::terminal;
 use messages::Control;
@@ -40,7 +40,7 @@ pub struct Args {
     words: Words,
     /// Address of the gateway's control port, as the gateway prints it [default: those of the gateways on this
     /// machine, or else through the game]
-    #[arg(long, value_name = "HOST:PORT")]
+    #[arg(long, value_name = "HOST:PORT", value_parser = address)]
     gateway: Option<SocketAddr>,
     #[command(flatten)]
     leaf: LeafArgs,
@@ -117,7 +117,7 @@ impl Words {
         Ok(match (self.command, &self.file) {
             (CommandArg::Mission, None) => bail!("mission needs a .sea file"),
             (CommandArg::Mission, Some(path)) => OperatorCommand::Mission(mission_file::read(path)?),
-            (_, Some(path)) => bail!("{} is given, and only mission takes a file", path.display()),
+            (_, Some(path)) => bail!("unexpected file {}; only mission takes one", path.display()),
             (CommandArg::HoldHeading, None) => match (self.heading_deg, self.thrust_pct) {
                 (Some(heading_deg), Some(thrust_pct)) => {
                     OperatorCommand::Mode(BoatMode::Heading { heading_deg, thrust_pct })
@@ -125,7 +125,7 @@ impl Words {
                 _ => bail!("hold-heading needs --heading-deg and --thrust-pct"),
             },
             _ if self.heading_deg.is_some() || self.thrust_pct.is_some() => {
-                bail!("--heading-deg and --thrust-pct are for hold-heading")
+                bail!("only hold-heading takes --heading-deg and --thrust-pct")
             }
             (CommandArg::RiverNav, None) => OperatorCommand::Mode(BoatMode::RiverNav),
             (CommandArg::Autopilot, None) => OperatorCommand::Mode(BoatMode::Autopilot),
@@ -188,7 +188,7 @@ fn ports_meant(args: &Args) -> Result<Vec<Port>> {
     ports.retain(is_meant);
     if let ([_, _, ..], true) = (ports.as_slice(), vehicle != ALL) {
         let at: Vec<String> = ports.iter().map(|port| port.at.to_string()).collect();
-        bail!("several gateways on this machine are for {vehicle}: choose with --gateway among {}", at.join(", "));
+        bail!("several gateways on this machine drive {vehicle}; select one with --gateway: {}", at.join(", "));
     }
     Ok(ports)
 }
@@ -286,8 +286,8 @@ fn tell_stop(args: &Args, command: StopCommand) -> Result<ExitCode> {
     }
     match (left.is_empty(), no_game.get()) {
         (true, None) if client.visit(|orders| orders.is_done(clock::now())) => {}
-        (true, None) => terminal::remark("the game does not answer: only the gateways that are known were told"),
-        (true, Some(reason)) => terminal::remark(&format!("only gateways were told, and no game: {reason}")),
+        (true, None) => terminal::remark("the game does not answer; only the known gateways received the command"),
+        (true, Some(reason)) => terminal::remark(&format!("only gateways received the command, not the game: {reason}")),
         (false, None) => return Err(anyhow!(left.join("; "))),
         (false, Some(reason)) => return Err(anyhow!("{}; {reason}", left.join("; "))),
     }
@@ -302,7 +302,7 @@ fn join(leaf: &LeafArgs, target: Option<&str>, client: &StopClient) -> Result<()
     if let Some(target) = target {
         observer.vehicle(target)?;
         if !boats.iter().any(|boat| boat == target) {
-            bail!("{target} is simulated: it has no gateway");
+            bail!("{target} is simulated and has no gateway");
         }
     }
     Ok(client.join(&observer.bus, &observer.game, &boats)?)
@@ -324,7 +324,7 @@ fn tell_all(args: &Args) -> Result<ExitCode> {
     let (control, fleet) = match args.words.command {
         CommandArg::Status => (None, None),
         CommandArg::Release => (Some(Control::Release), Some(FleetCommand::Release)),
-        _ => bail!("only estop, disarm, release and status go to all; tell each boat by its name"),
+        _ => bail!("all accepts only estop, disarm, release and status; address each boat by name"),
     };
     let ports = ports(args)?;
     let known: Vec<String> = ports.iter().filter_map(|port| port.vehicle.clone()).collect();
@@ -355,13 +355,13 @@ fn tell_all(args: &Args) -> Result<ExitCode> {
             }
             Err(RecvTimeoutError::Disconnected) => break,
             Err(RecvTimeoutError::Timeout) => {
-                failed.push("not everybody answers".to_owned());
+                failed.push("not all boats answered".to_owned());
                 break;
             }
         }
     }
     match no_game {
-        Some(error) if is_done => terminal::remark(&format!("only gateways were told, and no game: {error:#}")),
+        Some(error) if is_done => terminal::remark(&format!("only gateways received the command, not the game: {error:#}")),
         Some(error) => failed.push(format!("{error:#}")),
         None => {}
     }

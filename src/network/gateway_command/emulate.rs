@@ -81,7 +81,7 @@ struct OrNone(Option<f64>);
 fn or_none(text: &str, number: impl Fn(&str) -> Result<f64, String>) -> Result<OrNone, String> {
     match text {
         "none" => Ok(OrNone(None)),
-        text => number(text).map(Some).map(OrNone).map_err(|e| format!("{e}, nor none")),
+        text => number(text).map(Some).map(OrNone).map_err(|e| format!("{e}, or none")),
     }
 }
 
@@ -105,8 +105,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         (_, Some(text), ProtocolArg::Mavlink) => {
             Some(LinkAddress::to_connect(text).map_err(|e| anyhow!("--ground-station: {e}"))?)
         }
-        (Some(_), ..) => bail!("--primary is for a Surveyor: MAVLink has --ground-station"),
-        (_, Some(_), _) => bail!("--ground-station is for --protocol mavlink"),
+        (Some(_), ..) => bail!("--primary requires --protocol surveyor; for MAVLink, use --ground-station"),
+        (_, Some(_), _) => bail!("--ground-station requires --protocol mavlink"),
     };
     let stop = stop::on_ctrl_c_or_parent(args.for_parent)?;
     let extra = |kind: &ExtraArg| match kind {

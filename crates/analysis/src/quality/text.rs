@@ -41,7 +41,7 @@ impl Quality {
     }
 
     fn write_encounters(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        writeln!(f, "\na game: hulls touch / near misses (nearer than the rules' collision distance)")?;
+        writeln!(f, "\nper game: hull contacts / near misses (within the rules' collision distance)")?;
         writeln!(f, "{:NAME$}{:>13}{:>13}{:>17}{:>13}", "", "mate", "enemy", "tagger, tagged", "all")?;
         for (strategy, quality) in &self.strategies {
             writeln!(f, "{}{}", name(strategy), encounters(&quality.encounters, quality.teams))?;

@@ -49,7 +49,7 @@ pub enum TableError {
         known: Vec<String>,
     },
     /// Messages of this kind have no table.
-    #[error("messages of {topic} are {schema}, which no table is known for")]
+    #[error("messages of {topic} have the type {schema}, which has no table")]
     Strange {
         /// The topic.
         topic: String,

@@ -148,7 +148,7 @@ fn checked(diagnostics: &mut Diagnostics, document: &Document<Sweep>) -> Option<
         let name_path = format!("entry.{i}.name");
         entry.strategy = strategies.read(diagnostics, document, &format!("entry.{i}.strategy"), &entry.strategy);
         if document.is_sound(&name_path) && !names.insert(&entry.name) {
-            let message = format!("name is {:?} again, expected a different one for each entry", entry.name);
+            let message = format!("the name {:?} is used twice, expected a unique name for each entry", entry.name);
             diagnostics.note(document.at(&name_path), message);
         }
     }
@@ -162,7 +162,7 @@ fn checked(diagnostics: &mut Diagnostics, document: &Document<Sweep>) -> Option<
             check_axis(diagnostics, document, &at, axis);
             if !keys.insert(axis.key.clone()) {
                 diagnostics
-                    .note(key_at, format!("key is {:?} again, expected a different one for each axis", axis.key));
+                    .note(key_at, format!("the key {:?} is used twice, expected a unique key for each axis", axis.key));
             }
         }
     }
@@ -181,7 +181,7 @@ fn check_axis(diagnostics: &mut Diagnostics, document: &Document<Sweep>, at: &st
     let problem = if !axis.is_of_files()
         && let Err(error) = axis.setting("team", &AxisValue::Number(0.0), Path::new(""))
     {
-        wrong("key", format!("key is {:?}, expected sea, boat, rules, field or opponent, or more: {error}", axis.key))
+        wrong("key", format!("key is {:?}, expected sea, boat, rules, field, opponent or a longer key: {error}", axis.key))
     } else if given.len() != 1 {
         let found = if given.is_empty() { "none".to_owned() } else { given.join(" and ") };
         wrong("key", format!("{} has {found}, expected one of values, range, normal, log_normal", axis.key))
@@ -190,17 +190,17 @@ fn check_axis(diagnostics: &mut Diagnostics, document: &Document<Sweep>, at: &st
     } else if axis.is_of_files() && axis.values.is_empty() {
         wrong(given[0], format!("{} has no values, expected {}", axis.key, files()))
     } else if axis.values.is_empty() && given[0] == "values" {
-        wrong("values", format!("{} has no values, expected one at least", axis.key))
+        wrong("values", format!("{} has no values, expected at least one", axis.key))
     } else if axis.values.windows(2).any(|pair| sort(&pair[0]) != sort(&pair[1])) {
-        wrong("values", format!("values of {} are of different sorts, expected all numbers or all texts", axis.key))
+        wrong("values", format!("values of {} have different types, expected all numbers or all texts", axis.key))
     } else if axis.values.iter().enumerate().any(|(k, value)| axis.values[..k].contains(value)) {
-        wrong("values", format!("values of {} has one twice, expected different ones", axis.key))
+        wrong("values", format!("values of {} contains a duplicate, expected unique values", axis.key))
     } else if let Some([low, high]) = axis.range.filter(|[low, high]| low >= high) {
         wrong("range", format!("range is [{low}, {high}], expected the lower number first"))
     } else if let Some([low, _]) = axis.range.filter(|[low, _]| axis.log && *low <= 0.0) {
         wrong("range", format!("range begins at {low}, expected more than 0 with log"))
     } else if axis.log && axis.range.is_none() {
-        wrong("log", "log is given without range, expected with it only".to_owned())
+        wrong("log", "log is given without range, which it requires".to_owned())
     } else if let Some([_, sigma]) = axis.normal.filter(|[_, sigma]| *sigma <= 0.0) {
         wrong("normal", format!("normal has a deviation of {sigma}, expected more than 0"))
     } else if let Some(pair) =
