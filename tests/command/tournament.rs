@@ -278,11 +278,11 @@ fn who_joins_a_league_plays_its_own_games_alone_and_a_torn_line_is_played_again(
     // If a game file has changed on the disk, its earlier results are unusable.
     let changed = text.replacen("\"seed\":1", "\"seed\":7", 1);
     assert_ne!(changed, text);
-    for (damaged, expected) in [("{}\n", "missing field"), (changed.as_str(), "its checksum is another")] {
+    for (damaged, expected) in [("{}\n", "missing field"), (changed.as_str(), "its checksum does not match")] {
         std::fs::write(&results, damaged).unwrap();
         let refused = output(&["tournament", &place(&dir, "tournament.toml"), "--league", &league]);
         let why = String::from_utf8(refused.stderr).unwrap();
-        assert!(!refused.status.success() && why.contains("results.jsonl: line 1 is no game of a league"), "{why}");
+        assert!(!refused.status.success() && why.contains("results.jsonl: line 1 is not a league game"), "{why}");
         assert!(why.contains(expected), "{why}");
     }
 }
