@@ -7,7 +7,6 @@ use scenario::{Kind, check_file, load, schema};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Which files.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Scenario files of any kind
@@ -15,7 +14,6 @@ pub(crate) struct Args {
     files: Vec<PathBuf>,
 }
 
-/// Which kind.
 #[derive(clap::Args)]
 pub(crate) struct SchemaArgs {
     /// Kind of file: game, field, rules, boat, sea, strategy, tournament, gateway, rewards, training or sweep

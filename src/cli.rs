@@ -32,14 +32,12 @@ Squall simulates boats that play capture the flag.
   squall help                         everything else
 ";
 
-/// Which shell.
 #[derive(clap::Args)]
 pub(crate) struct CompletionArgs {
     /// Shell to print the script for
     shell: clap_complete::Shell,
 }
 
-/// Where to.
 #[derive(clap::Args)]
 pub(crate) struct ManArgs {
     /// Folder for the man pages

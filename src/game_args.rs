@@ -9,7 +9,6 @@ use sim::Report;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// A game, from the command line.
 #[derive(Clone, clap::Args)]
 pub(crate) struct GameArgs {
     /// The game: a file, or the name of one in scenarios/games or built in
@@ -60,7 +59,6 @@ impl GameArgs {
         self.load_from(&Arc::default())
     }
 
-    /// Loads the scenario from these files.
     pub(crate) fn load_from(&self, files: &Arc<Files>) -> Result<Scenario> {
         scenario::load_with_files(&self.scenario, &self.overrides()?, files)
             .with_context(|| format!("cannot play {}", self.scenario.display()))

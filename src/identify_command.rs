@@ -11,7 +11,6 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use trial::identify::{self, Fit, Log, Setting, Step};
 
-/// Which boat, to which log.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Boat from which the fit starts: a file, or the name of a boat in scenarios/boats

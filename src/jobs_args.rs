@@ -3,7 +3,6 @@
 use command_line::number::whole;
 use std::num::NonZeroUsize;
 
-/// Threads, from the command line.
 #[derive(clap::Args)]
 pub(crate) struct JobsArgs {
     /// Number of worker threads; does not affect results [default: one per core; at most four per core]

@@ -59,7 +59,6 @@ impl LeagueFile {
         }
     }
 
-    /// The path of the newest report.
     pub(crate) fn report(&self) -> PathBuf {
         self.folder.join("report.json")
     }

@@ -17,7 +17,6 @@ mod gif;
 mod page;
 mod quality;
 
-/// The recording, and the outputs.
 #[derive(clap::Args)]
 #[command(after_help = AFTER_HELP)]
 pub(crate) struct Args {

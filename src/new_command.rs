@@ -20,7 +20,6 @@ const TEMPLATES: [(Kind, &str); 7] = [
     (Kind::of::<Tournament>(), include_str!("templates/tournament.toml")),
 ];
 
-/// Which file.
 #[derive(clap::Args)]
 pub(crate) struct NewArgs {
     /// Kind of file: strategy, boat, sea, game, sweep, training or tournament
@@ -31,7 +30,6 @@ pub(crate) struct NewArgs {
     name: String,
 }
 
-/// Which file.
 #[derive(clap::Args)]
 pub(crate) struct CopyArgs {
     /// Name of the file, with its folder if several kinds share the name, as in seas/calm

@@ -15,7 +15,6 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Which model, and which of its decisions.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Policy: an ONNX model
@@ -67,16 +66,16 @@ fn about(name: &str, bytes: usize, network: &Network, spec: Result<PolicySpec, S
         let _ = writeln!(text, "  {what:<12} {value}");
     };
     line("network", format!("{} -> {}", ports(network.inputs()), ports(network.outputs())));
-    line("takes", format!("{:.1} us", evaluation_us(network.clone())));
+    line("evaluation", format!("{:.1} us", evaluation_us(network.clone())));
     let mut said = vec![];
     match spec {
         Ok(spec) => {
-            line("is given", observation_text(spec.observation));
-            line("chooses", action_text(spec.action));
-            line("decides", format!("every {} s", spec.period_s));
+            line("inputs", observation_text(spec.observation));
+            line("actions", action_text(spec.action));
+            line("decision", format!("every {} s", spec.period_s));
             said.extend(spec.metadata().map(|(key, _)| key));
         }
-        Err(why) => line("as a policy", format!("undeclared; the strategy that uses it must declare this: {why}")),
+        Err(why) => line("policy", format!("undeclared; the strategy that uses it must declare this: {why}")),
     }
     for (key, value) in network.metadata().iter().filter(|(key, _)| !said.contains(key)) {
         line(key.strip_prefix(OWN).unwrap_or(key), value.clone());

@@ -5,7 +5,6 @@ use anyhow::{Context, Result};
 use scenario::Scenario;
 use std::path::PathBuf;
 
-/// Whether and where `run` records.
 #[derive(Clone, clap::Args)]
 pub(crate) struct RecordArgs {
     /// Folder for the recording

@@ -9,7 +9,6 @@ use std::process::ExitCode;
 
 mod check;
 
-/// The recording, and how to replay it.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Recording to replay
@@ -31,7 +30,6 @@ pub(crate) fn check(file: &Path) -> Result<ExitCode> {
     Ok(if verdict.is_same { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// Opens the recording in a file.
 pub(crate) fn open(file: &Path) -> Result<Recording> {
     recording_file::open(file, "replay")
 }

@@ -16,7 +16,6 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-/// What to play, and how often.
 #[derive(Clone, clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]

@@ -14,7 +14,6 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use trial::{Drift, Manoeuvre, Plan, Sample, Start, TrialBoat};
 
-/// Which sea, and for which boat.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Sea to describe: a file or a name

@@ -8,7 +8,6 @@ use std::fmt::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Which file, and how it is shown.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Strategy to explain: a file or a name
@@ -85,7 +84,6 @@ fn program(text: &mut String, program: &Program) {
     }
 }
 
-/// The nesting depth of a mode.
 fn depth(program: &Program, mode: usize) -> usize {
     std::iter::successors(program.modes[mode].parent, |parent| program.modes[*parent].parent).count()
 }

@@ -11,7 +11,6 @@ use scenario::load_file;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Which sweep, and how.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Sweep to run: a file or a name

@@ -20,7 +20,6 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
-/// Which tournament, and how.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Tournament to play: a file or a name

@@ -15,7 +15,6 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use trial::{Engine, Manoeuvre, Orders, Plan, Sample, Sheet, Start, TrialBoat};
 
-/// The boat, the water and the manoeuvre.
 #[derive(clap::Args)]
 #[command(group(clap::ArgGroup::new("what").required(true).args(["orders", "manoeuvre"])))]
 pub(crate) struct Args {
@@ -53,7 +52,6 @@ pub(crate) struct Args {
     manoeuvring: ManoeuvreArgs,
 }
 
-/// How a manoeuvre is sailed.
 #[derive(clap::Args)]
 pub(crate) struct ManoeuvreArgs {
     /// Speed of the straight approach, m/s [default: the highest speed that the front seat accepts]
@@ -79,7 +77,6 @@ fn manoeuvre_name() -> impl TypedValueParser<Value = Manoeuvre> {
     PossibleValuesParser::new(Manoeuvre::NAMES).map(|name| name.parse().expect("no other name gets here"))
 }
 
-/// How the boat begins.
 #[derive(clap::Args)]
 pub(crate) struct StartArgs {
     /// Heading at the start, compass degrees

@@ -9,7 +9,6 @@ use scenario::sea::Sea;
 use scenario::{Boat, Drawn, Kind};
 use std::path::{Path, PathBuf};
 
-/// The water, from the command line.
 #[derive(clap::Args)]
 pub(crate) struct WaterArgs {
     /// Sea: a file or a name [default: salt water at rest, without wind]

@@ -32,7 +32,6 @@ const UNCHANGED: u8 = 255;
 /// Number of pictures from which the palette is computed.
 const SAMPLES: usize = 6;
 
-/// Which stretch of a game a film shows, and how.
 #[derive(clap::Args)]
 pub(super) struct FilmArgs {
     /// With --gif: start time in the game, s [default: the beginning]

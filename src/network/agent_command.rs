@@ -11,7 +11,6 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
-/// Which boats, and where.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Names of the vehicles to control

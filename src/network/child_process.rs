@@ -78,7 +78,7 @@ impl ChildProcess {
         let (sender, receiver) = sync_channel(1024);
         std::thread::spawn(move || {
             let lines = BufReader::new(output).lines().map_while(std::result::Result::ok);
-            // Keep reading even without a receiver, so that the child can go on printing.
+            // Keep reading even without a receiver, so that the child is not blocked.
             lines.filter_map(|line| parse(&line)).for_each(|item| sender.send(item).unwrap_or_default());
         });
         Ok(receiver)

@@ -15,7 +15,6 @@ use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::time::Duration;
 
-/// What `run` is asked of it.
 #[derive(Clone, clap::Args)]
 pub(crate) struct LoopArgs {
     /// Replaces real boats by emulated ones, which gateways drive over the protocol of the gateway file; prints the

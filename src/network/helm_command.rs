@@ -10,7 +10,6 @@ use scenario::Scenario;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Whose, and into which file.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Name of the vehicle

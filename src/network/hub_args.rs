@@ -7,7 +7,6 @@ use command_line::leaf_args::{KeysArgs, TokenArgs};
 use messages::topic::GameName;
 use std::path::PathBuf;
 
-/// How a hub can be reached.
 #[derive(clap::Args, Clone, Debug)]
 pub(crate) struct HubArgs {
     /// Endpoint to listen on, for example tcp/0.0.0.0:7447 [default: loopback port 7447, or a free port if it is

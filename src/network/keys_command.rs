@@ -10,7 +10,6 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
-/// What to do with keys.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     #[command(subcommand)]

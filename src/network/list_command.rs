@@ -11,7 +11,6 @@ use std::collections::BTreeMap;
 use std::process::ExitCode;
 use std::sync::Arc;
 
-/// Where to look.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]

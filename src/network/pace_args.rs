@@ -9,7 +9,6 @@ use scenario::Setting;
 use sim::node::Pace;
 use std::process::Command;
 
-/// The pace of a game, from the command line.
 #[derive(Clone, clap::Args)]
 pub(crate) struct PaceArgs {
     /// Pace of the game: lockstep, realtime, or a multiple of real time such as 4x

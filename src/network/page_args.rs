@@ -17,7 +17,6 @@ const PORT: u16 = 8088;
 /// The environment variable with the page's token.
 const TOKEN_VARIABLE: &str = "SQUALL_PAGE_TOKEN";
 
-/// Where the page is served.
 #[derive(clap::Args, Clone, Debug)]
 pub(crate) struct PageArgs {
     /// Address and port of the page; if other machines can reach it, as with 0.0.0.0:8088, a token is required

@@ -13,7 +13,6 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 
-/// Which recording, and where the page is served.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]

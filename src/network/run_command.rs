@@ -22,7 +22,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::Duration;
 
-/// What to play, and by which processes.
 #[derive(clap::Args)]
 #[command(group(ArgGroup::new("served").args(["pace", "speed", "agents_per_process", "keys"]).multiple(true).conflicts_with("in_process")))]
 pub(crate) struct Args {
@@ -45,7 +44,6 @@ pub(crate) struct Args {
     hardware_loop: LoopArgs,
 }
 
-/// Where the page is served.
 #[derive(clap::Args)]
 pub(crate) struct DemoArgs {
     #[command(flatten)]

@@ -15,7 +15,6 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
 
-/// What to serve, and how.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]

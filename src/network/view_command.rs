@@ -17,7 +17,6 @@ mod games;
 mod report;
 mod training;
 
-/// What is shown, and where the page is served.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// What to show: the JSON report of a tournament, the folder of a league, sweep or training, or a recording

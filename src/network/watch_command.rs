@@ -23,7 +23,6 @@ use std::time::{Duration, Instant};
 mod chart;
 mod helm;
 
-/// Which game, and where.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]

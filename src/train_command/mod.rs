@@ -21,7 +21,6 @@ use std::sync::atomic::Ordering;
 /// Size limit of a state, bytes: networks of the largest size, and a league of them.
 const STATE_BYTES_MAX: u64 = 4 << 30;
 
-/// What is trained, and where it goes.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Training to run: a file or a name

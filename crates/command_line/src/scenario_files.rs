@@ -103,7 +103,6 @@ pub fn names(kind: Kind) -> BTreeSet<String> {
     files.filter_map(|file| name_of(file.path())).collect()
 }
 
-/// The names of the files in a folder.
 fn names_in(folder: &Path) -> BTreeSet<String> {
     let files = std::fs::read_dir(folder).into_iter().flatten().filter_map(std::result::Result::ok);
     files.filter_map(|file| name_of(&file.path())).collect()

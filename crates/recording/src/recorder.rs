@@ -262,7 +262,7 @@ fn rest() {
     std::thread::sleep(GATHER);
 }
 
-#[expect(clippy::disallowed_methods, reason = "what is recorded is handed to the disk by the clock")]
+#[expect(clippy::disallowed_methods, reason = "writes are timed by the wall clock")]
 fn now() -> Instant {
     Instant::now()
 }

@@ -31,7 +31,6 @@ const LAST_MAX: usize = 90;
 /// Timeout for finding the game.
 const GAME_WAIT: Duration = Duration::from_secs(5);
 
-/// Which boat.
 #[derive(clap::Args)]
 pub struct Args {
     /// Link to the boat: tcp://HOST:PORT, udp://HOST:PORT, udp-listen://0.0.0.0:14550 or

@@ -40,7 +40,6 @@ const HELP: &str = "\
   quit                    exits, like the end of the input
 ";
 
-/// Which game, and which gateways.
 #[derive(clap::Args)]
 #[command(after_help = program::text(concat!(
     "Reads commands from standard input, one per line, and prints the boats'\n",

@@ -16,7 +16,6 @@ pub(super) fn write(path: &Path, report: &Report) -> Result<()> {
     write(&path.with_extension("txt"), &report.text())
 }
 
-/// Reads a report.
 pub(super) fn read(path: &Path) -> Result<Report> {
     let text = primitives::input_file::read_text(path, BYTES_MAX)
         .with_context(|| format!("cannot read {}", path.display()))?;

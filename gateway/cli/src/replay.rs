@@ -6,7 +6,6 @@ use command_line::{recording_file, terminal};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Which recording.
 #[derive(clap::Args)]
 pub struct Args {
     /// Recording to replay

@@ -25,7 +25,6 @@ const ANSWER: Duration = Duration::from_secs(1);
 /// Capacity of the event queue.
 const EVENTS_MAX: usize = 4096;
 
-/// Which boat.
 #[derive(clap::Args)]
 pub struct Args {
     /// Link to the boat: tcp://HOST:PORT, udp://HOST:PORT, udp-listen://0.0.0.0:14550 or

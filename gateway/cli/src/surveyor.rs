@@ -23,7 +23,6 @@ use std::time::Duration;
 /// Timeout for the gateway's answer to a key on its own terminal.
 const KEY_ANSWER: Duration = Duration::from_secs(2);
 
-/// Which boat, and where.
 #[derive(clap::Args)]
 pub struct Args {
     /// Name of the vehicle in the game, which must set source = "external" for it
@@ -175,7 +174,6 @@ fn preflight(args: &Args, link: &LinkAddress, gateway: &Gateway) -> Result<Prefl
     })
 }
 
-/// The path of the recording.
 fn recording(args: &Args) -> Result<Option<PathBuf>> {
     if args.no_record {
         return Ok(None);

@@ -69,7 +69,6 @@ impl Guide {
     }
 }
 
-/// Runs the guided checks.
 pub(super) fn guided_checks(guide: &mut Guide, listener: &mut Listener, gateway: &Gateway) -> Vec<Check> {
     if guide.lines.is_none() {
         return ["compass swing", "propellers"].map(|name| Check::not_done(name, "use --guided")).to_vec();

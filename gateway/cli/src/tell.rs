@@ -33,7 +33,6 @@ const NEXT_ANSWER: Duration = Duration::from_secs(10);
 /// Timeout for boats to report that they have stopped.
 const STOP_MAX: Duration = Duration::from_secs(10);
 
-/// The recipients and the command.
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
@@ -46,7 +45,6 @@ pub struct Args {
     leaf: LeafArgs,
 }
 
-/// A command in words.
 #[derive(clap::Args)]
 pub(super) struct Words {
     /// Name of the vehicle, or "all" for estop, disarm, release and status

@@ -13,7 +13,6 @@ use gateway_cli::protocol_arg::ProtocolArg;
 use std::process::ExitCode;
 use std::time::Duration;
 
-/// Which boat, and where.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Name of the vehicle in the game; the back seat becomes its agent

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 /// The measurements of a team in a game; NaN where undefined.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[expect(missing_docs, reason = "METRICS says what they are")]
+#[expect(missing_docs, reason = "METRICS describes them")]
 pub struct TeamMetrics {
     pub score: f64,
     pub grabs: f64,
@@ -22,7 +22,7 @@ pub struct TeamMetrics {
 
 /// The measurements of a game; NaN where undefined.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[expect(missing_docs, reason = "METRICS says what they are")]
+#[expect(missing_docs, reason = "METRICS describes them")]
 pub struct Metrics {
     pub win_share: f64,
     pub own: TeamMetrics,
