@@ -59,7 +59,8 @@ fn warnings(file: &Path, kind: Kind) -> Vec<String> {
 pub(crate) fn print_schema(args: &SchemaArgs) -> Result<ExitCode> {
     let kinds = || KINDS.iter().map(|kind| kind.name()).collect::<Vec<_>>().join(", ");
     let kind = KINDS.iter().copied().find(|kind| kind.name() == args.kind);
-    let kind = kind.ok_or_else(|| anyhow!("unknown kind of scenario file {:?}; expected one of {}", args.kind, kinds()))?;
+    let kind =
+        kind.ok_or_else(|| anyhow!("unknown kind of scenario file {:?}; expected one of {}", args.kind, kinds()))?;
     screen::print(&(serde_json::to_string_pretty(&schema(kind))? + "\n"));
     Ok(ExitCode::SUCCESS)
 }

@@ -1,10 +1,10 @@
 //! The command line as a whole: grouped help, first steps, shell completion scripts, man pages.
 
-use command_line::number;
 use crate::screen;
 use anyhow::{Context, Result};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{ArgMatches, Command, CommandFactory};
+use command_line::number;
 use std::path::PathBuf;
 use std::process::ExitCode;
 

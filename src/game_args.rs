@@ -1,9 +1,9 @@
 //! Command line arguments that select a game and override its file; shared by `run` and `sim`.
 
-use command_line::number::whole;
 use crate::output_file;
 use crate::scenario_files;
 use anyhow::{Context, Result, bail};
+use command_line::number::whole;
 use scenario::{Files, Kind, Overrides, Scenario, Setting};
 use sim::Report;
 use std::path::{Path, PathBuf};

@@ -44,10 +44,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     }
     let out = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}_identified.toml", boat.name)));
     if out.canonicalize().is_ok_and(|out| path.canonicalize().is_ok_and(|path| path == out)) {
-        bail!(
-            "--out {} is the boat from which the fit starts; choose another file",
-            out.display()
-        );
+        bail!("--out {} is the boat from which the fit starts; choose another file", out.display());
     }
     let parameters = identify::parameters(&args.fit, &boat)?;
     let log = Log::of_sheet(&read_sheet(&args.log)?, &boat)?;

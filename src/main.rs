@@ -136,9 +136,10 @@ fn main() -> ExitCode {
         #[cfg(not(feature = "network"))]
         Command::Replay(args) if args.check => replay_command::check(&args.file),
         #[cfg(not(feature = "network"))]
-        Command::Replay(_) => {
-            Err(anyhow::anyhow!("{}; to verify the recording, use --check", cli::not_built("the page that shows recordings")))
-        }
+        Command::Replay(_) => Err(anyhow::anyhow!(
+            "{}; to verify the recording, use --check",
+            cli::not_built("the page that shows recordings")
+        )),
         Command::Tournament(args) => tournament_command::run(&args),
         Command::Sweep(args) => sweep_command::run(&args),
         Command::Train(args) => train_command::run(&args),

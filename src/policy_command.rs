@@ -1,9 +1,9 @@
 //! `squall policy`: describes a trained model and explains its choices in a recorded game.
 
-use command_line::number::whole;
 use crate::minds::Minds;
 use crate::{helm_text, recording_file, screen};
 use anyhow::{Context, Result, bail};
+use command_line::number::whole;
 use onnx::Network;
 use primitives::input_file;
 use scenario::action::{self, ActionSpace};

@@ -1,9 +1,9 @@
 //! `squall sea`: describes what a sea means for a boat, in numbers and as a plot.
 
-use command_line::number::whole;
 use crate::trial_command::usual_tick_s;
 use crate::{plot, screen, water_args};
 use anyhow::{Context, Result};
+use command_line::number::whole;
 use primitives::angle::compass_deg_from_rad;
 use primitives::{Ned, SimTime};
 use scenario::Boat;

@@ -1,10 +1,10 @@
 //! `squall sweep`: measures how much sea, noise and failure a team tolerates.
 
-use command_line::number::whole;
 use crate::jobs_args::JobsArgs;
 use crate::progress::Progress;
 use crate::{output_file, screen, stop};
 use anyhow::{Context, Result};
+use command_line::number::whole;
 use experiment::sweep::Sweep;
 use experiment::sweep::{self, Condition, FindError, Journal, Plan, Study, UntilError};
 use scenario::load_file;

@@ -1,6 +1,5 @@
 //! `squall tournament`: plays every strategy against every other, in this process.
 
-use command_line::number::whole;
 use crate::jobs_args::JobsArgs;
 use crate::league_file::LeagueFile;
 use crate::progress::Progress;
@@ -9,6 +8,7 @@ use agent::MindRunner;
 use analysis::Step;
 use analysis::quality::{GameQuality, MindState, Quality};
 use anyhow::{Context, Result};
+use command_line::number::whole;
 use experiment::tournament::Tournament;
 use experiment::tournament::{self, Observer, Plan, Record, Report, play, play_observed};
 use rules::event::EventCursor;

@@ -2,13 +2,13 @@
 //!
 //! All pictures share one palette, and each contains only the changes since the previous one.
 
-use command_line::number::whole;
 use crate::game_args;
 use crate::output_file;
 use crate::plot::film::{Boat, Moment, Stage};
 use crate::plot::{colour, pixels};
 use crate::water_args::within;
 use anyhow::{Context, Result, bail};
+use command_line::number::whole;
 use gif::{DisposalMethod, Encoder, Repeat};
 use messages::{Frame, VehicleTruth};
 use primitives::Ned;
@@ -69,7 +69,8 @@ pub(super) fn write(path: &Path, recording: &Recording, args: &FilmArgs) -> Resu
     let step = moments.len().div_ceil(SAMPLES);
     let samples = moments.iter().step_by(step).chain([last]).map(colours).collect::<Result<Vec<_>>>()?;
     let mut palette = Palette::of(&samples);
-    let file = std::fs::File::create(path).with_context(|| format!("cannot write the animation to {}", path.display()))?;
+    let file =
+        std::fs::File::create(path).with_context(|| format!("cannot write the animation to {}", path.display()))?;
     let mut writer = std::io::BufWriter::new(file);
     let what = || format!("cannot write the animation to {}", path.display());
     let mut encoder = Encoder::new(&mut writer, size.0 as u16, size.1 as u16, &palette.bytes()).with_context(what)?;

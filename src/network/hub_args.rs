@@ -4,6 +4,7 @@ use anyhow::{Result, anyhow, bail};
 use bus::token::TOKEN_VARIABLE;
 use bus::{Net, Token};
 use command_line::leaf_args::{KeysArgs, TokenArgs};
+use command_line::number::endpoint;
 use messages::topic::GameName;
 use std::path::PathBuf;
 
@@ -11,7 +12,7 @@ use std::path::PathBuf;
 pub(crate) struct HubArgs {
     /// Endpoint to listen on, for example tcp/0.0.0.0:7447 [default: loopback port 7447, or a free port if it is
     /// taken]
-    #[arg(long, value_name = "ENDPOINT")]
+    #[arg(long, value_name = "ENDPOINT", value_parser = endpoint)]
     pub(crate) listen: Vec<String>,
     /// Announces the game by multicast on the local network; without --listen, listens on all interfaces
     #[arg(long)]

@@ -1,9 +1,9 @@
 //! `squall keys`: creates and shows the keys of a game.
 
-use command_line::number::whole;
 use crate::screen;
 use anyhow::{Result, bail};
 use bus::keys::{self, Bundle, Identity};
+use command_line::number::whole;
 use std::fmt::Write as _;
 use std::net::UdpSocket;
 use std::path::{Path, PathBuf};

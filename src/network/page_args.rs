@@ -1,9 +1,9 @@
 //! Command line arguments that define where the page is served.
 
-use command_line::number::address;
 use crate::screen;
 use anyhow::{Result, ensure};
 use command_line::leaf_args;
+use command_line::number::address;
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 use shore::page::{Background, Page, PageError, PageSettings};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, UdpSocket};

@@ -1,6 +1,5 @@
 //! `squall run` across processes: a sim, agents, the page, and gateways for emulated boats.
 
-use command_line::number::whole;
 use super::child_process::{self, ChildProcess, option};
 use super::hardware_loop::{HardwareLoop, LoopArgs};
 use super::hub_args::{free_port, token_text, unique_game_name};
@@ -14,6 +13,7 @@ use anyhow::{Result, bail};
 use bus::Token;
 use bus::keys::{Bundle, Identity};
 use clap::{ArgGroup, Args as _, FromArgMatches};
+use command_line::number::whole;
 use scenario::{Scenario, Vehicle};
 use sim::node::{Pace, ProgressMessage, Report};
 use std::path::{Path, PathBuf};

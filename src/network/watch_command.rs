@@ -1,12 +1,12 @@
 //! `squall watch`: shows a running game, or one boat's helm, in the terminal.
 
-use command_line::number::whole;
 use crate::screen;
 use crate::stop;
 use crate::style::Names;
 use anyhow::{Result, bail};
 use bus::{Watched, clock};
 use command_line::leaf_args::LeafArgs;
+use command_line::number::whole;
 use command_line::observer::Observer;
 use messages::{Frame, topic};
 use primitives::{SimTime, codec};

@@ -71,7 +71,9 @@ pub(super) fn check(recording: &Recording, mut tell: impl FnMut()) -> Result<Ver
     let text = if is_same {
         format!("{same}, digest {again}\n")
     } else {
-        format!("DIFFERENT at the end: {frames} frames agree, but the digest was {recorded}, in the rerun it is {again}\n")
+        format!(
+            "DIFFERENT at the end: {frames} frames agree, but the digest was {recorded}, in the rerun it is {again}\n"
+        )
     };
     Ok(Verdict { is_same, text })
 }

@@ -75,15 +75,12 @@ impl Files {
                 *table = read(&folder.join(*name))?;
                 let begins = format!("{samples},{name},");
                 let noted = sums.lines().find_map(|line| line.strip_prefix(&begins)?.split_once(','));
-                let (bytes, sum) =
-                    noted.with_context(|| format!("{} has no entry for {name} at {samples} samples", path.display()))?;
+                let (bytes, sum) = noted
+                    .with_context(|| format!("{} has no entry for {name} at {samples} samples", path.display()))?;
                 let kept = bytes.parse().ok().and_then(|bytes: usize| table.get(..bytes)).map(str::to_owned);
                 *table = kept.filter(|kept| Table::of(name, kept).checksum() == sum).with_context(|| {
                     let path = folder.join(*name);
-                    format!(
-                        "{} was changed or truncated after it was written; start afresh with --out",
-                        path.display()
-                    )
+                    format!("{} was changed or truncated after it was written; start afresh with --out", path.display())
                 })?;
             }
         }

@@ -2,11 +2,11 @@
 
 mod files;
 
-use command_line::number::whole;
 use crate::jobs_args::JobsArgs;
 use crate::progress::Progress;
 use crate::{output_file, screen, stop};
 use anyhow::{Context, Result, bail};
+use command_line::number::whole;
 use files::Files;
 use learn::environment::{RecordingLog, RecordingNames, Recordings, check_recording_folder};
 use learn::train::{Evaluated, Played, Trainer};
@@ -112,7 +112,10 @@ fn begin(args: &Args, training: Training, folder: &Path, jobs: usize) -> Result<
         return Trainer::resume(training, jobs, &state).with_context(|| path.display().to_string());
     }
     if path.exists() {
-        bail!("{} already contains a training; continue it with --resume, or choose another folder with --out", folder.display());
+        bail!(
+            "{} already contains a training; continue it with --resume, or choose another folder with --out",
+            folder.display()
+        );
     }
     Ok(Trainer::new(training, jobs)?)
 }

@@ -113,9 +113,7 @@ fn what_is_heard_is_written_down_if_it_is_sound() {
 
 #[test]
 fn what_is_no_recording_is_refused_with_the_reason() {
-    for (file, part) in
-        [("README.md", "it is not an MCAP file"), ("nowhere.mcap", "cannot read the recording")]
-    {
+    for (file, part) in [("README.md", "it is not an MCAP file"), ("nowhere.mcap", "cannot read the recording")] {
         for how in [&["replay", file][..], &["replay", "--check", file]] {
             let said = refusal_of(how);
             assert!(said.contains(file) && said.contains(part), "{how:?}: {said}");

@@ -170,7 +170,11 @@ fn notes(heads: [&Header; 2], [a, b]: [&GameSeries; 2]) -> Vec<String> {
         notes.extend(series.remark().map(|remark| format!("{name}: {remark}")));
     }
     if (a.span_s() - b.span_s()).abs() > 0.05 {
-        notes.push(format!("A lasts {:.1} s, B {:.1} s: compared up to the end of the shorter", a.span_s(), b.span_s()));
+        notes.push(format!(
+            "A lasts {:.1} s, B {:.1} s: compared up to the end of the shorter",
+            a.span_s(),
+            b.span_s()
+        ));
     }
     notes
 }

@@ -44,7 +44,8 @@ pub fn problems(Problems(problems): &Problems) -> String {
 
 fn problem(problem: &Problem) -> String {
     let Problem { line, column, source, message, .. } = problem;
-    let told = format!("{} {}", style::bad(&format!("{}:", problem.place())), printable::line(&without_number(message)));
+    let told =
+        format!("{} {}", style::bad(&format!("{}:", problem.place())), printable::line(&without_number(message)));
     let Some(span) = span(source, *column) else { return told };
     let shown = Snippet::source(source.as_str()).line_start(*line).annotation(AnnotationKind::Primary.span(span));
     let shown = Renderer::styled().term_width(COLUMNS).render(&[Group::with_level(Level::ERROR).element(shown)]);
@@ -75,6 +76,9 @@ mod tests {
         assert_eq!(self::error(&Error::new(cause()).context("cannot read a")), once);
         let repeated: Result<(), _> = Err(cause()).with_context(|| format!("cannot read a: {}", cause()));
         assert_eq!(self::error(&repeated.expect_err("it is an error")), once);
-        assert_eq!(self::error(&anyhow!("{}; {}", cause(), cause())), "No such file or directory; No such file or directory");
+        assert_eq!(
+            self::error(&anyhow!("{}; {}", cause(), cause())),
+            "No such file or directory; No such file or directory"
+        );
     }
 }

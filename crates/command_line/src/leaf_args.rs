@@ -1,5 +1,6 @@
 //! Command line arguments for how a process reaches a game: where it is, its name, keys and token.
 
+use crate::number::endpoint;
 use anyhow::{Context, Result, bail};
 use bus::keys::Bundle;
 use bus::token::TOKEN_VARIABLE;
@@ -72,7 +73,7 @@ pub fn text_of(file: Option<&Path>, variable: &str) -> Result<Option<(String, St
 #[derive(clap::Args, Clone, Debug)]
 pub struct LeafArgs {
     /// Endpoint of the sim, for example tcp/192.168.1.5:7447 [default: the game on this machine]
-    #[arg(long, value_name = "ENDPOINT")]
+    #[arg(long, value_name = "ENDPOINT", value_parser = endpoint)]
     connect: Vec<String>,
     /// Finds the sim by multicast on the local network
     #[arg(long, conflicts_with = "connect")]

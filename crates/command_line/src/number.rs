@@ -1,4 +1,4 @@
-//! Parsers of command line values: range-checked numbers and socket addresses.
+//! Parsers of command line values: range-checked numbers, addresses and endpoints.
 
 use clap::Command;
 use std::net::SocketAddr;
@@ -39,6 +39,16 @@ pub fn address(text: &str) -> Result<SocketAddr, String> {
     text.parse().map_err(|_| "expected an IP address and a port, such as 127.0.0.1:8100".to_owned())
 }
 
+/// Parses the endpoint of a node from the command line.
+///
+/// # Errors
+/// If it lacks the protocol or the address.
+pub fn endpoint(text: &str) -> Result<String, String> {
+    let is_whole = text.split_once('/').is_some_and(|(protocol, address)| !protocol.is_empty() && !address.is_empty());
+    let wrong = || "expected PROTOCOL/ADDRESS, such as tcp/192.168.1.5:7447".to_owned();
+    is_whole.then(|| text.to_owned()).ok_or_else(wrong)
+}
+
 /// Lets all options take negative numbers, so that their parsers report the allowed range; clap would
 /// report an unknown option.
 #[must_use]
@@ -66,6 +76,7 @@ mod tests {
         for text in ["-1", "1e9", "nan", "abc"] {
             assert_eq!(seconds(text), Err("expected a number from 0 to 1000000 s".to_owned()), "{text}");
         }
+        assert!(endpoint("127.0.0.1:7447").is_err() && endpoint("tcp/127.0.0.1:7447").is_ok());
         assert!(address("localhost:8088").is_err() && address("[::1]:8088").is_ok());
     }
 }

@@ -297,17 +297,16 @@ impl Found {
     fn header(&mut self) -> Result<(Kind, Facts), RecordingError> {
         let foreign = |reason: &str| RecordingError::Foreign(reason.to_owned());
         let header = Kind::ALL.into_iter().find_map(|kind| Some((kind, self.metadata.remove(kind.header())?)));
-        let (kind, facts) =
-            header.ok_or_else(|| foreign("it has neither the metadata \"squall\" nor \"gateway\""))?;
+        let (kind, facts) = header.ok_or_else(|| foreign("it has neither the metadata \"squall\" nor \"gateway\""))?;
         let version = facts.get(VERSION).cloned().unwrap_or_default();
         if version != primitives::VERSION {
             return Err(RecordingError::Version { found: version });
         }
         match facts.get(CHECKSUM) {
             Some(written) if *written != checksum(&facts) => Err(foreign("its header is damaged")),
-            None if kind == Kind::Gateway => {
-                Err(foreign("it is a gateway's recording in an old format; replay it with the version that recorded it"))
-            }
+            None if kind == Kind::Gateway => Err(foreign(
+                "it is a gateway's recording in an old format; replay it with the version that recorded it",
+            )),
             _ => Ok((kind, facts)),
         }
     }

@@ -79,11 +79,8 @@ fn pair_of(sheet: &Sheet) -> Result<(Pair, [usize; 2]), Mistake> {
     match found[..] {
         [one] => Ok(one),
         [] => {
-            let message = format!(
-                "no command columns among {}, expected one of {}",
-                sheet.heads().join(", "),
-                names(&Pair::ALL)
-            );
+            let message =
+                format!("no command columns among {}, expected one of {}", sheet.heads().join(", "), names(&Pair::ALL));
             Err(sheet.mistake(Some(1), message))
         }
         _ => {

@@ -1,6 +1,5 @@
 //! `gateway console`: operator commands, line by line, over connections that stay open.
 
-use command_line::number::address;
 use super::log_line::full;
 use super::tell::{ALL, CommandArg, Port, Words, release_all, to_boat};
 use anyhow::{Result, bail};
@@ -9,6 +8,7 @@ use bus::stop::{StopClient, StopCommand, StopNews, StopOrders};
 use bus::{Bus, Patience, SimState, SimWatch, Watched, clock};
 use clap::Parser;
 use command_line::leaf_args::LeafArgs;
+use command_line::number::address;
 use command_line::{program, stop, terminal};
 use messages::external::OperatorReply;
 use messages::topic::GameName;

@@ -159,7 +159,11 @@ mod tests {
             (with(2, &line("OIWPL,2545.4912,X,08022.4373,W,1")), Some(3), ""),
             (with(2, &line("PSEAC,T,0,20,0,")), Some(3), "unexpected sentence"),
             (with(2, &line("PSEAR,0,000,20,0,000")), Some(3), "a second PSEAR"),
-            (line("PSEAC,F,3,000,000,") + &lines.concat(), Some(1), "3 lines of PSEAR and OIWPL are announced, but the file has 4"),
+            (
+                line("PSEAC,F,3,000,000,") + &lines.concat(),
+                Some(1),
+                "3 lines of PSEAR and OIWPL are announced, but the file has 4",
+            ),
             (lines[1..].concat(), None, "no PSEAR"),
             (lines[..2].concat(), None, "at least one waypoint"),
             (String::new(), None, "no PSEAR"),

@@ -106,10 +106,7 @@ fn stopped_by_its_gateway(address: &LinkAddress) -> bool {
             true
         }
         Ok(reply) => {
-            terminal::remark(&format!(
-                "the gateway of {} has the link and is {}",
-                entry.vehicle, reply.status.link
-            ));
+            terminal::remark(&format!("the gateway of {} has the link and is {}", entry.vehicle, reply.status.link));
             false
         }
         Err(e) => {

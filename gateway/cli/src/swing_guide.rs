@@ -89,7 +89,8 @@ fn swing(guide: &Guide, listener: &mut Listener, gateway: &Gateway) -> Check {
         Err(why) => return Check::not_done(name, why),
     };
     let mut swing = CompassSwing::default();
-    let what = "Turn the boat slowly through two full circles; if it reports no true heading, drive them at 1 m/s or more.";
+    let what =
+        "Turn the boat slowly through two full circles; if it reports no true heading, drive them at 1 m/s or more.";
     guide.until_enter(what, listener, &mut |listener| {
         if let (Some(compass_deg), Some(true_deg)) = (listener.check.compass_deg(), listener.check.true_deg()) {
             swing.add_reading(compass_deg.to_radians() + declination_rad, true_deg.to_radians());
@@ -122,9 +123,10 @@ fn declination_rad(listener: &Listener, gateway: &Gateway) -> Result<f64, String
 
 fn propellers(guide: &Guide, listener: &mut Listener) -> Check {
     let name = "propellers";
-    if !guide
-        .is_agreed("Propeller test: is everyone clear of the propellers, and is the remote control in your hand?", listener)
-    {
+    if !guide.is_agreed(
+        "Propeller test: is everyone clear of the propellers, and is the remote control in your hand?",
+        listener,
+    ) {
         return Check::not_done(name, "skipped");
     }
     // Whether the boat reports its operator, whether that is the remote control, and thrust ahead

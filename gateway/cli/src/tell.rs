@@ -285,7 +285,9 @@ fn tell_stop(args: &Args, command: StopCommand) -> Result<ExitCode> {
     match (left.is_empty(), no_game.get()) {
         (true, None) if client.visit(|orders| orders.is_done(clock::now())) => {}
         (true, None) => terminal::remark("the game does not answer; only the known gateways received the command"),
-        (true, Some(reason)) => terminal::remark(&format!("only gateways received the command, not the game: {reason}")),
+        (true, Some(reason)) => {
+            terminal::remark(&format!("only gateways received the command, not the game: {reason}"))
+        }
         (false, None) => return Err(anyhow!(left.join("; "))),
         (false, Some(reason)) => return Err(anyhow!("{}; {reason}", left.join("; "))),
     }
@@ -359,7 +361,9 @@ fn tell_all(args: &Args) -> Result<ExitCode> {
         }
     }
     match no_game {
-        Some(error) if is_done => terminal::remark(&format!("only gateways received the command, not the game: {error:#}")),
+        Some(error) if is_done => {
+            terminal::remark(&format!("only gateways received the command, not the game: {error:#}"))
+        }
         Some(error) => failed.push(format!("{error:#}")),
         None => {}
     }

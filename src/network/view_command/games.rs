@@ -62,7 +62,8 @@ impl Drop for Open {
 
 impl Games {
     pub(super) fn new(stop: &Arc<AtomicBool>) -> Result<Games> {
-        let folder = TempDir::with_prefix("squall-view-").context("cannot create a folder for the recordings of games")?;
+        let folder =
+            TempDir::with_prefix("squall-view-").context("cannot create a folder for the recordings of games")?;
         Ok(Games {
             open: Mutex::default(),
             folder,
@@ -81,9 +82,7 @@ impl Games {
         let refused = |why: &str| Showing::new(Arc::new(PreparingView::failed(why))).shown();
         if open.len() >= OPEN_MAX {
             let Some(idle) = open.iter().position(|open| !open.showing.is_watched()) else {
-                return refused(&format!(
-                    "{OPEN_MAX} other games are open; close one of them, then reload this page"
-                ));
+                return refused(&format!("{OPEN_MAX} other games are open; close one of them, then reload this page"));
             };
             open.remove(idle);
         }
@@ -91,8 +90,7 @@ impl Games {
             Ok(game) => game,
             Err(why) => return refused(&format!("{why:#}")),
         };
-        let preparing =
-            Arc::new(PreparingView::new(&format!("{}: waiting for another game to end", game.about)));
+        let preparing = Arc::new(PreparingView::new(&format!("{}: waiting for another game to end", game.about)));
         let showing = Showing::new(Arc::clone(&preparing) as _);
         let file = self.folder.path().join(format!("{}.mcap", self.recordings.fetch_add(1, Ordering::Relaxed)));
         let shown = showing.shown();

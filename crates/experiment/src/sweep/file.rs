@@ -181,7 +181,10 @@ fn check_axis(diagnostics: &mut Diagnostics, document: &Document<Sweep>, at: &st
     let problem = if !axis.is_of_files()
         && let Err(error) = axis.setting("team", &AxisValue::Number(0.0), Path::new(""))
     {
-        wrong("key", format!("key is {:?}, expected sea, boat, rules, field, opponent or a longer key: {error}", axis.key))
+        wrong(
+            "key",
+            format!("key is {:?}, expected sea, boat, rules, field, opponent or a longer key: {error}", axis.key),
+        )
     } else if given.len() != 1 {
         let found = if given.is_empty() { "none".to_owned() } else { given.join(" and ") };
         wrong("key", format!("{} has {found}, expected one of values, range, normal, log_normal", axis.key))

@@ -162,12 +162,9 @@ pub static METRICS: [Metric; 30] = [
     ),
     metric("score_difference", "", "points minus the opponent's", |all| &mut all.score_difference),
     metric("contacts", "", "times that the hulls of any two boats touched", |all| &mut all.contacts),
-    metric(
-        "near_misses",
-        "",
-        "times that any two boats were within the collision distance without touching",
-        |all| &mut all.near_misses,
-    ),
+    metric("near_misses", "", "times that any two boats were within the collision distance without touching", |all| {
+        &mut all.near_misses
+    }),
     metric("closest_m", "m", "smallest distance between the centres of any two boats", |all| &mut all.closest_m),
     metric("duration_s", "s", "duration of the game", |all| &mut all.duration_s),
 ];
