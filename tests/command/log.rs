@@ -130,7 +130,7 @@ fn a_film_has_a_picture_for_each_tenth_of_a_second_that_it_is_looked_at() {
     assert_eq!(delays.len() as f64, (all / 4.0).floor() + 1.0);
     for (words, why) in [
         (&["--from", "20", "--to", "10"][..], "--to is 10 s, expected more than --from, 20 s"),
-        (&["--from", "99999"], "has no frame from 99999 s on"),
+        (&["--from", "99999"], "has no frame after 99999 s"),
     ] {
         let said = program::refusal(&dir, &[&["log", &game().recording, "--gif", "other.gif"], words].concat());
         assert!(said.contains(why), "{said}");

@@ -114,7 +114,7 @@ test('what is wrong with a report or a game is said in words', async (t) => {
   await sight.until('the seed has all its digits', (seed) => [...document.querySelectorAll('#games tbody td:nth-child(2)')].some((each) => each.textContent === seed), seed);
   const game = report.matches.find(({ seed }) => seed === 1).game;
   const other = await Sight.open(t, browser, `${url}?game=${game}`);
-  assert.match(await other.text('#about'), /NOT as in the report/);
+  assert.match(await other.text('#about'), /NOT identical to the report/);
   for (const [name, why] of [['999', /there is no game "999", expected a number from 0 to 11/], [HOSTILE, /there is no game .*expected a number/]]) {
     const none = await Sight.load(t, browser, `${url}?game=${encodeURIComponent(name)}`);
     await none.until('it is refused', () => document.getElementById('about').textContent !== '');
