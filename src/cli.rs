@@ -8,8 +8,7 @@ use command_line::number;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// The subcommands by purpose, in the order of the help. Those that need a network are not in every
-/// build.
+/// The subcommands by purpose, in help order. Those that need a network are not in every build.
 const GROUPS: [(&str, &[&str]); 6] = [
     ("Play", &["demo", "run", "tournament", "sweep"]),
     ("Learn", &["train", "policy"]),
@@ -65,8 +64,8 @@ pub(crate) fn command<T: CommandFactory>() -> Command {
     command.help_template("{about}\n\n{usage-heading} {usage}{after-help}\n\nOptions:\n{options}").after_help(text)
 }
 
-/// Parses the command line. On an unknown command it exits, and names the build that has the
-/// command, if there is one.
+/// Parses the command line. On a command that only another build has, it exits and names that
+/// build.
 pub(crate) fn matches<T: CommandFactory>() -> ArgMatches {
     let mut command = number::with_negative_numbers(command::<T>());
     command.try_get_matches_from_mut(std::env::args_os()).unwrap_or_else(|error| {

@@ -68,8 +68,7 @@ pub(crate) fn run(args: &Args, player: &mut dyn Player) -> Result<ExitCode> {
     play_once(args, player, &scenario, &stop)
 }
 
-/// Plays, and plays again whenever a file of the game changes. A file with mistakes does not end
-/// the loop.
+/// Plays again whenever a file of the game changes, even after a file with mistakes.
 fn play_when_saved(args: &Args, player: &mut dyn Player) -> Result<ExitCode> {
     let stop = stop::on_ctrl_c()?;
     loop {

@@ -101,16 +101,14 @@ impl PageArgs {
         PageArgs { open: true, ..self.clone() }
     }
 
-    /// Opens the page in the browser if requested; without a browser, users have the printed
-    /// address.
+    /// Opens the page in the browser if requested. Its address has already been printed.
     pub(crate) fn open_browser(&self, page: &Page) {
         if self.open && open::that_detached(self.url(page)).is_err() {
             screen::remark("cannot open a browser");
         }
     }
 
-    /// Passes these arguments to another process of this program, the token where no other user can
-    /// read it.
+    /// Passes these arguments to another process, the token where no other user can read it.
     pub(crate) fn give_to(&self, command: &mut Command) {
         let listen = self.listen.iter().map(|listen| ("--listen", listen.to_string()));
         let hosts = self.host.iter().map(|host| ("--host", host.clone()));

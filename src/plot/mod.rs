@@ -310,8 +310,8 @@ fn pieces(points: &[(f64, f64)]) -> Vec<&[(f64, f64)]> {
     points.split(|point| !(point.0.is_finite() && point.1.is_finite())).filter(|piece| !piece.is_empty()).collect()
 }
 
-/// The range of a panel's points in one direction, with a margin, and no narrower than the
-/// meaningful minimum for its unit: a millimetre is not a navigation error.
+/// The range of a panel's points in one direction, with a margin and a minimum for its unit: a
+/// millimetre is not a navigation error.
 fn extent(panel: &Panel, axis: &str, of: impl Fn(&(f64, f64)) -> f64) -> (f64, f64) {
     if axis == COMPASS {
         return (0.0, 360.0);

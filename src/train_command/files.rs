@@ -30,7 +30,7 @@ pub(super) struct Files {
     base: Option<PathBuf>,
 }
 
-/// A table as far as it is written.
+/// A partially written table.
 struct Table {
     name: &'static str,
     bytes: usize,
@@ -57,8 +57,7 @@ impl Table {
 }
 
 impl Files {
-    /// Opens the folder of a new or resumed training; on resuming, drops everything written after
-    /// the saved state.
+    /// Opens the folder of a training; on resuming, drops everything written after the saved state.
     pub(super) fn open(folder: &Path, base: &Path, trainer: &Trainer) -> Result<Files> {
         let (samples, _) = trainer.samples();
         let tables = [("updates.csv", UPDATES), ("evaluations.csv", EVALUATIONS), ("episodes.csv", EPISODES)];

@@ -29,8 +29,7 @@ impl KeysArgs {
     }
 }
 
-/// Restarts this program with the threads required for a process with keys, if it is given keys and
-/// has other threads.
+/// Restarts this program with the number of threads that a process with keys needs.
 pub fn restart_with_threads_for_keys() -> Result<()> {
     let is_keys = |word: OsString| word.to_str().is_some_and(|word| word == "--keys" || word.starts_with("--keys="));
     if std::env::args_os().skip(1).any(is_keys) {
@@ -59,7 +58,8 @@ impl TokenArgs {
     }
 }
 
-/// A text that must not stand on a command line: from the file, or else from the environment variable; with its place, for errors.
+/// Reads a secret from the file, or else from the environment variable; returns it with its place,
+/// for errors.
 pub fn text_of(file: Option<&Path>, variable: &str) -> Result<Option<(String, String)>> {
     let Some(file) = file else {
         return Ok(std::env::var(variable).ok().map(|text| (text, variable.to_owned())));
@@ -101,9 +101,8 @@ impl LeafArgs {
         self.keys.load()
     }
 
-    /// The gateways on this machine that may be meant. If the game is elsewhere, those that were
-    /// given its name; but a command that stops boats rather addresses one gateway too many than
-    /// one too few.
+    /// The gateways on this machine that a command may address. For a game elsewhere, these are the
+    /// gateways of that game; a stop addresses more rather than fewer.
     pub fn local_gateways(&self, stops: bool) -> Vec<bus::GatewayEntry> {
         let is_elsewhere = !stops && (self.lan || !self.connect.is_empty());
         let is_meant = |entry: &bus::GatewayEntry| match (&self.game, &entry.game) {
@@ -118,7 +117,7 @@ impl LeafArgs {
         self.net_of(None, self.keys()?)
     }
 
-    /// The same, for nodes that outlive a game or start before it.
+    /// Like `net`, for nodes that outlive a game or start before it.
     pub fn place(&self) -> Result<Place> {
         let (leaf, keys) = (self.clone(), self.keys()?);
         Ok(Place::new(move |game| leaf.net_of(game, keys.clone()).map_err(|e| format!("{e:#}"))))

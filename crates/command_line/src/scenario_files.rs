@@ -16,8 +16,8 @@ const FOLDER: &str = "scenarios";
 /// The kinds of files that the program knows.
 static KINDS: OnceLock<&[Kind]> = OnceLock::new();
 
-/// Makes the built-in files available where files on the disk are missing. The program knows these
-/// kinds of files, and uses them to recognise a file of the wrong kind.
+/// Makes the built-in files available where files on the disk are missing, and sets the kinds of
+/// files by which a file of the wrong kind is recognised.
 pub fn install(kinds: &'static [Kind]) {
     // An earlier caller installed the same kinds: a process runs one program.
     let _ = KINDS.set(kinds);
@@ -33,8 +33,8 @@ pub fn contents(kind: Kind, name: &str) -> Option<&'static [u8]> {
     FILES.get_file(format!("{}/{name}.toml", kind.folder())).map(include_dir::File::contents)
 }
 
-/// The file of a kind that an argument names: a path, or a name in the folder `scenarios` here, in
-/// a parent folder, or built in.
+/// Finds the file that an argument names: a path, or a name in `scenarios` here, in a parent
+/// folder, or built in.
 pub fn find(word: &str, kind: Kind) -> Result<PathBuf> {
     find_beside(word, kind, None)
 }

@@ -151,8 +151,8 @@ impl Sheet {
     }
 }
 
-/// The line of a record. The reader returns the end of the previous one; blank lines and comments
-/// may follow there. A comment begins at the start of its line.
+/// The line of a record. The reader returns the end of the previous one, after which blank lines
+/// and comments may follow.
 fn line_of(bytes: &[u8], position: &csv::Position) -> u64 {
     let rest = bytes.get(position.byte() as usize..).unwrap_or_default();
     let lines = rest.split(|byte| *byte == b'\n').map(|line| line.strip_suffix(b"\r").unwrap_or(line));

@@ -145,8 +145,7 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Parses the address of the control port. Others are given this address, so it must be a valid
-/// one.
+/// Parses the address of the control port, which other machines must be able to use.
 fn control_address(text: &str) -> Result<SocketAddr, String> {
     let address = address(text)?;
     if address.ip().is_unspecified() {

@@ -319,7 +319,7 @@ enum Outcome {
 }
 
 /// Sends a command to all boats at once: over the game's network and straight to every known
-/// gateway. No path waits for another, and the status of every real boat is printed as it arrives.
+/// gateway, in parallel. Prints the status of every real boat as it arrives.
 fn tell_all(args: &Args) -> Result<ExitCode> {
     let (control, fleet) = match args.words.command {
         CommandArg::Status => (None, None),

@@ -142,8 +142,8 @@ impl Axis {
         (0..count).map(|i| self.at(share(i))).collect()
     }
 
-    /// The values that suffice to check whether all are allowed: every listed value; of a range or
-    /// a distribution, both ends and the second level.
+    /// The values to check instead of all: every listed value; both ends and the second level of a
+    /// range or distribution.
     pub(super) fn telling_values(&self) -> Vec<AxisValue> {
         let mut values = self.levels();
         if self.values.is_empty() {
