@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 #[derive(Clone, clap::Args)]
 pub(crate) struct GameArgs {
-    /// The game: a file, or the name of one in scenarios/games or built in
+    /// Game: a file, or the name of a game in scenarios/games or built in
     #[arg(value_name = "GAME", value_parser = scenario_files::game)]
     scenario: PathBuf,
     /// Random seed [default: the seed in the game file]

@@ -32,14 +32,14 @@ pub(crate) struct Args {
     #[arg(long)]
     resume: bool,
     /// Instead of playing all points, searches an axis for the value at which this condition begins to hold, for
-    /// example "strategy_5.win_share < 0.5"; plays at most one point's games per value
+    /// example "strategy_5.win_share < 0.5"; plays at most the games of one point at each value
     #[arg(long, value_name = "CONDITION", conflicts_with = "find")]
     until: Option<String>,
     /// With --until: key of the axis to search [default: the only numeric axis]
     #[arg(long, value_name = "KEY", requires = "until")]
     along: Option<String>,
-    /// Samples the axes uniformly, and lists the games that meet this condition, for example "strategy_5.contacts >
-    /// 0"; `collision` and `out_of_bounds` apply to the first entry
+    /// Plays games sampled evenly from the space of the axes, and lists those that meet this condition, for example
+    /// "strategy_5.contacts > 0"; `collision` and `out_of_bounds` apply to the first entry
     #[arg(long, value_name = "CONDITION")]
     find: Option<String>,
     /// With --find: number of games to play

@@ -18,10 +18,10 @@ pub(crate) struct Args {
     vehicle: Vec<String>,
     #[command(flatten)]
     leaf: LeafArgs,
-    /// How long to look for the sim and wait for free vehicles, s
+    /// How long to look for the sim and wait for its vehicles to become free, s
     #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
     wait_s: f64,
-    /// How long the sim may send no picture before it counts as dead, s; 5 s if it dies while the network works
+    /// How long the sim may send no picture before it counts as dead, s (5 s if it dies while the network works)
     #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
     silence_s: f64,
     /// Strategy file to follow instead of the one in the sim's scenario

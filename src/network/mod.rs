@@ -58,7 +58,7 @@ pub(crate) enum Command {
     /// Brings real boats into games, and lets real back seats drive simulated ones.
     #[command(after_help = "Examples:\n  squall gateway emulate --help\n  squall gateway surveyor --help")]
     Gateway(gateway_command::Args),
-    /// Creates keys for untrusted networks: for encrypted links, and certificates that define each node's rights.
+    /// Creates keys for untrusted networks: they encrypt links and define each node's rights.
     #[command(after_help = "Examples:\n  squall keys new keys --help")]
     Keys(keys_command::Args),
     /// Lists the games on the network with their scores.

@@ -23,7 +23,7 @@ pub fn on_ctrl_c() -> anyhow::Result<Arc<AtomicBool>> {
             std::process::exit(130);
         }
     };
-    ctrlc::set_handler(pressed).context("cannot listen for Ctrl-C")?;
+    ctrlc::set_handler(pressed).context("cannot handle Ctrl-C")?;
     Ok(stop)
 }
 

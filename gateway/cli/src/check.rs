@@ -105,7 +105,7 @@ fn water(args: &Args, vehicle: &str, gateway: &Gateway, stop: &AtomicBool) -> Re
     let (bus, _, info) = match found {
         Ok(found) => found,
         Err(e) => {
-            terminal::remark(&format!("without a game: {e}"));
+            terminal::remark(&format!("no game: {e}"));
             return Ok(None);
         }
     };

@@ -169,7 +169,7 @@ impl Console {
                     self.release_all();
                     Ok(())
                 }
-                _ => bail!("all accepts only estop, disarm, release and status"),
+                _ => bail!("the name all accepts only estop, disarm, release and status"),
             };
         };
         let (console, asked) = (self.clone(), clock::now());

@@ -113,14 +113,14 @@ impl Words {
     /// The command for a boat.
     pub(super) fn command(&self) -> Result<OperatorCommand> {
         Ok(match (self.command, &self.file) {
-            (CommandArg::Mission, None) => bail!("mission needs a .sea file"),
+            (CommandArg::Mission, None) => bail!("mission requires a .sea file"),
             (CommandArg::Mission, Some(path)) => OperatorCommand::Mission(mission_file::read(path)?),
             (_, Some(path)) => bail!("unexpected file {}; only mission takes one", path.display()),
             (CommandArg::HoldHeading, None) => match (self.heading_deg, self.thrust_pct) {
                 (Some(heading_deg), Some(thrust_pct)) => {
                     OperatorCommand::Mode(BoatMode::Heading { heading_deg, thrust_pct })
                 }
-                _ => bail!("hold-heading needs --heading-deg and --thrust-pct"),
+                _ => bail!("hold-heading requires --heading-deg and --thrust-pct"),
             },
             _ if self.heading_deg.is_some() || self.thrust_pct.is_some() => {
                 bail!("only hold-heading takes --heading-deg and --thrust-pct")
@@ -324,7 +324,7 @@ fn tell_all(args: &Args) -> Result<ExitCode> {
     let (control, fleet) = match args.words.command {
         CommandArg::Status => (None, None),
         CommandArg::Release => (Some(Control::Release), Some(FleetCommand::Release)),
-        _ => bail!("all accepts only estop, disarm, release and status; address each boat by name"),
+        _ => bail!("the name all accepts only estop, disarm, release and status; address each boat by name"),
     };
     let ports = ports(args)?;
     let known: Vec<String> = ports.iter().filter_map(|port| port.vehicle.clone()).collect();
