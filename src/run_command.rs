@@ -95,7 +95,7 @@ fn play_once(args: &Args, player: &mut dyn Player, scenario: &Scenario, stop: &A
     }
     let (file, report) = play(args, player, scenario, (stop, &mut screen))?;
     let Some(report) = report else { return Ok(stop::interrupted()) };
-    let unwritten = args.play.write_result(&report).err().map(|error| format!("{error:#}"));
+    let unwritten = args.play.write_result(&report).err().map(|error| command_line::explain::line(&error));
     let problems: Vec<String> = unwritten.into_iter().chain(report.run.recording_problem.clone()).collect();
     player.end(file.as_deref(), &problems, (stop, &mut screen));
     if !problems.is_empty() {

@@ -128,7 +128,7 @@ impl Player for Processes<'_> {
         if let (Some(file), false) = (file, stop::is_set_soon(stop))
             && let Err(error) = page.send(&file.display().to_string())
         {
-            screen::remark(&format!("{error:#}"));
+            screen::remark(&command_line::explain::line(&error));
         }
         while page.ended().is_none() && !stop::is_set_soon(stop) {}
         page.stop();

@@ -61,7 +61,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         let Some(file) = recordings.as_ref().and_then(|named| named.try_recv().ok()) else { continue };
         match replay_command::show(Path::new(&file)) {
             Ok(show) => page.show(Arc::new(show)),
-            Err(error) => screen::remark(&format!("{error:#}")),
+            Err(error) => screen::remark(&command_line::explain::line(&error)),
         }
     }
     Ok(ExitCode::SUCCESS)

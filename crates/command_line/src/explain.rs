@@ -12,7 +12,7 @@ const COLUMNS: usize = 100;
 /// An error with all its causes; for scenario files, with all problems.
 pub fn error(error: &Error) -> String {
     let Some(problems) = error.chain().find_map(|cause| cause.downcast_ref()) else {
-        return printable::message(&chain(error));
+        return printable::message(&line(error));
     };
     let before = error
         .chain()
@@ -21,12 +21,17 @@ pub fn error(error: &Error) -> String {
     before.collect::<String>() + &self::problems(problems)
 }
 
-/// The messages of an error and its causes, without causes that a message already includes.
-fn chain(error: &Error) -> String {
-    error.chain().map(|cause| without_number(&cause.to_string())).fold(String::new(), |text, cause| match () {
-        () if text.ends_with(&cause) => text,
-        () if text.is_empty() => cause,
-        () => format!("{text}: {cause}"),
+/// The messages of an error and its causes on one line, without causes that a message already includes.
+pub fn line(error: &Error) -> String {
+    let causes = error.chain().map(|cause| without_number(&cause.to_string()));
+    causes.fold(String::new(), |text, cause| {
+        if text.ends_with(&cause) {
+            text
+        } else if text.is_empty() {
+            cause
+        } else {
+            format!("{text}: {cause}")
+        }
     })
 }
 

@@ -120,7 +120,7 @@ impl LeafArgs {
     /// Like `net`, for nodes that outlive a game or start before it.
     pub fn place(&self) -> Result<Place> {
         let (leaf, keys) = (self.clone(), self.keys()?);
-        Ok(Place::new(move |game| leaf.net_of(game, keys.clone()).map_err(|e| format!("{e:#}"))))
+        Ok(Place::new(move |game| leaf.net_of(game, keys.clone()).map_err(|e| crate::explain::line(&e))))
     }
 
     /// The place of this game, or else of the given one.

@@ -128,7 +128,7 @@ impl Console {
         while !self.is_over.load(Ordering::Relaxed) {
             match lines.recv_timeout(LOOK) {
                 Ok(line) if line == "quit" => return,
-                Ok(line) => self.obey(&line).unwrap_or_else(|e| terminal::complain(&format!("{e:#}"))),
+                Ok(line) => self.obey(&line).unwrap_or_else(|e| terminal::complain(&command_line::explain::line(&e))),
                 Err(std::sync::mpsc::RecvTimeoutError::Timeout) => continue,
                 Err(std::sync::mpsc::RecvTimeoutError::Disconnected) => return,
             }
@@ -186,7 +186,7 @@ impl Console {
                 Ok(OperatorReply { refused: Some(reason), .. }) => {
                     terminal::complain(&format!("{name} refuses: {reason}"))
                 }
-                Err(e) => terminal::complain(&format!("{name}: {e:#}")),
+                Err(e) => terminal::complain(&format!("{name}: {}", command_line::explain::line(&e))),
             }
         });
         Ok(())

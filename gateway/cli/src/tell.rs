@@ -268,7 +268,7 @@ fn tell_stop(args: &Args, command: StopCommand) -> Result<ExitCode> {
         let (joins, reason) = (Arc::clone(&client), Arc::clone(&no_game));
         std::thread::spawn(move || {
             if let Err(e) = join(&leaf, target.as_deref(), &joins) {
-                drop(reason.set(format!("{e:#}")));
+                drop(reason.set(command_line::explain::line(&e)));
                 joins.visit(StopOrders::complete);
             }
         });
@@ -347,7 +347,7 @@ fn tell_all(args: &Args) -> Result<ExitCode> {
         match outcomes.recv_timeout(NEXT_ANSWER) {
             Ok(Outcome::Told) => is_done = true,
             Ok(Outcome::NoGame(error)) => no_game = Some(error),
-            Ok(Outcome::Failed(error)) => failed.push(format!("{error:#}")),
+            Ok(Outcome::Failed(error)) => failed.push(command_line::explain::line(&error)),
             Ok(Outcome::Reply(reply)) => {
                 is_done = true;
                 terminal::show(&full(&reply.status));
@@ -361,10 +361,11 @@ fn tell_all(args: &Args) -> Result<ExitCode> {
         }
     }
     match no_game {
-        Some(error) if is_done => {
-            terminal::remark(&format!("only gateways received the command, not the game: {error:#}"))
-        }
-        Some(error) => failed.push(format!("{error:#}")),
+        Some(error) if is_done => terminal::remark(&format!(
+            "only gateways received the command, not the game: {}",
+            command_line::explain::line(&error)
+        )),
+        Some(error) => failed.push(command_line::explain::line(&error)),
         None => {}
     }
     if failed.is_empty() { Ok(ExitCode::SUCCESS) } else { Err(anyhow!(failed.join("; "))) }

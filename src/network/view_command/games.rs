@@ -88,7 +88,7 @@ impl Games {
         }
         let game = match find() {
             Ok(game) => game,
-            Err(why) => return refused(&format!("{why:#}")),
+            Err(why) => return refused(&command_line::explain::line(&why)),
         };
         let preparing = Arc::new(PreparingView::new(&format!("{}: waiting for another game to end", game.about)));
         let showing = Showing::new(Arc::clone(&preparing) as _);
@@ -100,7 +100,11 @@ impl Games {
             let _place = Place::wait(&played);
             match prepare(&game, &file, &stop, &preparing) {
                 Ok(view) => showing.show(Arc::new(view)),
-                Err(why) => showing.show(Arc::new(PreparingView::failed(&format!("{}: {why:#}", game.about)))),
+                Err(why) => showing.show(Arc::new(PreparingView::failed(&format!(
+                    "{}: {}",
+                    game.about,
+                    command_line::explain::line(&why)
+                )))),
             }
         });
         shown

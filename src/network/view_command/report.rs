@@ -154,7 +154,10 @@ impl SweepReport {
             Ok(plan) => table().map(|bytes| sweep::rows_in(plan, &String::from_utf8_lossy(&bytes))),
             Err(_) => Ok(vec![]),
         };
-        let (plan, rows) = (plan.map_err(|why| format!("{why:#}")), rows.map_err(|why| format!("{why:#}")));
+        let (plan, rows) = (
+            plan.map_err(|why| command_line::explain::line(&why)),
+            rows.map_err(|why| command_line::explain::line(&why)),
+        );
         let worst = value["worst"].as_array().into_iter().flatten();
         let digest =
             |game: &Value| Some((usize::try_from(game["game"].as_u64()?).ok()?, game["digest"].as_str()?.to_owned()));

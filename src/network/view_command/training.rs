@@ -118,7 +118,7 @@ impl Report for TrainingReport {
 
     fn file(&self, path: &str) -> Option<Vec<u8>> {
         // If a table can no longer be read, show the error instead of the curves.
-        let problem = |why: anyhow::Error| json!({"kind": "training", "problem": format!("{why:#}")});
+        let problem = |why: anyhow::Error| json!({"kind": "training", "problem": command_line::explain::line(&why)});
         (path == "/report.json").then(|| self.json().unwrap_or_else(problem).to_string().into_bytes())
     }
 
