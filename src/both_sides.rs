@@ -25,7 +25,7 @@ impl BothSides {
         };
         let teams = [0, 1].map(|team| (scenario.teams[team].name.clone(), name(team)));
         if strategies(scenario) == strategies(exchanged) {
-            bail!("both teams follow {}: with the sides exchanged it is the same game", teams[0].1);
+            bail!("both teams use the strategy {}, so exchanging strategies has no effect", teams[0].1);
         }
         Ok(BothSides { teams })
     }
@@ -45,7 +45,7 @@ impl BothSides {
         let [(first, first_strategy), (second, second_strategy)] = &self.teams;
         let [points, other_points] = self.points(reports);
         format!(
-            "\nfrom both sides: {first_strategy} (first as {first}) {points}, {second_strategy} (first as {second}) {other_points}"
+            "\nboth games: {first_strategy} (first as {first}) {points}, {second_strategy} (first as {second}) {other_points}"
         )
     }
 

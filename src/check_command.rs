@@ -7,7 +7,6 @@ use scenario::{Kind, check_file, load, schema};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Which files.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Scenario files of any kind
@@ -15,10 +14,9 @@ pub(crate) struct Args {
     files: Vec<PathBuf>,
 }
 
-/// Which kind.
 #[derive(clap::Args)]
 pub(crate) struct SchemaArgs {
-    /// game, field, rules, boat, sea, strategy, tournament, gateway, rewards, training or sweep
+    /// Kind of file: game, field, rules, boat, sea, strategy, tournament, gateway, rewards, training or sweep
     kind: String,
 }
 
@@ -27,12 +25,12 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     for file in &args.files {
         if file.extension().is_none_or(|end| end != "toml") {
             errors += 1;
-            screen::print(&format!("{}: no scenario file, expected a TOML file, NAME.toml\n", file.display()));
+            screen::print(&format!("{}: not a scenario file, expected NAME.toml\n", file.display()));
             continue;
         }
         match check_file(KINDS, file) {
             Ok(kind) => {
-                screen::show(&format!("{}: {} {kind}\n", file.display(), style::good("a good")));
+                screen::show(&format!("{}: {} {kind}\n", file.display(), style::good("valid")));
                 for warning in warnings(file, kind) {
                     screen::show(&format!("  {} {warning}\n", style::warning("warning:")));
                 }
@@ -61,7 +59,8 @@ fn warnings(file: &Path, kind: Kind) -> Vec<String> {
 pub(crate) fn print_schema(args: &SchemaArgs) -> Result<ExitCode> {
     let kinds = || KINDS.iter().map(|kind| kind.name()).collect::<Vec<_>>().join(", ");
     let kind = KINDS.iter().copied().find(|kind| kind.name() == args.kind);
-    let kind = kind.ok_or_else(|| anyhow!("{:?} is not a kind of scenario file: {}", args.kind, kinds()))?;
+    let kind =
+        kind.ok_or_else(|| anyhow!("unknown kind of scenario file {:?}; expected one of {}", args.kind, kinds()))?;
     screen::print(&(serde_json::to_string_pretty(&schema(kind))? + "\n"));
     Ok(ExitCode::SUCCESS)
 }

@@ -4,11 +4,11 @@ use crate::screen;
 use anyhow::{Context, Result};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{ArgMatches, Command, CommandFactory};
+use command_line::number;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// The subcommands by purpose, in the order of the help. Those that need a network are not in every
-/// build.
+/// The subcommands by purpose, in help order. Those that need a network are not in every build.
 const GROUPS: [(&str, &[&str]); 6] = [
     ("Play", &["demo", "run", "tournament", "sweep"]),
     ("Learn", &["train", "policy"]),
@@ -26,22 +26,20 @@ Squall simulates boats that play capture the flag.
   squall run strategy_4_vs_3          a game in the terminal
   squall run surveyor_2v2 --sea gale --blue learned --view
   squall files                        games, seas and strategies by name
-  squall new strategy mine            a strategy of your own to change, and then
+  squall new strategy mine            your own strategy file, which you edit and play:
   squall run surveyor_2v2 --blue mine
   squall help                         everything else
 ";
 
-/// Which shell.
 #[derive(clap::Args)]
 pub(crate) struct CompletionArgs {
-    /// The shell
+    /// Shell to print the script for
     shell: clap_complete::Shell,
 }
 
-/// Where to.
 #[derive(clap::Args)]
 pub(crate) struct ManArgs {
-    /// The folder for the pages
+    /// Folder for the man pages
     folder: PathBuf,
 }
 
@@ -62,14 +60,14 @@ pub(crate) fn command<T: CommandFactory>() -> Command {
             text.push_str(&format!("{group}:\n{lines}\n"));
         }
     }
-    text.push_str("squall COMMAND --help tells more, with examples.");
+    text.push_str("`squall COMMAND --help` prints details and examples.");
     command.help_template("{about}\n\n{usage-heading} {usage}{after-help}\n\nOptions:\n{options}").after_help(text)
 }
 
-/// Parses the command line. On an unknown command it exits, and names the build that has the
-/// command, if there is one.
+/// Parses the command line. On a command that only another build has, it exits and names that
+/// build.
 pub(crate) fn matches<T: CommandFactory>() -> ArgMatches {
-    let mut command = command::<T>();
+    let mut command = number::with_negative_numbers(command::<T>());
     command.try_get_matches_from_mut(std::env::args_os()).unwrap_or_else(|error| {
         if let Some(ContextValue::String(name)) = error.get(ContextKind::InvalidSubcommand)
             && GROUPS.iter().any(|(_, names)| names.contains(&name.as_str()))
@@ -85,7 +83,7 @@ pub(crate) fn matches<T: CommandFactory>() -> ArgMatches {
 /// The message for a command that this build does not include.
 pub(crate) fn not_built(what: &str) -> String {
     format!(
-        "{what} is not in this program, which was built without the network: build it again without --no-default-features"
+        "{what} is unavailable because this program was built with --no-default-features; build it without that option"
     )
 }
 
@@ -117,7 +115,7 @@ pub(crate) fn man<T: CommandFactory>(args: &ManArgs) -> Result<ExitCode> {
     clap_mangen::generate_to(T::command(), &args.folder)
         .with_context(|| format!("cannot write man pages to {}", args.folder.display()))?;
     screen::print(&format!(
-        "man pages in {}; man {}/squall.1 shows the first\n",
+        "wrote man pages to {}; read the first with: man {}/squall.1\n",
         args.folder.display(),
         args.folder.display()
     ));

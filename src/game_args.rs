@@ -3,46 +3,47 @@
 use crate::output_file;
 use crate::scenario_files;
 use anyhow::{Context, Result, bail};
+use command_line::number::whole;
 use scenario::{Files, Kind, Overrides, Scenario, Setting};
 use sim::Report;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// A game, from the command line.
 #[derive(Clone, clap::Args)]
 pub(crate) struct GameArgs {
-    /// The game: a file, or the name of one in scenarios/games or built in
+    /// Game: a file, or the name of a game in scenarios/games or built in
     #[arg(value_name = "GAME", value_parser = scenario_files::game)]
     scenario: PathBuf,
-    /// Random seed [default: the seed in the file]
-    #[arg(long)]
+    /// Random seed [default: the seed in the game file]
+    #[arg(long, value_parser = whole::<u64>(0, u64::MAX))]
     pub(crate) seed: Option<u64>,
-    /// Replaces the game's sea: a file or a name, as in --sea gale
+    /// Sea to use instead of the game's: a file or a name, such as gale
     #[arg(long, value_name = "SEA", value_parser = scenario_files::sea)]
     sea: Option<PathBuf>,
-    /// Replaces the game's field: a file or a name
+    /// Field to use instead of the game's: a file or a name
     #[arg(long, value_name = "FIELD", value_parser = scenario_files::field)]
     field: Option<PathBuf>,
-    /// Strategy for every blue boat, overriding any set in the game: a file or a name (looked up first in the folder
-    /// strategies beside the game's folder)
+    /// Strategy of all blue boats, instead of those in the game: a file or a name, which is searched first in the
+    /// folder strategies beside the game's folder
     #[arg(long, value_name = "STRATEGY")]
     blue: Option<String>,
-    /// The same for every red boat
+    /// Strategy of all red boats, as for --blue
     #[arg(long, value_name = "STRATEGY")]
     red: Option<String>,
-    /// The same for a team of any name; repeatable
+    /// Strategy of all boats of this team, as for --blue; repeatable
     #[arg(long, value_name = "TEAM=FILE", value_parser = team_and_file)]
     strategy: Vec<(String, String)>,
-    /// Exchanges the strategies of the two teams
+    /// Exchanges the teams' strategies
     #[arg(long)]
     pub(crate) exchange_strategies: bool,
-    /// Overrides a value of the files, as in sea.waves.hs_m=0.3, boat.gps.noise_m=2 or link.delay_s=1; repeatable
+    /// Overrides a value in the scenario files, for example sea.waves.hs_m=0.3, boat.gps.noise_m=2 or link.delay_s=1;
+    /// repeatable
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = Setting::parse)]
     settings: Vec<Setting>,
-    /// Rehearsal: simulates every external boat
+    /// Simulates all external boats, as a rehearsal
     #[arg(long)]
     rehearse: bool,
-    /// Writes the result to this JSON file
+    /// Writes the result to this file as JSON
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }
@@ -58,7 +59,6 @@ impl GameArgs {
         self.load_from(&Arc::default())
     }
 
-    /// Loads the scenario from these files.
     pub(crate) fn load_from(&self, files: &Arc<Files>) -> Result<Scenario> {
         scenario::load_with_files(&self.scenario, &self.overrides()?, files)
             .with_context(|| format!("cannot play {}", self.scenario.display()))
@@ -125,13 +125,13 @@ fn result_of(report: &Report) -> Result<serde_json::Value> {
 pub(crate) fn speed(text: &str) -> Result<f64, String> {
     let factor = text.strip_suffix('x').unwrap_or(text).parse().ok();
     let factor = factor.filter(|factor| (0.01..=1000.0).contains(factor));
-    factor.ok_or_else(|| format!("speed {text:?} is not a factor from 0.01x to 1000x such as 10x"))
+    factor.ok_or_else(|| format!("expected a factor from 0.01x to 1000x, such as 10x"))
 }
 
 /// Parses a team and its file.
 fn team_and_file(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
         Some((team, file)) if !team.is_empty() && !file.is_empty() => Ok((team.to_owned(), file.to_owned())),
-        _ => Err(format!("{text:?} is not TEAM=FILE")),
+        _ => Err(format!("expected TEAM=FILE")),
     }
 }

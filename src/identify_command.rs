@@ -11,23 +11,22 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use trial::identify::{self, Fit, Log, Setting, Step};
 
-/// Which boat, to which log.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// A boat file, or the name of a boat in scenarios/boats: where the search begins
+    /// Boat from which the fit starts: a file, or the name of a boat in scenarios/boats
     boat: String,
-    /// The recorded data: t_s, commands as for `trial --orders`, plus these columns of a trial: heading_deg, surge_m_s,
-    /// yaw_rate_deg_s and, if present, sway_m_s and x_m,y_m
+    /// Recorded data, as CSV. Columns: t_s, commands as for `squall trial --orders`, heading_deg, surge_m_s,
+    /// yaw_rate_deg_s and, if available, sway_m_s, x_m and y_m
     #[arg(long, value_name = "FILE")]
     log: PathBuf,
-    /// What to fit [default: surge_linear, surge_quadratic, sway_linear, yaw_linear, yaw_quadratic, yaw_lift,
-    /// port_gain, starboard_gain, lag, as far as the boat has them]
+    /// Parameters to fit, separated by commas [default: surge_linear, surge_quadratic, sway_linear, yaw_linear,
+    /// yaw_quadratic, yaw_lift, port_gain, starboard_gain and lag, if the boat has them]
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     fit: Vec<String>,
-    /// The model starts anew from the log this often, s
+    /// Length of a segment, s: the simulation restarts from the recorded data at the beginning of each one
     #[arg(long, value_name = "S", default_value_t = 20.0, value_parser = within(1.0, 3600.0, "s"))]
     segment_s: f64,
-    /// Writes the new boat to this file [default: BOAT_identified.toml here]
+    /// Writes the fitted boat to this file [default: BOAT_identified.toml in the current folder]
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Physics tick, s [default: 0.05]
@@ -41,14 +40,11 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let (boat, path, drawn) = water_args::boat(&args.boat, args.water.seed)?;
     if let Some(first) = drawn.first() {
         let key = first.parameter.trim_start_matches("boat/");
-        bail!("{} leaves {key} to chance; identify starts from a boat of numbers, such as its base", path.display());
+        bail!("{}: {key} is randomised, but a fit needs fixed values; use the boat's base", path.display());
     }
     let out = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}_identified.toml", boat.name)));
     if out.canonicalize().is_ok_and(|out| path.canonicalize().is_ok_and(|path| path == out)) {
-        bail!(
-            "--out {} is the boat that the search starts from and the new file builds on: choose another",
-            out.display()
-        );
+        bail!("--out {} is the boat from which the fit starts; choose another file", out.display());
     }
     let parameters = identify::parameters(&args.fit, &boat)?;
     let log = Log::of_sheet(&read_sheet(&args.log)?, &boat)?;
@@ -61,17 +57,17 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let named = args.log.display().to_string();
     let progress = RefCell::new(Progress::without_end("steps"));
     let tell = |step: Step| {
-        let left = step.rms.map_or(String::new(), |rms| format!(", {rms:.3} standard deviations off"));
+        let left = step.rms.map_or(String::new(), |rms| format!(", residual {rms:.3} standard deviations"));
         progress.borrow_mut().add_with(|| format!("search {} of {}{left}", step.search, step.searches));
     };
     let fit = identify::fit(&boat, &log, &setting, &parameters, &tell);
     progress.borrow().end();
-    let fit = fit.with_context(|| format!("cannot fit {named}"))?;
+    let fit = fit.with_context(|| format!("cannot fit the boat to {named}"))?;
     screen::print(&table(&boat.name, &named, &fit));
     let text = identify::written(&fit, &base_of(&out, &path), &named);
     output_file::write(&out, "the boat", text)?;
-    scenario::load_boat(&out).with_context(|| format!("{} is written, but no sound boat", out.display()))?;
-    screen::print(&format!("boat in {}\n", out.display()));
+    scenario::load_boat(&out).with_context(|| format!("{} was written, but is not a valid boat", out.display()))?;
+    screen::print(&format!("fitted boat: {}\n", out.display()));
     Ok(ExitCode::SUCCESS)
 }
 
@@ -89,8 +85,8 @@ fn base_of(out: &Path, base: &Path) -> String {
 }
 
 fn table(boat: &str, log: &str, fit: &Fit) -> String {
-    let mut text = format!("{boat} fitted to {log}: {} numbers in {} segments\n", fit.measured, fit.segments);
-    text.push_str(&format!("  {:<18}{:>12}{:>12}   {:<12}{}\n", "", "was", "is", "± 95 %", "key"));
+    let mut text = format!("{boat} fitted to {log}: {} values in {} segments\n", fit.measured, fit.segments);
+    text.push_str(&format!("  {:<18}{:>12}{:>12}   {:<12}{}\n", "", "before", "after", "± 95 %", "key"));
     for estimate in &fit.estimates {
         text.push_str(&format!(
             "  {:<18}{:>12.4}{:>12.4} ± {:<12.4}{}.{}\n",
@@ -110,7 +106,7 @@ fn table(boat: &str, log: &str, fit: &Fit) -> String {
     }
     for confused in &fit.confused {
         text.push_str(&format!(
-            "  warning: {} and {} are hardly told apart (correlation {:.3}): fix one of them with --fit\n",
+            "  warning: {} and {} are indistinguishable (correlation {:.3}); omit one of them from --fit\n",
             confused.names[0], confused.names[1], confused.correlation
         ));
     }

@@ -25,7 +25,7 @@ pub(crate) fn play(
     let start = clock::now();
     let record = |path: &Path| {
         GameRecorder::in_process(path.to_owned(), &scenario.name, env!("SQUALL_COMMIT"))
-            .with_context(|| format!("cannot record into {}", path.display()))
+            .with_context(|| format!("cannot record to {}", path.display()))
     };
     let mut recorder = file.map(record).transpose()?;
     let mut written = EventCursor::default();

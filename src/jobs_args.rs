@@ -1,12 +1,12 @@
 //! `--jobs`: the number of worker threads.
 
+use command_line::number::whole;
 use std::num::NonZeroUsize;
 
-/// Threads, from the command line.
 #[derive(clap::Args)]
 pub(crate) struct JobsArgs {
-    /// Worker threads; does not affect results [default: one for each core; at most four for each]
-    #[arg(long, value_name = "N")]
+    /// Number of worker threads; does not affect results [default: one per core; at most four per core]
+    #[arg(long, value_name = "N", value_parser = whole::<NonZeroUsize>(1, u64::MAX))]
     jobs: Option<NonZeroUsize>,
 }
 

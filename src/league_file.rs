@@ -28,10 +28,10 @@ impl LeagueFile {
     pub(crate) fn open(folder: &Path) -> Result<LeagueFile> {
         output_file::make_folder(folder)?;
         let path = folder.join(RESULTS);
-        let what = || format!("no league in {}", path.display());
+        let what = || format!("cannot open the league {}", path.display());
         let mut file = OpenOptions::new().read(true).append(true).create(true).open(&path).with_context(what)?;
         match file.try_lock() {
-            Err(TryLockError::WouldBlock) => bail!("another tournament writes to {} now", path.display()),
+            Err(TryLockError::WouldBlock) => bail!("another tournament is writing to {}", path.display()),
             Err(TryLockError::Error(error)) => return Err(error).with_context(what),
             Ok(()) => {}
         }
@@ -59,7 +59,6 @@ impl LeagueFile {
         }
     }
 
-    /// The path of the newest report.
     pub(crate) fn report(&self) -> PathBuf {
         self.folder.join("report.json")
     }

@@ -17,11 +17,10 @@ mod gif;
 mod page;
 mod quality;
 
-/// The recording, and the outputs.
 #[derive(clap::Args)]
 #[command(after_help = AFTER_HELP)]
 pub(crate) struct Args {
-    /// The recording
+    /// Recording to analyse
     #[arg(required_unless_present_any = ["compare", "quality"])]
     file: Option<PathBuf>,
     /// Prints only the events
@@ -30,17 +29,17 @@ pub(crate) struct Args {
     /// Writes the summary, comparison or quality report to this file as JSON
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Prints a topic as CSV; `events` is also a topic
+    /// Prints this topic as CSV: a topic from the summary, or `events`
     #[arg(long, value_name = "TOPIC", conflicts_with = "compare")]
     csv: Option<String>,
-    /// Writes the CSV to this file
+    /// Writes the CSV to this file instead of standard output
     #[arg(long, value_name = "FILE", requires = "csv")]
     out: Option<PathBuf>,
-    /// Draws tracks, score, and every boat's speed, heading and navigation as SVG and PNG files in this folder
+    /// Plots tracks, score, and each boat's speed, heading and navigation as SVG and PNG files in this folder
     #[arg(long, value_name = "DIR")]
     plot: Option<PathBuf>,
-    /// Writes MOOS logs for the shoreside and every boat to this folder; if the name ends in .alog, only the shoreside
-    /// log
+    /// Writes MOOS logs for the shoreside and every boat to this folder; if the name ends in .alog, writes only the
+    /// shoreside log, to this file
     #[arg(long, value_name = "DIR", conflicts_with = "compare")]
     alog: Option<PathBuf>,
     /// Writes an animation of the game to this GIF file
@@ -51,42 +50,42 @@ pub(crate) struct Args {
     /// Compares two recordings, for example a game on the water and its simulation
     #[arg(long, num_args = 2, value_names = ["A", "B"], conflicts_with_all = ["file", "events"])]
     compare: Option<Vec<PathBuf>>,
-    /// Reports how sensibly boats play in all these recordings: chatter, standing still, edges, contacts, orbits
+    /// Reports the quality of play in these recordings: chatter, standing still, edges, contacts, orbits
     #[arg(long, num_args = 1.., value_name = "GAME")]
     #[arg(conflicts_with_all = ["file", "events", "csv", "plot", "alog", "gif", "compare"])]
     quality: Option<Vec<PathBuf>>,
-    /// Events in two recordings count as the same if they are closer than this, s
+    /// With --compare: maximum time between matching events, s
     #[arg(long, value_name = "S", default_value_t = 5.0, value_parser = within(0.0, 3600.0, "s"), requires = "compare")]
     tolerance_s: f64,
 }
 
 const AFTER_HELP: &str = "\
-Topics are in the summary. Tables have one row a message, except: pictures one a boat seen, inputs one an input, say one \
-a word, link one a sentence.";
+The summary lists the topics. A table has one row per message, with these exceptions: one per boat seen (pictures), \
+per input (inputs), per word (say) and per sentence (link).";
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     match (&args.compare, &args.quality, &args.file) {
         (Some(files), ..) => compare(args, files)?,
         (None, Some(files), _) => quality::print(files, args.json.as_deref())?,
         (None, None, Some(file)) => look_at(args, file)?,
-        (None, None, None) => anyhow::bail!("neither a recording nor --compare nor --quality"),
+        (None, None, None) => anyhow::bail!("expected a recording, --compare or --quality"),
     }
     Ok(ExitCode::SUCCESS)
 }
 
 fn look_at(args: &Args, file: &Path) -> Result<()> {
-    let bag = recording_file::open_any(file, "look at")?;
+    let bag = recording_file::open_any(file, "read")?;
     let wants_page = args.csv.is_none() && args.plot.is_none() && args.alog.is_none() && args.gif.is_none();
     if bag.kind() == Kind::Gateway {
         if let Some(topic) = &args.csv {
             return csv(args, file, (&bag, None), topic);
         }
         let asks_for_more = args.events || args.json.is_some() || !wants_page;
-        anyhow::ensure!(!asks_for_more, "{} is of a gateway, not of a game: only --csv is known of it", file.display());
+        anyhow::ensure!(!asks_for_more, "{} is the recording of a gateway, which supports only --csv", file.display());
         screen::print(&page::gateway(&bag));
         return Ok(());
     }
-    let recording = Recording::of_bag(bag).with_context(|| format!("cannot look at {}", file.display()))?;
+    let recording = Recording::of_bag(bag).with_context(|| format!("cannot read {}", file.display()))?;
     if let Some(topic) = &args.csv {
         csv(args, file, (recording.bag(), Some(recording.scenario())), topic)?;
     }
@@ -103,16 +102,16 @@ fn look_at(args: &Args, file: &Path) -> Result<()> {
         remarks.extend(series.damaged.remark().filter(|remark| !remarks.contains(remark)));
         remarks.extend(series.remark());
         let files = plot::write(dir, recording.header(), &series)?;
-        screen::remark(&format!("{files} plots in {}, each as SVG and PNG", dir.display()));
+        screen::remark(&format!("wrote {files} plots to {}, each as SVG and PNG", dir.display()));
     }
     if let Some(path) = &args.alog {
         let (files, damaged) = export::alog(&recording, path)?;
-        screen::remark(&format!("{files} MOOS log{} in {}", if files == 1 { "" } else { "s" }, path.display()));
+        screen::remark(&format!("wrote {files} MOOS log{} to {}", if files == 1 { "" } else { "s" }, path.display()));
         remarks.extend(damaged.remark().filter(|remark| !remarks.contains(remark)));
     }
     if let Some(path) = &args.gif {
         let (pictures, damaged) = gif::write(path, &recording, &args.film)?;
-        screen::remark(&format!("{pictures} pictures in {}", path.display()));
+        screen::remark(&format!("wrote {pictures} frames to {}", path.display()));
         remarks.extend(damaged.remark().filter(|remark| !remarks.contains(remark)));
     }
     remarks.iter().for_each(|remark| screen::remark(remark));
@@ -136,14 +135,14 @@ fn summary(args: &Args, recording: &Recording, wants_page: bool) -> Result<Damag
 
 fn csv(args: &Args, file: &Path, source: (&Bag, Option<&Scenario>), topic: &str) -> Result<()> {
     let damaged = export::csv(source, topic, args.out.as_deref())
-        .with_context(|| format!("cannot make a table of {}", file.display()))?;
+        .with_context(|| format!("cannot export {} as CSV", file.display()))?;
     damaged.remark().iter().for_each(|remark| screen::remark(remark));
     Ok(())
 }
 
 fn compare(args: &Args, files: &[PathBuf]) -> Result<()> {
-    let [a, b] = files else { anyhow::bail!("--compare takes two recordings") };
-    let recordings = [recording_file::open(a, "look at")?, recording_file::open(b, "look at")?];
+    let [a, b] = files else { anyhow::bail!("--compare requires two recordings") };
+    let recordings = [recording_file::open(a, "read")?, recording_file::open(b, "read")?];
     let series = recordings.each_ref().map(GameSeries::of);
     for (file, series) in files.iter().zip(&series) {
         if let Some(remark) = series.damaged.remark() {
@@ -160,7 +159,7 @@ fn compare(args: &Args, files: &[PathBuf]) -> Result<()> {
     if let Some(dir) = &args.plot {
         output_file::make_folder(dir)?;
         plot::write_comparison(dir, [a, b], series.each_ref(), &comparison)?;
-        screen::remark(&format!("compare.svg and compare.png in {}", dir.display()));
+        screen::remark(&format!("wrote compare.svg and compare.png to {}", dir.display()));
     }
     Ok(())
 }

@@ -44,7 +44,7 @@ const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (", env!("SQUALL_COMM
 #[derive(Parser)]
 #[command(name = "squall", version = VERSION, max_term_width = 100)]
 struct Cli {
-    /// Colours: auto, always or never
+    /// When to use colours: auto, always or never
     #[arg(long, global = true, value_name = "WHEN", default_value_t = ColorChoice::Auto, hide_possible_values = true, display_order = 1000)]
     color: ColorChoice,
     #[command(subcommand)]
@@ -57,7 +57,7 @@ enum Command {
     #[command(flatten)]
     Network(Box<network::Command>),
     #[cfg(not(feature = "network"))]
-    /// Plays a whole game, shows what happens, prints the result.
+    /// Plays a whole game, shows its events, and prints the result.
     #[command(
         after_help = "Examples:\n  squall run strategy_4_vs_3\n  squall run surveyor_2v2 --sea gale --blue learned --red strategy_3\n  squall run surveyor_2v2 --set link.delay_s=1 --seed 7 --both-sides"
     )]
@@ -71,7 +71,7 @@ enum Command {
         after_help = "Examples:\n  squall tournament paper_2023 --games 20\n  squall tournament simple --json report.json --quality\n  squall tournament simple --league league"
     )]
     Tournament(tournament_command::Args),
-    /// Finds out how much wind, noise and failure strategies tolerate.
+    /// Measures how much disturbance strategies tolerate: wind, noise and failures.
     #[command(
         after_help = "Examples:\n  squall sweep wind\n  squall sweep wind --until strategy_4.win_share<0.5\n  squall sweep storm --find out_of_bounds"
     )]
@@ -84,16 +84,16 @@ enum Command {
         after_help = "Examples:\n  squall log runs/game.mcap\n  squall log --compare one.mcap other.mcap\n  squall log runs/game.mcap --gif game.gif --from 120 --to 190"
     )]
     Log(log_command::Args),
-    /// Describes and draws a sea, and how it affects a boat.
+    /// Describes and plots a sea and its effects on a boat.
     #[command(after_help = "Examples:\n  squall sea gale\n  squall sea gale --boat heron --plot gale.svg")]
     Sea(sea_command::Args),
-    /// Drives one boat in open water: with recorded commands, or through a standard manoeuvre.
+    /// Drives one boat in open water through recorded commands or a standard manoeuvre.
     #[command(after_help = "Examples:\n  squall trial surveyor_m1_8 --help")]
     Trial(trial_command::Args),
     /// Fits a boat file to recorded data, and reports the quality of the fit.
     #[command(after_help = "Examples:\n  squall identify --help")]
     Identify(identify_command::Args),
-    /// Explains a strategy file: its modes, and the behaviours of each.
+    /// Explains a strategy file: its modes and their behaviours.
     #[command(after_help = "Examples:\n  squall strategy strategy_4\n  squall strategy pav01 --dot")]
     Strategy(strategy_command::Args),
     /// Describes a trained policy, and explains a decision that it made in a recorded game.
@@ -105,7 +105,7 @@ enum Command {
     /// Prints the JSON Schema of a kind of scenario file, for editors.
     #[command(after_help = "Examples:\n  squall schema game")]
     Schema(check_command::SchemaArgs),
-    /// Lists the scenario files available by name.
+    /// Lists the available scenario files.
     #[command(after_help = "Examples:\n  squall files")]
     Files,
     /// Copies a built-in file so that you can edit it.
@@ -117,7 +117,7 @@ enum Command {
     /// Prints a shell completion script.
     #[command(after_help = "Examples:\n  squall completions bash > ~/.local/share/bash-completion/completions/squall")]
     Completions(cli::CompletionArgs),
-    /// Writes man pages into a folder.
+    /// Writes man pages to a folder.
     #[command(after_help = "Examples:\n  squall man man1")]
     Man(cli::ManArgs),
 }
@@ -136,9 +136,10 @@ fn main() -> ExitCode {
         #[cfg(not(feature = "network"))]
         Command::Replay(args) if args.check => replay_command::check(&args.file),
         #[cfg(not(feature = "network"))]
-        Command::Replay(_) => {
-            Err(anyhow::anyhow!("{}; --check plays it again", cli::not_built("the page that shows recordings")))
-        }
+        Command::Replay(_) => Err(anyhow::anyhow!(
+            "{}; to verify the recording, use --check",
+            cli::not_built("the page that shows recordings")
+        )),
         Command::Tournament(args) => tournament_command::run(&args),
         Command::Sweep(args) => sweep_command::run(&args),
         Command::Train(args) => train_command::run(&args),

@@ -20,23 +20,21 @@ const TEMPLATES: [(Kind, &str); 7] = [
     (Kind::of::<Tournament>(), include_str!("templates/tournament.toml")),
 ];
 
-/// Which file.
 #[derive(clap::Args)]
 pub(crate) struct NewArgs {
-    /// strategy, boat, sea, game, sweep, training or tournament
+    /// Kind of file: strategy, boat, sea, game, sweep, training or tournament
     #[arg(value_parser = template)]
     kind: (Kind, &'static str),
-    /// Its name: a-z, 0-9 and _
+    /// Name of the new file: a-z, 0-9 and _
     #[arg(value_parser = name)]
     name: String,
 }
 
-/// Which file.
 #[derive(clap::Args)]
 pub(crate) struct CopyArgs {
-    /// Its name, or its folder and name where several kinds have it, as in seas/calm
+    /// Name of the file, with its folder if several kinds share the name, as in seas/calm
     name: String,
-    /// The name of the copy [default: the same]
+    /// Name of the copy [default: the same name]
     #[arg(value_parser = name)]
     as_name: Option<String>,
 }
@@ -44,17 +42,17 @@ pub(crate) struct CopyArgs {
 fn template(word: &str) -> Result<(Kind, &'static str), String> {
     let kinds: Vec<&str> = TEMPLATES.iter().map(|(kind, _)| kind.name()).collect();
     let found = TEMPLATES.into_iter().find(|(kind, _)| kind.name() == word);
-    found.ok_or_else(|| format!("{word:?} is none of {}{}", kinds.join(", "), did_you_mean(word, &kinds)))
+    found.ok_or_else(|| format!("expected one of {}{}", kinds.join(", "), did_you_mean(word, &kinds)))
 }
 
 fn name(word: &str) -> Result<String, String> {
     let is_name = !word.is_empty() && word.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
-    if is_name { Ok(word.to_owned()) } else { Err(format!("{word:?} is no name, expected a-z, 0-9 and _")) }
+    if is_name { Ok(word.to_owned()) } else { Err(format!("expected only the characters a-z, 0-9 and _")) }
 }
 
 pub(crate) fn new(NewArgs { kind: (kind, text), name }: &NewArgs) -> Result<ExitCode> {
     let path = write(*kind, name, text.replace("NAME", name).as_bytes())?;
-    screen::print(&format!("{}: a {kind} to change; squall check {name} says whether it is good\n", path.display()));
+    screen::print(&format!("created {}; edit it, then check it with: squall check {name}\n", path.display()));
     Ok(ExitCode::SUCCESS)
 }
 
@@ -69,7 +67,7 @@ pub(crate) fn copy(args: &CopyArgs) -> Result<ExitCode> {
         [] => {
             let known: Vec<String> = KINDS.iter().copied().filter(is_asked).flat_map(scenario_files::names).collect();
             let known: Vec<&str> = known.iter().map(String::as_str).collect();
-            bail!("there is no file {}{}; squall files lists them", args.name, did_you_mean(name, &known));
+            bail!("there is no file {}{}; list all files with: squall files", args.name, did_you_mean(name, &known));
         }
         [(one, _), (other, _), ..] => {
             let (one, other) = (one.folder(), other.folder());
@@ -77,7 +75,7 @@ pub(crate) fn copy(args: &CopyArgs) -> Result<ExitCode> {
         }
     };
     let path = write(kind, args.as_name.as_deref().unwrap_or(name), content)?;
-    screen::print(&format!("{}: a {kind} to change; what it names comes from inside of the program\n", path.display()));
+    screen::print(&format!("created {}; edit it. The files that it names are built in\n", path.display()));
     Ok(ExitCode::SUCCESS)
 }
 
@@ -85,7 +83,7 @@ pub(crate) fn copy(args: &CopyArgs) -> Result<ExitCode> {
 fn write(kind: Kind, name: &str, content: &[u8]) -> Result<PathBuf> {
     let path = Path::new("scenarios").join(kind.folder()).join(format!("{name}.toml"));
     if path.exists() {
-        bail!("there is a file {} already, expected a new name", path.display());
+        bail!("the file {} exists already; choose another name", path.display());
     }
     if let Some(folder) = path.parent() {
         output_file::make_folder(folder)?;
@@ -131,14 +129,14 @@ mod tests {
         );
         assert_eq!(
             find("pav01", Kind::GAME),
-            Err("there is no game pav01, but a strategy of that name: --blue and --red take it".into())
+            Err("there is no game pav01, but there is a strategy of that name; use it with --blue or --red".into())
         );
         let folder = tempfile::tempdir().expect("a folder");
         let sweep = folder.path().join("mine.toml");
         std::fs::write(&sweep, TEMPLATES[4].1).expect("it is written");
         let said = find(&sweep.display().to_string(), Kind::GAME).expect_err("it is none");
-        assert!(said.ends_with("is a sweep, expected a game: squall sweep plays it"), "{said}");
+        assert!(said.ends_with("is a sweep, expected a game; run it with squall sweep"), "{said}");
         let path = "scenarios/seas/gale.toml";
-        assert_eq!(find(path, Kind::GAME), Err(format!("{path} is a sea, expected a game: --sea takes it")));
+        assert_eq!(find(path, Kind::GAME), Err(format!("{path} is a sea, expected a game; use it with --sea")));
     }
 }

@@ -3,6 +3,7 @@
 use crate::minds::Minds;
 use crate::{helm_text, recording_file, screen};
 use anyhow::{Context, Result, bail};
+use command_line::number::whole;
 use onnx::Network;
 use primitives::input_file;
 use scenario::action::{self, ActionSpace};
@@ -14,22 +15,21 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Which model, and which of its decisions.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// A model, as ONNX
+    /// Policy: an ONNX model
     file: PathBuf,
     /// Explains a decision in this recording
     #[arg(long, value_name = "RECORDING", requires_all = ["vehicle", "at"])]
     game: Option<PathBuf>,
-    /// Of this boat, which a policy proposes to
+    /// With --game: name of the boat, which must use a policy
     #[arg(long, value_name = "NAME", requires = "game")]
     vehicle: Option<String>,
-    /// At this time of the game, seconds
+    /// With --game: time of the decision, s
     #[arg(long, value_name = "SECONDS", requires = "game", allow_negative_numbers = true)]
     at: Option<f64>,
-    /// Shows so many inputs, those first that the decision depends on most
-    #[arg(long, value_name = "COUNT", default_value_t = 12)]
+    /// Number of inputs to list, the most influential first
+    #[arg(long, value_name = "COUNT", default_value_t = 12, value_parser = whole::<usize>(0, u64::MAX))]
     inputs: usize,
 }
 
@@ -44,12 +44,12 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let bytes = input_file::read(&args.file, policy::BYTES_MAX)
         .with_context(|| format!("cannot read {}", args.file.display()))?;
     let name = args.file.display().to_string();
-    let network = Network::read(&bytes).with_context(|| format!("{name} is no model that can be used"))?;
+    let network = Network::read(&bytes).with_context(|| format!("{name} is not a usable model"))?;
     let model = PolicyModel::read(&name, &bytes, PartialSpec::default());
     let spec = model.as_ref().map(|model| model.spec).map_err(ToString::to_string);
     screen::print(&about(&name, bytes.len(), &network, spec));
     if let (Some(game), Some(vehicle), Some(at_s)) = (&args.game, &args.vehicle, args.at) {
-        let model = model.with_context(|| format!("{name} does not say what it is given and chooses"))?;
+        let model = model.with_context(|| format!("{name} does not declare its inputs and actions"))?;
         screen::print(&explained(&model, game, vehicle, at_s, args.inputs)?);
     }
     Ok(ExitCode::SUCCESS)
@@ -66,16 +66,16 @@ fn about(name: &str, bytes: usize, network: &Network, spec: Result<PolicySpec, S
         let _ = writeln!(text, "  {what:<12} {value}");
     };
     line("network", format!("{} -> {}", ports(network.inputs()), ports(network.outputs())));
-    line("takes", format!("{:.1} us", evaluation_us(network.clone())));
+    line("evaluation", format!("{:.1} us", evaluation_us(network.clone())));
     let mut said = vec![];
     match spec {
         Ok(spec) => {
-            line("is given", observation_text(spec.observation));
-            line("chooses", action_text(spec.action));
-            line("decides", format!("every {} s", spec.period_s));
+            line("inputs", observation_text(spec.observation));
+            line("actions", action_text(spec.action));
+            line("decision", format!("every {} s", spec.period_s));
             said.extend(spec.metadata().map(|(key, _)| key));
         }
-        Err(why) => line("as a policy", format!("a strategy that names it says what it does not: {why}")),
+        Err(why) => line("policy", format!("undeclared; the strategy that uses it must declare this: {why}")),
     }
     for (key, value) in network.metadata().iter().filter(|(key, _)| !said.contains(key)) {
         line(key.strip_prefix(OWN).unwrap_or(key), value.clone());
@@ -119,7 +119,7 @@ fn action_text(space: ActionSpace) -> String {
 
 /// The model's choice at a moment of a recorded game, and the inputs that it depends on.
 fn explained(model: &PolicyModel, game: &Path, vehicle: &str, at_s: f64, inputs: usize) -> Result<String> {
-    let recording = Arc::new(recording_file::open(game, "look at")?);
+    let recording = Arc::new(recording_file::open(game, "read")?);
     let scenario = recording.scenario();
     let of = scenario.vehicle_named(vehicle)?;
     // The cast saturates: a time out of range becomes a decision that does not exist.
@@ -129,11 +129,11 @@ fn explained(model: &PolicyModel, game: &Path, vehicle: &str, at_s: f64, inputs:
         bail!("{} contains no decision by {vehicle} at {at_s} s", game.display());
     };
     let Some(policy) = report.policies.iter().find(|policy| !policy.observed.is_empty()) else {
-        bail!("no policy decides for {vehicle} in {}: its strategy is {}", game.display(), report.program);
+        bail!("{vehicle} uses no policy in {}: its strategy is {}", game.display(), report.program);
     };
     if policy.observed.len() != model.input_size() {
         let (found, expected) = (policy.observed.len(), model.input_size());
-        bail!("the policy of {vehicle} is given {found} numbers, expected {expected}, as {} is", model.name);
+        bail!("the policy of {vehicle} has {found} inputs, expected {expected}, as {} has", model.name);
     }
     let (mates, enemies) = scenario.sides_of(of);
     let names = model.spec.observation.names(mates, enemies);
@@ -163,8 +163,8 @@ fn choices(model: &PolicyModel, observed: &[f32], names: &[String], inputs: usiz
         .collect();
     rows.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
     rows.truncate(inputs);
-    let what = if best.is_some() { "the first one's probability" } else { "turn and speed" };
-    let _ = writeln!(text, "\n  {what} is {}; with one input at 0:\n", chosen.text(best));
+    let what = if best.is_some() { "the probability of the first action" } else { "turn and speed" };
+    let _ = writeln!(text, "\n  {what} is {}; with one input set to 0:\n", chosen.text(best));
     let width = rows.iter().map(|row| names[row.0].len()).max().unwrap_or(0).max("input".len());
     let _ = writeln!(text, "  {:width$}  {:>7}  {:>14}", "input", "value", "then");
     for (i, _, without) in &rows {

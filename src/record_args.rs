@@ -5,13 +5,12 @@ use anyhow::{Context, Result};
 use scenario::Scenario;
 use std::path::PathBuf;
 
-/// Whether and where `run` records.
 #[derive(Clone, clap::Args)]
 pub(crate) struct RecordArgs {
-    /// Records the game into this folder
+    /// Folder for the recording
     #[arg(long, value_name = "DIR", default_value = "runs")]
     record: PathBuf,
-    /// Does not record
+    /// Does not record the game
     #[arg(long, conflicts_with = "record")]
     no_record: bool,
 }
@@ -22,7 +21,7 @@ impl RecordArgs {
         if self.no_record {
             return Ok(None);
         }
-        output_file::make_folder(&self.record).context("nowhere to record")?;
+        output_file::make_folder(&self.record).context("cannot record")?;
         // The recorder creates the file. Whether it can be created is checked before the game.
         let file = recording::free_path(&self.record, &scenario.name, seed);
         output_file::check(&file, "the recording")?;

@@ -9,12 +9,11 @@ use std::process::ExitCode;
 
 mod check;
 
-/// The recording, and how to replay it.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The recording
+    /// Recording to replay
     pub(crate) file: PathBuf,
-    /// Plays the game again from what it was given, without minds, and says whether the same comes of it
+    /// Reruns the game from its recorded inputs, without minds, and reports whether the result is identical
     #[arg(long)]
     pub(crate) check: bool,
 }
@@ -26,12 +25,11 @@ pub(crate) fn check(file: &Path) -> Result<ExitCode> {
     let mut progress = Progress::of(frames as u64, "frames");
     let verdict = check::check(&recording, || progress.add());
     progress.end();
-    let verdict = verdict.with_context(|| format!("cannot play {} again", file.display()))?;
+    let verdict = verdict.with_context(|| format!("cannot rerun {}", file.display()))?;
     screen::print(&verdict.text);
     Ok(if verdict.is_same { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// Opens the recording in a file.
 pub(crate) fn open(file: &Path) -> Result<Recording> {
     recording_file::open(file, "replay")
 }

@@ -37,7 +37,7 @@ pub(crate) fn text(report: &Report) -> String {
         text += "nothing in this game is random: it is the same for every seed\n";
     }
     if outcome.ends_differ {
-        text += "wind, waves or current favour one end of the field: --both-sides plays the game from both\n";
+        text += "wind, waves or current favour one end of the field; play from both ends with --both-sides\n";
     }
     if run.overruns > 0 {
         text += &format!("{} decision ticks began late: the pace was not kept\n", run.overruns);

@@ -16,20 +16,19 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-/// What to play, and how often.
 #[derive(Clone, clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]
     play: GameArgs,
     #[command(flatten)]
     record: RecordArgs,
-    /// Plays the game twice, the second time with the strategies exchanged, and adds up the points
+    /// Plays the game a second time with the strategies exchanged, and adds up the points
     #[arg(long, conflicts_with = "exchange_strategies")]
     both_sides: bool,
-    /// Plays again whenever a file of the game is saved, until Ctrl-C
+    /// Plays again whenever a scenario file of the game changes, until Ctrl-C
     #[arg(long)]
     watch_files: bool,
-    /// Plays in this process, without a network: the same game, byte for byte
+    /// Plays in this process, without a network; the game is the same, byte for byte
     #[arg(long)]
     pub(crate) in_process: bool,
 }
@@ -69,8 +68,7 @@ pub(crate) fn run(args: &Args, player: &mut dyn Player) -> Result<ExitCode> {
     play_once(args, player, &scenario, &stop)
 }
 
-/// Plays, and plays again whenever a file of the game changes. A file with mistakes does not end
-/// the loop.
+/// Plays again whenever a file of the game changes, even after a file with mistakes.
 fn play_when_saved(args: &Args, player: &mut dyn Player) -> Result<ExitCode> {
     let stop = stop::on_ctrl_c()?;
     loop {
@@ -82,7 +80,7 @@ fn play_when_saved(args: &Args, player: &mut dyn Player) -> Result<ExitCode> {
         if let Err(error) = scenario.and_then(|scenario| play_once(args, player, &scenario, &stop)) {
             screen::complain(&explain::error(&error));
         }
-        screen::remark("waiting for a file of the game to be saved (Ctrl-C ends it)");
+        screen::remark("waiting for changes to the game's files (Ctrl-C to stop)");
         let Some(path) = watched.wait(&stop) else { return Ok(stop::interrupted()) };
         screen::remark(&format!("{} has changed", path.display()));
     }
@@ -97,7 +95,7 @@ fn play_once(args: &Args, player: &mut dyn Player, scenario: &Scenario, stop: &A
     }
     let (file, report) = play(args, player, scenario, (stop, &mut screen))?;
     let Some(report) = report else { return Ok(stop::interrupted()) };
-    let unwritten = args.play.write_result(&report).err().map(|error| format!("{error:#}"));
+    let unwritten = args.play.write_result(&report).err().map(|error| command_line::explain::line(&error));
     let problems: Vec<String> = unwritten.into_iter().chain(report.run.recording_problem.clone()).collect();
     player.end(file.as_deref(), &problems, (stop, &mut screen));
     if !problems.is_empty() {
@@ -119,7 +117,7 @@ fn play(
     if let Some(file) = &file {
         let is_whole = report.as_ref().is_some_and(|report| report.run.recording_problem.is_none());
         let recorded = if is_whole { "recorded" } else { "recorded in part" };
-        screen.line(&format!("{recorded}; look at it with: {} {}", LOOK, file.display()));
+        screen.line(&format!("{recorded}; show it with: {} {}", LOOK, file.display()));
     }
     Ok((file, report))
 }

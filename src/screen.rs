@@ -25,7 +25,6 @@ impl Screen {
         Screen { live: std::io::stdout().is_terminal(), status: String::new(), names, last_s: 0.0 }
     }
 
-    /// Shows one progress message.
     pub(crate) fn show(&mut self, message: &ProgressMessage) {
         match message {
             ProgressMessage::Open { game, endpoint } => {

@@ -3,6 +3,7 @@
 use crate::trial_command::usual_tick_s;
 use crate::{plot, screen, water_args};
 use anyhow::{Context, Result};
+use command_line::number::whole;
 use primitives::angle::compass_deg_from_rad;
 use primitives::{Ned, SimTime};
 use scenario::Boat;
@@ -13,19 +14,18 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use trial::{Drift, Manoeuvre, Plan, Sample, Start, TrialBoat};
 
-/// Which sea, and for which boat.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The sea: a file or a name
+    /// Sea to describe: a file or a name
     #[arg(value_parser = crate::scenario_files::sea)]
     sea: PathBuf,
-    /// The boat that it is told for: a file, or the name of one in scenarios/boats
+    /// Boat for which effects are computed: a file, or the name of a boat in scenarios/boats
     #[arg(long, value_name = "BOAT", default_value = "surveyor_m1_8")]
     boat: String,
     /// Random seed for waves, gusts, eddies and the randomised values of sea and boat
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = whole::<u64>(0, u64::MAX))]
     seed: u64,
-    /// Draws spectrum, surface, wind and the drift of the boat into this file, as SVG [default: SEA.svg here]
+    /// Plots spectrum, surface, wind and the boat's drift to this SVG file [default: SEA.svg in the current folder]
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
 }
@@ -33,7 +33,7 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let sea = water_args::sea(&args.sea, args.seed)?;
     let boat = water_args::boat(&args.boat, args.seed);
-    let (boat, _, drawn) = boat.context("no boat to tell the sea for (--boat names another)")?;
+    let (boat, _, drawn) = boat.context("cannot load the boat; choose another with --boat")?;
     water_args::tell_drawn(args.seed, &drawn);
     let tick = SimTime::from_s(usual_tick_s(&boat));
     let field = trial::open_field();
@@ -45,7 +45,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let title = format!("{}: {}, seed {}", sea.name, boat.name, args.seed);
     let model = SeaModel::new(&sea, std::slice::from_ref(&boat), &field, tick, &args.seed.into());
     plot::sea::write(&file, title, &sea, &model, &drifted)?;
-    screen::print(&format!("plot in {}\n", file.display()));
+    screen::print(&format!("plot: {}\n", file.display()));
     Ok(ExitCode::SUCCESS)
 }
 
@@ -84,7 +84,7 @@ fn told(sea: &Sea, boat: &Boat, summary: &Summary, drifted: &[Sample]) -> String
     }
     lines.extend(drift_told(drifted, boat));
     let text = lines.iter().map(|(what, value)| format!("  {what:<24}{value}\n"));
-    format!("{} for a boat of kind {}\n{}", sea.name, boat.name, text.collect::<String>())
+    format!("{} for the boat {}\n{}", sea.name, boat.name, text.collect::<String>())
 }
 
 fn waves_told(waves: &WaveSummary) -> [Line; 8] {
@@ -123,7 +123,7 @@ fn drift_told(drifted: &[Sample], boat: &Boat) -> Vec<Line> {
         ("  from its start", format!("{:.1} m in {:.0} s", last.at.length(), last.t_s)),
     ];
     if matches!(boat.drive, Drive::Kinematic(_)) {
-        lines.push(("", "a kinematic boat feels the current alone".to_owned()));
+        lines.push(("", "only the current moves a kinematic boat".to_owned()));
     }
     lines
 }

@@ -8,16 +8,15 @@ use std::fmt::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Which file, and how it is shown.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// A strategy: a file or a name
+    /// Strategy to explain: a file or a name
     #[arg(required_unless_present = "reference", value_parser = crate::scenario_files::strategy)]
     file: Option<PathBuf>,
-    /// Writes the modes and what may run in them as a Graphviz graph
+    /// Prints the modes and their possible behaviours as a Graphviz graph
     #[arg(long)]
     dot: bool,
-    /// Prints every key and every name of strategy files, with what it means, as Markdown
+    /// Prints a reference of all keys and names in strategy files, as Markdown
     #[arg(long, conflicts_with_all = ["file", "dot"])]
     reference: bool,
 }
@@ -27,7 +26,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         screen::print(&scenario::reference());
         return Ok(ExitCode::SUCCESS);
     }
-    let file = args.file.as_ref().ok_or_else(|| anyhow!("no file is given"))?;
+    let file = args.file.as_ref().ok_or_else(|| anyhow!("expected a strategy"))?;
     match scenario::load_strategy(file) {
         Ok(strategy) if args.dot => screen::print(&graph(&strategy)),
         Ok(strategy) => screen::print(&tables(&strategy)),
@@ -85,7 +84,6 @@ fn program(text: &mut String, program: &Program) {
     }
 }
 
-/// The nesting depth of a mode.
 fn depth(program: &Program, mode: usize) -> usize {
     std::iter::successors(program.modes[mode].parent, |parent| program.modes[*parent].parent).count()
 }

@@ -4,46 +4,46 @@ use crate::jobs_args::JobsArgs;
 use crate::progress::Progress;
 use crate::{output_file, screen, stop};
 use anyhow::{Context, Result};
+use command_line::number::whole;
 use experiment::sweep::Sweep;
 use experiment::sweep::{self, Condition, FindError, Journal, Plan, Study, UntilError};
 use scenario::load_file;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Which sweep, and how.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The sweep: a file or a name
+    /// Sweep to run: a file or a name
     #[arg(value_parser = crate::scenario_files::file_of::<Sweep>)]
     sweep: PathBuf,
-    /// Games of each entry at each point, half of them on each side [default: as the file says]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
+    /// Games per entry and point, half of them on each side [default: the number in the file]
+    #[arg(long, value_name = "N", value_parser = whole::<u32>(2, 1_000_000))]
     games: Option<u32>,
-    /// The first seed [default: as the file says]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
+    /// First seed [default: the seed in the file]
+    #[arg(long, value_name = "N", value_parser = whole::<u64>(0, i64::MAX as u64))]
     seed: Option<u64>,
     #[command(flatten)]
     jobs: JobsArgs,
-    /// The folder for the tables and the report [default: runs/sweep/NAME]
+    /// Folder for the tables and the report [default: runs/sweep/NAME]
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
-    /// Goes on with the sweep that this folder holds; what comes of it is the same as if it had never stopped. With --until and --find:
-    /// games of searches that the folder has are not played again
+    /// Resumes the sweep in the output folder; the results are the same as without interruption. With --until or
+    /// --find, reuses the games of earlier searches
     #[arg(long)]
     resume: bool,
-    /// Searches for the value of an axis at which this begins to hold, in place of playing all points, as in
-    /// "strategy_5.win_share < 0.5"; no more games at a value than a point has
+    /// Instead of playing all points, searches an axis for the value at which this condition begins to hold, for
+    /// example "strategy_5.win_share < 0.5"; plays at most the games of one point at each value
     #[arg(long, value_name = "CONDITION", conflicts_with = "find")]
     until: Option<String>,
-    /// With --until: the key of the axis to search along [default: the only one with numbers]
+    /// With --until: key of the axis to search [default: the only numeric axis]
     #[arg(long, value_name = "KEY", requires = "until")]
     along: Option<String>,
-    /// Draws games evenly from the space of the axes, says in how many of them this holds, and names them, as in
-    /// "strategy_5.contacts > 0"; `collision` and `out_of_bounds` are conditions on the first entry
+    /// Plays games sampled evenly from the space of the axes, and lists those that meet this condition, for example
+    /// "strategy_5.contacts > 0"; `collision` and `out_of_bounds` apply to the first entry
     #[arg(long, value_name = "CONDITION")]
     find: Option<String>,
-    /// With --find: how many games
-    #[arg(long, value_name = "N", requires = "find", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    /// With --find: number of games to play
+    #[arg(long, value_name = "N", requires = "find", default_value_t = 1000, value_parser = whole::<u32>(1, 10_000_000))]
     search_games: u32,
 }
 
@@ -61,7 +61,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let (points, per_point) = (plan.points().len(), plan.games_per_point());
     screen::remark(&format!("{points} points with {per_point} games each; tables and report in {}", folder.display()));
     if study.done() > 0 {
-        screen::remark(&format!("{} of {} games were played before", study.done(), plan.games()));
+        screen::remark(&format!("{} of {} games already played", study.done(), plan.games()));
     }
     let stop = stop::on_ctrl_c()?;
     let mut progress = Progress::of_games((plan.games() - study.done()) as u64);
@@ -73,12 +73,12 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     });
     progress.end_of_games(jobs.get());
     // Games played before the disk was full are kept, and the sweep can be resumed.
-    played.with_context(|| format!("{} of {} games are kept; --resume goes on", study.done(), plan.games()))?;
+    played.with_context(|| format!("{} of {} games are saved; continue with --resume", study.done(), plan.games()))?;
     let report = study.report(&plan)?;
     screen::print(&sweep::text(&report));
-    screen::print(&format!("\nwith curves: {}\n", folder.join("report.html").display()));
+    screen::print(&format!("\nreport with curves: {}\n", folder.join("report.html").display()));
     if study.done() < plan.games() {
-        screen::remark("stopped; --resume goes on with it");
+        screen::remark("stopped; continue with --resume");
         return Ok(stop::interrupted());
     }
     Ok(if report.failures.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
@@ -92,7 +92,7 @@ fn until(args: &Args, plan: &Plan, text: &str, folder: &Path) -> Result<ExitCode
     let jobs = args.jobs.threads(plan.games_per_point());
     let result = sweep::breaking_point(plan, &condition, args.along.as_deref(), &mut journal, (jobs, &stop), |tried| {
         let half = tried.mean.half_width().map_or("?".to_owned(), |half| format!("{half:.3}"));
-        let verdict = tried.holds.map_or("cannot be told", |holds| if holds { "holds" } else { "does not hold" });
+        let verdict = tried.holds.map_or("is undecided", |holds| if holds { "holds" } else { "does not hold" });
         let (value, games, mean) = (tried.value, tried.games, tried.mean.mean);
         screen::remark(&format!("at {value:.4}: {mean:.3} ± {half} in {games} games, {condition} {verdict}"));
     });
@@ -109,16 +109,16 @@ fn until(args: &Args, plan: &Plan, text: &str, folder: &Path) -> Result<ExitCode
             format!("{entry}: {condition} begins to hold between {axis} = {low:.4} and {high:.4} (95 %){at}\n")
         }
         (Some(_), None) => {
-            format!("{entry}: {condition} surely does not hold at one end of {axis}, and surely holds nowhere\n")
+            format!("{entry}: {condition} significantly fails at one end of {axis}, but significantly holds nowhere\n")
         }
         (None, Some(_)) => {
-            format!("{entry}: {condition} surely holds at one end of {axis}, and surely does not nowhere\n")
+            format!("{entry}: {condition} significantly holds at one end of {axis}, but significantly fails nowhere\n")
         }
         (None, None) => {
-            format!("{entry}: whether {condition} holds cannot be told anywhere on {axis}: more --games tell more\n")
+            format!("{entry}: {condition} is undecided everywhere on {axis}; increase --games\n")
         }
     });
-    screen::print(&format!("every value that was tried, with commands: {}\n", path.display()));
+    screen::print(&format!("all tested values, with commands: {}\n", path.display()));
     Ok(ExitCode::SUCCESS)
 }
 
@@ -148,7 +148,7 @@ fn find(args: &Args, plan: &Plan, text: &str, folder: &Path) -> Result<ExitCode>
     let path = folder.join("find.json");
     output_file::write_json(&path, "what was found", &found)?;
     screen::print(&sweep::found_text(&found));
-    screen::print(&format!("\neverything, with more commands: {}\n", path.display()));
+    screen::print(&format!("\nall results, with more commands: {}\n", path.display()));
     Ok(ExitCode::SUCCESS)
 }
 
@@ -156,22 +156,22 @@ fn find(args: &Args, plan: &Plan, text: &str, folder: &Path) -> Result<ExitCode>
 fn journal(args: &Args, folder: &Path, plan: &Plan) -> Result<Journal> {
     let journal = if args.resume { Journal::resume(folder, plan)? } else { Journal::begin(folder, plan)? };
     if journal.games() > 0 {
-        screen::remark(&format!("{} games were played before", journal.games()));
+        screen::remark(&format!("{} games already played", journal.games()));
     }
     Ok(journal)
 }
 
 fn stopped(journal: &Journal) -> ExitCode {
-    screen::remark(&format!("stopped; {} games are kept, and --resume goes on with them", journal.games()));
+    screen::remark(&format!("stopped; {} games are saved; continue with --resume", journal.games()));
     stop::interrupted()
 }
 
 fn planned(args: &Args) -> Result<Plan> {
-    let context = || format!("no sweep in {}", args.sweep.display());
+    let context = || format!("cannot run the sweep {}", args.sweep.display());
     let file = load_file::<Sweep>(&args.sweep).with_context(context)?;
     let games = args.games.unwrap_or(file.games);
     if !games.is_multiple_of(2) {
-        screen::remark(&format!("{games} games a point are {}: half of them on each side", games + 1));
+        screen::remark(&format!("{games} games per point become {}, half of them on each side", games + 1));
     }
     Plan::new(&Sweep { games, seed: args.seed.unwrap_or(file.seed), ..file }).with_context(context)
 }

@@ -8,6 +8,7 @@ use agent::MindRunner;
 use analysis::Step;
 use analysis::quality::{GameQuality, MindState, Quality};
 use anyhow::{Context, Result};
+use command_line::number::whole;
 use experiment::tournament::Tournament;
 use experiment::tournament::{self, Observer, Plan, Record, Report, play, play_observed};
 use rules::event::EventCursor;
@@ -19,31 +20,31 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
-/// Which tournament, and how.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The tournament: a file or a name
+    /// Tournament to play: a file or a name
     #[arg(value_parser = crate::scenario_files::file_of::<Tournament>)]
     tournament: PathBuf,
-    /// Games of each pairing, half of them on each side [default: as the file says]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
+    /// Games per pairing, half of them on each side [default: the number in the file]
+    #[arg(long, value_name = "N", value_parser = whole::<u32>(2, 1_000_000))]
     games: Option<u32>,
-    /// The first seed [default: as the file says]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
+    /// First seed [default: the seed in the file]
+    #[arg(long, value_name = "N", value_parser = whole::<u64>(0, i64::MAX as u64))]
     seed: Option<u64>,
     #[command(flatten)]
     jobs: JobsArgs,
-    /// Writes everything to this file, every game and what it takes to play it again; `squall view FILE` shows it
+    /// Writes the full report to this file as JSON, with all settings for replaying its games; `squall view FILE`
+    /// shows it
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Writes a line for each entry to this file
+    /// Writes one line per entry to this file as CSV
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Keeps the results in this folder and plays only what is not there: entries may join, and a tournament that was stopped goes on;
-    /// `squall view FOLDER` shows it
+    /// Keeps the results in this folder and plays only the missing games, so that you can add entries or resume a
+    /// stopped tournament; `squall view FOLDER` shows it
     #[arg(long, value_name = "FOLDER", conflicts_with = "quality")]
     league: Option<PathBuf>,
-    /// Says as well how sensibly boats play: chatter, standing still, edges, contacts, orbits
+    /// Also reports the quality of play: chatter, standing still, edges, contacts, orbits
     #[arg(long)]
     quality: bool,
 }
@@ -105,7 +106,7 @@ fn play_all(args: &Args, plan: &Plan, stop: &AtomicBool, league: Option<&mut Lea
     let (mut records, games) =
         league.as_ref().map_or_else(|| (vec![], all()), |file| file.league.split(plan, &pairings));
     if league.is_some() {
-        screen::remark(&format!("{} of {} games were played before", records.len(), plan.games()));
+        screen::remark(&format!("{} of {} games already played", records.len(), plan.games()));
     }
     let jobs = args.jobs.threads(games.len());
     let mut progress = Progress::of_games(games.len() as u64);
@@ -152,11 +153,11 @@ fn play_judged(
 
 fn planned(args: &Args) -> Result<Plan> {
     let path = &args.tournament;
-    let context = || format!("no tournament in {}", path.display());
+    let context = || format!("cannot play the tournament {}", path.display());
     let file = load_file::<Tournament>(path).with_context(context)?;
     let games = args.games.unwrap_or(file.games);
     if !games.is_multiple_of(2) {
-        screen::remark(&format!("{games} games a pairing are {}: half of them on each side", games + 1));
+        screen::remark(&format!("{games} games per pairing become {}, half of them on each side", games + 1));
     }
     let tournament = Tournament { games, seed: args.seed.unwrap_or(file.seed), ..file };
     Plan::new(&tournament).with_context(context)

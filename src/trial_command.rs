@@ -15,58 +15,59 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use trial::{Engine, Manoeuvre, Orders, Plan, Sample, Sheet, Start, TrialBoat};
 
-/// The boat, the water and the manoeuvre.
 #[derive(clap::Args)]
 #[command(group(clap::ArgGroup::new("what").required(true).args(["orders", "manoeuvre"])))]
 pub(crate) struct Args {
-    /// A boat file, or the name of a boat in scenarios/boats
+    /// Boat: a file, or the name of a boat in scenarios/boats
     boat: String,
-    /// Replays the commands in this CSV file: t_s, and port and starboard in _rad_s, _pct or _newton, or
-    /// thrust_pct,rudder_pct, or speed_m_s,heading_deg
+    /// Replays the commands in this CSV file. Columns: t_s, and either port and starboard (both in _rad_s, _pct or
+    /// _newton), or thrust_pct and rudder_pct, or speed_m_s and heading_deg
     #[arg(long, value_name = "FILE")]
     orders: Option<PathBuf>,
-    /// A standard manoeuvre
+    /// Standard manoeuvre to drive
     #[arg(long, value_name = "NAME", value_parser = manoeuvre_name())]
     manoeuvre: Option<Manoeuvre>,
-    /// Writes the track to this file, every 0.1 s [default: of a manoeuvre BOAT_MANOEUVRE.csv here]
+    /// Writes the track to this CSV file, every 0.1 s; required with --orders [default: BOAT_MANOEUVRE.csv in the
+    /// current folder]
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Draws track and time series into this file, as SVG [default: of a manoeuvre BOAT_MANOEUVRE.svg here]
+    /// Plots the track and time series to this SVG file [default: BOAT_MANOEUVRE.svg in the current folder, or none
+    /// with --orders]
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
-    /// Adds the commands to the track, as columns that `identify` and --orders read
+    /// Adds the commands to the track, in columns that `squall identify` and --orders can read
     #[arg(long)]
     with_orders: bool,
     #[command(flatten)]
     water: WaterArgs,
     #[command(flatten)]
     start: StartArgs,
-    /// Physics tick, s [default: 0.05; of a kinematic boat 0.1]
+    /// Physics tick, s [default: 0.05, or 0.1 for a kinematic boat]
     #[arg(long, value_name = "S", value_parser = tick)]
     tick_s: Option<f64>,
-    /// How long the trial lasts, s [default: until the last command, or as the manoeuvre needs]
+    /// Duration of the trial, s [default: until the last command, or as long as the manoeuvre takes]
     #[arg(long, value_name = "S", value_parser = within(0.1, trial::LONGEST_S, "s"))]
     duration_s: Option<f64>,
     #[command(flatten)]
     manoeuvring: ManoeuvreArgs,
 }
 
-/// How a manoeuvre is sailed.
 #[derive(clap::Args)]
 pub(crate) struct ManoeuvreArgs {
-    /// Speed of the straight approach, m/s [default: the highest that the front seat accepts]
+    /// Speed of the straight approach, m/s [default: the highest speed that the front seat accepts]
     #[arg(long, value_name = "M_S", value_parser = water_args::speed, conflicts_with = "orders")]
     approach_m_s: Option<f64>,
-    /// How long the approach takes, s
+    /// Duration of the approach, s
     #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = within(0.0, 3600.0, "s"), conflicts_with = "orders")]
     approach_s: f64,
-    /// Turns to port (first)
+    /// Turns to port, or begins a zigzag to port, instead of starboard
     #[arg(long, conflicts_with = "orders")]
     to_port: bool,
-    /// The heading at which a zigzag switches, degrees: 10 for 10/10, 20 for 20/20
+    /// For a zigzag: heading change at which the boat reverses its turn, degrees (10 for 10/10, 20 for 20/20)
     #[arg(long, value_name = "DEG", default_value_t = 10.0, value_parser = within(1.0, 90.0, "degrees"), conflicts_with = "orders")]
     angle_deg: f64,
-    /// Rudder angle, or thruster offset from the mean, in a zigzag, per cent of full [default: the value of --angle-deg]
+    /// For a zigzag: rudder angle, or each thruster's offset from the mean thrust, per cent of full [default: the
+    /// value of --angle-deg]
     #[arg(long, value_name = "PCT", value_parser = within(1.0, 100.0, "per cent"), conflicts_with = "orders")]
     differential_pct: Option<f64>,
 }
@@ -76,7 +77,6 @@ fn manoeuvre_name() -> impl TypedValueParser<Value = Manoeuvre> {
     PossibleValuesParser::new(Manoeuvre::NAMES).map(|name| name.parse().expect("no other name gets here"))
 }
 
-/// How the boat begins.
 #[derive(clap::Args)]
 pub(crate) struct StartArgs {
     /// Heading at the start, compass degrees
@@ -88,10 +88,10 @@ pub(crate) struct StartArgs {
     /// Speed to starboard over the ground at the start, m/s
     #[arg(long, value_name = "M_S", default_value_t = 0.0, value_parser = within(-60.0, 60.0, "m/s"), allow_negative_numbers = true)]
     start_sway_m_s: f64,
-    /// Yaw rate at the start, degrees a second clockwise
+    /// Yaw rate at the start, clockwise, degrees per second
     #[arg(long, value_name = "DEG_S", default_value_t = 0.0, value_parser = degrees, allow_negative_numbers = true)]
     start_yaw_rate_deg_s: f64,
-    /// Thrust of a kinematic boat at the start, per cent [default: what keeps its speed]
+    /// Thrust of a kinematic boat at the start, per cent [default: the thrust that maintains its speed]
     #[arg(long, value_name = "PCT", value_parser = within(-100.0, 100.0, "per cent"), allow_negative_numbers = true)]
     start_thrust_pct: Option<f64>,
 }
@@ -136,7 +136,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     match (&args.orders, args.manoeuvre) {
         (Some(path), _) => replay(args, path, &boat, &mut trial_boat),
         (None, Some(named)) => manoeuvre(args, named, &boat, &mut trial_boat),
-        (None, None) => bail!("neither --orders nor --manoeuvre"),
+        (None, None) => bail!("expected --orders or --manoeuvre"),
     }
 }
 
@@ -161,7 +161,7 @@ fn manoeuvre(args: &Args, named: Manoeuvre, boat: &Boat, trial_boat: &mut TrialB
     let title = format!("{}: {}", boat.name, named.name().replace('_', " "));
     plot::write(&plot, &title, &sailed.samples)?;
     screen::print(&format!("{title}\n{}", table(&trial::measures(&plan, &sailed))));
-    screen::print(&format!("track in {}, plot in {}\n", csv.display(), plot.display()));
+    screen::print(&format!("track: {}, plot: {}\n", csv.display(), plot.display()));
     Ok(ExitCode::SUCCESS)
 }
 
@@ -179,10 +179,10 @@ fn replay(args: &Args, path: &Path, boat: &Boat, trial_boat: &mut TrialBoat) -> 
     let orders = Orders::of_sheet(&read_sheet(path)?, &Engine::new(boat))?;
     let duration = args.duration_s.map_or(orders.end(), SimTime::from_s);
     if duration < trial::ROW {
-        bail!("{}: the series ends where it begins; say with --duration-s how long its command holds", path.display());
+        bail!("{}: all commands have the same time; set the duration of the trial with --duration-s", path.display());
     }
     let samples = trial::replay(trial_boat, &orders, duration)?;
-    let csv = args.csv.as_deref().ok_or_else(|| anyhow!("--orders needs --csv FILE for the track"))?;
+    let csv = args.csv.as_deref().ok_or_else(|| anyhow!("--orders requires --csv FILE for the track"))?;
     write_track(csv, &samples, args.with_orders)?;
     if let Some(plot) = &args.plot {
         plot::write(plot, &format!("{}: {}", boat.name, path.display()), &samples)?;

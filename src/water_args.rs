@@ -1,5 +1,6 @@
 //! Command line arguments for the boat and its water; shared by `trial` and `identify`.
 
+use command_line::number::whole;
 pub(crate) use command_line::number::within;
 
 use crate::{scenario_files, screen};
@@ -8,19 +9,18 @@ use scenario::sea::Sea;
 use scenario::{Boat, Drawn, Kind};
 use std::path::{Path, PathBuf};
 
-/// The water, from the command line.
 #[derive(clap::Args)]
 pub(crate) struct WaterArgs {
-    /// The sea: a file or a name [default: salt water at rest, no wind]
+    /// Sea: a file or a name [default: salt water at rest, without wind]
     #[arg(long, value_name = "SEA", value_parser = scenario_files::sea)]
     sea: Option<PathBuf>,
     /// Random seed for waves, gusts and the randomised values of boat and sea
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = whole::<u64>(0, u64::MAX))]
     pub(crate) seed: u64,
-    /// The mean current, in place of the sea's own, m/s
+    /// Mean current, instead of the sea's own, m/s
     #[arg(long, value_name = "M_S", value_parser = speed, default_value_if("current_toward_deg", clap::builder::ArgPredicate::IsPresent, "0"))]
     current_m_s: Option<f64>,
-    /// Where that current goes to, compass degrees
+    /// Direction towards which this current flows, compass degrees
     #[arg(long, value_name = "DEG", value_parser = degrees, default_value_t = 0.0, allow_negative_numbers = true, requires = "current_m_s")]
     current_toward_deg: f64,
 }
@@ -42,7 +42,7 @@ impl WaterArgs {
 /// Loads the sea in a file and prints its randomised values.
 pub(crate) fn sea(path: &Path, seed: u64) -> Result<Sea> {
     let drawn = scenario::draw_sea(path, seed);
-    let (sea, drawn) = drawn.with_context(|| format!("no sea in {}", path.display()))?;
+    let (sea, drawn) = drawn.with_context(|| format!("cannot load the sea {}", path.display()))?;
     tell_drawn(seed, &drawn);
     Ok(sea)
 }
@@ -52,14 +52,14 @@ pub(crate) fn sea(path: &Path, seed: u64) -> Result<Sea> {
 pub(crate) fn boat(named: &str, seed: u64) -> Result<(Boat, PathBuf, Vec<Drawn>)> {
     let path = scenario_files::find(named, Kind::BOAT)?;
     let drawn = scenario::draw_boat(&path, seed);
-    let (boat, drawn) = drawn.with_context(|| format!("no boat in {}", path.display()))?;
+    let (boat, drawn) = drawn.with_context(|| format!("cannot load the boat {}", path.display()))?;
     Ok((boat, path, drawn))
 }
 
 /// Prints the randomised values.
 pub(crate) fn tell_drawn(seed: u64, drawn: &[Drawn]) {
     for Drawn { parameter, value } in drawn {
-        screen::print(&format!("drawn by seed {seed}: {parameter} = {value}\n"));
+        screen::print(&format!("randomised by seed {seed}: {parameter} = {value}\n"));
     }
 }
 

@@ -39,12 +39,12 @@ expect "after 600 s" squall run surveyor_2v2 --field jervis_bay_2023 --in-proces
 expect "significant" squall sea gale --plot gale.svg
 expect "mode" squall strategy strategy_4
 refuse "did you mean pav01_vs_pav01?" squall run pav1_vs_pav01
-refuse "--blue and --red take it" squall run strategy_4
+refuse "use it with --blue or --red" squall run strategy_4
 refuse "is a sea, expected a game" squall run scenarios/seas/gale.toml
 
 # A file of one's own, which takes the place of the one inside of the program.
 expect "scenarios/strategies/mine.toml" squall new strategy mine
-expect "a good strategy" squall check scenarios/strategies/mine.toml
+expect "valid strategy" squall check scenarios/strategies/mine.toml
 expect "after 600 s" squall run surveyor_2v2 --blue mine --in-process --no-record
 
 # Played again when it is saved, with a mistake and without.
@@ -59,21 +59,21 @@ heard() {
     printf 'FAILED: run --watch-files never said %s %s times, but\n%s\n' "$2" "$1" "$(<watched.txt)"
     exit 1
 }
-heard 1 "waiting for a file"
+heard 1 "waiting for changes"
 cp scenarios/strategies/mine.toml whole.toml
 printf 'about = gone\n' >scenarios/strategies/mine.toml
 heard 1 'gone is not in quotes'
-heard 2 "waiting for a file"
+heard 2 "waiting for changes"
 cp whole.toml scenarios/strategies/mine.toml
 heard 2 "after 600 s"
 kill -TERM $watching
 wait $watching || [[ $? -eq 130 ]]
-refuse "there is a file scenarios/strategies/mine.toml already" squall new strategy mine
+refuse "the file scenarios/strategies/mine.toml exists already" squall new strategy mine
 for kind in boat sea game sweep training tournament; do
-    expect "a $kind to change" squall new "$kind" mine
+    expect "created scenarios/${kind}s/mine.toml" squall new "$kind" mine
 done
 for kind in boats seas games sweeps training tournaments; do
-    expect "a good" squall check "scenarios/$kind/mine.toml"
+    expect "valid" squall check "scenarios/$kind/mine.toml"
 done
 expect "after 600 s" squall run mine --in-process --no-record
 expect "scenarios/seas/gale.toml" squall copy gale
@@ -82,7 +82,7 @@ refuse "scenarios/seas/gale.toml" squall run surveyor_2v2 --sea gale --in-proces
 
 expect "recorded" squall run pav01_vs_pav01 --in-process
 expect "blue" squall log runs/*.mcap
-expect "same" squall replay runs/*.mcap --check
+expect "identical" squall replay runs/*.mcap --check
 expect "_squall" squall completions bash
 expect "man1" squall man man1
 test -s man1/squall-run.1

@@ -87,7 +87,7 @@ class Page:
         try:
             while (line := self._lines.get(timeout=_START_MAX_S)) is not None:
                 said.append(line.strip())
-                # "FILE at http://127.0.0.1:8088/ (Ctrl-C ends it)"
+                # "FILE at http://127.0.0.1:8088/ (Ctrl-C to stop)"
                 _, is_told, address = line.rpartition(" at http://")
                 if is_told:
                     return f"http://{address.split()[0]}"

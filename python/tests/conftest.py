@@ -17,7 +17,7 @@ with open({{log!r}}, "a") as log:
     print(*sys.argv[1:], file=log)
 listen = sys.argv[-1].replace(":0", ":8088")
 print("opens a recording", flush=True)
-print(f"{{{{sys.argv[2]}}}} at http://{{{{listen}}}}/ (Ctrl-C ends it)", flush=True)
+print(f"{{{{sys.argv[2]}}}} at http://{{{{listen}}}}/ (Ctrl-C to stop)", flush=True)
 time.sleep(60)
 """
 

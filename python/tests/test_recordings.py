@@ -64,8 +64,8 @@ def test_the_program_plays_recorded_games_again_to_the_last_bit(tmp_path: Path, 
     play(environment, 2)
     environment.close()
     whole, cut = files(tmp_path)
-    assert "the same: 51 frames to 5.0 s to the last bit, digest " in checked(program, whole)
-    assert "the same: 11 frames to 1.0 s to the last bit" in checked(program, cut)
+    assert "identical: 51 frames to 5.0 s, digest " in checked(program, whole)
+    assert "identical: 11 frames to 1.0 s" in checked(program, cut)
 
 
 @pytest.mark.parametrize(
@@ -84,8 +84,8 @@ def test_games_side_by_side_are_recorded_on_any_thread(tmp_path: Path, program: 
     found = files(tmp_path)
     assert len(found) == 6, "for each of three slots, one game that ended and one that had started"
     said = [checked(program, file) for file in found]
-    assert sum("the same: 31 frames" in text and "digest" in text for text in said) == 3
-    assert sum("the same: 16 frames" in text for text in said) == 3
+    assert sum("identical: 31 frames" in text and "digest" in text for text in said) == 3
+    assert sum("identical: 16 frames" in text for text in said) == 3
 
 
 def test_each_nth_game_is_recorded(tmp_path: Path) -> None:

@@ -141,7 +141,7 @@ def test_a_plan_of_another_version_is_refused(sweep: Path) -> None:
         SweepPlan.unpack((text, files, "0" * 32))
     with pytest.raises(ValueError, match="not among the files kept"):
         SweepPlan.unpack((text, files[:2], "0" * 32))
-    with pytest.raises(ValueError, match="cannot be read"):
+    with pytest.raises(ValueError, match="cannot read the packed plan"):
         SweepPlan.unpack((text[:-1], files, "0" * 32))
 
 
@@ -155,12 +155,12 @@ def test_what_is_wrong_is_told(sweep: Path, tmp_path: Path) -> None:
     for begin, end in ((0, 33), (2, 1)):
         with pytest.raises(IndexError, match="expected from 0 to 32"):
             plan.lines(begin, end)
-    with pytest.raises(ValueError, match="holds no sweep"):
+    with pytest.raises(ValueError, match="contains no sweep"):
         plan.resume(tmp_path)
     study = plan.begin(tmp_path / "out")
     with pytest.raises(IndexError, match="expected the next one, 0"):
         study.add(1, "1\n", "")
-    with pytest.raises(ValueError, match="holds another sweep"):
+    with pytest.raises(ValueError, match="contains a different sweep"):
         SweepPlan.open(sweep, seed=8).resume(tmp_path / "out")
 
 

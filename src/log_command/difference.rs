@@ -21,15 +21,15 @@ pub(super) fn text([a, b]: [&Path; 2], comparison: &Comparison) -> String {
 }
 
 fn tracks(text: &mut String, width: usize, comparison: &Comparison) {
-    add_line(text, format_args!("\nbetween the tracks over {:.1} s, m", comparison.common_s));
-    let heads = ["mean", "rms", "max", "at the end", "as shapes"].map(|head| format!("{head:>12}")).concat();
+    add_line(text, format_args!("\ndistance between the tracks over {:.1} s, m", comparison.common_s));
+    let heads = ["mean", "rms", "max", "at the end", "Fréchet"].map(|head| format!("{head:>12}")).concat();
     add_line(text, format_args!("{:width$}{heads}", ""));
     for Pair { boat, apart, .. } in &comparison.boats {
         let cells = [apart.mean_m, apart.rms_m, apart.max_m, apart.final_m, apart.frechet_m];
         let cells = cells.map(|metres| format!("{metres:>12.2}")).concat();
         add_line(text, format_args!("{boat:width$}{cells}"));
     }
-    *text += "as shapes: discrete Fréchet distance (Eiter and Mannila 1994), which forgives being early or late\n";
+    *text += "Fréchet: discrete Fréchet distance (Eiter and Mannila 1994), which ignores delays\n";
 }
 
 /// A response number: its name, unit, decimal places, and accessor.
@@ -37,15 +37,15 @@ type Measure = (&'static str, &'static str, usize, fn(&Response) -> Option<f64>)
 
 const MEASURES: [Measure; 6] = [
     ("heading lag", "s", 1, |response| response.heading_lag_s),
-    ("off then", "deg", 1, |response| response.heading_rms_deg),
+    ("residual", "deg", 1, |response| response.heading_rms_deg),
     ("speed lag", "s", 1, |response| response.speed_lag_s),
     ("gain", "", 2, |response| response.speed_gain),
-    ("off then", "m/s", 2, |response| response.speed_rms_m_s),
-    ("set to stbd", "m/s", 3, |response| response.cross_track_m_s),
+    ("residual", "m/s", 2, |response| response.speed_rms_m_s),
+    ("drift stbd", "m/s", 3, |response| response.cross_track_m_s),
 ];
 
 fn responses(text: &mut String, width: usize, boats: &[Pair]) {
-    add_line(text, format_args!("\nhow boats answer to their orders"));
+    add_line(text, format_args!("\nresponse of the boats to their orders"));
     let heads = MEASURES.map(|(name, ..)| format!("{name:>13}")).concat();
     add_line(text, format_args!("{:width$}  {heads}{:>22}", "", "drift while holding"));
     let units = MEASURES.map(|(_, unit, ..)| format!("{unit:>13}")).concat();
@@ -65,7 +65,7 @@ fn responses(text: &mut String, width: usize, boats: &[Pair]) {
         }
     }
     *text += &format!(
-        "drift counts from {SETTLED_S:.0} s after the order to hold on; - is what the game gave no occasion to tell\n"
+        "drift is measured from {SETTLED_S:.0} s after the order to hold; - means that the game contains no such measurement\n"
     );
 }
 
@@ -80,7 +80,7 @@ fn events(text: &mut String, comparison: &Comparison) {
         add_line(text, format_args!("{:20}{a:>7}{b:>7}", kind.replace('_', " ")));
     }
     let tolerance_s = found.tolerance_s;
-    add_line(text, format_args!("\n{} events are in both within {tolerance_s:.1} s", found.in_both));
+    add_line(text, format_args!("\n{} events match within {tolerance_s:.1} s", found.in_both));
     for (name, only) in [("A", &found.only_in_a), ("B", &found.only_in_b)] {
         if !only.is_empty() {
             add_line(text, format_args!("only in {name}:"));

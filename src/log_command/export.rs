@@ -51,8 +51,8 @@ fn rows<W: Write>(
     Ok(damaged)
 }
 
-/// Writes MOOS logs: to a folder those of the shoreside and of all boats, to a file that of the
-/// shoreside. Returns the number of logs and what could not be read.
+/// Writes the MOOS logs of the shoreside and all boats to a folder, or that of the shoreside to a
+/// file. Returns the number of logs and the damage in the recording.
 pub(super) fn alog(recording: &Recording, path: &Path) -> Result<(usize, Damaged)> {
     let is_alone = path.extension().is_some_and(|ending| ending == "alog") && !path.is_dir();
     if !is_alone {

@@ -8,6 +8,7 @@ use crate::plot::film::{Boat, Moment, Stage};
 use crate::plot::{colour, pixels};
 use crate::water_args::within;
 use anyhow::{Context, Result, bail};
+use command_line::number::whole;
 use gif::{DisposalMethod, Encoder, Repeat};
 use messages::{Frame, VehicleTruth};
 use primitives::Ned;
@@ -31,26 +32,25 @@ const UNCHANGED: u8 = 255;
 /// Number of pictures from which the palette is computed.
 const SAMPLES: usize = 6;
 
-/// Which stretch of a game a film shows, and how.
 #[derive(clap::Args)]
 pub(super) struct FilmArgs {
-    /// With --gif: from this moment of the game on, s [default: its beginning]
+    /// With --gif: start time in the game, s [default: the beginning]
     #[arg(long, value_name = "S", requires = "gif", value_parser = within(0.0, 1e7, "s"))]
     from: Option<f64>,
-    /// With --gif: up to this moment, s [default: its end]
+    /// With --gif: end time in the game, s [default: the end]
     #[arg(long, value_name = "S", requires = "gif", value_parser = within(0.0, 1e7, "s"))]
     to: Option<f64>,
-    /// With --gif: how much faster than it was played
+    /// With --gif: playback speed, as a multiple of real time
     #[arg(long, value_name = "FACTOR", requires = "gif", default_value = "10x", value_parser = game_args::speed)]
     speed: f64,
-    /// With --gif: how wide the picture is, pixels
-    #[arg(long, value_name = "PIXELS", requires = "gif", default_value_t = 800, value_parser = clap::value_parser!(u32).range(200..=2000))]
+    /// With --gif: width of the animation, pixels
+    #[arg(long, value_name = "PIXELS", requires = "gif", default_value_t = 800, value_parser = whole::<u32>(200, 2000))]
     width: u32,
 }
 
 /// Writes a film; returns the number of pictures and the damage in the recording.
 pub(super) fn write(path: &Path, recording: &Recording, args: &FilmArgs) -> Result<(usize, Damaged)> {
-    output_file::check(path, "the film")?;
+    output_file::check(path, "the animation")?;
     let header = recording.header();
     let scenario = &header.info.scenario;
     let teams = scenario.teams.iter().enumerate().map(|(i, team)| (team.name.clone(), colour::of_team(i))).collect();
@@ -61,7 +61,7 @@ pub(super) fn write(path: &Path, recording: &Recording, args: &FilmArgs) -> Resu
     let delay_cs = (100.0 * step_s / args.speed).round() as u16;
     let moments = moments(recording, (args, step_s), &stage, &mut damaged)?;
     let [Some(first), Some(last)] = [moments.first(), moments.last()] else {
-        bail!("the recording has no frame from {} s on", args.from.unwrap_or(0.0))
+        bail!("the recording has no frame after {} s", args.from.unwrap_or(0.0))
     };
     let size = crate::plot::Drawing::size(first);
     // Widely spaced moments cover all colours between them; the last moment uses all of them at
@@ -69,9 +69,10 @@ pub(super) fn write(path: &Path, recording: &Recording, args: &FilmArgs) -> Resu
     let step = moments.len().div_ceil(SAMPLES);
     let samples = moments.iter().step_by(step).chain([last]).map(colours).collect::<Result<Vec<_>>>()?;
     let mut palette = Palette::of(&samples);
-    let file = std::fs::File::create(path).with_context(|| format!("cannot write the film to {}", path.display()))?;
+    let file =
+        std::fs::File::create(path).with_context(|| format!("cannot write the animation to {}", path.display()))?;
     let mut writer = std::io::BufWriter::new(file);
-    let what = || format!("cannot write the film to {}", path.display());
+    let what = || format!("cannot write the animation to {}", path.display());
     let mut encoder = Encoder::new(&mut writer, size.0 as u16, size.1 as u16, &palette.bytes()).with_context(what)?;
     encoder.set_repeat(Repeat::Infinite).with_context(what)?;
     let mut before: Option<Vec<u8>> = None;
@@ -126,7 +127,7 @@ fn moments<'a>(
         }
         if moments.len() as f64 >= PICTURES_MAX {
             bail!(
-                "the film has more than {PICTURES_MAX} pictures: a greater --speed, or --from and --to, make it shorter"
+                "the animation has more than {PICTURES_MAX} frames; increase --speed, or limit it with --from and --to"
             );
         }
         moments.push(moment(recording, &frame, stage, &trails));

@@ -22,17 +22,17 @@ pub(super) fn text(summary: &Summary) -> String {
 pub(super) fn gateway(bag: &Bag) -> String {
     let [boat, version, commit] = ["vehicle", "version", "commit"].map(|key| bag.fact(key));
     let gateway = analysis::gateway_of(bag, boat);
-    let mut text = format!("the gateway of {boat}\n");
+    let mut text = format!("gateway of {boat}\n");
     add_line(&mut text, format_args!("recorded {} by Squall {version} ({commit})", utc::text(bag.began_utc_ns())));
     let duration_s = bag.messages().map(|message| message.at).max().unwrap_or_default().as_s();
     add_line(&mut text, format_args!("{duration_s:.1} s, {:.1} MB", bag.size() as f64 * 1e-6));
     if bag.is_cut() {
-        add_line(&mut text, format_args!("the file ends before the gateway did: what follows holds up to there"));
+        add_line(&mut text, format_args!("the file ends before the gateway did; the figures below are incomplete"));
     }
     damaged(&mut text, &gateway.damaged);
     text += &gateway_text(&gateway);
     text += &topics(&analysis::topics(bag));
-    add_line(&mut text, format_args!("\nsquall gateway replay plays it through the codec and the supervisor again"));
+    add_line(&mut text, format_args!("\nreplay it through the codec and the supervisor with: squall gateway replay"));
     text
 }
 
@@ -52,9 +52,9 @@ fn head(summary: &Summary) -> String {
     let mut text = format!("{}  {scenario}  seed {seed}\n", summary.game);
     add_line(&mut text, format_args!("recorded {} by Squall {version} ({commit})", utc::text(summary.began_utc_ns)));
     let megabytes = *bytes as f64 * 1e-6;
-    add_line(&mut text, format_args!("{pace}, {duration_s:.1} s in {wall_s:.1} s by the clock, {megabytes:.1} MB"));
+    add_line(&mut text, format_args!("{pace}, {duration_s:.1} s in {wall_s:.1} s of real time, {megabytes:.1} MB"));
     if summary.is_cut {
-        add_line(&mut text, format_args!("the file ends before the game did: what follows holds up to there"));
+        add_line(&mut text, format_args!("the file ends before the game did; the figures below are incomplete"));
     }
     if let Some(dropped) = summary.dropped.filter(|dropped| *dropped > 0) {
         add_line(&mut text, format_args!("{dropped} messages are missing: the disk was too slow"));
@@ -63,7 +63,7 @@ fn head(summary: &Summary) -> String {
     let score: Vec<String> = summary.score.iter().map(|(team, points)| format!("{team} {points}")).collect();
     let end = match (&summary.winner, summary.is_cut) {
         (Some(team), _) => format!("{team} wins"),
-        (None, true) => "not decided here".to_owned(),
+        (None, true) => "not decided in this recording".to_owned(),
         (None, false) if summary.events.iter().any(|event| event.event == "ended") => "a draw".to_owned(),
         (None, false) => "cut short".to_owned(),
     };
@@ -98,7 +98,7 @@ fn boats(boats: &[BoatStatistics]) -> String {
         let spans = spans_s.map(|span_s| format!("{span_s:>9.1}")).concat();
         add_line(&mut text, format_args!("{:width$}{spans}", boat.boat));
     }
-    add_line(&mut text, format_args!("\n{:width$}{:>22}{:>22}", "", "navigation error", "off its orders"));
+    add_line(&mut text, format_args!("\n{:width$}{:>22}{:>22}", "", "navigation error", "error against orders"));
     let (navigation, orders) =
         (format!("{:>12}{:>10}", "rms m", "95 % m"), format!("{:>12}{:>10}", "rms deg", "rms m/s"));
     add_line(&mut text, format_args!("{:width$}{navigation}{orders}", ""));
@@ -116,7 +116,7 @@ fn boats(boats: &[BoatStatistics]) -> String {
     let real: Vec<&str> = boats.iter().filter(|boat| boat.is_real).map(|boat| boat.boat.as_str()).collect();
     if !real.is_empty() {
         let real = real.join(", ");
-        add_line(&mut text, format_args!("{real}: real; the truth about them is what their gateways reported"));
+        add_line(&mut text, format_args!("{real}: real; their true positions are those that their gateways reported"));
     }
     text
 }
@@ -127,9 +127,9 @@ fn gateway_text(gateway: &Gateway) -> String {
         1 => "1 failsafe".to_owned(),
         count => format!("{count} failsafes"),
     };
-    let mut text = format!("\ngateway of {}: {state} in the end, {failsafes}\n", gateway.boat);
+    let mut text = format!("\ngateway of {}: {state} at the end, {failsafes}\n", gateway.boat);
     for failsafe in &gateway.failsafes {
-        add_line(&mut text, format_args!("{:>7.1} s of the gateway  {}", failsafe.at_s, failsafe.cause));
+        add_line(&mut text, format_args!("{:>7.1} s (gateway time)  {}", failsafe.at_s, failsafe.cause));
     }
     for (way, traffic) in [("from the boat", &gateway.from_boat), ("to the boat", &gateway.to_boat)] {
         let Traffic { bytes, sentences } = traffic;

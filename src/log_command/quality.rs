@@ -24,7 +24,7 @@ pub(super) fn print(files: &[PathBuf], json: Option<&Path>) -> Result<()> {
 }
 
 fn of_recording(file: &Path) -> Result<Quality> {
-    let recording = Arc::new(recording_file::open(file, "look at")?);
+    let recording = Arc::new(recording_file::open(file, "read")?);
     let mut minds = Minds::new(Arc::clone(&recording));
     let mut quality = GameQuality::new(recording.scenario());
     let damaged = analysis::for_each_step(&recording, |step| {

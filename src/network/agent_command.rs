@@ -11,35 +11,34 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
-/// Which boats, and where.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The vehicles to decide for, by name
+    /// Names of the vehicles to control
     #[arg(long, required = true, num_args = 1.., value_name = "NAME")]
     vehicle: Vec<String>,
     #[command(flatten)]
     leaf: LeafArgs,
-    /// How long to look for the sim and to wait until the vehicles are free, s
+    /// How long to look for the sim and wait for its vehicles to become free, s
     #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
     wait_s: f64,
-    /// After this long without a picture the sim counts as dead, s (5 s where it dies and the network does not)
+    /// How long the sim may send no picture before it counts as dead, s (5 s if it dies while the network works)
     #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
     silence_s: f64,
-    /// Plays by this strategy file in place of the one that the sim's scenario names
+    /// Strategy file to follow instead of the one in the sim's scenario
     #[arg(long, value_name = "FILE")]
     strategy: Option<PathBuf>,
-    /// In lockstep: how long to wait at every decision for the proposal of a policy outside, s, where the strategy uses
-    /// one (at most half of the game's patience_s)
+    /// In lockstep, if the strategy uses an external policy: how long to wait for its proposal at every decision, s;
+    /// at most half of the game's patience_s
     #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = seconds)]
     policy_wait_s: f64,
-    /// Prints nothing that is well, and stops when standard input ends
+    /// Prints only errors, and stops when standard input ends
     #[arg(long, hide = true)]
     for_parent: bool,
 }
 
 /// Loads the strategy in a file; the error lists every problem.
 fn load_strategy(path: &Path) -> Result<Strategy> {
-    scenario::load_strategy(path).with_context(|| format!("cannot play by {}", path.display()))
+    scenario::load_strategy(path).with_context(|| format!("cannot use the strategy {}", path.display()))
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {

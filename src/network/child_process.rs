@@ -19,7 +19,7 @@ pub(crate) fn squall(args: &[&str]) -> Result<Command> {
 
 /// The path of this program's executable.
 pub(crate) fn own_program() -> Result<PathBuf> {
-    std::env::current_exe().context("cannot find this program's own file")
+    std::env::current_exe().context("cannot find this program's executable")
 }
 
 /// A command that starts this program with these zenoh threads.
@@ -78,7 +78,7 @@ impl ChildProcess {
         let (sender, receiver) = sync_channel(1024);
         std::thread::spawn(move || {
             let lines = BufReader::new(output).lines().map_while(std::result::Result::ok);
-            // Keep reading even without a receiver, so that the child can go on printing.
+            // Keep reading even without a receiver, so that the child is not blocked.
             lines.filter_map(|line| parse(&line)).for_each(|item| sender.send(item).unwrap_or_default());
         });
         Ok(receiver)
@@ -87,7 +87,7 @@ impl ChildProcess {
     /// `None` while it runs; then its error, or `Some(None)` for success.
     pub(crate) fn ended(&mut self) -> Option<Option<String>> {
         let status = self.child.try_wait().ok().flatten()?;
-        Some((!status.success()).then(|| format!("{} ended with {status}", self.name)))
+        Some((!status.success()).then(|| format!("{} failed: {status}", self.name)))
     }
 
     /// Sends it a line on standard input.
@@ -96,8 +96,8 @@ impl ChildProcess {
     /// If the child no longer reads it.
     pub(crate) fn send(&mut self, line: &str) -> Result<()> {
         let name = &self.name;
-        let mut stdin = self.stdin.as_ref().with_context(|| format!("{name} was asked to stop"))?;
-        writeln!(stdin, "{line}").with_context(|| format!("{name} does not listen"))
+        let mut stdin = self.stdin.as_ref().with_context(|| format!("{name} is stopping"))?;
+        writeln!(stdin, "{line}").with_context(|| format!("{name} does not accept input"))
     }
 
     /// Requests it to stop.
@@ -131,7 +131,7 @@ pub(crate) fn wait_for_all(children: &mut [ChildProcess]) -> Vec<String> {
         }
         match child.ended() {
             Some(outcome) => badly.extend(outcome),
-            None => badly.push(format!("{} did not end and was killed", child.name)),
+            None => badly.push(format!("{} did not exit and was killed", child.name)),
         }
     }
     badly

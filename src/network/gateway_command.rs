@@ -6,7 +6,6 @@ use anyhow::Result;
 use clap::Subcommand;
 use std::process::ExitCode;
 
-/// What a gateway is to do.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     #[command(subcommand)]

@@ -15,17 +15,16 @@ use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::time::Duration;
 
-/// What `run` is asked of it.
 #[derive(Clone, clap::Args)]
 pub(crate) struct LoopArgs {
-    /// Emulated boats stand in for the real ones: they float in water of their own, speak the protocol of the gateway file and
-    /// are driven through gateways, which tell how they were in the end
+    /// Replaces real boats by emulated ones, which gateways drive over the protocol of the gateway file; prints the
+    /// gateways' final status
     #[arg(long, conflicts_with_all = ["in_process", "rehearse"])]
     emulate: bool,
-    /// How the gateways drive them: a gateway file or its name [default: a Surveyor, carefully]
+    /// Gateway file or name for the emulated boats [default: a Surveyor with careful limits]
     #[arg(long, value_name = "FILE", requires = "emulate", value_parser = crate::scenario_files::file_of::<gateway::config::Gateway>)]
     gateway: Option<PathBuf>,
-    /// Records what goes through each gateway into this folder, as NAME.mcap
+    /// Records the link traffic of each gateway to NAME.mcap in this folder
     #[arg(long, value_name = "DIR", requires = "emulate")]
     record_gateways: Option<PathBuf>,
 }
@@ -55,18 +54,18 @@ impl LoopArgs {
             return Ok(None);
         }
         if names.is_empty() {
-            bail!("no boat of this game is real: --emulate has nothing to stand in for");
+            bail!("--emulate requires a game with at least one external boat");
         }
         let gateway = match &self.gateway {
             None => gateway::config::default_gateway(),
             Some(path) => scenario::load_file::<gateway::config::Gateway>(path)
-                .with_context(|| format!("cannot drive by {}", path.display()))?,
+                .with_context(|| format!("cannot use the gateway file {}", path.display()))?,
         };
         if let Some(folder) = &self.record_gateways {
             output_file::make_folder(folder)?;
             // Check first: a gateway that refuses to record would leave its boat out of the game.
             for file in names.iter().map(|name| folder.join(format!("{name}.mcap"))) {
-                drop(NewFile::create(&file).with_context(|| format!("cannot record into {}", file.display()))?);
+                drop(NewFile::create(&file).with_context(|| format!("cannot record to {}", file.display()))?);
             }
         }
         let port = free_port(false)?;
@@ -133,5 +132,5 @@ fn start_emulator(name: &str, gateway: &Gateway, (water, endpoint): (&str, &str)
     let mut emulator = ChildProcess::start(&format!("the emulator of {name}"), command, Stdio::piped())?;
     let addresses = emulator.lines(|line| line.strip_prefix("back seat at ").map(str::to_owned))?;
     let address = addresses.recv_timeout(WINDOW);
-    Ok((emulator, address.map_err(|_| anyhow!("the emulator of {name} does not report where it listens"))?))
+    Ok((emulator, address.map_err(|_| anyhow!("the emulator of {name} did not report its address"))?))
 }

@@ -10,15 +10,14 @@ use scenario::Scenario;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Whose, and into which file.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The vehicle, by name
+    /// Name of the vehicle
     #[arg(long, value_name = "NAME")]
     vehicle: String,
     #[command(flatten)]
     leaf: LeafArgs,
-    /// Writes the utility of every course and speed, by behaviour and in all, into this file
+    /// Writes the utility of every course and speed, for each behaviour and in total, to this file
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
 }
@@ -32,12 +31,12 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let report = helm_query::report_of_agent(&observer, vehicle, HelmQuestion { functions: true })?;
     let scenario = &observer.info.scenario;
     if report.functions.iter().any(|function| function.utilities.is_empty()) {
-        bail!("the helm of {} has not decided since it was asked; ask again", args.vehicle);
+        bail!("the helm of {} has made no decision since the query; try again", args.vehicle);
     }
     screen::print(&helm_page::page(scenario, &report));
     if let Some(path) = &args.csv {
         write_csv(path, scenario, &report)
-            .with_context(|| format!("cannot write the functions to {}", path.display()))?;
+            .with_context(|| format!("cannot write the utilities to {}", path.display()))?;
     }
     observer.bus.close();
     Ok(ExitCode::SUCCESS)

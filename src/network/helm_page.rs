@@ -7,7 +7,7 @@ use scenario::Scenario;
 /// How many actions of a policy are listed, the likeliest first.
 const ACTIONS: usize = 4;
 
-/// The full report: mode, decision, and the wishes of every behaviour.
+/// The full report: mode, decision, and the utilities of every behaviour.
 pub(super) fn page(scenario: &Scenario, report: &HelmReport) -> String {
     let name = &scenario.vehicles[report.vehicle.index()].name;
     let mut text = format!("{name}  follows {}  {:.1} s\n", report.program, report.at.as_s());
@@ -21,7 +21,7 @@ pub(super) fn page(scenario: &Scenario, report: &HelmReport) -> String {
         text += &format!("{}\n", line.trim_end());
     }
     for policy in &report.policies {
-        text += &format!("\n{} asks {}: {}\n", policy.behaviour, policy.model, proposal(policy));
+        text += &format!("\n{} uses {}: {}\n", policy.behaviour, policy.model, proposal(policy));
         for (asked, share) in policy.words(scenario, report.vehicle).actions.iter().take(ACTIONS) {
             text += &format!("{:>6.1} %  {asked}\n", 100.0 * share);
         }

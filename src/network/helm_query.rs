@@ -18,11 +18,11 @@ pub(crate) fn report(observer: &Observer, vehicle: VehicleId, question: HelmQues
     let key = topic::helm(&observer.game, &observer.info.scenario, vehicle);
     let Some(answer) = observer.bus.ask_node(&key, question, bus::ANSWER)? else { return Ok(None) };
     let report: Option<HelmReport> =
-        serde_json::from_slice(&answer).context("the agent is of another version of Squall")?;
+        serde_json::from_slice(&answer).context("the agent uses another version of Squall")?;
     let name = &observer.info.scenario.vehicles[vehicle.index()].name;
     let report = report.with_context(|| format!("the agent of {name} has no helm"))?;
     if !is_sound(&report, vehicle, observer.info.scenario.vehicles.len()) {
-        bail!("the answer about the helm of {name} makes no sense");
+        bail!("the helm report of {name} is invalid");
     }
     Ok(Some(report))
 }

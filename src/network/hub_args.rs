@@ -4,22 +4,23 @@ use anyhow::{Result, anyhow, bail};
 use bus::token::TOKEN_VARIABLE;
 use bus::{Net, Token};
 use command_line::leaf_args::{KeysArgs, TokenArgs};
+use command_line::number::endpoint;
 use messages::topic::GameName;
 use std::path::PathBuf;
 
-/// How a hub can be reached.
 #[derive(clap::Args, Clone, Debug)]
 pub(crate) struct HubArgs {
-    /// Endpoint to listen on, for example tcp/0.0.0.0:7447 [default: loopback port 7447, or any free one if it is taken]
-    #[arg(long, value_name = "ENDPOINT")]
+    /// Endpoint to listen on, for example tcp/0.0.0.0:7447 [default: loopback port 7447, or a free port if it is
+    /// taken]
+    #[arg(long, value_name = "ENDPOINT", value_parser = endpoint)]
     pub(crate) listen: Vec<String>,
-    /// Be found by multicast on the local network (listens on all interfaces unless --listen says otherwise)
+    /// Announces the game by multicast on the local network; without --listen, listens on all interfaces
     #[arg(long)]
     lan: bool,
-    /// Lets other machines in although nothing protects the game from strangers on that network
+    /// Accepts other machines without keys: anyone on that network can see and stop the game
     #[arg(long)]
     insecure: bool,
-    /// A zenoh configuration (JSON5) to begin with: access control, interfaces, buffers
+    /// Base zenoh configuration (JSON5), for example for access control, interfaces or buffers
     #[arg(long, value_name = "FILE")]
     zenoh_config: Option<PathBuf>,
     #[command(flatten)]
@@ -41,8 +42,8 @@ impl HubArgs {
         let keys = self.keys.load()?;
         match (&keys, listen.iter().find(|endpoint| !bus::is_loopback(endpoint))) {
             (None, Some(open)) if !self.insecure => bail!(
-                "{open} can be reached from other machines, and whoever reaches it can see all of the game and stop it: make \
-                 keys with `squall keys new` and serve it with --keys, or say --insecure if nobody else is on that network"
+                "{open} can be reached from other machines, where anyone can see and stop the game: create keys with \
+                 `squall keys new` and use --keys, or use --insecure on a private network"
             ),
             _ => {}
         }
@@ -75,7 +76,7 @@ pub(crate) fn unique_game_name(scenario: &str) -> Result<GameName> {
 
 /// What users on other machines, or other users of this one, need to join and control a game.
 pub(crate) fn token_text(token: &Token) -> String {
-    format!("its token, for agents and operators elsewhere: {TOKEN_VARIABLE}={}", token.hex())
+    format!("token for agents and operators on other machines or accounts: {TOKEN_VARIABLE}={}", token.hex())
 }
 
 #[cfg(test)]

@@ -3,13 +3,13 @@
 use crate::screen;
 use anyhow::{Result, bail};
 use bus::keys::{self, Bundle, Identity};
+use command_line::number::whole;
 use std::fmt::Write as _;
 use std::net::UdpSocket;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
-/// What to do with keys.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     #[command(subcommand)]
@@ -18,39 +18,39 @@ pub(crate) struct Args {
 
 #[derive(clap::Subcommand)]
 enum KeysCommand {
-    /// Makes an authority of its own and a folder of keys for each part of a game.
+    /// Creates a certificate authority and a folder of keys for each part of a game.
     New(NewArgs),
-    /// Says whose keys these are, and how long they are valid.
+    /// Shows the owner and validity of keys.
     Show(ShowArgs),
 }
 
 #[derive(clap::Args)]
 struct NewArgs {
-    /// The folder to make them in
+    /// Folder to create the keys in
     folder: PathBuf,
-    /// Keys for the agents of this team; once for each team
+    /// Creates keys for the agents of this team; repeatable
     #[arg(long = "team", value_name = "NAME")]
     teams: Vec<String>,
-    /// Keys for the gateway of this boat; without a name, for any gateway
+    /// Creates keys for the gateway of this boat, or of any boat if no name is given; repeatable
     #[arg(long = "gateway", value_name = "BOAT", num_args = 0..=1, default_missing_value = "")]
     gateways: Vec<String>,
-    /// Keys for those who watch, and may stop boats
+    /// Creates keys for observers, who can also stop boats
     #[arg(long)]
     observer: bool,
-    /// Keys for those who control the game and operate boats
+    /// Creates keys for operators, who control the game and its boats
     #[arg(long)]
     operator: bool,
-    /// A name or address at which the sim will be reached, besides localhost [default: this machine's name and address]
+    /// Name or address of the sim, besides localhost; repeatable [default: this machine's name and address]
     #[arg(long = "host", value_name = "HOST")]
     hosts: Vec<String>,
-    /// How long they are valid, days
-    #[arg(long, value_name = "DAYS", default_value_t = 90, value_parser = clap::value_parser!(u32).range(1..=3650))]
+    /// Validity of the keys, days
+    #[arg(long, value_name = "DAYS", default_value_t = 90, value_parser = whole::<u32>(1, 3650))]
     days: u32,
 }
 
 #[derive(clap::Args)]
 struct ShowArgs {
-    /// Folders of keys
+    /// Folders with keys
     #[arg(required = true, value_name = "FOLDER")]
     folders: Vec<PathBuf>,
 }
@@ -76,14 +76,14 @@ fn new(args: &NewArgs) -> Result<()> {
     identities.extend(args.observer.then_some(Identity::Observer));
     identities.extend(args.operator.then_some(Identity::Operator));
     if let [Identity::Sim] = identities[..] {
-        bail!("nobody could join: name the parts of the game by --team, --gateway, --observer, --operator");
+        bail!("no node could join; request keys with --team, --gateway, --observer or --operator");
     }
     identities.sort();
     identities.dedup();
     if let Some(there) =
         identities.iter().map(|identity| args.folder.join(identity.to_string())).find(|path| path.exists())
     {
-        bail!("{} is there already: new keys take the place of all old ones, so choose a new folder", there.display());
+        bail!("{} exists already; new keys replace all old ones, so choose a new folder", there.display());
     }
     let mut hosts: Vec<String> = ["localhost", "127.0.0.1", "::1"].map(str::to_owned).to_vec();
     if args.hosts.is_empty() {
@@ -94,8 +94,8 @@ fn new(args: &NewArgs) -> Result<()> {
     let folders = keys::make(&args.folder, &identities, &hosts, args.days * DAY)?;
     folders.iter().try_for_each(|folder| show(folder))?;
     screen::print(
-        "\nWho has a folder is who it says: copy each to the machine that needs it, and nowhere else. Give it to any command \
-         by --keys FOLDER.\nNobody can add to this set: for another part, or when a folder is lost, make a new set for all.\n",
+        "\nAnyone with a folder has its rights: copy each folder only to the machine that needs it, and use it with --keys \
+         FOLDER.\nA set cannot be extended: to add a part or replace a lost folder, create a new set for all machines.\n",
     );
     Ok(())
 }
@@ -103,7 +103,7 @@ fn new(args: &NewArgs) -> Result<()> {
 fn named(text: &str) -> Result<Identity> {
     match text.parse() {
         Ok(identity) => Ok(identity),
-        Err(_) => bail!("{text:?}: a name is 1 to 48 of the characters a-z A-Z 0-9 _ -"),
+        Err(_) => bail!("{text:?} is not a valid name, expected 1 to 48 of the characters a-z A-Z 0-9 _ -"),
     }
 }
 
@@ -112,7 +112,7 @@ fn show(folder: &Path) -> Result<()> {
     let [from, until] = bundle.valid();
     let mut text = format!("{}: {}, valid from {from} until {until}", folder.display(), bundle.identity());
     if !bundle.hosts().is_empty() {
-        write!(text, ", reached at {}", bundle.hosts().join(", ")).expect("a text can be written to");
+        write!(text, ", for the hosts {}", bundle.hosts().join(", ")).expect("a text can be written to");
     }
     screen::print(&(text + "\n"));
     Ok(())

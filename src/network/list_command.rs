@@ -11,12 +11,11 @@ use std::collections::BTreeMap;
 use std::process::ExitCode;
 use std::sync::Arc;
 
-/// Where to look.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]
     leaf: LeafArgs,
-    /// Looks only where --connect or --lan says, not at the games of this machine
+    /// Searches only as --connect and --lan specify, and ignores the games on this machine
     #[arg(long)]
     elsewhere: bool,
 }

@@ -30,7 +30,7 @@ pub(crate) enum Command {
     /// Shows a game in strong wind in the browser.
     #[command(after_help = "Examples:\n  squall demo\n  SQUALL_PAGE_TOKEN=secret squall demo --listen 0.0.0.0:8088")]
     Demo(run_command::DemoArgs),
-    /// Plays a whole game: starts the simulation and the agents, shows events, prints the result.
+    /// Plays a whole game: starts the simulation and the agents, shows events, and prints the result.
     #[command(
         after_help = "Examples:\n  squall run strategy_4_vs_3\n  squall run surveyor_2v2 --sea gale --blue learned --red strategy_3 --view\n  squall run surveyor_2v2 --set link.delay_s=1 --seed 7 --both-sides"
     )]
@@ -38,7 +38,7 @@ pub(crate) enum Command {
     /// Simulates and serves one game, which agents and gateways join.
     #[command(after_help = "Examples:\n  squall sim surveyor_2v2 --game mine --listen tcp/0.0.0.0:7447 --insecure")]
     Sim(sim_command::Args),
-    /// Controls one or more boats in a game that is served elsewhere.
+    /// Controls one or more boats in a game served by another process.
     #[command(after_help = "Examples:\n  squall agent --vehicle blue_1 --game mine --connect tcp/10.0.0.5:7447")]
     Agent(agent_command::Args),
     /// Shows a running game in the terminal, or one boat's helm.
@@ -58,7 +58,7 @@ pub(crate) enum Command {
     /// Brings real boats into games, and lets real back seats drive simulated ones.
     #[command(after_help = "Examples:\n  squall gateway emulate --help\n  squall gateway surveyor --help")]
     Gateway(gateway_command::Args),
-    /// Creates keys for untrusted networks: encrypted links, and certificates that define who may do what.
+    /// Creates keys for untrusted networks: they encrypt links and define each node's rights.
     #[command(after_help = "Examples:\n  squall keys new keys --help")]
     Keys(keys_command::Args),
     /// Lists the games on the network with their scores.

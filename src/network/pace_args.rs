@@ -9,16 +9,15 @@ use scenario::Setting;
 use sim::node::Pace;
 use std::process::Command;
 
-/// The pace of a game, from the command line.
 #[derive(Clone, clap::Args)]
 pub(crate) struct PaceArgs {
-    /// lockstep, realtime, or a factor such as 4x
+    /// Pace of the game: lockstep, realtime, or a multiple of real time such as 4x
     #[arg(long, default_value = "lockstep")]
     pub(crate) pace: Pace,
-    /// In lockstep: plays no faster than this many times real time, until somebody asks for another speed
+    /// In lockstep: initial speed limit, as a multiple of real time; the page can change it [default: none]
     #[arg(long, value_name = "FACTOR", value_parser = speed)]
     pub(crate) speed: Option<f64>,
-    /// How long to wait for agents, and for gateways of real boats, before starting without the missing ones, s
+    /// How long to wait for missing agents and gateways before starting without them, s
     #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
     pub(crate) join_s: f64,
 }

@@ -3,6 +3,7 @@
 use crate::screen;
 use anyhow::{Result, ensure};
 use command_line::leaf_args;
+use command_line::number::address;
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 use shore::page::{Background, Page, PageError, PageSettings};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, UdpSocket};
@@ -16,24 +17,23 @@ const PORT: u16 = 8088;
 /// The environment variable with the page's token.
 const TOKEN_VARIABLE: &str = "SQUALL_PAGE_TOKEN";
 
-/// Where the page is served.
 #[derive(clap::Args, Clone, Debug)]
 pub(crate) struct PageArgs {
-    /// Address of the page; beyond this machine, for example 0.0.0.0:8088, it needs a token [default: 127.0.0.1:8088, or
-    /// another port if that is taken]
-    #[arg(long, value_name = "ADDRESS")]
+    /// Address and port of the page; if other machines can reach it, as with 0.0.0.0:8088, a token is required
+    /// [default: 127.0.0.1:8088, or a free port if it is taken]
+    #[arg(long, value_name = "ADDRESS", value_parser = address)]
     listen: Option<SocketAddr>,
-    /// The token that a page needs to pause, stop or drive; watching needs none. Every user of this machine can read it in
-    /// the list of processes: prefer --page-token-file
+    /// Token required to pause, stop or drive from the page, but not to watch. Other users of this machine can read
+    /// it in the process list: prefer --page-token-file
     #[arg(long, value_name = "TEXT")]
     token: Option<String>,
-    /// A file with that token [default: from SQUALL_PAGE_TOKEN]
+    /// File with the page's token [default: SQUALL_PAGE_TOKEN]
     #[arg(long, value_name = "FILE", conflicts_with = "token")]
     page_token_file: Option<PathBuf>,
-    /// An additional host name for the page; requires a token
+    /// Additional host name of the page; requires a token
     #[arg(long, value_name = "NAME")]
     host: Vec<String>,
-    /// A chart to draw below the field: GeoJSON, or PNG or JPEG with its world file
+    /// Chart to draw below the field: GeoJSON, or PNG or JPEG with a world file
     #[arg(long, value_name = "FILE")]
     chart: Option<PathBuf>,
     /// Opens the page in the browser
@@ -101,16 +101,14 @@ impl PageArgs {
         PageArgs { open: true, ..self.clone() }
     }
 
-    /// Opens the page in the browser if requested; without a browser, users have the printed
-    /// address.
+    /// Opens the page in the browser if requested. Its address has already been printed.
     pub(crate) fn open_browser(&self, page: &Page) {
         if self.open && open::that_detached(self.url(page)).is_err() {
-            screen::remark("no browser can be opened from here");
+            screen::remark("cannot open a browser");
         }
     }
 
-    /// Passes these arguments to another process of this program, the token where no other user can
-    /// read it.
+    /// Passes these arguments to another process, the token where no other user can read it.
     pub(crate) fn give_to(&self, command: &mut Command) {
         let listen = self.listen.iter().map(|listen| ("--listen", listen.to_string()));
         let hosts = self.host.iter().map(|host| ("--host", host.clone()));

@@ -13,7 +13,6 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 
-/// Which recording, and where the page is served.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]
@@ -26,7 +25,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let file = &args.replay.file;
     if args.replay.check {
         if args.page.is_given() {
-            bail!("--check shows no page: --listen, --token, --page-token-file and --host are of no use with it");
+            bail!("--check shows no page; omit --listen, --token, --page-token-file and --host");
         }
         return replay_command::check(file);
     }
@@ -34,7 +33,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let stop = stop::on_ctrl_c()?;
     let page = args.page.open(&stop)?;
     page.show(Arc::new(show));
-    Screen::new(Names::default()).line(&format!("{} at {} (Ctrl-C ends it)", file.display(), args.page.url(&page)));
+    Screen::new(Names::default()).line(&format!("{} at {} (Ctrl-C to stop)", file.display(), args.page.url(&page)));
     args.page.open_browser(&page);
     stop::wait(&stop);
     Ok(ExitCode::SUCCESS)

@@ -13,6 +13,7 @@ use anyhow::{Result, bail};
 use bus::Token;
 use bus::keys::{Bundle, Identity};
 use clap::{ArgGroup, Args as _, FromArgMatches};
+use command_line::number::whole;
 use scenario::{Scenario, Vehicle};
 use sim::node::{Pace, ProgressMessage, Report};
 use std::path::{Path, PathBuf};
@@ -21,7 +22,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::Duration;
 
-/// What to play, and by which processes.
 #[derive(clap::Args)]
 #[command(group(ArgGroup::new("served").args(["pace", "speed", "agents_per_process", "keys"]).multiple(true).conflicts_with("in_process")))]
 pub(crate) struct Args {
@@ -29,22 +29,21 @@ pub(crate) struct Args {
     run: run_command::Args,
     #[command(flatten)]
     pace: PaceArgs,
-    /// Shows the game on a page, and its recording when it is over; in lockstep at 10x unless --speed says otherwise
+    /// Shows the game on a page, then its recording; in lockstep, limits the speed to 10x unless --speed is given
     #[arg(long, conflicts_with_all = ["in_process", "both_sides", "watch_files"])]
     view: bool,
     #[command(flatten)]
     page: PageArgs,
-    /// For how many boats one agent process decides
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
+    /// Number of boats per agent process
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole::<u16>(1, u64::from(u16::MAX)))]
     agents_per_process: u16,
-    /// Plays with the keys in this folder, as `squall keys new` makes them: links are encrypted, and all show certificates
+    /// Folder with keys from `squall keys new`: encrypts all links, and authenticates every node by certificate
     #[arg(long, value_name = "FOLDER")]
     keys: Option<PathBuf>,
     #[command(flatten)]
     hardware_loop: LoopArgs,
 }
 
-/// Where the page is served.
 #[derive(clap::Args)]
 pub(crate) struct DemoArgs {
     #[command(flatten)]
@@ -63,7 +62,7 @@ const SPEED_TO_WATCH: f64 = 10.0;
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     if args.page.is_given() && !args.view {
-        bail!("--listen, --token, --page-token-file, --host and --open say how the page is served: they need --view");
+        bail!("--listen, --token, --page-token-file, --host, --chart and --open require --view");
     }
     if args.run.in_process {
         return run_command::run(&args.run, &mut InProcess);
@@ -124,12 +123,12 @@ impl Player for Processes<'_> {
     fn end(&mut self, file: Option<&Path>, problems: &[String], (stop, screen): Shell) {
         let Some(mut page) = self.page.take() else { return };
         problems.iter().for_each(|problem| screen::remark(problem));
-        screen.line("the game is over; the page stays until Ctrl-C");
+        screen.line("the game is over; the page stays open until Ctrl-C");
         // The sim has ended, so the recording is complete.
         if let (Some(file), false) = (file, stop::is_set_soon(stop))
             && let Err(error) = page.send(&file.display().to_string())
         {
-            screen::remark(&format!("{error:#}"));
+            screen::remark(&command_line::explain::line(&error));
         }
         while page.ended().is_none() && !stop::is_set_soon(stop) {}
         page.stop();

@@ -15,25 +15,24 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
 
-/// What to serve, and how.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]
     play: GameArgs,
     #[command(flatten)]
     pace: PaceArgs,
-    /// Records the game into this new file
+    /// Records the game to this file, which must not exist
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
-    /// The game's name on the network [default: the file's name and a random number]
+    /// Name of the game on the network [default: the file name and a random number]
     #[arg(long, value_name = "NAME", value_parser = GameName::new)]
     game: Option<GameName>,
-    /// Serves only the game's water with these boats, without a referee; for `squall gateway emulate`
+    /// Simulates only the water and these boats, without a referee, for `squall gateway emulate`
     #[arg(long, value_name = "NAME", num_args = 1..)]
     afloat: Vec<String>,
     #[command(flatten)]
     hub: HubArgs,
-    /// Reports everything as JSON lines on standard output, and stops when standard input ends
+    /// Prints all reports as JSON lines, and stops when standard input ends
     #[arg(long, hide = true)]
     for_parent: bool,
 }
@@ -69,7 +68,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     };
     let record = |path: &PathBuf| {
         GameRecorder::on_network(path.clone(), game.as_str(), &args.pace.pace.to_string(), env!("SQUALL_COMMIT"))
-            .with_context(|| format!("cannot record into {}", path.display()))
+            .with_context(|| format!("cannot record to {}", path.display()))
     };
     let mut recorder = args.record.as_ref().map(record).transpose()?;
     let settings = Settings {

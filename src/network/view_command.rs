@@ -17,17 +17,17 @@ mod games;
 mod report;
 mod training;
 
-/// What is shown, and where the page is served.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The report of a tournament (its JSON), or the folder of a league, a sweep or a training; or a recording [default: a running game]
+    /// What to show: the JSON report of a tournament, the folder of a league, sweep or training, or a recording
+    /// [default: a running game]
     #[arg(conflicts_with_all = ["game", "connect"])]
     report: Option<PathBuf>,
     #[command(flatten)]
     leaf: LeafArgs,
     #[command(flatten)]
     page: PageArgs,
-    /// Stops when standard input ends; shows the recordings that it names, one a line
+    /// Stops when standard input ends; shows the recordings that it names, one per line
     #[arg(long, hide = true)]
     for_parent: bool,
 }
@@ -47,10 +47,10 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         }
     });
     let (place, game) = (args.leaf.place()?, args.leaf.game.clone());
-    let live = LiveView::open(place, game, tell, gateway_cli::read_mission).context("cannot look for games")?;
+    let live = LiveView::open(place, game, tell, gateway_cli::read_mission).context("cannot search for games")?;
     let live = Arc::new(live);
     page.show(Arc::clone(&live) as Arc<dyn View>);
-    Screen::new(Names::default()).line(&format!("look at it on {} (Ctrl-C ends it)", args.page.url(&page)));
+    Screen::new(Names::default()).line(&format!("the page is at {} (Ctrl-C to stop)", args.page.url(&page)));
     args.page.open_browser(&page);
     let mut operators_know = args.page.has_token();
     while !stop::is_set_soon(&stop) {
@@ -61,7 +61,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         let Some(file) = recordings.as_ref().and_then(|named| named.try_recv().ok()) else { continue };
         match replay_command::show(Path::new(&file)) {
             Ok(show) => page.show(Arc::new(show)),
-            Err(error) => screen::remark(&format!("{error:#}")),
+            Err(error) => screen::remark(&command_line::explain::line(&error)),
         }
     }
     Ok(ExitCode::SUCCESS)
@@ -70,7 +70,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 /// Shows a report or a recording until Ctrl-C.
 fn show_report(args: &Args, path: &Path) -> Result<ExitCode> {
     if args.for_parent {
-        bail!("a report is shown to people");
+        bail!("reports are not shown for a parent process");
     }
     let stop = stop::on_ctrl_c()?;
     let is_recording = path.extension().is_some_and(|end| end == "mcap");
@@ -85,7 +85,7 @@ fn show_report(args: &Args, path: &Path) -> Result<ExitCode> {
         page.publish(report);
         page
     };
-    Screen::new(Names::default()).line(&format!("{} at {} (Ctrl-C ends it)", path.display(), args.page.url(&page)));
+    Screen::new(Names::default()).line(&format!("{} at {} (Ctrl-C to stop)", path.display(), args.page.url(&page)));
     args.page.open_browser(&page);
     stop::wait(&stop);
     Ok(ExitCode::SUCCESS)

@@ -6,6 +6,7 @@ use crate::style::Names;
 use anyhow::{Result, bail};
 use bus::{Watched, clock};
 use command_line::leaf_args::LeafArgs;
+use command_line::number::whole;
 use command_line::observer::Observer;
 use messages::{Frame, topic};
 use primitives::{SimTime, codec};
@@ -22,7 +23,6 @@ use std::time::{Duration, Instant};
 mod chart;
 mod helm;
 
-/// Which game, and where.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]
@@ -30,8 +30,8 @@ pub(crate) struct Args {
     /// Shows this vehicle's helm instead of the field: mode, decision, behaviours
     #[arg(long, value_name = "NAME")]
     helm: Option<String>,
-    /// Pictures a second
-    #[arg(long, value_name = "HZ", default_value_t = 5, value_parser = clap::value_parser!(u8).range(1..=30))]
+    /// Updates per second
+    #[arg(long, value_name = "HZ", default_value_t = 5, value_parser = whole::<u8>(1, 30))]
     rate: u8,
 }
 

@@ -10,7 +10,6 @@ use rules::field::{Field, Obstacle};
 pub(crate) struct Chart<'a> {
     /// The title above the chart.
     pub(crate) title: String,
-    /// The field.
     pub(crate) field: &'a Field,
     /// Name and colour of each team.
     pub(crate) teams: Vec<(String, RGBColor)>,
@@ -24,7 +23,6 @@ pub(crate) struct Chart<'a> {
 pub(crate) struct Track {
     /// The label at its start; empty if there would be too many labels.
     pub(crate) name: String,
-    /// Its colour.
     pub(crate) colour: RGBColor,
     /// Positions from the start on.
     pub(crate) places: Vec<Ned>,

@@ -43,14 +43,13 @@ pub(crate) struct Panel {
     pub(crate) equal: bool,
     /// The lines to draw.
     pub(crate) lines: Vec<Line>,
-    /// The text in place of an empty panel.
+    /// The text shown without lines.
     pub(crate) absent: &'static str,
     /// Named points in the panel.
     pub(crate) marks: Vec<Mark>,
 }
 
 impl Panel {
-    /// Its lines with their colours.
     fn coloured(&self) -> impl Iterator<Item = (&Line, RGBColor)> {
         self.lines.iter().zip(COLOURS.iter().cycle()).map(|(line, colour)| (line, line.colour.unwrap_or(*colour)))
     }
@@ -112,7 +111,6 @@ pub(crate) const COLOURS: [RGBColor; 6] = [
     RGBColor(90, 90, 90),
 ];
 
-/// A drawing area.
 pub(crate) type Area<B> = DrawingArea<B, Shift>;
 
 /// A drawing that can be written to a file.
@@ -124,29 +122,24 @@ pub(crate) trait Drawing {
     fn draw<B: DrawingBackend>(&self, root: &Area<B>) -> Drawn<B>;
 }
 
-/// The result of drawing.
 pub(crate) type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
 
-/// The drawing as SVG text.
 pub(crate) fn svg(drawing: &impl Drawing) -> anyhow::Result<String> {
     let mut svg = String::new();
     draw_on(SVGBackend::with_string(&mut svg, drawing.size()), drawing).context("cannot draw")?;
     Ok(svg)
 }
 
-/// Writes the drawing to an SVG file.
 pub(crate) fn write_svg(path: &Path, drawing: &impl Drawing) -> anyhow::Result<()> {
     let svg = svg(drawing).with_context(|| path.display().to_string())?;
     output_file::write(path, "the plot", svg)
 }
 
-/// Writes the drawing to a PNG file.
 pub(crate) fn write_png(path: &Path, drawing: &impl Drawing) -> anyhow::Result<()> {
     let picture = pixels(drawing).and_then(|picture| Ok(picture.encode_png()?));
     output_file::write(path, "the plot", picture.with_context(|| format!("cannot draw {}", path.display()))?)
 }
 
-/// The drawing as pixels.
 pub(crate) fn pixels(drawing: &impl Drawing) -> anyhow::Result<Pixmap> {
     pixels_of(&svg(drawing)?)
 }
@@ -317,8 +310,8 @@ fn pieces(points: &[(f64, f64)]) -> Vec<&[(f64, f64)]> {
     points.split(|point| !(point.0.is_finite() && point.1.is_finite())).filter(|piece| !piece.is_empty()).collect()
 }
 
-/// The range of a panel's points in one direction, with a margin, and no narrower than the
-/// meaningful minimum for its unit: a millimetre is not a navigation error.
+/// The range of a panel's points in one direction, with a margin and a minimum for its unit: a
+/// millimetre is not a navigation error.
 fn extent(panel: &Panel, axis: &str, of: impl Fn(&(f64, f64)) -> f64) -> (f64, f64) {
     if axis == COMPASS {
         return (0.0, 360.0);

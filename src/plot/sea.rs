@@ -48,7 +48,7 @@ fn spectrum(sea: &Sea, model: &SeaModel) -> Panel {
                 filled: true,
                 colour: None,
             },
-            Line::of("asked for", (0..=CURVE).map(|i| (at(i), spectrum::density_m2_hz(waves, at(i)))).collect()),
+            Line::of("specified", (0..=CURVE).map(|i| (at(i), spectrum::density_m2_hz(waves, at(i)))).collect()),
         ];
     }
     Panel::of("Wave spectrum", ["frequency in Hz", "m²/Hz"], lines, "no waves")
@@ -92,10 +92,10 @@ fn drift(samples: &[Sample]) -> Panel {
         equal: true,
         marks: marked.filter(|_| moves).map(|sample| Mark { name: name(sample), at: place(sample) }).collect(),
         ..Panel::of(
-            "Track of a free boat",
+            "Track of a drifting boat",
             ["x (east) in m", "y (north) in m"],
             if moves { vec![Line::of("", samples.iter().map(place).collect())] } else { vec![] },
-            "it stays where it is",
+            "the boat does not drift",
         )
     }
 }

@@ -19,7 +19,7 @@ pub(crate) fn write(path: &Path, title: &str, samples: &[Sample]) -> Result<()> 
                 series("sway", samples, |sample| sample.nu.sway),
             ],
         ),
-        over_time("Heading, turns counted on", "degrees", vec![headings(samples)]),
+        over_time("Heading, unwrapped", "degrees", vec![headings(samples)]),
         over_time("Yaw rate", "degrees per s", vec![series("", samples, |sample| sample.nu.yaw.to_degrees())]),
     ];
     let drive = drive(samples);

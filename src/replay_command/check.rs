@@ -37,7 +37,7 @@ pub(super) fn check(recording: &Recording, mut tell: impl FnMut()) -> Result<Ver
             bail!("decisions {seq} to {} are missing in this recording", given.stamp.seq.saturating_sub(1));
         }
         let Some(understood) = given.of(scenario).collect::<Option<Vec<_>>>() else {
-            bail!("an input at {:.1} s is not understood", given.stamp.valid_ns.as_s());
+            bail!("cannot decode an input at {:.1} s", given.stamp.valid_ns.as_s());
         };
         understood.into_iter().for_each(|input| contest.give(input));
         let again = contest.frame(&mut shown);
@@ -47,7 +47,7 @@ pub(super) fn check(recording: &Recording, mut tell: impl FnMut()) -> Result<Ver
             let [what, then, now] = first_difference(&recorded, &again, scenario)?;
             let (tick, at_s) = (recorded.stamp.seq * ticks, recorded.stamp.valid_ns.as_s());
             let from = format!("DIFFERENT from tick {tick} on ({at_s:.1} s)");
-            let text = format!("{from}: {what} was {then}, played again it is {now}\n");
+            let text = format!("{from}: {what} was {then}, in the rerun it is {now}\n");
             return Ok(Verdict { is_same: false, text });
         }
         frames += 1;
@@ -55,23 +55,25 @@ pub(super) fn check(recording: &Recording, mut tell: impl FnMut()) -> Result<Ver
         end_s = message.at.as_s();
     }
     if frames == 0 {
-        bail!("there are no frames in it");
+        bail!("it contains no frames");
     }
     let outcome = contest.outcome();
-    let same = format!("the same: {frames} frames to {end_s:.1} s to the last bit");
+    let same = format!("identical: {frames} frames to {end_s:.1} s");
     let Some(ending) = recording.ending() else {
         let cut = if recording.is_cut() { "; the file ends abruptly there" } else { "" };
         return Ok(Verdict { is_same: true, text: format!("{same}{cut}\n") });
     };
     if ending.outcome.ticks != outcome.ticks {
-        bail!("the game went on to tick {}, the recording to {}", ending.outcome.ticks, outcome.ticks);
+        bail!("the game ended at tick {}, but the recording at {}", ending.outcome.ticks, outcome.ticks);
     }
     let (recorded, again) = (&ending.outcome.digest, &outcome.digest);
     let is_same = recorded == again;
     let text = if is_same {
         format!("{same}, digest {again}\n")
     } else {
-        format!("DIFFERENT in the end: {frames} frames agree, but the digest was {recorded}, now it is {again}\n")
+        format!(
+            "DIFFERENT at the end: {frames} frames agree, but the digest was {recorded}, in the rerun it is {again}\n"
+        )
     };
     Ok(Verdict { is_same, text })
 }
@@ -159,7 +161,7 @@ mod tests {
     fn what_was_played_is_played_again() {
         let verdict = check(&recorded(Some), || {}).unwrap_or_else(|e| panic!("{e}"));
         assert!(verdict.is_same, "{}", verdict.text);
-        assert!(verdict.text.starts_with("the same: 11 frames to 1.0 s to the last bit, digest "));
+        assert!(verdict.text.starts_with("identical: 11 frames to 1.0 s, digest "));
     }
 
     #[test]
@@ -175,11 +177,11 @@ mod tests {
     #[test]
     fn what_cannot_be_played_again_is_refused_with_the_reason() {
         let nobody = Input::Held(VehicleId(200));
-        assert_eq!(refused(&with(nobody)), "an input at 0.5 s is not understood");
+        assert_eq!(refused(&with(nobody)), "cannot decode an input at 0.5 s");
         let gap = recorded(|decision| Some(decision).filter(|decision| ![5, 6].contains(&decision.frame.stamp.seq)));
         assert_eq!(refused(&gap), "decisions 5 to 6 are missing in this recording");
         let end = recorded(|decision| Some(decision).filter(|decision| decision.frame.stamp.seq != 10));
-        assert_eq!(refused(&end), "the game went on to tick 20, the recording to 18");
-        assert_eq!(refused(&recorded(|_| None)), "there are no frames in it");
+        assert_eq!(refused(&end), "the game ended at tick 20, but the recording at 18");
+        assert_eq!(refused(&recorded(|_| None)), "it contains no frames");
     }
 }

@@ -30,7 +30,7 @@ pub(super) struct Files {
     base: Option<PathBuf>,
 }
 
-/// A table as far as it is written.
+/// A partially written table.
 struct Table {
     name: &'static str,
     bytes: usize,
@@ -57,8 +57,7 @@ impl Table {
 }
 
 impl Files {
-    /// Opens the folder of a new or resumed training; on resuming, drops everything written after
-    /// the saved state.
+    /// Opens the folder of a training; on resuming, drops everything written after the saved state.
     pub(super) fn open(folder: &Path, base: &Path, trainer: &Trainer) -> Result<Files> {
         let (samples, _) = trainer.samples();
         let tables = [("updates.csv", UPDATES), ("evaluations.csv", EVALUATIONS), ("episodes.csv", EPISODES)];
@@ -75,15 +74,12 @@ impl Files {
                 *table = read(&folder.join(*name))?;
                 let begins = format!("{samples},{name},");
                 let noted = sums.lines().find_map(|line| line.strip_prefix(&begins)?.split_once(','));
-                let (bytes, sum) =
-                    noted.with_context(|| format!("{} does not know {name} at {samples} samples", path.display()))?;
+                let (bytes, sum) = noted
+                    .with_context(|| format!("{} has no entry for {name} at {samples} samples", path.display()))?;
                 let kept = bytes.parse().ok().and_then(|bytes: usize| table.get(..bytes)).map(str::to_owned);
                 *table = kept.filter(|kept| Table::of(name, kept).checksum() == sum).with_context(|| {
                     let path = folder.join(*name);
-                    format!(
-                        "{}: it has changed since it was written, or a part is missing; --out begins elsewhere",
-                        path.display()
-                    )
+                    format!("{} was changed or truncated after it was written; start afresh with --out", path.display())
                 })?;
             }
         }
@@ -168,7 +164,7 @@ impl Files {
 
     /// Writes the current policy, and the best one with a strategy that uses it.
     pub(super) fn models(&self, trainer: &Trainer, is_best: bool) -> Result<()> {
-        let model = trainer.model().context("the policy has become none")?;
+        let model = trainer.model().context("cannot export the policy")?;
         output_file::write(&self.folder.join("last.onnx"), "the policy", model)?;
         let Some(best) = trainer.best().filter(|_| is_best) else { return Ok(()) };
         output_file::write(&self.folder.join("best.onnx"), "the policy", &best.onnx)?;

@@ -6,6 +6,7 @@ use crate::jobs_args::JobsArgs;
 use crate::progress::Progress;
 use crate::{output_file, screen, stop};
 use anyhow::{Context, Result, bail};
+use command_line::number::whole;
 use files::Files;
 use learn::environment::{RecordingLog, RecordingNames, Recordings, check_recording_folder};
 use learn::train::{Evaluated, Played, Trainer};
@@ -20,28 +21,27 @@ use std::sync::atomic::Ordering;
 /// Size limit of a state, bytes: networks of the largest size, and a league of them.
 const STATE_BYTES_MAX: u64 = 4 << 30;
 
-/// What is trained, and where it goes.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The training: a file or a name
+    /// Training to run: a file or a name
     #[arg(value_parser = crate::scenario_files::file_of::<learn::training::Training>)]
     training: PathBuf,
-    /// The folder for the policy and all tables [default: runs/train/NAME]
+    /// Folder for the policy and all tables [default: runs/train/NAME]
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
-    /// Goes on with the training that this folder holds; what comes of it is the same as if it had never stopped
+    /// Resumes the training in the output folder; the result is the same as without interruption
     #[arg(long)]
     resume: bool,
-    /// Stops after so many samples, as Ctrl-C does
-    #[arg(long, value_name = "SAMPLES")]
+    /// Stops after this many samples, as Ctrl-C does
+    #[arg(long, value_name = "SAMPLES", value_parser = whole::<u64>(0, u64::MAX))]
     until: Option<u64>,
-    /// Another seed than the file's: another training
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
+    /// Random seed [default: the seed in the file]
+    #[arg(long, value_name = "N", value_parser = whole::<u64>(0, i64::MAX as u64))]
     seed: Option<u64>,
     #[command(flatten)]
     jobs: JobsArgs,
-    /// Records each Nth episode into the folder's games/, for `squall replay`; the policy is the same with or without
-    #[arg(long, value_name = "N")]
+    /// Records every Nth episode to games/ in the output folder, for `squall replay`; does not affect the policy
+    #[arg(long, value_name = "N", value_parser = whole::<NonZeroU64>(1, u64::MAX))]
     record_every: Option<NonZeroU64>,
 }
 
@@ -58,9 +58,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let (done, all) = trainer.samples();
     let progress = Progress::of(all, "samples");
     progress.begin_at(done);
-    let size = trainer.model().context("the policy has become none")?.len();
+    let size = trainer.model().context("cannot export the policy")?.len();
     progress.print(&format!(
-        "trains {} in {}: a model of {} kB",
+        "training {} in {}: model of {} kB",
         trainer.training().name,
         folder.display(),
         size / 1000
@@ -71,7 +71,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         if is_enough || stop.load(Ordering::Relaxed) {
             progress.end();
             let at = files::Files::state(&folder);
-            let from = if at.exists() { "--resume goes on with it" } else { "nothing of it can be resumed yet" };
+            let from = if at.exists() { "continue with --resume" } else { "no state has been saved yet" };
             screen::remark(&format!("stopped after {} samples; {from}", trainer.samples().0));
             return Ok(if is_enough { ExitCode::SUCCESS } else { stop::interrupted() });
         }
@@ -108,11 +108,14 @@ fn begin(args: &Args, training: Training, folder: &Path, jobs: usize) -> Result<
     let path = Files::state(folder);
     if args.resume {
         let state = primitives::input_file::read(&path, STATE_BYTES_MAX);
-        let state = state.with_context(|| format!("cannot read {}, which --resume goes on from", path.display()))?;
+        let state = state.with_context(|| format!("cannot read {}, from which --resume continues", path.display()))?;
         return Trainer::resume(training, jobs, &state).with_context(|| path.display().to_string());
     }
     if path.exists() {
-        bail!("{} holds a training: --resume goes on with it, --out puts this one elsewhere", folder.display());
+        bail!(
+            "{} already contains a training; continue it with --resume, or choose another folder with --out",
+            folder.display()
+        );
     }
     Ok(Trainer::new(training, jobs)?)
 }
@@ -121,7 +124,7 @@ fn begin(args: &Args, training: Training, folder: &Path, jobs: usize) -> Result<
 fn record(trainer: &mut Trainer, folder: &Path, every: NonZeroU64) -> Result<Arc<RecordingLog>> {
     let folder = Files::games(folder);
     let log = Arc::<RecordingLog>::default();
-    check_recording_folder(&folder).with_context(|| format!("cannot record into {}", folder.display()))?;
+    check_recording_folder(&folder).with_context(|| format!("cannot record to {}", folder.display()))?;
     let (names, commit) = (RecordingNames::ByNumber, env!("SQUALL_COMMIT").to_owned());
     trainer.watch(Recordings { folder, names, every: every.get(), commit }.watches(Arc::clone(&log)))?;
     Ok(log)
@@ -152,11 +155,11 @@ fn play_command(trainer: &Trainer, folder: &Path) -> Option<String> {
 
 fn finish(trainer: &Trainer, folder: &Path) -> Result<ExitCode> {
     let Some(best) = trainer.best() else { return Ok(ExitCode::SUCCESS) };
-    let digest = onnx::Network::read(&best.onnx).context("the policy has become none")?.digest();
+    let digest = onnx::Network::read(&best.onnx).context("cannot export the policy")?.digest();
     let (samples, won) = (best.samples, 100.0 * best.won);
     let mut text = format!("best after {samples} samples: won {won:.0} %, digest {digest:032x}\n");
     if let Some(how) = play_command(trainer, folder) {
-        text += &format!("to play it: {how}\n");
+        text += &format!("play it with: {how}\n");
     }
     screen::print(&text);
     output_file::write(&folder.join("digest.txt"), "the digest", format!("{digest:032x}\n"))?;

@@ -130,7 +130,7 @@ fn a_film_has_a_picture_for_each_tenth_of_a_second_that_it_is_looked_at() {
     assert_eq!(delays.len() as f64, (all / 4.0).floor() + 1.0);
     for (words, why) in [
         (&["--from", "20", "--to", "10"][..], "--to is 10 s, expected more than --from, 20 s"),
-        (&["--from", "99999"], "has no frame from 99999 s on"),
+        (&["--from", "99999"], "has no frame after 99999 s"),
     ] {
         let said = program::refusal(&dir, &[&["log", &game().recording, "--gif", "other.gif"], words].concat());
         assert!(said.contains(why), "{said}");
@@ -160,7 +160,7 @@ fn a_game_beside_itself_differs_in_nothing() {
     let (json, plots) = (text(dir.path().join("compare.json")), text(dir.path().join("plots")));
     let same = [game.recording.as_str(), game.recording.as_str()];
     let page = log(&["--compare", same[0], same[1], "--json", &json, "--plot", &plots]);
-    assert!(page.contains("as shapes") && !page.contains("only in"), "{page}");
+    assert!(page.contains("Fréchet") && !page.contains("only in"), "{page}");
     let comparison: Value = serde_json::from_str(&std::fs::read_to_string(json).unwrap()).unwrap();
     for pair in comparison["boats"].as_array().unwrap() {
         for (what, metres) in pair["apart"].as_object().unwrap() {
@@ -177,15 +177,15 @@ fn mistakes_are_explained() {
     let recording = game().recording.as_str();
     let toml = "scenarios/games/attack_1v1.toml";
     for (args, said) in [
-        (&["nowhere.mcap"][..], "cannot look at nowhere.mcap"),
+        (&["nowhere.mcap"][..], "cannot read nowhere.mcap"),
         (&[toml], "not a recording of a game"),
         (&[recording, "--csv", "whales"], "there is no topic \"whales\" in this recording; there are events, frame"),
-        (&["--compare", recording, "nowhere.mcap"], "cannot look at nowhere.mcap"),
+        (&["--compare", recording, "nowhere.mcap"], "cannot read nowhere.mcap"),
         (&["--compare", recording], "2 values"),
-        (&["--quality", recording, "nowhere.mcap"], "cannot look at nowhere.mcap"),
+        (&["--quality", recording, "nowhere.mcap"], "cannot read nowhere.mcap"),
         (&["--quality"], "a value is required"),
         (&[], "FILE"),
-        (&[recording, "--plot", toml], "cannot make the folder"),
+        (&[recording, "--plot", toml], "cannot create the folder"),
     ] {
         let refused = program::refusal(program::project(), &[&["log"], args].concat());
         assert!(refused.contains(said), "{args:?} should say {said:?}, but says {refused}");

@@ -71,7 +71,7 @@ fn a_decision_of_a_recorded_game_is_explained() {
     assert!((is - percent(value)).abs() < 0.15, "{is} is not {}: {text}", percent(value));
 
     for (vehicle, at, said) in [
-        ("red_one", "20", "no policy decides for red_one"),
+        ("red_one", "20", "red_one uses no policy"),
         ("blue_one", "99999", "no decision by blue_one at 99999 s"),
         ("blue_one", "-1", "no decision by blue_one at -1 s"),
         ("nobody", "20", "nobody"),
@@ -116,7 +116,10 @@ fn what_a_helm_reports_of_a_policy_is_told_in_words() {
 #[test]
 fn a_model_that_says_nothing_of_itself_is_told_from_a_file_that_is_none() {
     let text = printed(project(), &["policy", "crates/onnx/tests/network/sb3_dynamo.onnx"]);
-    assert!(text.contains("obs (45) -> logits (17)") && text.contains("a strategy that names it says"), "{text}");
+    assert!(
+        text.contains("obs (45) -> logits (17)") && text.contains("the strategy that uses it must declare this"),
+        "{text}"
+    );
     let why = refusal(project(), &["policy", "README.md"]);
-    assert!(why.contains("README.md is no model that can be used"), "{why}");
+    assert!(why.contains("README.md is not a usable model"), "{why}");
 }

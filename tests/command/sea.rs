@@ -8,7 +8,7 @@ const TITLES: [&str; 4] = [
     "Wave spectrum",
     "Surface elevation at the datum",
     "Wind at the datum, 10 m above the water",
-    "Track of a free boat",
+    "Track of a drifting boat",
 ];
 
 /// Runs `squall sea` for the Surveyor in a folder; returns its output and the page.
@@ -58,15 +58,15 @@ fn assert_escaped(text: &str) {
 
 #[test]
 fn every_sea_has_its_numbers_and_a_page_of_four_panels() {
-    let calm = ["no waves", "no waves", "no wind", "it stays where it is"];
+    let calm = ["no waves", "no waves", "no wind", "the boat does not drift"];
     // The panels without data.
     for (name, absent) in
         [("fresh_breeze", &[][..]), ("bay_gale", &[]), ("calm", &calm), ("tidal", &calm[..3]), ("any", &[])]
     {
         let dir = tempfile::tempdir().unwrap();
         let (text, svg) = sea(&dir, &scenario(&format!("seas/{name}.toml")), &[]);
-        assert!(text.contains(&format!("{name} for a boat of kind surveyor_m1_8\n")), "{text}");
-        assert_eq!(text.contains("drawn by seed 1: sea/wind.speed_m_s = "), name == "any", "{text}");
+        assert!(text.contains(&format!("{name} for the boat surveyor_m1_8\n")), "{text}");
+        assert_eq!(text.contains("randomised by seed 1: sea/wind.speed_m_s = "), name == "any", "{text}");
         assert_well_formed(&svg);
         for title in TITLES.into_iter().chain([format!("{name}: surveyor_m1_8, seed 1").as_str()]) {
             assert!(svg.lines().any(|line| line == title), "{name} has no {title:?}");
@@ -146,5 +146,5 @@ fn a_kinematic_boat_stays_in_a_gale_and_the_text_says_why() {
     let boat = scenario("boats/heron_kinematic.toml");
     let text = printed(&dir, &["sea", &scenario("seas/gale.toml"), "--boat", &boat]);
     assert_eq!(value(&text, "free boat, simulated"), "stays");
-    assert!(text.contains("a kinematic boat feels the current alone"), "{text}");
+    assert!(text.contains("only the current moves a kinematic boat"), "{text}");
 }

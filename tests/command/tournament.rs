@@ -215,7 +215,7 @@ fn an_odd_number_of_games_is_rounded_up_with_a_note() {
     let (tournament, report) = (short_tournament(&dir, "games = 5\nseed = 9"), place(&dir, "report.json"));
     let output = output(&["tournament", &tournament, "--json", &report]);
     let note = String::from_utf8(output.stderr).unwrap();
-    assert!(output.status.success() && note.contains("5 games a pairing are 6"), "{note}");
+    assert!(output.status.success() && note.contains("5 games per pairing become 6"), "{note}");
     assert!(note.contains("18 games in") && note.contains("games/s"), "{note}");
     let report = json(&report);
     assert_eq!((&report["games_per_pairing"], &report["matrix"][0]["games"]), (&6.into(), &6.into()));
@@ -259,12 +259,12 @@ fn who_joins_a_league_plays_its_own_games_alone_and_a_torn_line_is_played_again(
     };
     let [four, pav01, idle] = ["strategy_4", "pav01", "idle"].map(|name| entry(name, name));
     let said = play(&[four.clone(), pav01.clone()], &["--league", &league]);
-    assert!(said.contains("0 of 4 games were played before"), "{said}");
+    assert!(said.contains("0 of 4 games already played"), "{said}");
     // The last line was cut off when the machine stopped.
     let text = std::fs::read_to_string(&results).unwrap();
     std::fs::write(&results, &text[..text.len() - 9]).unwrap();
     let said = play(&[four.clone(), pav01.clone(), idle.clone()], &["--league", &league]);
-    assert!(said.contains("3 of 12 games were played before") && said.contains("9 games in"), "{said}");
+    assert!(said.contains("3 of 12 games already played") && said.contains("9 games in"), "{said}");
     // The result equals that of a tournament that plays all games.
     play(&[four.clone(), pav01.clone(), idle], &["--json", &whole]);
     let (mut known, mut anew) = (json(&format!("{league}/report.json")), json(&whole));
@@ -272,17 +272,17 @@ fn who_joins_a_league_plays_its_own_games_alone_and_a_torn_line_is_played_again(
     assert_eq!(known, anew);
     // A renamed file is the same player; a different file is not.
     let said = play(&[entry("renamed", "strategy_4"), pav01], &["--league", &league]);
-    assert!(said.contains("4 of 4 games were played before"), "{said}");
+    assert!(said.contains("4 of 4 games already played"), "{said}");
     let said = play(&[four, entry("pav01", "easy_attackers")], &["--league", &league]);
-    assert!(said.contains("0 of 4 games were played before"), "{said}");
+    assert!(said.contains("0 of 4 games already played"), "{said}");
     // If a game file has changed on the disk, its earlier results are unusable.
     let changed = text.replacen("\"seed\":1", "\"seed\":7", 1);
     assert_ne!(changed, text);
-    for (damaged, expected) in [("{}\n", "missing field"), (changed.as_str(), "its checksum is another")] {
+    for (damaged, expected) in [("{}\n", "missing field"), (changed.as_str(), "its checksum does not match")] {
         std::fs::write(&results, damaged).unwrap();
         let refused = output(&["tournament", &place(&dir, "tournament.toml"), "--league", &league]);
         let why = String::from_utf8(refused.stderr).unwrap();
-        assert!(!refused.status.success() && why.contains("results.jsonl: line 1 is no game of a league"), "{why}");
+        assert!(!refused.status.success() && why.contains("results.jsonl: line 1 is not a league game"), "{why}");
         assert!(why.contains(expected), "{why}");
     }
 }
@@ -340,7 +340,7 @@ fn a_game_from_both_sides_is_the_two_games_of_the_tournament_and_their_sum() {
         (text, json(&result))
     };
     let (text, both) = run(&["--both-sides"]);
-    assert!(text.contains("from both sides: easy_attackers (first as blue) "), "{text}");
+    assert!(text.contains("both games: easy_attackers (first as blue) "), "{text}");
     // A tournament swaps the strategies of the two teams in the same way.
     let (_, first) = run(&[]);
     let (_, second) = run(&["--blue", "idle", "--red", "easy_attackers"]);
@@ -351,5 +351,5 @@ fn a_game_from_both_sides_is_the_two_games_of_the_tournament_and_their_sum() {
     }
     assert!(points(&first, "blue") > 0, "somebody scores");
     assert!(text.contains("nothing in this game is random") && first["random"] == false, "{text}");
-    assert!(!text.contains("--both-sides plays") && first["ends_differ"] == false, "{text}");
+    assert!(!text.contains("--both-sides") && first["ends_differ"] == false, "{text}");
 }

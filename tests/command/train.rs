@@ -50,7 +50,7 @@ fn a_training_leaves_the_same_files_on_any_number_of_threads() {
 
     // A finished training is not started again, and its output is a policy.
     let why = refusal(here, &["train", "short.toml", "--out", "one"]);
-    assert!(why.contains("--resume goes on with it"), "{why}");
+    assert!(why.contains("continue it with --resume"), "{why}");
     let text = printed(here, &["policy", "one/best.onnx"]);
     assert!(text.contains("squall, version") && text.contains("logits (17)"), "{text}");
     let game = scenario("games/surveyor_2v2.toml");
@@ -142,6 +142,6 @@ fn each_nth_episode_of_a_training_is_recorded_and_can_be_replayed() {
     for (seed, file) in [named[0], named[named.len() - 1]] {
         assert!(file.starts_with(&format!("games/{seed}_")), "{file} is of seed {seed}");
         let checked = printed(here, &["replay", &format!("seen/{file}"), "--check"]);
-        assert!(checked.contains("the same: 201 frames to 20.0 s"), "{checked}");
+        assert!(checked.contains("identical: 201 frames to 20.0 s"), "{checked}");
     }
 }

@@ -360,7 +360,7 @@ fn identify_says_what_is_wrong() {
     for (args, want) in [
         (["start.toml", "--log", "none.csv", "--fit", "lag"], "cannot read none.csv"),
         (["start.toml", "--log", "in.csv", "--fit", "lag"], "in.csv:1: no column heading_deg"),
-        (["start.toml", "--log", "log.csv", "--fit", "keel"], "keel is no parameter, expected some of surge_linear"),
+        (["start.toml", "--log", "log.csv", "--fit", "keel"], "keel is not a parameter, expected some of surge_linear"),
         (["none.toml", "--log", "log.csv", "--fit", "lag"], "there is no file none.toml"),
         ([kinematic.as_str(), "--log", "log.csv", "--fit", "surge_linear"], "heron_kinematic is kinematic"),
     ] {

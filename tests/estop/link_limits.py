@@ -50,7 +50,9 @@ class Play:
         self.squall("sim", NEAR, "sim", scenario, "--listen", self.endpoint, "--insecure", "--pace", "realtime",
                     "--game", GAME, "--join-s", "60")
         place = ["--connect", self.endpoint, "--game", GAME]
-        self.squall("agents", self.agents_at, "agent", *place, "--vehicle", "blue_one", "blue_two", "red_one", "red_two")
+        for team in ("blue", "red"):
+            boats = (f"{team}_one", f"{team}_two")
+            self.squall(f"agents_{team}", self.agents_at, "agent", *place, "--vehicle", *boats)
         gateways = {boat: self.squall(f"gateway_{boat}", self.boats_at, "gateway", "surveyor", *place, "--arm",
                                       "--vehicle", boat, "--link", link, "--no-record", "--config", self.args.config)
                     for boat, link in links.items()}

@@ -171,7 +171,7 @@ fn a_boat_that_does_not_report_its_stop_fails_the_console_and_tell() {
     fleet.gateways[1].signal("STOP");
     console.wait_for(&["red_one  silent"]);
     console.ask("all estop", &ALL_STOPPED[..1]);
-    console.wait_for(&["red_one  does not report E-stop"]);
+    console.wait_for(&["red_one  has not confirmed E-stop"]);
     let told = fleet.sim.run(&["gateway", "tell", "red_one", "estop"]);
     assert!(!told.status.success() && stderr(&told).contains("red_one"), "{told:?}");
     let (status, said) = console.end();

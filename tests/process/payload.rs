@@ -159,7 +159,7 @@ fn bytes_pass_both_ways_and_are_recorded_with_what_the_sonde_measures() {
         }
     }
     for (args, part) in [
-        (&["gateway", "replay", &file][..], "the replay is the recording, byte for byte"),
+        (&["gateway", "replay", &file][..], "the replay equals the recording, byte for byte"),
         (&["log", &file], "payload/camera"),
         (&["log", &file, "--csv", "payload/sonde"], "from_payload,20.5 7.25 -8.125"),
         (&["log", &file, "--csv", "payload/dac"], "to_payload,GET /data HTTP/1.0"),

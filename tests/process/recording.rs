@@ -51,7 +51,7 @@ fn a_game_recorded_replayed_and_played_again_is_one_game() {
         assert_eq!([told["blue"].as_u64(), told["red"].as_u64()], [score[0], score[1]].map(|n| Some(u64::from(n))));
         let (same, said) = checked(&path);
         assert!(
-            same && said.contains("6001 frames to 600.0 s to the last bit") && said.contains(&ending.outcome.digest),
+            same && said.contains("identical: 6001 frames to 600.0 s") && said.contains(&ending.outcome.digest),
             "{said}"
         );
         digests.push(ending.outcome.digest.clone());
@@ -108,14 +108,12 @@ fn what_is_heard_is_written_down_if_it_is_sound() {
     assert_eq!(json("control"), serde_json::json!({"control": "halt"}));
     assert_eq!(json("run")["phase"], "over");
     let said = refusal_of(&["sim", "scenarios/games/attack_1v1.toml", "--record", &file]);
-    assert!(said.contains(&format!("cannot record into {file}")), "{said}");
+    assert!(said.contains(&format!("cannot record to {file}")), "{said}");
 }
 
 #[test]
 fn what_is_no_recording_is_refused_with_the_reason() {
-    for (file, part) in
-        [("README.md", "does not begin as MCAP files do"), ("nowhere.mcap", "cannot read the recording")]
-    {
+    for (file, part) in [("README.md", "it is not an MCAP file"), ("nowhere.mcap", "cannot read the recording")] {
         for how in [&["replay", file][..], &["replay", "--check", file]] {
             let said = refusal_of(how);
             assert!(said.contains(file) && said.contains(part), "{how:?}: {said}");
@@ -127,8 +125,8 @@ fn what_is_no_recording_is_refused_with_the_reason() {
     let game = "scenarios/games/attack_1v1.toml";
     for (args, part) in [
         (&["replay", "--check", "README.md", "--listen", "127.0.0.1:0"][..], "--check shows no page"),
-        (&["run", game, "--in-process", "--record", &taken], "cannot make the folder"),
-        (&["run", game, "--no-record", "--token", "secret"], "they need --view"),
+        (&["run", game, "--in-process", "--record", &taken], "cannot create the folder"),
+        (&["run", game, "--no-record", "--token", "secret"], "require --view"),
         (&["view", "--listen", "0.0.0.0:0"], "or give a token"),
     ] {
         let said = refusal_of(args);
@@ -250,10 +248,10 @@ fn real_boats_are_recorded_with_every_byte_and_their_game_can_be_played_again() 
     let (same, said) = checked(&path);
     assert!(same, "{said}");
     for (args, part) in [
-        (&["log", &file][..], "the gateway of blue_one"),
+        (&["log", &file][..], "gateway of blue_one"),
         (&["log", &file, "--csv", "link/blue_one"], "to_boat,\"$PSEAC"),
         (&["log", &file, "--csv", "event"], "event.state.to"),
-        (&["log", &file, "--events"], "is of a gateway, not of a game"),
+        (&["log", &file, "--events"], "is the recording of a gateway"),
         (&["replay", "--check", &file], "not a recording of a game: it is of a gateway"),
         (&["gateway", "replay", &path.display().to_string()], "not a recording of a gateway: it is of a game"),
     ] {

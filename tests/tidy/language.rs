@@ -1,14 +1,14 @@
-//! Checks the language of documents and the targets of their links.
+//! Checks the language of documents and of the program's texts, and the targets of links.
 
 use crate::rule::Breaches;
-use crate::text::prose;
+use crate::text::{code_of, prose};
 use crate::tree::Tree;
 
 /// Maximum length of a sentence in a document, words. Half of that is better.
 const WORDS_MAX: usize = 40;
 
 /// Phrases that a native engineer would not write, each with its replacement.
-const PHRASES: [(&str, &str); 12] = [
+const PHRASES: [(&str, &str); 24] = [
     ("that is none", "invalid, non-finite"),
     ("came of", "the result"),
     ("comes of", "the result"),
@@ -21,6 +21,30 @@ const PHRASES: [(&str, &str); 12] = [
     ("who has", "the user with, anyone with"),
     ("whoever", "anyone who, the user"),
     ("nothing would come", "would have no effect"),
+    ("goes on with", "continues, resumes"),
+    ("go on with", "continue, resume"),
+    ("surely", "significantly, certainly"),
+    ("one at least", "at least one"),
+    ("in the mean", "on average"),
+    ("is there already", "exists already"),
+    ("look at it", "show it, open it"),
+    ("thrust zero", "zero thrust"),
+    ("inside of", "inside, within"),
+    ("outside of", "outside"),
+    ("anew", "again"),
+    ("numbers went bad", "state became non-finite"),
+];
+
+/// Folders of code whose help, messages and comments are checked like documents.
+const CODE: [&str; 8] = [
+    "src/",
+    "gateway/cli/src/",
+    "crates/analysis/src/",
+    "crates/arena/src/",
+    "crates/command_line/src/",
+    "crates/experiment/src/",
+    "crates/recording/src/",
+    "crates/trial/src/",
 ];
 
 /// Hand-written documents. Generated ones are checked at their source.
@@ -30,16 +54,31 @@ fn documents(tree: &Tree) -> impl Iterator<Item = (&String, &String)> {
     tree.files.iter().filter(move |(path, _)| is_written(path))
 }
 
+/// The comments and the string literals of a source, with their line numbers, up to its tests.
+fn texts(source: &str) -> impl Iterator<Item = (usize, String)> {
+    source.lines().zip(code_of(source)).map(|(line, (number, code))| {
+        let comment = line.strip_prefix(code).unwrap_or_default();
+        let literals = code.split('"').skip(1).step_by(2);
+        (number, literals.chain([comment]).collect::<Vec<_>>().join(" "))
+    })
+}
+
+/// The phrases in a line that a native engineer would not write. Ignores names in backticks.
+fn phrases(path: &str, number: usize, line: &str) -> Breaches {
+    let words = line.split('`').step_by(2).collect::<Vec<_>>().join(" ").to_lowercase();
+    let words = format!(" {} ", words.replace(|c: char| !c.is_alphanumeric(), " "));
+    let found = PHRASES.iter().filter(|(phrase, _)| words.contains(&format!(" {phrase} ")));
+    found.map(|(phrase, better)| format!("{path}:{number}: {phrase:?}; better: {better}")).collect()
+}
+
 pub(crate) fn language(tree: &Tree) -> Breaches {
     let mut breaches = Breaches::new();
+    let is_checked = |path: &str| CODE.iter().any(|folder| path.starts_with(folder));
+    for (path, text) in tree.sources().filter(|(path, _)| is_checked(path)) {
+        breaches.extend(texts(text).flat_map(|(number, line)| phrases(path, number, &line)));
+    }
     for (path, text) in documents(tree) {
-        for (number, line) in prose(text) {
-            // Ignore names in backticks.
-            let words = line.split('`').step_by(2).collect::<Vec<_>>().join(" ").to_lowercase();
-            let words = format!(" {} ", words.replace(|c: char| !c.is_alphanumeric(), " "));
-            let found = PHRASES.iter().filter(|(phrase, _)| words.contains(&format!(" {phrase} ")));
-            breaches.extend(found.map(|(phrase, better)| format!("{path}:{number}: {phrase:?}; better: {better}")));
-        }
+        breaches.extend(prose(text).flat_map(|(number, line)| phrases(path, number, line)));
         for (number, sentence) in sentences(text) {
             let words = sentence.split_whitespace().count();
             if words > WORDS_MAX {

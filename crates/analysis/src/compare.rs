@@ -60,7 +60,7 @@ pub struct EventDifference {
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum Incomparable {
     /// Their positions have different origins.
-    #[error("the fields {a} and {b} have different datums: places of one mean nothing on the other")]
+    #[error("the fields {a} and {b} have different datums, so their positions cannot be compared")]
     Datum {
         /// The field of A.
         a: String,
@@ -68,7 +68,7 @@ pub enum Incomparable {
         b: String,
     },
     /// No boat is in both games.
-    #[error("no boat is in both: A has {a}, B has {b}")]
+    #[error("no boat is in both recordings: A has {a}, B has {b}")]
     Boats {
         /// The boats of A.
         a: String,
@@ -76,7 +76,7 @@ pub enum Incomparable {
         b: String,
     },
     /// The games have no time in common.
-    #[error("there is no time at which both games were on: one of the recordings has no frames")]
+    #[error("the games have no time in common: one of the recordings has no frames")]
     Time,
 }
 
@@ -170,7 +170,11 @@ fn notes(heads: [&Header; 2], [a, b]: [&GameSeries; 2]) -> Vec<String> {
         notes.extend(series.remark().map(|remark| format!("{name}: {remark}")));
     }
     if (a.span_s() - b.span_s()).abs() > 0.05 {
-        notes.push(format!("A lasts {:.1} s, B {:.1} s: compared until the shorter ends", a.span_s(), b.span_s()));
+        notes.push(format!(
+            "A lasts {:.1} s, B {:.1} s: compared up to the end of the shorter",
+            a.span_s(),
+            b.span_s()
+        ));
     }
     notes
 }

@@ -102,7 +102,7 @@ impl GameSeries {
     /// A remark for people if decisions were left out.
     #[must_use]
     pub fn remark(&self) -> Option<String> {
-        (self.every > 1).then(|| format!("the game is long: only one decision of {} is looked at", self.every))
+        (self.every > 1).then(|| format!("the game is long; only every {}th decision is analysed", self.every))
     }
 
     /// The time between the first sample and the last, s.

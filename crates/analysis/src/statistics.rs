@@ -72,7 +72,6 @@ pub struct StatisticsBuilder<'a> {
     boats: Vec<BoatSums>,
 }
 
-/// The sums for one boat.
 #[derive(Clone, Debug, Default)]
 struct BoatSums {
     before: Option<Ned>,

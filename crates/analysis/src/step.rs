@@ -159,8 +159,7 @@ impl<T: FnMut(Step)> Reader<'_, T> {
         Ok(())
     }
 
-    /// Drops expired orders. Orders expire by the age of the answered picture when a decision is
-    /// played.
+    /// Drops orders whose picture is too old when the decision is played.
     fn expire_orders(&mut self) {
         let Some(now_s) = self.now_s else { return };
         for (order, given_at) in &mut self.orders {

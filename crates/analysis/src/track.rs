@@ -20,8 +20,7 @@ pub struct TrackDifference {
     pub frechet_m: f64,
 }
 
-/// Limit of points per track for comparing shapes: time grows with their product, memory with their
-/// sum.
+/// Maximum points per track: time grows with their product, memory with their sum.
 const SHAPE_POINTS: usize = 2000;
 
 /// Distance between the boats of two games in their common time; none without a common sample.

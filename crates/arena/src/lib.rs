@@ -20,15 +20,8 @@ pub fn play(scenario: &Scenario, minds: Vec<Box<dyn Mind>>, seed: u64) -> Result
     play_watched(scenario, minds, seed, |_| true)
 }
 
-/// Like [`play`], but shows the contest to `watch` before every decision and at the end. Stops when
-/// `watch` returns `false`.
-///
-/// # Errors
-/// [`NoStart`] if the boats do not fit into their spawn area, the randomised values are
-/// inconsistent, or a boat is real.
-///
-/// # Panics
-/// If the number of minds differs from the number of vehicles.
+/// Like [`play`], with its errors and panics, but shows the contest to `watch` before every decision and
+/// at the end. Stops when `watch` returns `false`.
 pub fn play_watched(
     scenario: &Scenario,
     minds: Vec<Box<dyn Mind>>,
@@ -38,14 +31,8 @@ pub fn play_watched(
     play_observed(scenario, minds, seed, |contest, _| watch(contest))
 }
 
-/// Like [`play_watched`], but also shows the minds, in the state that led there.
-///
-/// # Errors
-/// [`NoStart`] if the boats do not fit into their spawn area, the randomised values are
-/// inconsistent, or a boat is real.
-///
-/// # Panics
-/// If the number of minds differs from the number of vehicles.
+/// Like [`play_watched`], but also shows the minds, in the state that led there. Errors and panics are
+/// those of [`play`].
 pub fn play_observed(
     scenario: &Scenario,
     minds: Vec<Box<dyn Mind>>,

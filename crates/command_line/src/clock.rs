@@ -4,13 +4,13 @@
 use std::time::{Duration, Instant};
 
 /// The current time.
-#[expect(clippy::disallowed_methods, reason = "how long something takes is told to people")]
+#[expect(clippy::disallowed_methods, reason = "durations are shown to users")]
 pub fn now() -> Instant {
     Instant::now()
 }
 
 /// Sleeps where no condition can be waited for.
-#[expect(clippy::disallowed_methods, reason = "between two looks at whether somebody wants it to stop")]
+#[expect(clippy::disallowed_methods, reason = "interval between polls of the stop flag")]
 pub fn rest(time: Duration) {
     std::thread::sleep(time);
 }

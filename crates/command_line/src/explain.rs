@@ -12,13 +12,34 @@ const COLUMNS: usize = 100;
 /// An error with all its causes; for scenario files, with all problems.
 pub fn error(error: &Error) -> String {
     let Some(problems) = error.chain().find_map(|cause| cause.downcast_ref()) else {
-        return printable::message(&format!("{error:#}"));
+        return printable::message(&line(error));
     };
     let before = error
         .chain()
         .take_while(|cause| !cause.is::<Problems>())
         .map(|cause| printable::message(&format!("{cause}:\n")));
     before.collect::<String>() + &self::problems(problems)
+}
+
+/// The messages of an error and its causes on one line, without causes that a message already includes.
+pub fn line(error: &Error) -> String {
+    let causes = error.chain().map(|cause| without_number(&cause.to_string()));
+    causes.fold(String::new(), |text, cause| {
+        if text.ends_with(&cause) {
+            text
+        } else if text.is_empty() {
+            cause
+        } else {
+            format!("{text}: {cause}")
+        }
+    })
+}
+
+/// A message without the system's error numbers: ` (os error 2)`.
+fn without_number(message: &str) -> String {
+    let mut parts = message.split(" (os error ");
+    let first = parts.next().unwrap_or_default().to_owned();
+    parts.fold(first, |text, part| text + part.split_once(')').map_or("", |(_, rest)| rest))
 }
 
 /// All problems, with their lines.
@@ -28,7 +49,8 @@ pub fn problems(Problems(problems): &Problems) -> String {
 
 fn problem(problem: &Problem) -> String {
     let Problem { line, column, source, message, .. } = problem;
-    let told = format!("{} {}", style::bad(&format!("{}:", problem.place())), printable::line(message));
+    let told =
+        format!("{} {}", style::bad(&format!("{}:", problem.place())), printable::line(&without_number(message)));
     let Some(span) = span(source, *column) else { return told };
     let shown = Snippet::source(source.as_str()).line_start(*line).annotation(AnnotationKind::Primary.span(span));
     let shown = Renderer::styled().term_width(COLUMNS).render(&[Group::with_level(Level::ERROR).element(shown)]);
@@ -45,4 +67,23 @@ fn span(source: &str, column: usize) -> Option<std::ops::Range<usize>> {
         None => rest.find([' ', '=', ',', ']', '}', '#', '\t']).filter(|end| *end > 0),
     };
     Some(start..start + length.unwrap_or(if quote.is_some() { rest.len() } else { rest.trim_end().len() }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use anyhow::{Context, anyhow};
+
+    #[test]
+    fn a_cause_is_stated_once_and_without_the_system_error_number() {
+        let cause = || std::io::Error::from_raw_os_error(2);
+        let once = "cannot read a: No such file or directory";
+        assert_eq!(self::error(&Error::new(cause()).context("cannot read a")), once);
+        let repeated: Result<(), _> = Err(cause()).with_context(|| format!("cannot read a: {}", cause()));
+        assert_eq!(self::error(&repeated.expect_err("it is an error")), once);
+        assert_eq!(
+            self::error(&anyhow!("{}; {}", cause(), cause())),
+            "No such file or directory; No such file or directory"
+        );
+    }
 }

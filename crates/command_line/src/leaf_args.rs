@@ -1,5 +1,6 @@
 //! Command line arguments for how a process reaches a game: where it is, its name, keys and token.
 
+use crate::number::endpoint;
 use anyhow::{Context, Result, bail};
 use bus::keys::Bundle;
 use bus::token::TOKEN_VARIABLE;
@@ -13,7 +14,7 @@ use std::sync::Arc;
 /// The keys of a game.
 #[derive(clap::Args, Clone, Debug)]
 pub struct KeysArgs {
-    /// This node's keys, for a game that uses keys: a folder created by `squall keys new`
+    /// Folder with this node's keys, created by `squall keys new`; required if the game uses keys
     #[arg(long, value_name = "FOLDER")]
     keys: Option<PathBuf>,
 }
@@ -28,8 +29,7 @@ impl KeysArgs {
     }
 }
 
-/// Restarts this program with the threads required for a process with keys, if it is given keys and
-/// has other threads.
+/// Restarts this program with the number of threads that a process with keys needs.
 pub fn restart_with_threads_for_keys() -> Result<()> {
     let is_keys = |word: OsString| word.to_str().is_some_and(|word| word == "--keys" || word.starts_with("--keys="));
     if std::env::args_os().skip(1).any(is_keys) {
@@ -41,7 +41,8 @@ pub fn restart_with_threads_for_keys() -> Result<()> {
 /// The token of a game.
 #[derive(clap::Args, Clone, Debug)]
 pub struct TokenArgs {
-    /// A file with the game's token, as `squall sim` shows it [default: from SQUALL_TOKEN, or of the game on this machine]
+    /// File with the game's token, which `squall sim` prints [default: SQUALL_TOKEN, or the token of the game on this
+    /// machine]
     #[arg(long, value_name = "FILE")]
     token_file: Option<PathBuf>,
 }
@@ -57,7 +58,8 @@ impl TokenArgs {
     }
 }
 
-/// A text that must not stand on a command line: from the file, or else from the environment variable; with its place, for errors.
+/// Reads a secret from the file, or else from the environment variable; returns it with its place,
+/// for errors.
 pub fn text_of(file: Option<&Path>, variable: &str) -> Result<Option<(String, String)>> {
     let Some(file) = file else {
         return Ok(std::env::var(variable).ok().map(|text| (text, variable.to_owned())));
@@ -70,16 +72,16 @@ pub fn text_of(file: Option<&Path>, variable: &str) -> Result<Option<(String, St
 /// How to reach a hub.
 #[derive(clap::Args, Clone, Debug)]
 pub struct LeafArgs {
-    /// Where the sim is, for example tcp/192.168.1.5:7447 [default: the game on this machine]
-    #[arg(long, value_name = "ENDPOINT")]
+    /// Endpoint of the sim, for example tcp/192.168.1.5:7447 [default: the game on this machine]
+    #[arg(long, value_name = "ENDPOINT", value_parser = endpoint)]
     connect: Vec<String>,
-    /// Find the sim by multicast on the local network
+    /// Finds the sim by multicast on the local network
     #[arg(long, conflicts_with = "connect")]
     lan: bool,
-    /// A zenoh configuration (JSON5) to begin with: access control, interfaces, buffers
+    /// Base zenoh configuration (JSON5), for example for access control, interfaces or buffers
     #[arg(long, value_name = "FILE")]
     zenoh_config: Option<PathBuf>,
-    /// The game's name [default: the only one there]
+    /// Name of the game [default: the only game found]
     #[arg(long, value_name = "NAME", value_parser = GameName::new)]
     pub game: Option<GameName>,
     #[command(flatten)]
@@ -99,9 +101,8 @@ impl LeafArgs {
         self.keys.load()
     }
 
-    /// The gateways on this machine that may be meant. If the game is elsewhere, those that were
-    /// given its name; but a command that stops boats rather addresses one gateway too many than
-    /// one too few.
+    /// The gateways on this machine that a command may address. For a game elsewhere, these are the
+    /// gateways of that game; a stop addresses more rather than fewer.
     pub fn local_gateways(&self, stops: bool) -> Vec<bus::GatewayEntry> {
         let is_elsewhere = !stops && (self.lan || !self.connect.is_empty());
         let is_meant = |entry: &bus::GatewayEntry| match (&self.game, &entry.game) {
@@ -116,10 +117,10 @@ impl LeafArgs {
         self.net_of(None, self.keys()?)
     }
 
-    /// The same, for nodes that outlive a game or start before it.
+    /// Like `net`, for nodes that outlive a game or start before it.
     pub fn place(&self) -> Result<Place> {
         let (leaf, keys) = (self.clone(), self.keys()?);
-        Ok(Place::new(move |game| leaf.net_of(game, keys.clone()).map_err(|e| format!("{e:#}"))))
+        Ok(Place::new(move |game| leaf.net_of(game, keys.clone()).map_err(|e| crate::explain::line(&e))))
     }
 
     /// The place of this game, or else of the given one.
@@ -145,7 +146,7 @@ fn local_endpoint(games: &[bus::Entry]) -> Result<String> {
         [entry] => Ok(entry.endpoint.clone()),
         several => {
             let names: Vec<&str> = several.iter().map(|entry| entry.game.as_str()).collect();
-            bail!("several games run on this machine: choose with --game among {}", names.join(", "))
+            bail!("several games run on this machine; select one with --game: {}", names.join(", "))
         }
     }
 }

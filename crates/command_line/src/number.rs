@@ -1,11 +1,14 @@
-//! Range-checked numbers from the command line.
+//! Parsers of command line values: range-checked numbers, addresses and endpoints.
+
+use clap::Command;
+use std::net::SocketAddr;
+use std::str::FromStr;
 
 /// Parses a number from the command line and checks its range.
 pub fn within(low: f64, high: f64, unit: &'static str) -> impl Fn(&str) -> Result<f64, String> + Clone {
     move |text: &str| {
-        let number = text.parse().map_err(|_| format!("{text:?} is not a number, expected {low} to {high} {unit}"))?;
-        let is_within = (low..=high).contains(&number);
-        if is_within { Ok(number) } else { Err(format!("{text} is not within {low} to {high} {unit}")) }
+        let number = text.parse().ok().filter(|number| (low..=high).contains(number));
+        number.ok_or_else(|| format!("expected a number from {low} to {high} {unit}"))
     }
 }
 
@@ -15,4 +18,65 @@ pub fn within(low: f64, high: f64, unit: &'static str) -> impl Fn(&str) -> Resul
 /// If it is not a number from 0 to a million.
 pub fn seconds(text: &str) -> Result<f64, String> {
     within(0.0, 1e6, "s")(text)
+}
+
+/// Parses a whole number from the command line and checks its range; `high` may be `u64::MAX`.
+pub fn whole<T: FromStr>(low: u64, high: u64) -> impl Fn(&str) -> Result<T, String> + Clone {
+    move |text: &str| {
+        let is_within = text.parse().is_ok_and(|number| (low..=high).contains(&number));
+        text.parse().ok().filter(|_| is_within).ok_or_else(|| match high {
+            u64::MAX => format!("expected a whole number of at least {low}"),
+            high => format!("expected a whole number from {low} to {high}"),
+        })
+    }
+}
+
+/// Parses an IP address with a port from the command line.
+///
+/// # Errors
+/// If it is neither IPv4 nor IPv6 with a port.
+pub fn address(text: &str) -> Result<SocketAddr, String> {
+    text.parse().map_err(|_| "expected an IP address and a port, such as 127.0.0.1:8100".to_owned())
+}
+
+/// Parses the endpoint of a node from the command line.
+///
+/// # Errors
+/// If it lacks the protocol or the address.
+pub fn endpoint(text: &str) -> Result<String, String> {
+    let is_whole = text.split_once('/').is_some_and(|(protocol, address)| !protocol.is_empty() && !address.is_empty());
+    let wrong = || "expected PROTOCOL/ADDRESS, such as tcp/192.168.1.5:7447".to_owned();
+    is_whole.then(|| text.to_owned()).ok_or_else(wrong)
+}
+
+/// Lets all options take negative numbers, so that their parsers report the allowed range; clap would
+/// report an unknown option.
+#[must_use]
+pub fn with_negative_numbers(command: Command) -> Command {
+    command
+        .mut_args(|arg| {
+            let takes_value = arg.get_action().takes_values();
+            arg.allow_negative_numbers(takes_value)
+        })
+        .mut_subcommands(with_negative_numbers)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_out_of_range_are_refused_with_the_range() {
+        assert_eq!(whole::<u8>(1, 30)("30"), Ok(30));
+        assert_eq!(whole::<u64>(0, u64::MAX)("18446744073709551615"), Ok(u64::MAX));
+        for text in ["0", "31", "-1", "1k", "", "1.5"] {
+            assert_eq!(whole::<u8>(1, 30)(text), Err("expected a whole number from 1 to 30".to_owned()), "{text}");
+        }
+        assert_eq!(whole::<u64>(1, u64::MAX)("0"), Err("expected a whole number of at least 1".to_owned()));
+        for text in ["-1", "1e9", "nan", "abc"] {
+            assert_eq!(seconds(text), Err("expected a number from 0 to 1000000 s".to_owned()), "{text}");
+        }
+        assert!(endpoint("127.0.0.1:7447").is_err() && endpoint("tcp/127.0.0.1:7447").is_ok());
+        assert!(address("localhost:8088").is_err() && address("[::1]:8088").is_ok());
+    }
 }

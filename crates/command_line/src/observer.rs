@@ -21,7 +21,7 @@ pub struct Observer {
 impl Observer {
     /// Connects to a running game.
     pub fn connect(leaf: &LeafArgs) -> Result<Observer> {
-        let bus = Bus::leaf(&leaf.net()?).context("no game to watch")?;
+        let bus = Bus::leaf(&leaf.net()?).context("cannot watch a game")?;
         let (game, info) = game_search::choose_game(&bus, leaf.game.as_ref())?;
         Ok(Observer { bus, game, info })
     }

@@ -33,5 +33,5 @@ pub fn write_json(path: &Path, what: &str, value: &impl Serialize) -> Result<()>
 
 /// Creates a folder if it does not exist.
 pub fn make_folder(dir: &Path) -> Result<()> {
-    std::fs::create_dir_all(dir).with_context(|| format!("cannot make the folder {}", dir.display()))
+    std::fs::create_dir_all(dir).with_context(|| format!("cannot create the folder {}", dir.display()))
 }

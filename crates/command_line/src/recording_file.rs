@@ -16,11 +16,11 @@ pub fn open_any(file: &Path, to: &str) -> Result<Bag> {
     let bag = Bag::open(file).with_context(|| format!("cannot {to} {}", file.display()))?;
     if let [first, ..] = bag.damage() {
         let places = bag.damage().len();
-        let of = if places == 1 { String::new() } else { format!(" (the first of {places} such places)") };
+        let of = if places == 1 { String::new() } else { format!(" (the first of {places} damaged ranges)") };
         let place = format!("bytes {} to {}{of}", first.start, first.end - 1);
         let file = file.display();
         terminal::remark(&format!(
-            "{file} is damaged: something in {place} is not what was written, and may be wrong or missing below"
+            "{file} is damaged: {place} changed after they were written; data below may be wrong or missing"
         ));
     }
     Ok(bag)

@@ -16,8 +16,8 @@ const FOLDER: &str = "scenarios";
 /// The kinds of files that the program knows.
 static KINDS: OnceLock<&[Kind]> = OnceLock::new();
 
-/// Makes the built-in files available where files on the disk are missing. The program knows these
-/// kinds of files, and uses them to recognise a file of the wrong kind.
+/// Makes the built-in files available where files on the disk are missing, and sets the kinds of
+/// files by which a file of the wrong kind is recognised.
 pub fn install(kinds: &'static [Kind]) {
     // An earlier caller installed the same kinds: a process runs one program.
     let _ = KINDS.set(kinds);
@@ -33,8 +33,8 @@ pub fn contents(kind: Kind, name: &str) -> Option<&'static [u8]> {
     FILES.get_file(format!("{}/{name}.toml", kind.folder())).map(include_dir::File::contents)
 }
 
-/// The file of a kind that an argument names: a path, or a name in the folder `scenarios` here, in
-/// a parent folder, or built in.
+/// Finds the file that an argument names: a path, or a name in `scenarios` here, in a parent
+/// folder, or built in.
 pub fn find(word: &str, kind: Kind) -> Result<PathBuf> {
     find_beside(word, kind, None)
 }
@@ -70,7 +70,7 @@ pub fn find_beside(word: &str, kind: Kind, beside: Option<&Path>) -> Result<Path
 fn unknown(word: &str, kind: Kind, folders: &[PathBuf]) -> anyhow::Error {
     let mut others = kinds().iter().copied().filter(|other| *other != kind);
     if let Some(other) = others.find(|other| names(*other).contains(word)) {
-        return anyhow!("there is no {kind} {word}, but a {other} of that name{}", where_it_goes(other));
+        return anyhow!("there is no {kind} {word}, but there is a {other} of that name{}", where_it_goes(other));
     }
     let mut known = names(kind);
     known.extend(folders.iter().flat_map(|folder| names_in(folder)));
@@ -84,17 +84,17 @@ fn unknown(word: &str, kind: Kind, folders: &[PathBuf]) -> anyhow::Error {
 /// The places where a file of a kind is accepted.
 fn where_it_goes(kind: Kind) -> String {
     let place = match kind.name() {
-        "game" => "squall run plays it",
-        "strategy" => "--blue and --red take it",
-        "sea" => "--sea takes it",
-        "field" => "--field takes it",
-        "tournament" => "squall tournament plays it",
-        "sweep" => "squall sweep plays it",
-        "training" => "squall train takes it",
-        "gateway" => "{gateway} surveyor --config takes it",
+        "game" => "play it with squall run",
+        "strategy" => "use it with --blue or --red",
+        "sea" => "use it with --sea",
+        "field" => "use it with --field",
+        "tournament" => "play it with squall tournament",
+        "sweep" => "run it with squall sweep",
+        "training" => "run it with squall train",
+        "gateway" => "use it with {gateway} surveyor --config",
         _ => return String::new(),
     };
-    format!(": {}", program::text(place))
+    format!("; {}", program::text(place))
 }
 
 /// The names of the built-in files of a kind.
@@ -103,7 +103,6 @@ pub fn names(kind: Kind) -> BTreeSet<String> {
     files.filter_map(|file| name_of(file.path())).collect()
 }
 
-/// The names of the files in a folder.
 fn names_in(folder: &Path) -> BTreeSet<String> {
     let files = std::fs::read_dir(folder).into_iter().flatten().filter_map(std::result::Result::ok);
     files.filter_map(|file| name_of(&file.path())).collect()

@@ -23,7 +23,7 @@ pub fn on_ctrl_c() -> anyhow::Result<Arc<AtomicBool>> {
             std::process::exit(130);
         }
     };
-    ctrlc::set_handler(pressed).context("cannot listen for Ctrl-C")?;
+    ctrlc::set_handler(pressed).context("cannot handle Ctrl-C")?;
     Ok(stop)
 }
 
@@ -36,8 +36,8 @@ pub fn on_ctrl_c_or_parent(for_parent: bool) -> anyhow::Result<Arc<AtomicBool>> 
     Ok(stop)
 }
 
-/// Sets the flag when standard input ends: a child must not outlive its parent, however that died.
-/// Returns the lines that the parent sends before.
+/// Sets the flag when standard input ends, since a child must not outlive its parent. Returns the
+/// lines that the parent sends before.
 pub fn with_parent(stop: &Arc<AtomicBool>) -> Receiver<String> {
     let flag = Arc::clone(stop);
     let (sender, lines) = channel();

@@ -56,7 +56,7 @@ impl Estimate {
     }
 }
 
-/// The half width of a 95 % interval in standard errors, by Student's t; `None` without a degree of
+/// Half width of a 95 % interval in standard errors, by Student's t; `None` without degrees of
 /// freedom.
 pub(crate) fn quantile(degrees: f64) -> Option<f64> {
     StudentsT::new(0.0, 1.0, degrees).ok().map(|student| student.inverse_cdf(0.975))

@@ -5,8 +5,8 @@ use std::num::NonZeroUsize;
 /// Upper bound of threads per core: more only take turns.
 const PER_CORE_MAX: usize = 4;
 
-/// The useful number of threads for this many games: the requested number, or one per core; at most
-/// four per core, and at most one per game.
+/// The number of threads for this many games: as requested or one per core, but at most four per
+/// core and one per game.
 #[must_use]
 pub fn threads(asked: Option<NonZeroUsize>, games: usize) -> NonZeroUsize {
     let cores = std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);

@@ -26,15 +26,15 @@ pub struct Packed {
 #[derive(Debug, Error)]
 pub enum UnpackError {
     /// The checked file is invalid JSON.
-    #[error("the packed plan cannot be read: {0}")]
+    #[error("cannot read the packed plan: {0}")]
     Spec(#[from] serde_json::Error),
     /// The game cannot be read from the packed files.
     #[error("{0}")]
     Game(#[from] Problems),
     /// The unpacked plan has another digest.
     #[error(
-        "the games are others here than where they were packed: expected digest {expected}, found {found}; \
-         both need the same version of Squall, here it is {}",
+        "the packed games differ on this machine: expected digest {expected}, found {found}; \
+         both machines need the same version of Squall, this is {}",
         primitives::VERSION
     )]
     Other {
@@ -102,7 +102,7 @@ fn read_files<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<(PathBuf
             let bytes = BASE64.decode(base64);
             Ok((path.clone(), bytes.map_err(|why| D::Error::custom(format!("{}: {why}", path.display())))?))
         }
-        _ => Err(D::Error::custom(format!("{} has not one of text and base64", path.display()))),
+        _ => Err(D::Error::custom(format!("{}: expected either text or base64", path.display()))),
     });
     unpacked.collect()
 }

@@ -51,8 +51,8 @@ impl Stop<'_> {
     }
 }
 
-/// Plays a scenario with a seed. `see` receives the contest before every decision and at the end,
-/// with the minds that led there. The error says why the game could not start.
+/// Plays a scenario with a seed. `see` receives the contest and the minds before every decision and
+/// at the end. The error says why the game could not start.
 pub(crate) fn play_game(
     scenario: &Scenario,
     seed: u64,

@@ -220,9 +220,9 @@ fn what_is_wrong_is_said_before_a_game_with_its_place() {
         ("key = \"sea\"\nrange = [0, 1]", "sea has no values, expected files"),
         ("key = \"boat.gps.noise_m\"\nnormal = [1, 0.5]", "noise_m is -0.5, expected 0 to"),
         ("key = \"boat.gps.noise_m\"", "has none, expected one of values, range, normal, log_normal"),
-        ("key = \"boat.gps.noise_m\"\nvalues = [1, \"two\"]", "different sorts"),
+        ("key = \"boat.gps.noise_m\"\nvalues = [1, \"two\"]", "different types"),
         ("key = \"boat.gps.noise_m\"\nrange = [0, 1]\nlog = true", "expected more than 0 with log"),
-        ("key = \"game.duration_s\"\nvalues = [40]", "key is \"game.duration_s\" again"),
+        ("key = \"game.duration_s\"\nvalues = [40]", "the key \"game.duration_s\" is used twice"),
     ] {
         std::fs::write(&path, text(&format!("[[axis]]\n{axis}\n"))).unwrap();
         let said = load_file::<Sweep>(&path).and_then(|sweep| Plan::new(&sweep).map(drop)).expect_err(axis).to_string();

@@ -26,7 +26,7 @@ pub enum RecordingError {
         reason: std::io::Error,
     },
     /// It can no longer be read.
-    #[error("the recording cannot be read on: {0}")]
+    #[error("cannot read the rest of the recording: {0}")]
     Unread(#[from] std::io::Error),
     /// It is not a recording of Squall.
     #[error("not a recording of a game or a gateway: {0}")]
@@ -69,7 +69,7 @@ pub enum RecordingError {
 
 impl RecordingError {
     pub(crate) fn not_understood(what: &str, reason: impl std::fmt::Display) -> RecordingError {
-        RecordingError::Foreign(format!("its {what} is not understood: {reason}"))
+        RecordingError::Foreign(format!("its {what} cannot be parsed: {reason}"))
     }
 }
 
@@ -297,17 +297,16 @@ impl Found {
     fn header(&mut self) -> Result<(Kind, Facts), RecordingError> {
         let foreign = |reason: &str| RecordingError::Foreign(reason.to_owned());
         let header = Kind::ALL.into_iter().find_map(|kind| Some((kind, self.metadata.remove(kind.header())?)));
-        let (kind, facts) =
-            header.ok_or_else(|| foreign("there is neither metadata \"squall\" nor \"gateway\" in it"))?;
+        let (kind, facts) = header.ok_or_else(|| foreign("it has neither the metadata \"squall\" nor \"gateway\""))?;
         let version = facts.get(VERSION).cloned().unwrap_or_default();
         if version != primitives::VERSION {
             return Err(RecordingError::Version { found: version });
         }
         match facts.get(CHECKSUM) {
             Some(written) if *written != checksum(&facts) => Err(foreign("its header is damaged")),
-            None if kind == Kind::Gateway => {
-                Err(foreign("it is a gateway's of the old format, which only the program that made it can replay"))
-            }
+            None if kind == Kind::Gateway => Err(foreign(
+                "it is a gateway's recording in an old format; replay it with the version that recorded it",
+            )),
             _ => Ok((kind, facts)),
         }
     }

@@ -15,7 +15,7 @@
 //! | `link/<boat>` | every byte of the link, both ways | message |
 //! | `input`, `event` | all other inputs of the gateway, and its events | JSON |
 //! | `payload/<name>` | every byte between a payload of the boat and its clients, both ways | message |
-//! | `values/<name>` | measurements of a sensor among them, as far as its bytes are understood | JSON |
+//! | `values/<name>` | decoded measurements of a sensor among the payloads | JSON |
 //!
 //! All messages are CDR, as the profile `ros2` demands: either one of ours, or a JSON object as the
 //! text of a `std_msgs/msg/String`. `log_time` is the time of the game or of the gateway's clock,

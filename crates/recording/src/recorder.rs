@@ -15,8 +15,8 @@ use std::time::{Duration, Instant};
 /// Period of flushes to the system. Each flush closes a chunk, whose index entry stays in memory
 /// until the file ends, about 500 bytes. At four per second that was 5 MB an hour.
 const FLUSH: Duration = Duration::from_secs(1);
-/// Time for which the thread lets entries accumulate: waking for each one would cost the game more
-/// than the writing.
+/// Time for which entries accumulate: waking for each one would cost the game more than the
+/// writing.
 const GATHER: Duration = Duration::from_millis(20);
 /// Size of the write buffer, bytes.
 const BUFFER: usize = 1 << 16;
@@ -33,8 +33,8 @@ pub struct Recorder {
     thread: Option<JoinHandle<()>>,
 }
 
-/// Records optional data, such as camera images. It uses at most half of the queue, so that on a
-/// slow disk everything else still finds room.
+/// Records optional data, such as camera images, with at most half of the queue, so that the rest
+/// fits even on a slow disk.
 #[derive(Clone)]
 pub struct BulkRecorder(Queue);
 
@@ -172,7 +172,7 @@ impl Recorder {
         // If the thread has ended, it has already reported the reason.
         drop(self.queue.jobs.send(Job::End(result)));
         if thread.join().is_err() {
-            self.queue.shared.failed.get_or_init(|| "its thread broke down".to_owned());
+            self.queue.shared.failed.get_or_init(|| "its thread panicked".to_owned());
         }
     }
 }
@@ -262,7 +262,7 @@ fn rest() {
     std::thread::sleep(GATHER);
 }
 
-#[expect(clippy::disallowed_methods, reason = "what is recorded is handed to the disk by the clock")]
+#[expect(clippy::disallowed_methods, reason = "writes are timed by the wall clock")]
 fn now() -> Instant {
     Instant::now()
 }

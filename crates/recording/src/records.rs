@@ -40,7 +40,7 @@ pub(crate) fn for_each_record(
 ) -> Result<Extent, RecordingError> {
     const MAGIC: usize = mcap::MAGIC.len();
     if source.array::<MAGIC>(0)?.is_none_or(|magic| magic != *mcap::MAGIC) {
-        return Err(RecordingError::Foreign("it does not begin as MCAP files do".to_owned()));
+        return Err(RecordingError::Foreign("it is not an MCAP file".to_owned()));
     }
     let end = source.length();
     let mut place = MAGIC as u64;

@@ -56,7 +56,6 @@ impl Source {
         self.length
     }
 
-    /// Reads a range of bytes.
     pub(crate) fn read(&self, place: Range<u64>) -> Result<Vec<u8>, Error> {
         // Allocate only for bytes that exist.
         let length = place.end.checked_sub(place.start).filter(|_| place.end <= self.length);

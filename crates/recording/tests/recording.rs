@@ -173,11 +173,11 @@ fn a_file_cut_at_any_byte_opens_up_to_the_cut() {
 #[test]
 fn other_files_are_refused_with_the_reason() {
     let reason = |bytes: &[u8]| Recording::of(bytes.to_vec()).expect_err("it is refused").to_string();
-    assert!(reason(b"ahoy").contains("does not begin as MCAP"), "{}", reason(b"ahoy"));
+    assert!(reason(b"ahoy").contains("it is not an MCAP file"), "{}", reason(b"ahoy"));
     let mut writer = mcap::Writer::new(Cursor::new(Vec::new())).expect("it begins");
     writer.finish().expect("it ends");
     let message = reason(writer.into_inner().get_ref());
-    assert!(message.contains("there is neither metadata \"squall\" nor \"gateway\""), "{message}");
+    assert!(message.contains("it has neither the metadata \"squall\" nor \"gateway\""), "{message}");
     let mut header = header();
     header.info.version = "0.0.1".to_owned();
     let other =
@@ -298,6 +298,6 @@ fn a_header_that_refers_to_nothing_is_refused() {
         (refused(|scenario| scenario.field.flags[1].team = primitives::TeamId(5)), "the team of flag 1 is 5"),
         (refused(|scenario| scenario.vehicles[1].name = "../x".to_owned()), "\"../x\" is no name"),
     ] {
-        assert!(message.contains("its scenario is not understood") && message.contains(part), "{message}");
+        assert!(message.contains("its scenario cannot be parsed") && message.contains(part), "{message}");
     }
 }

@@ -133,7 +133,7 @@ export class Program {
 
   /** The address of its page. */
   async url() {
-    return (await this.hears(/at it on (http:\S+)|at (http:\S+) \(Ctrl-C/)).slice(1).find(Boolean);
+    return (await this.hears(/at (http:\S+) \(Ctrl-C/))[1];
   }
 
   /** Ends it like Ctrl-C, by force if necessary. Returns its exit status. */

@@ -83,7 +83,7 @@ test('from a cell of the win matrix to its games, to a replay of one, and back',
   await sight.press('#games tbody tr:nth-child(2) a');
   await sight.until('the game is shown', () => window.squall?.mode === 'replay' && squall.frame !== null);
   const about = await sight.text('#about');
-  assert.match(about, new RegExp(`seed ${want[1].seed}; played again, as in the report$`), about);
+  assert.match(about, new RegExp(`seed ${want[1].seed}; rerun, identical to the report$`), about);
   await sight.page.press('#timeline', 'End');
   await sight.until('the replay is at its end', () => squall.t_s > 59.9);
   assert.deepEqual(await sight.get(() => squall.score), want[1].score);
@@ -114,7 +114,7 @@ test('what is wrong with a report or a game is said in words', async (t) => {
   await sight.until('the seed has all its digits', (seed) => [...document.querySelectorAll('#games tbody td:nth-child(2)')].some((each) => each.textContent === seed), seed);
   const game = report.matches.find(({ seed }) => seed === 1).game;
   const other = await Sight.open(t, browser, `${url}?game=${game}`);
-  assert.match(await other.text('#about'), /NOT as in the report/);
+  assert.match(await other.text('#about'), /NOT identical to the report/);
   for (const [name, why] of [['999', /there is no game "999", expected a number from 0 to 11/], [HOSTILE, /there is no game .*expected a number/]]) {
     const none = await Sight.load(t, browser, `${url}?game=${encodeURIComponent(name)}`);
     await none.until('the game is refused', () => document.getElementById('about').textContent !== '');
@@ -166,7 +166,7 @@ test('the worst games of a sweep are watched from its page', async (t) => {
   assert.equal(await sight.get(() => getComputedStyle(document.querySelector('.tornado .bar')).position), 'absolute', 'the style sheet is served');
   await sight.press('#worst-list .watch');
   await sight.until('the game is shown', () => window.squall?.mode === 'replay' && squall.frame !== null);
-  assert.match(await sight.text('#about'), /strategy_4 \(\w+\) at sea.wind.speed_m_s \d+, seed \d+; played again, as in the report/);
+  assert.match(await sight.text('#about'), /strategy_4 \(\w+\) at sea.wind.speed_m_s \d+, seed \d+; rerun, identical to the report/);
   await sight.page.press('#timeline', 'End');
   await sight.until('the replay is at its end', () => squall.t_s > 59.9);
   assert.deepEqual((await sight.get(() => squall.score)).sort(), [...worst.score].sort());
@@ -201,7 +201,7 @@ test('from a point of a sweep to all its games, to a replay of one, and back', a
   await sight.press('#games-table tbody tr:last-child .watch');
   await sight.until('the game is shown', () => window.squall?.mode === 'replay' && squall.frame !== null);
   const last = own.findLast((game) => game.entry === 'strategy_4');
-  assert.equal(await sight.text('#about'), `strategy_4 (${last.side}) at sea.wind.speed_m_s 12, seed ${last.seed}; played again, as in the report`);
+  assert.equal(await sight.text('#about'), `strategy_4 (${last.side}) at sea.wind.speed_m_s 12, seed ${last.seed}; rerun, identical to the report`);
   await sight.page.press('#timeline', 'End');
   await sight.until('the replay is at its end', () => squall.t_s > 59.9);
   assert.deepEqual((await sight.get(() => squall.score)).sort(), [last.score, last.opponent_score].map(Number).sort());

@@ -1,7 +1,7 @@
 //! The standard manoeuvres: their commands and their ends.
 //!
 //! Definitions follow IMO resolution MSC.137(76) and its explanatory notes MSC/Circ.1053, applied
-//! to boats that steer with two thrusters in place of a rudder: see [`Manoeuvre`].
+//! to boats that steer with two thrusters instead of a rudder: see [`Manoeuvre`].
 
 use super::command::{Command, Engine};
 use super::replay::{ROW, Unsound, ticks_per_row};

@@ -49,9 +49,8 @@ impl Orders {
     }
 }
 
-/// The pair of command columns and their indices. Beside another pair,
-/// `port_newton,starboard_newton` are the actual thrusts, not commands: a trial's own file has
-/// them.
+/// The pair of command columns and their indices. In a trial's own file, which has another pair
+/// too, `port_newton,starboard_newton` are actual thrusts, not commands.
 fn pair_of(sheet: &Sheet) -> Result<(Pair, [usize; 2]), Mistake> {
     let place = |head: &str| {
         // The heading in a trial's own file is the actual one; the ordered one has its own column.
@@ -79,11 +78,8 @@ fn pair_of(sheet: &Sheet) -> Result<(Pair, [usize; 2]), Mistake> {
     match found[..] {
         [one] => Ok(one),
         [] => {
-            let message = format!(
-                "no columns of commands among {}, expected one of {}",
-                sheet.heads().join(", "),
-                names(&Pair::ALL)
-            );
+            let message =
+                format!("no command columns among {}, expected one of {}", sheet.heads().join(", "), names(&Pair::ALL));
             Err(sheet.mistake(Some(1), message))
         }
         _ => {

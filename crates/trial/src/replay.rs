@@ -11,7 +11,7 @@ pub const ROW: SimTime = SimTime(100_000_000);
 
 /// The boat's state became non-finite.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
-#[error("the boat's numbers went bad at {t_s:.2} s: the model is unstable at this tick, try a shorter one")]
+#[error("the boat's state became non-finite at {t_s:.2} s: the model is unstable at this tick; use a shorter tick")]
 pub struct Unsound {
     /// Time of the failure, s.
     pub t_s: f64,
@@ -23,7 +23,7 @@ pub struct Unsound {
 /// The allowed ticks, if this one does not divide [`ROW`].
 pub fn ticks_per_row(tick: SimTime) -> Result<u32, String> {
     if tick < SimTime(1_000_000) || tick > ROW || ROW.0 % tick.0 != 0 {
-        return Err(format!("a tick of {} s, expected 0.001 to 0.1 and a whole number of ticks in 0.1 s", tick.as_s()));
+        return Err(format!("the tick is {} s, expected 0.001 to 0.1 s and a divisor of 0.1 s", tick.as_s()));
     }
     Ok((ROW.0 / tick.0) as u32)
 }

@@ -69,7 +69,7 @@ impl Sheet {
             }
             if record.len() != sheet.heads.len() {
                 let (found, wanted) = (record.len(), sheet.heads.len());
-                let message = format!("{found} columns, expected {wanted} as in the line of names");
+                let message = format!("{found} columns, expected {wanted} as in the header");
                 return Err(sheet.mistake(Some(line), message));
             }
             if sheet.rows.len() == ROWS_MAX {
@@ -78,7 +78,7 @@ impl Sheet {
             sheet.rows.push((line, record));
         }
         if sheet.rows.is_empty() {
-            return Err(sheet.mistake(None, "no rows of numbers below the line of names".to_owned()));
+            return Err(sheet.mistake(None, "no rows below the header".to_owned()));
         }
         Ok(sheet)
     }
@@ -142,7 +142,7 @@ impl Sheet {
         for row in 0..self.rows.len() {
             let t_s = self.number(row, column, (0.0, high_s))?;
             if let Some(before_s) = times_s.last().filter(|before_s| t_s <= **before_s) {
-                let message = format!("t_s is {t_s}, expected more than the {before_s} of the row before");
+                let message = format!("t_s is {t_s}, expected more than {before_s}, its value in the row before");
                 return Err(self.row_mistake(row, message));
             }
             times_s.push(t_s);
@@ -151,8 +151,8 @@ impl Sheet {
     }
 }
 
-/// The line of a record. The reader returns the end of the previous one; blank lines and comments
-/// may follow there. A comment begins at the start of its line.
+/// The line of a record. The reader returns the end of the previous one, after which blank lines
+/// and comments may follow.
 fn line_of(bytes: &[u8], position: &csv::Position) -> u64 {
     let rest = bytes.get(position.byte() as usize..).unwrap_or_default();
     let lines = rest.split(|byte| *byte == b'\n').map(|line| line.strip_suffix(b"\r").unwrap_or(line));
@@ -227,7 +227,7 @@ mod tests {
             ("t_s,a\n0,1\n-1,1\n", "in.csv:3: t_s is -1, expected 0 to 100"),
             ("t_s,a\n0,1\n\n# a remark\n1e9,1\n", "in.csv:5: t_s is 1e9, expected 0 to 100"),
             ("t_s,a\n0,1\n,1\n", "in.csv:3: t_s is empty, expected 0 to 100"),
-            ("t_s,a\n0,1\n2,1\n2,3\n", "in.csv:4: t_s is 2, expected more than the 2 of the row before"),
+            ("t_s,a\n0,1\n2,1\n2,3\n", "in.csv:4: t_s is 2, expected more than 2, its value in the row before"),
         ] {
             let error = sheet(text).and_then(|sheet| sheet.times(100.0)).expect_err(text);
             assert!(error.to_string().starts_with(want), "{text:?}: {error}");

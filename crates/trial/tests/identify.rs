@@ -137,7 +137,7 @@ fn a_log_that_lacks_columns_is_refused() {
     let rows = |row: &str| (0..30).map(|i| format!("{i},{row}\n")).collect::<String>();
     for (head, row, want) in [
         ("t_s,port_pct,starboard_pct", "0,0", "log.csv:1: no column heading_deg"),
-        ("t_s,heading_deg,surge_m_s,yaw_rate_deg_s", "0,0,0", "log.csv:1: no columns of commands"),
+        ("t_s,heading_deg,surge_m_s,yaw_rate_deg_s", "0,0,0", "log.csv:1: no command columns"),
         (
             "t_s,port_pct,starboard_pct,heading_deg,surge_m_s,yaw_rate_deg_s,x_m",
             "0,0,0,0,0,0",

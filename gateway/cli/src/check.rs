@@ -31,25 +31,26 @@ const LAST_MAX: usize = 90;
 /// Timeout for finding the game.
 const GAME_WAIT: Duration = Duration::from_secs(5);
 
-/// Which boat.
 #[derive(clap::Args)]
 pub struct Args {
-    /// Where the boat is: tcp://HOST:PORT, udp://HOST:PORT, udp-listen://0.0.0.0:14550, serial:///dev/ttyUSB0?baud=38400 (4800 to 921600)
+    /// Link to the boat: tcp://HOST:PORT, udp://HOST:PORT, udp-listen://0.0.0.0:14550 or
+    /// serial:///dev/ttyUSB0?baud=38400 (4800 to 921600 baud)
     #[arg(long, value_name = "URL")]
     link: String,
-    /// How long to listen, s [default: 10, and 30 with --vehicle]
+    /// How long to listen, s [default: 10, or 30 with --vehicle]
     #[arg(long, value_name = "S", value_parser = seconds)]
     for_s: Option<f64>,
-    /// Makes the pre-flight check of this vehicle, for the field of its game
+    /// Runs the pre-flight check for this vehicle on the field of its game
     #[arg(long, value_name = "NAME")]
     vehicle: Option<String>,
-    /// By which gateway file it will be driven, a file or a name [default: a Surveyor with careful limits]
+    /// Gateway file or name with which the boat will be driven [default: a Surveyor with careful limits]
     #[arg(long, value_name = "FILE", value_parser = command_line::scenario_files::file_of::<gateway::config::Gateway>)]
     config: Option<PathBuf>,
-    /// Guides through compass swing and propeller test, under remote control; asks before each
+    /// Guides you through a compass swing and a propeller test by remote control; asks before each
     #[arg(long, requires = "vehicle")]
     guided: bool,
-    /// Where the report goes [default: runs/preflight-NAME.json, and the same as .txt]
+    /// Writes the report to this JSON file, and a text copy to a .txt file beside it [default:
+    /// runs/preflight-NAME.json]
     #[arg(long, value_name = "FILE", requires = "vehicle")]
     report: Option<PathBuf>,
     #[command(flatten)]
@@ -73,7 +74,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let check = &listener.check;
     if check.received().is_empty() {
         let (reason, counts) = (&listener.reason, counted(check));
-        bail!("nothing to be read from {address} in {for_s} s: {reason} ({counts})");
+        bail!("received nothing from {address} within {for_s} s: {reason} ({counts})");
     }
     let host = date_and_time(utc::now_ns()).1;
     terminal::print(&report(check, listener.now(), host));
@@ -84,7 +85,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let mut checks = boat_checks(check, (listener.now(), host), &gateway, water.as_ref());
     let path = args.report.clone().unwrap_or_else(|| Path::new("runs").join(format!("preflight-{vehicle}.json")));
     let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
-    std::fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
+    std::fs::create_dir_all(folder).with_context(|| format!("cannot create the folder {}", folder.display()))?;
     checks.extend(machine_checks(folder));
     checks.extend(guided_checks(&mut Guide::new(args.guided), &mut listener, &gateway));
     let now_ns = utc::now_ns();
@@ -92,7 +93,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let made = Report { vehicle: vehicle.clone(), link: address.to_string(), at_unix_s, at, checks };
     terminal::print(&format!("\n{}", made.text()));
     preflight_report::write(&path, &made)?;
-    terminal::remark(&format!("report in {}", path.display()));
+    terminal::remark(&format!("report: {}", path.display()));
     Ok(if made.faults().is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
@@ -104,7 +105,7 @@ fn water(args: &Args, vehicle: &str, gateway: &Gateway, stop: &AtomicBool) -> Re
     let (bus, _, info) = match found {
         Ok(found) => found,
         Err(e) => {
-            terminal::remark(&format!("without a game: {e}"));
+            terminal::remark(&format!("no game: {e}"));
             return Ok(None);
         }
     };
@@ -130,7 +131,7 @@ pub(super) struct Listener {
 
 impl Listener {
     fn new((link, events): (Link, Receiver<LinkEvent>), stop: Arc<AtomicBool>, gateway: &Gateway) -> Listener {
-        let (start, reason) = (bus::clock::now(), "nothing came".to_owned());
+        let (start, reason) = (bus::clock::now(), "no data received".to_owned());
         Listener { check: SensorCheck::new(gateway), link, events, start, stop, reason, hello: String::new() }
     }
 

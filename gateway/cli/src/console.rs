@@ -8,6 +8,7 @@ use bus::stop::{StopClient, StopCommand, StopNews, StopOrders};
 use bus::{Bus, Patience, SimState, SimWatch, Watched, clock};
 use clap::Parser;
 use command_line::leaf_args::LeafArgs;
+use command_line::number::address;
 use command_line::{program, stop, terminal};
 use messages::external::OperatorReply;
 use messages::topic::GameName;
@@ -32,30 +33,29 @@ const LOOK: Duration = Duration::from_millis(100);
 
 const HELP: &str = "\
   (empty line), estop     E-stop of all boats
-  all estop               the same; also all disarm, all release, all status
-  NAME estop              E-stop of one boat; NAME disarm puts it into standby
+  all estop               the same; or all disarm, all release, all status
+  NAME estop              E-stop of one boat; NAME disarm puts it in standby
   NAME arm, NAME release  and every other command of `{gateway} tell`
-  status                  how all boats are, and how long ago they were heard
-  quit                    ends; so does the end of the input
+  status                  states of all boats, and the time since their last reports
+  quit                    exits, like the end of the input
 ";
 
-/// Which game, and which gateways.
 #[derive(clap::Args)]
 #[command(after_help = program::text(concat!(
-    "It reads commands from standard input, one a line, and prints what boats\n",
-    "report, with the time since it was asked for:\n",
+    "Reads commands from standard input, one per line, and prints the boats'\n",
+    "reports with the time since each command:\n",
     "  blue_one  e-stopped  after 63 ms\n",
     "Type help for the commands. An empty line is an E-stop of all boats.\n\n",
-    "It ends with 0 if every boat has reported the stops that were asked for.\n\n",
+    "Exits with code 0 if every boat has confirmed all requested stops.\n\n",
     "Examples:\n",
     "  {gateway} console --game day\n",
     "  {gateway} console --connect tcp/10.0.0.5:7447 --gateway 10.0.0.21:7001\n",
     "  echo all estop | {gateway} console --game day",
 )))]
 pub struct Args {
-    /// A gateway's control port, as it shows it; of each boat one [default: those of this machine's gateways, and those
-    /// that the game names]
-    #[arg(long, value_name = "HOST:PORT")]
+    /// Address of a gateway's control port, as the gateway prints it; at most one per boat [default: those of the
+    /// gateways on this machine and in the game]
+    #[arg(long, value_name = "HOST:PORT", value_parser = address)]
     gateway: Vec<SocketAddr>,
     #[command(flatten)]
     leaf: LeafArgs,
@@ -128,7 +128,7 @@ impl Console {
         while !self.is_over.load(Ordering::Relaxed) {
             match lines.recv_timeout(LOOK) {
                 Ok(line) if line == "quit" => return,
-                Ok(line) => self.obey(&line).unwrap_or_else(|e| terminal::complain(&format!("{e:#}"))),
+                Ok(line) => self.obey(&line).unwrap_or_else(|e| terminal::complain(&command_line::explain::line(&e))),
                 Err(std::sync::mpsc::RecvTimeoutError::Timeout) => continue,
                 Err(std::sync::mpsc::RecvTimeoutError::Disconnected) => return,
             }
@@ -169,7 +169,7 @@ impl Console {
                     self.release_all();
                     Ok(())
                 }
-                _ => bail!("only estop, disarm, release and status go to all"),
+                _ => bail!("the name all accepts only estop, disarm, release and status"),
             };
         };
         let (console, asked) = (self.clone(), clock::now());
@@ -186,7 +186,7 @@ impl Console {
                 Ok(OperatorReply { refused: Some(reason), .. }) => {
                     terminal::complain(&format!("{name} refuses: {reason}"))
                 }
-                Err(e) => terminal::complain(&format!("{name}: {e:#}")),
+                Err(e) => terminal::complain(&format!("{name}: {}", command_line::explain::line(&e))),
             }
         });
         Ok(())
@@ -251,7 +251,7 @@ impl Console {
         self.client.join(bus, game, boats)?;
         self.session.visit(|session| *session = Some((bus.clone(), game.clone())));
         let boats = if boats.is_empty() { "no real boats".to_owned() } else { boats.join(", ") };
-        terminal::remark(&format!("in the game {}: {boats}", game.as_str()));
+        terminal::remark(&format!("joined the game {}: {boats}", game.as_str()));
         while !self.is_over.load(Ordering::Relaxed) && sim.state() == SimState::Alive {
             self.read_registry();
             clock::rest(LOOK_AGAIN);
@@ -288,7 +288,7 @@ fn show(news: &StopNews) {
             format!("{vehicle}  {}  after {} ms\n", brief(state), after.as_millis())
         }
         StopNews::Late { vehicle, command } => {
-            format!("{vehicle}  does not report {}: it is asked again\n", command.operator_command())
+            format!("{vehicle}  has not confirmed {}; sending it again\n", command.operator_command())
         }
         StopNews::Sim(Ok(after)) => format!("sim  obeys  after {} ms\n", after.as_millis()),
         StopNews::Sim(Err(reason)) => format!("sim  {reason}\n"),

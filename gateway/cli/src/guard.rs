@@ -14,7 +14,7 @@ pub(crate) fn run() -> Result<ExitCode> {
 
 /// The command line that starts the guard: this program with its `guard` subcommand.
 pub(crate) fn own_command() -> Result<GuardCommand> {
-    let program = std::env::current_exe().context("cannot find this program's own file")?;
+    let program = std::env::current_exe().context("cannot find this program's executable")?;
     // The first word is the program itself.
     let words = program::gateway().split_whitespace().skip(1).chain(["guard"]);
     Ok(GuardCommand { program, args: words.map(str::to_owned).collect() })

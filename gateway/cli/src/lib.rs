@@ -27,20 +27,20 @@ use std::process::ExitCode;
 pub const KINDS: &[Kind] =
     &[Kind::of::<Gateway>(), Kind::GAME, Kind::FIELD, Kind::RULES, Kind::BOAT, Kind::SEA, Kind::STRATEGY];
 
-/// What a gateway is to do.
+/// The gateway's subcommands.
 #[derive(Subcommand)]
 pub enum Command {
     /// Connects a real boat to a game, where agents drive it like any other.
     Surveyor(surveyor::Args),
-    /// Checks a boat before arming, without sending anything; with --vehicle, the pre-flight check.
+    /// Checks a boat without sending it anything; with --vehicle, runs the pre-flight check.
     Check(check::Args),
-    /// Stops a boat without any other program: sends zero thrust and standby over its link.
+    /// Stops a boat directly: sends zero thrust and standby over its link.
     Stop(stop_boat::Args),
-    /// Sends an operator command to a boat's gateway: arm, disarm, estop, release, ...
+    /// Sends an operator command to a boat's gateway, such as arm, disarm, estop or release.
     Tell(tell::Args),
-    /// Operates boats from a prompt with open connections, so that stops are fast.
+    /// Operates boats from a prompt, over open connections so that stops are fast.
     Console(console::Args),
-    /// What a gateway starts to stop its boat when it is killed or hangs.
+    /// Stops the boat when its gateway is killed or hangs; started by the gateway.
     #[command(hide = true)]
     Guard,
     /// Replays a gateway's recording through its codec and supervisor.
@@ -50,7 +50,7 @@ pub enum Command {
 /// The gateway settings from this file, or the defaults.
 fn gateway_file(path: Option<&Path>) -> Result<Gateway> {
     let load = |path: &Path| {
-        scenario::load_file::<Gateway>(path).with_context(|| format!("cannot drive by {}", path.display()))
+        scenario::load_file::<Gateway>(path).with_context(|| format!("cannot use the gateway file {}", path.display()))
     };
     path.map_or_else(|| Ok(gateway::config::default_gateway()), load)
 }

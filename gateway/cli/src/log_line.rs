@@ -85,7 +85,7 @@ pub fn state(text: &str) -> String {
 pub fn text_of(event: &Event) -> String {
     match event {
         Event::State { from, to } => format!("{} (was {from})", state(to)),
-        Event::Blocked(true) => style::warning("another boat is in the way: thrust zero"),
+        Event::Blocked(true) => style::warning("another boat is in the way: zero thrust"),
         Event::Blocked(false) => "the way is clear again".to_owned(),
         Event::Warning(text) => style::warning(&format!("WARNING: {text}")),
         Event::Remark(text) => text.clone(),

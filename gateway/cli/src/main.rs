@@ -1,19 +1,19 @@
 //! `squall-gateway`: the gateway commands as a separate program, for the small computer on a boat.
 
-use clap::{ColorChoice, Parser};
+use clap::{ColorChoice, CommandFactory, FromArgMatches, Parser};
 use command_line::program::{self, Program};
-use command_line::{explain, leaf_args, scenario_files, terminal};
+use command_line::{explain, leaf_args, number, scenario_files, terminal};
 use std::process::ExitCode;
 
 /// The commit that the program was built from.
 const COMMIT: &str = env!("SQUALL_COMMIT");
 const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (", env!("SQUALL_COMMIT"), ")");
 
-/// Connects a real boat with Squall's games: checks it, drives it, stops it.
+/// Connects a real boat to Squall's games: checks, drives and stops it.
 #[derive(Parser)]
 #[command(name = "squall-gateway", version = VERSION, max_term_width = 100)]
 struct Cli {
-    /// Colours: auto, always or never
+    /// When to use colours: auto, always or never
     #[arg(long, global = true, value_name = "WHEN", default_value_t = ColorChoice::Auto, hide_possible_values = true, display_order = 1000)]
     color: ColorChoice,
     #[command(subcommand)]
@@ -23,7 +23,8 @@ struct Cli {
 fn main() -> ExitCode {
     program::set(Program { name: "squall-gateway", gateway: "squall-gateway" });
     scenario_files::install(gateway_cli::KINDS);
-    let Cli { color, command } = Cli::parse();
+    let matches = number::with_negative_numbers(Cli::command()).get_matches();
+    let Cli { color, command } = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     terminal::set_colour(color);
     let done = leaf_args::restart_with_threads_for_keys().and_then(|()| gateway_cli::run(&command, COMMIT));
     done.unwrap_or_else(|error| {

@@ -45,7 +45,7 @@ fn mission_of(text: &str) -> Result<Mission, Mistake> {
         let before = sentences.next().unwrap_or_default();
         let wrong = |why: String| (Some(i + 1), why);
         if !before.is_empty() {
-            return Err(wrong(format!("{before:?} is no sentence, expected it to begin with $")));
+            return Err(wrong(format!("{before:?} is not a sentence, expected $ at its start")));
         }
         for sentence in sentences {
             lines.take(i + 1, &sentence_of(sentence.trim()).map_err(wrong)?).map_err(wrong)?;
@@ -80,7 +80,7 @@ impl Lines {
                 let next = self.places.len();
                 if usize::from(waypoint.index) != next {
                     return Err(format!(
-                        "waypoint {}, expected {next}: they are in order, and 0 is the recovery point",
+                        "waypoint {}, expected {next}; waypoints are in order, and 0 is the recovery point",
                         waypoint.index
                     ));
                 }
@@ -94,7 +94,7 @@ impl Lines {
                 return Ok(());
             }
             Sentence::Command(Command { mode: Mode::Waypoint | Mode::Standby, .. }) => return Ok(()),
-            _ => return Err("a sentence that has no place in a mission, expected PSEAR or OIWPL".to_owned()),
+            _ => return Err("unexpected sentence, expected PSEAR or OIWPL".to_owned()),
         }
         self.count += 1;
         Ok(())
@@ -104,14 +104,14 @@ impl Lines {
         if let Some((line, announced)) = self.announced
             && announced != self.count as f64
         {
-            let why = format!("{announced} lines are announced, and {} are there: PSEAR and each OIWPL", self.count);
+            let why = format!("{announced} lines of PSEAR and OIWPL are announced, but the file has {}", self.count);
             return Err((Some(line), why));
         }
         let throttle_pct = self.throttle_pct.ok_or_else(|| (None, "no PSEAR with the throttle".to_owned()))?;
         let mut places = self.places.into_iter();
         match (places.next(), places.as_slice()) {
             (Some(erp), [_, ..]) => Ok(Mission { throttle_pct, erp, waypoints: places.collect() }),
-            _ => Err((None, "expected OIWPL with index 0, the recovery point, and one waypoint at least".to_owned())),
+            _ => Err((None, "expected OIWPL with index 0, the recovery point, and at least one waypoint".to_owned())),
         }
     }
 }
@@ -153,15 +153,19 @@ mod tests {
         };
         for (text, place, why) in [
             (with(0, "$PSEAR,0,000,10,0,000*7F\r\n"), Some(1), "the checksum is 7F, expected 78"),
-            (with(1, "hello\r\n"), Some(2), "\"hello\" is no sentence"),
+            (with(1, "hello\r\n"), Some(2), "\"hello\" is not a sentence"),
             (with(1, "$OIWPL,2545.4910,N,08022.4373,W,0\r\n"), Some(2), "does not end with *"),
             (with(3, &line("OIWPL,2545.4912,N,08022.4373,W,3")), Some(4), "waypoint 3, expected 2"),
             (with(2, &line("OIWPL,2545.4912,X,08022.4373,W,1")), Some(3), ""),
-            (with(2, &line("PSEAC,T,0,20,0,")), Some(3), "no place in a mission"),
+            (with(2, &line("PSEAC,T,0,20,0,")), Some(3), "unexpected sentence"),
             (with(2, &line("PSEAR,0,000,20,0,000")), Some(3), "a second PSEAR"),
-            (line("PSEAC,F,3,000,000,") + &lines.concat(), Some(1), "3 lines are announced, and 4 are there"),
+            (
+                line("PSEAC,F,3,000,000,") + &lines.concat(),
+                Some(1),
+                "3 lines of PSEAR and OIWPL are announced, but the file has 4",
+            ),
             (lines[1..].concat(), None, "no PSEAR"),
-            (lines[..2].concat(), None, "one waypoint at least"),
+            (lines[..2].concat(), None, "at least one waypoint"),
             (String::new(), None, "no PSEAR"),
         ] {
             let (got, said) = mission_of(&text).expect_err(&text);

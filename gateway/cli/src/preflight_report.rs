@@ -16,9 +16,8 @@ pub(super) fn write(path: &Path, report: &Report) -> Result<()> {
     write(&path.with_extension("txt"), &report.text())
 }
 
-/// Reads a report.
 pub(super) fn read(path: &Path) -> Result<Report> {
     let text = primitives::input_file::read_text(path, BYTES_MAX)
         .with_context(|| format!("cannot read {}", path.display()))?;
-    serde_json::from_str(&text).with_context(|| format!("{} is no report of a pre-flight check", path.display()))
+    serde_json::from_str(&text).with_context(|| format!("{} is not the report of a pre-flight check", path.display()))
 }

@@ -3,12 +3,12 @@
 use clap::ValueEnum;
 use gateway::config::BoatProtocol;
 
-/// What a boat speaks.
+/// A boat's protocol.
 #[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
 pub enum ProtocolArg {
-    /// The sentences of a SeaRobotics Surveyor
+    /// NMEA sentences of a SeaRobotics Surveyor
     Surveyor,
-    /// MAVLink, as ArduPilot's boats speak it
+    /// MAVLink as used by ArduPilot
     Mavlink,
 }
 

@@ -6,10 +6,9 @@ use command_line::{recording_file, terminal};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Which recording.
 #[derive(clap::Args)]
 pub struct Args {
-    /// The recording
+    /// Recording to replay
     file: PathBuf,
 }
 
@@ -30,7 +29,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         replay.bytes_out
     ));
     let Some(difference) = replay.difference else {
-        terminal::print("the replay is the recording, byte for byte\n");
+        terminal::print("the replay equals the recording, byte for byte\n");
         return Ok(ExitCode::SUCCESS);
     };
     terminal::print(&format!(

@@ -25,15 +25,15 @@ const ANSWER: Duration = Duration::from_secs(1);
 /// Capacity of the event queue.
 const EVENTS_MAX: usize = 4096;
 
-/// Which boat.
 #[derive(clap::Args)]
 pub struct Args {
-    /// Where the boat is: tcp://HOST:PORT, udp://HOST:PORT, udp-listen://0.0.0.0:14550, serial:///dev/ttyUSB0?baud=38400 (4800 to 921600)
+    /// Link to the boat: tcp://HOST:PORT, udp://HOST:PORT, udp-listen://0.0.0.0:14550 or
+    /// serial:///dev/ttyUSB0?baud=38400 (4800 to 921600 baud)
     link: String,
-    /// What the boat speaks
+    /// Protocol of the boat
     #[arg(long, value_name = "PROTOCOL", value_enum, default_value_t = ProtocolArg::Surveyor)]
     protocol: ProtocolArg,
-    /// How long to try, s
+    /// How long to try to stop the boat, s
     #[arg(long, value_name = "S", default_value_t = 10.0, value_parser = seconds)]
     wait_s: f64,
 }
@@ -56,7 +56,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     while clock::since(start) < limit {
         match events.recv_timeout(due.saturating_duration_since(clock::now()).min(AGAIN)) {
             Ok(LinkEvent::Up { name, .. }) => {
-                terminal::remark(&format!("connected to {name}: thrust zero and standby"));
+                terminal::remark(&format!("connected to {name}: sending zero thrust and standby"));
                 (connected, due) = (Some(clock::now()), clock::now());
             }
             Ok(LinkEvent::Bytes { bytes, .. }) => protocol.read(SimTime::ZERO, &bytes, &mut |report| {
@@ -80,16 +80,16 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         }
     }
     match (connected, boat) {
-        (None, _) => bail!("the boat at {address} was not reached in {} s: {reason}", args.wait_s),
+        (None, _) => bail!("the boat at {address} was not reached within {} s: {reason}", args.wait_s),
         (_, None) => {
-            bail!("{address} was sent thrust zero and standby for {} s, and reports nothing of it", args.wait_s)
+            bail!("{address} received zero thrust and standby for {} s, but does not report its mode", args.wait_s)
         }
         (_, Some(ControlReport { shown, operator })) => bail!(
-            "the boat is sent thrust zero and standby and reports mode {}{}",
+            "the boat receives zero thrust and standby, but reports mode {}{}",
             shown.mode.letter(),
             match operator {
                 Some(Operator::Secondary) | None => String::new(),
-                Some(other) => format!(": operator {} commands it, who must stop it", other.number()),
+                Some(other) => format!("; operator {} has control and must stop it", other.number()),
             }
         ),
     }
@@ -106,14 +106,11 @@ fn stopped_by_its_gateway(address: &LinkAddress) -> bool {
             true
         }
         Ok(reply) => {
-            terminal::remark(&format!(
-                "the gateway of {} has the link, and it is {}",
-                entry.vehicle, reply.status.link
-            ));
+            terminal::remark(&format!("the gateway of {} has the link and is {}", entry.vehicle, reply.status.link));
             false
         }
         Err(e) => {
-            terminal::remark(&format!("the gateway of {} has the link, and does not answer: {e}", entry.vehicle));
+            terminal::remark(&format!("the gateway of {} has the link, but does not answer: {e}", entry.vehicle));
             false
         }
     }

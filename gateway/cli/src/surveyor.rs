@@ -5,7 +5,7 @@ use super::{guard, preflight_report};
 use anyhow::{Context, Result, anyhow};
 use bus::{Registration, Token};
 use command_line::leaf_args::LeafArgs;
-use command_line::number::seconds;
+use command_line::number::{address, seconds};
 use command_line::{program, stop};
 use gateway::bridge::Preflight;
 use gateway::config::Gateway;
@@ -23,55 +23,56 @@ use std::time::Duration;
 /// Timeout for the gateway's answer to a key on its own terminal.
 const KEY_ANSWER: Duration = Duration::from_secs(2);
 
-/// Which boat, and where.
 #[derive(clap::Args)]
 pub struct Args {
-    /// The vehicle in the game, by name; there it has source = "external"
+    /// Name of the vehicle in the game, which must set source = "external" for it
     #[arg(long, value_name = "NAME")]
     vehicle: String,
-    /// Where the boat is: tcp://HOST:PORT, udp://HOST:PORT, udp-listen://0.0.0.0:14550, serial:///dev/ttyUSB0?baud=38400 (4800 to 921600)
+    /// Link to the boat: tcp://HOST:PORT, udp://HOST:PORT, udp-listen://0.0.0.0:14550 or
+    /// serial:///dev/ttyUSB0?baud=38400 (4800 to 921600 baud)
     #[arg(long, value_name = "URL")]
     link: String,
-    /// A payload that is passed through and recorded, as camera=tcp://192.168.1.23:5001; ,listen=HOST:PORT says where; ,exo2 or ,exo2=http
-    /// records the values of a sonde; may be repeated
+    /// Payload to forward and record, for example camera=tcp://192.168.1.23:5001; append ,listen=HOST:PORT for the
+    /// address that serves it, and ,exo2 or ,exo2=http to record the values of an EXO2 sonde; repeatable
     #[arg(long, value_name = "NAME=URL", conflicts_with = "at_game_pace")]
     payload: Vec<PayloadPort>,
-    /// Where it takes operator commands with or without a game: an address of this machine and a port, 0 for any
+    /// Address and port on this machine for operator commands, with or without a game; port 0 selects a free port
     #[arg(long, value_name = "HOST:PORT", default_value = "127.0.0.1:0", value_parser = control_address)]
     control_listen: SocketAddr,
-    /// How it is driven and stopped: a gateway file or its name [default: a Surveyor with careful limits]
+    /// Gateway file or name, which defines how the boat is driven and stopped [default: a Surveyor with careful
+    /// limits]
     #[arg(long, value_name = "FILE", value_parser = command_line::scenario_files::file_of::<gateway::config::Gateway>)]
     config: Option<PathBuf>,
-    /// Arms by itself, once, as soon as it is ready; after a failsafe it has to be armed by command
+    /// Arms once, as soon as the boat is ready; after a failsafe, an operator must arm it
     #[arg(long)]
     arm: bool,
-    /// Does everything as on the water, and sends the boat nothing but standby
+    /// Runs as on the water, but sends the boat only standby commands
     #[arg(long)]
     dry_run: bool,
-    /// The report of a passed `gateway check --vehicle`, where the gateway file requires one
+    /// Report of a passed `gateway check --vehicle`, needed to arm if the gateway file requires it
     #[arg(long, value_name = "FILE")]
     preflight: Option<PathBuf>,
-    /// Arms without such a report: this person answers for it
+    /// Arms without a pre-flight report, on the responsibility of this person
     #[arg(long, value_name = "PERSON", conflicts_with = "preflight")]
     without_preflight: Option<String>,
     /// Records to this file [default: runs/gateway-NAME-UTC.mcap]
     #[arg(long, value_name = "FILE", conflicts_with = "no_record")]
     record: Option<PathBuf>,
-    /// Records nothing
+    /// Does not record
     #[arg(long)]
     no_record: bool,
-    /// The boat is an emulated one, whose time runs as fast as the game's
+    /// Runs at the pace of the game; only for an emulated boat
     #[arg(long)]
     at_game_pace: bool,
-    /// After this long without a byte the boat counts as gone, s
+    /// How long the boat may send nothing before it counts as lost, s
     #[arg(long, value_name = "S", default_value_t = 3.0, value_parser = seconds)]
     silence_s: f64,
-    /// How long to look for the game, s [default: as long as it runs; operators are served meanwhile]
+    /// How long to look for the game, s; operators can connect meanwhile [default: no limit]
     #[arg(long, value_name = "S", value_parser = seconds)]
     wait_s: Option<f64>,
     #[command(flatten)]
     leaf: LeafArgs,
-    /// Prints errors only, and stops when standard input ends
+    /// Prints only errors, and stops when standard input ends
     #[arg(long, hide = true)]
     for_parent: bool,
 }
@@ -85,10 +86,10 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
     let record = recording(args)?;
     let log = Log::new(args.for_parent);
     if args.dry_run {
-        log.remark("a dry run: the boat is sent nothing but standby".to_owned());
+        log.remark("dry run: the boat receives only standby".to_owned());
     }
     if let Some(operator) = &args.without_preflight {
-        log.remark(format!("WARNING: {operator} answers for arming without a pre-flight check"));
+        log.remark(format!("WARNING: {operator} is responsible for arming without a pre-flight check"));
     }
     let game = args.leaf.game.as_ref().map(|game| game.as_str().to_owned());
     let settings = Settings {
@@ -126,7 +127,7 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
             registration = bus::register_gateway(&entry).ok();
             log.remark(format!("operators reach this gateway at {control}, with or without a game"));
             if !args.for_parent && std::io::stdin().is_terminal() {
-                log.remark("Enter, in this terminal, is an E-stop of this boat".to_owned());
+                log.remark("press Enter in this terminal for an E-stop of this boat".to_owned());
                 let stop = OperatorCommand::EStop;
                 let stop = GatewayCommand::Boat { name: args.vehicle.clone(), command: stop };
                 // The log shows whether the command was carried out.
@@ -144,13 +145,11 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Parses the address of the control port. Others are given this address, so it must be a valid
-/// one.
+/// Parses the address of the control port, which other machines must be able to use.
 fn control_address(text: &str) -> Result<SocketAddr, String> {
-    let address: SocketAddr =
-        text.parse().map_err(|_| "expected an address and a port, as 127.0.0.1:8100".to_owned())?;
+    let address = address(text)?;
     if address.ip().is_unspecified() {
-        return Err(format!("others are told this address, and {} is none: name one of this machine's", address.ip()));
+        return Err("expected an address at which operators reach this machine, not all of its addresses".to_owned());
     }
     Ok(address)
 }
@@ -174,7 +173,6 @@ fn preflight(args: &Args, link: &LinkAddress, gateway: &Gateway) -> Result<Prefl
     })
 }
 
-/// The path of the recording.
 fn recording(args: &Args) -> Result<Option<PathBuf>> {
     if args.no_record {
         return Ok(None);
@@ -183,6 +181,6 @@ fn recording(args: &Args) -> Result<Option<PathBuf>> {
         return Ok(Some(path.clone()));
     }
     let folder = Path::new("runs");
-    std::fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
+    std::fs::create_dir_all(folder).with_context(|| format!("cannot create the folder {}", folder.display()))?;
     Ok(Some(folder.join(format!("gateway-{}-{}.mcap", args.vehicle, utc::file_stamp(utc::now_ns())))))
 }

@@ -69,10 +69,9 @@ impl Guide {
     }
 }
 
-/// Runs the guided checks.
 pub(super) fn guided_checks(guide: &mut Guide, listener: &mut Listener, gateway: &Gateway) -> Vec<Check> {
     if guide.lines.is_none() {
-        return ["compass swing", "propellers"].map(|name| Check::not_done(name, "--guided does it")).to_vec();
+        return ["compass swing", "propellers"].map(|name| Check::not_done(name, "use --guided")).to_vec();
     }
     vec![swing(guide, listener, gateway), propellers(guide, listener)]
 }
@@ -80,17 +79,18 @@ pub(super) fn guided_checks(guide: &mut Guide, listener: &mut Listener, gateway:
 fn swing(guide: &Guide, listener: &mut Listener, gateway: &Gateway) -> Check {
     let name = "compass swing";
     if gateway.protocol == BoatProtocol::Mavlink {
-        return Check::not_done(name, "a boat that speaks MAVLink reports true headings: its own calibration does it");
+        return Check::not_done(name, "a MAVLink boat reports true headings; use its own calibration");
     }
-    if !guide.is_agreed("Compass swing: will somebody turn the boat by remote control, in open water?", listener) {
-        return Check::not_done(name, "not wanted");
+    if !guide.is_agreed("Compass swing: can you turn the boat by remote control in open water?", listener) {
+        return Check::not_done(name, "skipped");
     }
     let declination_rad = match declination_rad(listener, gateway) {
         Ok(declination_rad) => declination_rad,
         Err(why) => return Check::not_done(name, why),
     };
     let mut swing = CompassSwing::default();
-    let what = "Turn the boat slowly through two full circles, or sail them at 1 m/s or more where it reports no true heading.";
+    let what =
+        "Turn the boat slowly through two full circles; if it reports no true heading, drive them at 1 m/s or more.";
     guide.until_enter(what, listener, &mut |listener| {
         if let (Some(compass_deg), Some(true_deg)) = (listener.check.compass_deg(), listener.check.true_deg()) {
             swing.add_reading(compass_deg.to_radians() + declination_rad, true_deg.to_radians());
@@ -101,7 +101,7 @@ fn swing(guide: &Guide, listener: &mut Listener, gateway: &Gateway) -> Check {
         Ok(deviation) => {
             terminal::print(&format!("\nfor the boat's file:\n\n{}", deviation.toml()));
             let found = format!(
-                "deviation up to {:.1} degrees, {:.1} left unexplained; expected up to {DEVIATION_MAX_DEG}",
+                "deviation up to {:.1} degrees, residual {:.1} degrees; expected at most {DEVIATION_MAX_DEG}",
                 deviation.largest_deg, deviation.residual_deg
             );
             Check::of(name, deviation.largest_deg <= DEVIATION_MAX_DEG, found)
@@ -114,7 +114,7 @@ fn declination_rad(listener: &Listener, gateway: &Gateway) -> Result<f64, String
     match (gateway.compass, gateway.declination_rad, listener.check.fixes().last()) {
         (CompassFrame::True, ..) => Ok(0.0),
         (_, Some(declination_rad), _) => Ok(declination_rad),
-        (_, None, None) => Err("without a position the declination is unknown: declination_deg".to_owned()),
+        (_, None, None) => Err("the declination is unknown without a position; set declination_deg".to_owned()),
         (_, None, Some((_, at))) => {
             declination_deg(*at, date_and_time(utc::now_ns()).0).map(f64::to_radians).map_err(|e| e.to_string())
         }
@@ -123,10 +123,11 @@ fn declination_rad(listener: &Listener, gateway: &Gateway) -> Result<f64, String
 
 fn propellers(guide: &Guide, listener: &mut Listener) -> Check {
     let name = "propellers";
-    if !guide
-        .is_agreed("Propeller test: is everybody clear of the propellers, and the remote control in hand?", listener)
-    {
-        return Check::not_done(name, "not wanted");
+    if !guide.is_agreed(
+        "Propeller test: is everyone clear of the propellers, and is the remote control in your hand?",
+        listener,
+    ) {
+        return Check::not_done(name, "skipped");
     }
     // Whether the boat reports its operator, whether that is the remote control, and thrust ahead
     // and astern.
@@ -142,7 +143,7 @@ fn propellers(guide: &Guide, listener: &mut Listener) -> Check {
     let turned = guide.is_agreed("Did both propellers turn both ways, without noise?", listener);
     let word = |is: bool| if is { "seen" } else { "not seen" };
     let found = format!(
-        "somebody says they turn: {}; in what the boat reports the remote control was {}, thrust ahead {}, astern {}",
+        "both turned: {}; in the boat's reports, remote control {}, thrust ahead {}, astern {}",
         if turned { "yes" } else { "no" },
         word(by_remote),
         word(seen[0]),

@@ -10,7 +10,7 @@ use bus::stop::{StopClient, StopCommand, StopNews, StopOrders};
 use bus::{Bus, BusError, Token, ask_gateway, clock};
 use clap::ValueEnum;
 use command_line::leaf_args::LeafArgs;
-use command_line::number::within;
+use command_line::number::{address, within};
 use command_line::observer::Observer;
 use command_line::terminal;
 use messages::Control;
@@ -33,64 +33,63 @@ const NEXT_ANSWER: Duration = Duration::from_secs(10);
 /// Timeout for boats to report that they have stopped.
 const STOP_MAX: Duration = Duration::from_secs(10);
 
-/// The recipients and the command.
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
     words: Words,
-    /// The gateway's control port, as it shows it [default: those of this machine's gateways, or by way of the game]
-    #[arg(long, value_name = "HOST:PORT")]
+    /// Address of the gateway's control port, as the gateway prints it [default: those of the gateways on this
+    /// machine, or else through the game]
+    #[arg(long, value_name = "HOST:PORT", value_parser = address)]
     gateway: Option<SocketAddr>,
     #[command(flatten)]
     leaf: LeafArgs,
 }
 
-/// A command in words.
 #[derive(clap::Args)]
 pub(super) struct Words {
-    /// The vehicle, by name; all of them with "all", for estop, disarm, release and status
+    /// Name of the vehicle, or "all" for estop, disarm, release and status
     pub(super) vehicle: String,
-    /// The command
+    /// Command to send
     pub(super) command: CommandArg,
-    /// For mission: a .sea file, its lines as the boat receives them (PSEAR, then OIWPL; index 0 is the recovery point)
+    /// For mission: .sea file with the sentences to send, PSEAR and then OIWPL; waypoint 0 is the recovery point
     file: Option<PathBuf>,
-    /// For hold-heading: the true heading, degrees
+    /// For hold-heading: true heading, degrees
     #[arg(long, value_name = "DEG", value_parser = within(0.0, 360.0, "degrees"))]
     heading_deg: Option<f64>,
-    /// For hold-heading: thrust ahead, % of all
+    /// For hold-heading: thrust ahead, per cent of full
     #[arg(long, value_name = "PCT", value_parser = within(0.0, 100.0, "per cent"))]
     thrust_pct: Option<f64>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum CommandArg {
-    /// Print its status
+    /// Prints the boat's status
     Status,
-    /// Follow orders, if everything that this needs is there
+    /// Lets agents drive the boat, if it is ready
     Arm,
-    /// Do not follow orders any more: standby
+    /// Puts the boat in standby and stops following orders
     Disarm,
-    /// Standby, and nothing else until it is released
+    /// Keeps the boat in standby until it is released
     Estop,
-    /// The E-stop is over; the boat stays safed
+    /// Ends the E-stop; the boat stays safed
     Release,
-    /// Keep the station by the boat's own controller
+    /// Keeps station, using the boat's own controller
     StationKeep,
-    /// Go to the emergency recovery point by the boat's own controller
+    /// Goes to the emergency recovery point, using the boat's own controller
     GoToErp,
-    /// Upload a mission and sail it by the boat's own controller
+    /// Uploads a mission and follows it, using the boat's own controller
     Mission,
-    /// Hold a heading at a thrust by the boat's own controller (mode C)
+    /// Holds a heading and a thrust, using the boat's own controller (mode C)
     HoldHeading,
-    /// The boat's own river navigation (mode N)
+    /// Starts the boat's own river navigation (mode N)
     RiverNav,
-    /// The boat's own autopilot (mode I)
+    /// Starts the boat's own autopilot (mode I)
     Autopilot,
-    /// Calibration of the boat's compass (mode 3)
+    /// Calibrates the boat's compass (mode 3)
     CalibrateCompass,
-    /// The boat's mode for depth (D)
+    /// Selects the boat's depth mode (mode D)
     Depth,
-    /// The boat's mode for the direction of gravity (S)
+    /// Selects the boat's gravity vector mode (mode S)
     GravityVector,
 }
 
@@ -114,17 +113,17 @@ impl Words {
     /// The command for a boat.
     pub(super) fn command(&self) -> Result<OperatorCommand> {
         Ok(match (self.command, &self.file) {
-            (CommandArg::Mission, None) => bail!("mission needs a .sea file"),
+            (CommandArg::Mission, None) => bail!("mission requires a .sea file"),
             (CommandArg::Mission, Some(path)) => OperatorCommand::Mission(mission_file::read(path)?),
-            (_, Some(path)) => bail!("{} is given, and only mission takes a file", path.display()),
+            (_, Some(path)) => bail!("unexpected file {}; only mission takes one", path.display()),
             (CommandArg::HoldHeading, None) => match (self.heading_deg, self.thrust_pct) {
                 (Some(heading_deg), Some(thrust_pct)) => {
                     OperatorCommand::Mode(BoatMode::Heading { heading_deg, thrust_pct })
                 }
-                _ => bail!("hold-heading needs --heading-deg and --thrust-pct"),
+                _ => bail!("hold-heading requires --heading-deg and --thrust-pct"),
             },
             _ if self.heading_deg.is_some() || self.thrust_pct.is_some() => {
-                bail!("--heading-deg and --thrust-pct are for hold-heading")
+                bail!("only hold-heading takes --heading-deg and --thrust-pct")
             }
             (CommandArg::RiverNav, None) => OperatorCommand::Mode(BoatMode::RiverNav),
             (CommandArg::Autopilot, None) => OperatorCommand::Mode(BoatMode::Autopilot),
@@ -187,7 +186,7 @@ fn ports_meant(args: &Args) -> Result<Vec<Port>> {
     ports.retain(is_meant);
     if let ([_, _, ..], true) = (ports.as_slice(), vehicle != ALL) {
         let at: Vec<String> = ports.iter().map(|port| port.at.to_string()).collect();
-        bail!("several gateways on this machine are for {vehicle}: choose with --gateway among {}", at.join(", "));
+        bail!("several gateways on this machine drive {vehicle}; select one with --gateway: {}", at.join(", "));
     }
     Ok(ports)
 }
@@ -269,7 +268,7 @@ fn tell_stop(args: &Args, command: StopCommand) -> Result<ExitCode> {
         let (joins, reason) = (Arc::clone(&client), Arc::clone(&no_game));
         std::thread::spawn(move || {
             if let Err(e) = join(&leaf, target.as_deref(), &joins) {
-                drop(reason.set(format!("{e:#}")));
+                drop(reason.set(command_line::explain::line(&e)));
                 joins.visit(StopOrders::complete);
             }
         });
@@ -285,8 +284,10 @@ fn tell_stop(args: &Args, command: StopCommand) -> Result<ExitCode> {
     }
     match (left.is_empty(), no_game.get()) {
         (true, None) if client.visit(|orders| orders.is_done(clock::now())) => {}
-        (true, None) => terminal::remark("the game does not answer: only the gateways that are known were told"),
-        (true, Some(reason)) => terminal::remark(&format!("only gateways were told, and no game: {reason}")),
+        (true, None) => terminal::remark("the game does not answer; only the known gateways received the command"),
+        (true, Some(reason)) => {
+            terminal::remark(&format!("only gateways received the command, not the game: {reason}"))
+        }
         (false, None) => return Err(anyhow!(left.join("; "))),
         (false, Some(reason)) => return Err(anyhow!("{}; {reason}", left.join("; "))),
     }
@@ -301,7 +302,7 @@ fn join(leaf: &LeafArgs, target: Option<&str>, client: &StopClient) -> Result<()
     if let Some(target) = target {
         observer.vehicle(target)?;
         if !boats.iter().any(|boat| boat == target) {
-            bail!("{target} is simulated: it has no gateway");
+            bail!("{target} is simulated and has no gateway");
         }
     }
     Ok(client.join(&observer.bus, &observer.game, &boats)?)
@@ -318,12 +319,12 @@ enum Outcome {
 }
 
 /// Sends a command to all boats at once: over the game's network and straight to every known
-/// gateway. No path waits for another, and the status of every real boat is printed as it arrives.
+/// gateway, in parallel. Prints the status of every real boat as it arrives.
 fn tell_all(args: &Args) -> Result<ExitCode> {
     let (control, fleet) = match args.words.command {
         CommandArg::Status => (None, None),
         CommandArg::Release => (Some(Control::Release), Some(FleetCommand::Release)),
-        _ => bail!("only estop, disarm, release and status go to all; tell each boat by its name"),
+        _ => bail!("the name all accepts only estop, disarm, release and status; address each boat by name"),
     };
     let ports = ports(args)?;
     let known: Vec<String> = ports.iter().filter_map(|port| port.vehicle.clone()).collect();
@@ -346,7 +347,7 @@ fn tell_all(args: &Args) -> Result<ExitCode> {
         match outcomes.recv_timeout(NEXT_ANSWER) {
             Ok(Outcome::Told) => is_done = true,
             Ok(Outcome::NoGame(error)) => no_game = Some(error),
-            Ok(Outcome::Failed(error)) => failed.push(format!("{error:#}")),
+            Ok(Outcome::Failed(error)) => failed.push(command_line::explain::line(&error)),
             Ok(Outcome::Reply(reply)) => {
                 is_done = true;
                 terminal::show(&full(&reply.status));
@@ -354,14 +355,17 @@ fn tell_all(args: &Args) -> Result<ExitCode> {
             }
             Err(RecvTimeoutError::Disconnected) => break,
             Err(RecvTimeoutError::Timeout) => {
-                failed.push("not everybody answers".to_owned());
+                failed.push("not all boats answered".to_owned());
                 break;
             }
         }
     }
     match no_game {
-        Some(error) if is_done => terminal::remark(&format!("only gateways were told, and no game: {error:#}")),
-        Some(error) => failed.push(format!("{error:#}")),
+        Some(error) if is_done => terminal::remark(&format!(
+            "only gateways received the command, not the game: {}",
+            command_line::explain::line(&error)
+        )),
+        Some(error) => failed.push(command_line::explain::line(&error)),
         None => {}
     }
     if failed.is_empty() { Ok(ExitCode::SUCCESS) } else { Err(anyhow!(failed.join("; "))) }

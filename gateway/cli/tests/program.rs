@@ -154,7 +154,7 @@ fn a_gateway_serves_operators_and_its_recording_is_replayed_and_its_guard_stops_
     drop(gateway.0.stdin.take());
     assert!(gateway.0.wait().expect("it ends").success());
     let (output, said) = folder.run(&["replay", "run.mcap"]);
-    assert!(output.status.success() && said.contains("the replay is the recording, byte for byte"), "{said}");
+    assert!(output.status.success() && said.contains("the replay equals the recording, byte for byte"), "{said}");
 
     std::fs::remove_file(folder.0.path().join("run.mcap")).expect("it was recorded");
     let mut gateway = folder.gateway(&boat);

@@ -91,5 +91,5 @@ fn what_is_no_recording_is_refused() {
     writer.write_metadata(&mcap::records::Metadata { name: "gateway".to_owned(), metadata }).expect("memory");
     writer.finish().expect("memory");
     let error = replayed(writer.into_inner().get_ref()).expect_err("an old one").to_string();
-    assert!(error.contains("it is a gateway's of the old format"), "{error}");
+    assert!(error.contains("it is a gateway's recording in an old format"), "{error}");
 }

@@ -13,55 +13,57 @@ use gateway_cli::protocol_arg::ProtocolArg;
 use std::process::ExitCode;
 use std::time::Duration;
 
-/// Which boat, and where.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The vehicle in the game, by name: the back seat becomes its agent
+    /// Name of the vehicle in the game; the back seat becomes its agent
     #[arg(long, value_name = "NAME")]
     vehicle: String,
-    /// What the boat speaks
+    /// Protocol of the boat
     #[arg(long, value_name = "PROTOCOL", value_enum, default_value_t = ProtocolArg::Surveyor)]
     protocol: ProtocolArg,
-    /// Where the back seat connects: tcp://HOST:PORT, udp://HOST:PORT, pty, pty:///LINK, serial:///dev/ttyUSB0?baud=38400
+    /// Address for the back seat: tcp://HOST:PORT, udp://HOST:PORT, pty, pty:///LINK or
+    /// serial:///dev/ttyUSB0?baud=38400
     #[arg(long, value_name = "URL")]
     listen: String,
-    /// Where the primary operator connects, who takes control by any command and gives it back with OP2_ON in the text field
+    /// Address for the primary operator, who takes control with any command and returns it with OP2_ON in the text
+    /// field
     #[arg(long, value_name = "URL")]
     primary: Option<String>,
-    /// A ground station that waits for the boat, as QGroundControl does at udp://127.0.0.1:14550 (MAVLink only)
+    /// Address of a ground station that waits for the boat, for example udp://127.0.0.1:14550 for QGroundControl
+    /// (MAVLink only)
     #[arg(long, value_name = "URL", conflicts_with = "primary")]
     ground_station: Option<String>,
-    /// Magnetic north, degrees east of true [default: by the World Magnetic Model, for the field and today]
+    /// Magnetic declination, degrees east [default: the World Magnetic Model's, for the field and today]
     #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
     declination_deg: Option<f64>,
-    /// After this long without a command the boat goes to standby, s, or none: the real one's is not known
+    /// Time without a command after which the boat goes to standby, s, or none; the real boat's value is unknown
     #[arg(long, value_name = "S", default_value = "none", value_parser = watchdog)]
     watchdog_s: OrNone,
-    /// A set-point that is not a whole number leaves the one before in force, as in one known stand-in
+    /// Ignores a set-point that is not a whole number and keeps the previous one, as one known simulator does
     #[arg(long)]
     integers: bool,
-    /// Sentences beyond a Surveyor's: gpsd has time, speed and course only from rmc
+    /// Additional sentences beyond a Surveyor's; gpsd needs rmc for time, speed and course
     #[arg(long, value_name = "KIND", value_delimiter = ',')]
     extra: Vec<ExtraArg>,
-    /// What is left in its battery at the beginning, %, or none: it is full and does not drain
+    /// Battery charge at the start, per cent, or none for a full battery that does not drain
     #[arg(long, value_name = "PCT", default_value = "100", value_parser = charge)]
     charge_pct: OrNone,
     /// How long to look for the game, s
     #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
     wait_s: f64,
-    /// After this long without a picture the sim counts as lost, s
+    /// How long the sim may send no picture before it counts as lost, s
     #[arg(long, value_name = "S", default_value_t = 20.0, value_parser = seconds)]
     silence_s: f64,
     #[command(flatten)]
     leaf: LeafArgs,
-    /// Prints errors only, and stops when standard input ends
+    /// Prints only errors, and stops when standard input ends
     #[arg(long, hide = true)]
     for_parent: bool,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum ExtraArg {
-    /// Fix with date, course and speed
+    /// Position, date, course and speed
     Rmc,
     /// True heading
     Hdt,
@@ -78,7 +80,7 @@ struct OrNone(Option<f64>);
 fn or_none(text: &str, number: impl Fn(&str) -> Result<f64, String>) -> Result<OrNone, String> {
     match text {
         "none" => Ok(OrNone(None)),
-        text => number(text).map(Some).map(OrNone).map_err(|e| format!("{e}, nor none")),
+        text => number(text).map(Some).map(OrNone).map_err(|e| format!("{e}, or none")),
     }
 }
 
@@ -102,8 +104,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         (_, Some(text), ProtocolArg::Mavlink) => {
             Some(LinkAddress::to_connect(text).map_err(|e| anyhow!("--ground-station: {e}"))?)
         }
-        (Some(_), ..) => bail!("--primary is for a Surveyor: MAVLink has --ground-station"),
-        (_, Some(_), _) => bail!("--ground-station is for --protocol mavlink"),
+        (Some(_), ..) => bail!("--primary requires --protocol surveyor; for MAVLink, use --ground-station"),
+        (_, Some(_), _) => bail!("--ground-station requires --protocol mavlink"),
     };
     let stop = stop::on_ctrl_c_or_parent(args.for_parent)?;
     let extra = |kind: &ExtraArg| match kind {

@@ -62,7 +62,8 @@ impl Drop for Open {
 
 impl Games {
     pub(super) fn new(stop: &Arc<AtomicBool>) -> Result<Games> {
-        let folder = TempDir::with_prefix("squall-view-").context("no folder for the recordings of games")?;
+        let folder =
+            TempDir::with_prefix("squall-view-").context("cannot create a folder for the recordings of games")?;
         Ok(Games {
             open: Mutex::default(),
             folder,
@@ -81,18 +82,15 @@ impl Games {
         let refused = |why: &str| Showing::new(Arc::new(PreparingView::failed(why))).shown();
         if open.len() >= OPEN_MAX {
             let Some(idle) = open.iter().position(|open| !open.showing.is_watched()) else {
-                return refused(&format!(
-                    "{OPEN_MAX} other games are looked at: close one of them, and load this page again"
-                ));
+                return refused(&format!("{OPEN_MAX} other games are open; close one of them, then reload this page"));
             };
             open.remove(idle);
         }
         let game = match find() {
             Ok(game) => game,
-            Err(why) => return refused(&format!("{why:#}")),
+            Err(why) => return refused(&command_line::explain::line(&why)),
         };
-        let preparing =
-            Arc::new(PreparingView::new(&format!("{}: it is played as soon as another is over", game.about)));
+        let preparing = Arc::new(PreparingView::new(&format!("{}: waiting for another game to end", game.about)));
         let showing = Showing::new(Arc::clone(&preparing) as _);
         let file = self.folder.path().join(format!("{}.mcap", self.recordings.fetch_add(1, Ordering::Relaxed)));
         let shown = showing.shown();
@@ -102,7 +100,11 @@ impl Games {
             let _place = Place::wait(&played);
             match prepare(&game, &file, &stop, &preparing) {
                 Ok(view) => showing.show(Arc::new(view)),
-                Err(why) => showing.show(Arc::new(PreparingView::failed(&format!("{}: {why:#}", game.about)))),
+                Err(why) => showing.show(Arc::new(PreparingView::failed(&format!(
+                    "{}: {}",
+                    game.about,
+                    command_line::explain::line(&why)
+                )))),
             }
         });
         shown
@@ -144,16 +146,16 @@ fn prepare(
     let report = in_process::play(scenario, seed, Some(file), stop, |contest| {
         if contest.decision().is_multiple_of(TELL_EVERY) {
             let share = 100.0 * (contest.now().as_s() / end_s).clamp(0.0, 1.0);
-            preparing.tell(&format!("{}: it is being played, {share:.0} %", game.about));
+            preparing.tell(&format!("{}: playing, {share:.0} %", game.about));
         }
     })?;
     if let Some(problem) = report.run.recording_problem {
         bail!("{problem}");
     }
     let about = match digest {
-        Some(digest) if *digest == report.outcome.digest => format!("{}; played again, as in the report", game.about),
-        Some(_) => format!("{}; played again, and NOT as in the report: this program plays otherwise", game.about),
-        None => format!("{}; played again", game.about),
+        Some(digest) if *digest == report.outcome.digest => format!("{}; rerun, identical to the report", game.about),
+        Some(_) => format!("{}; rerun, NOT identical to the report: this program plays it differently", game.about),
+        None => format!("{}; rerun", game.about),
     };
     replay_command::show_about(file, Some(about))
 }

@@ -44,12 +44,12 @@ pub(super) fn open(path: &Path, stop: &Arc<AtomicBool>) -> Result<Arc<dyn Report
 
 fn of_file(path: &Path, games: Games) -> Result<Arc<dyn Report>> {
     let bytes = read(path)?;
-    let is_none = || format!("{} is no report", path.display());
+    let is_none = || format!("{} is not a report", path.display());
     let value: Value = serde_json::from_slice(&bytes).with_context(is_none)?;
     match ["tournament", "sweep"].map(|kind| value.get(kind).is_some()) {
         [true, _] => Ok(Arc::new(TournamentReport::new(serde_json::from_slice(&bytes).with_context(is_none)?, games))),
         [_, true] => Ok(Arc::new(SweepReport::open(path, &value, games).with_context(is_none)?)),
-        _ => bail!("{} is no report: it has neither the key tournament nor sweep", path.display()),
+        _ => bail!("{} is not a report: it has neither the key tournament nor sweep", path.display()),
     }
 }
 
@@ -87,7 +87,7 @@ impl TournamentReport {
     }
 
     fn find(&self, name: &str) -> Result<Game> {
-        let plan = self.plan.as_ref().map_err(|why| anyhow!("no game can be played again: {why}"))?;
+        let plan = self.plan.as_ref().map_err(|why| anyhow!("cannot rerun games: {why}"))?;
         let place = place_of(name, plan.games())?;
         let (of, scenario) = plan.match_at(place);
         let [blue, red] = of.sides.map(|entry| &plan.tournament().entries[entry].name);
@@ -154,7 +154,10 @@ impl SweepReport {
             Ok(plan) => table().map(|bytes| sweep::rows_in(plan, &String::from_utf8_lossy(&bytes))),
             Err(_) => Ok(vec![]),
         };
-        let (plan, rows) = (plan.map_err(|why| format!("{why:#}")), rows.map_err(|why| format!("{why:#}")));
+        let (plan, rows) = (
+            plan.map_err(|why| command_line::explain::line(&why)),
+            rows.map_err(|why| command_line::explain::line(&why)),
+        );
         let worst = value["worst"].as_array().into_iter().flatten();
         let digest =
             |game: &Value| Some((usize::try_from(game["game"].as_u64()?).ok()?, game["digest"].as_str()?.to_owned()));
@@ -188,7 +191,7 @@ impl SweepReport {
     }
 
     fn find(&self, name: &str) -> Result<Game> {
-        let plan = self.plan.as_ref().map_err(|why| anyhow!("no game can be played again: {why}"))?;
+        let plan = self.plan.as_ref().map_err(|why| anyhow!("cannot rerun games: {why}"))?;
         let job = plan.job(place_of(name, plan.games())?);
         let scenario = plan.scenario(job.point, job.entry, job.side)?;
         let (sweep, values) = (plan.sweep(), &plan.points()[job.point].values);
@@ -213,7 +216,7 @@ impl SweepReport {
 
 fn unpacked(path: &Path) -> Result<sweep::Plan> {
     let packed: Packed =
-        serde_json::from_slice(&read(path)?).with_context(|| format!("{} is no plan", path.display()))?;
+        serde_json::from_slice(&read(path)?).with_context(|| format!("{} is not a plan", path.display()))?;
     Ok(sweep::Plan::unpack(packed)?)
 }
 

@@ -64,7 +64,7 @@ impl TrainingReport {
         // The last line may still be in the middle of being written.
         let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
         let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(&bytes[..whole]);
-        let heads = reader.headers().with_context(|| format!("{} is no table", path.display()))?.clone();
+        let heads = reader.headers().with_context(|| format!("{} is not a CSV table", path.display()))?.clone();
         let column = |name: &str| {
             let found = heads.iter().position(|head| head == name);
             found.with_context(|| format!("{} has no column {name}, expected those of a training", path.display()))
@@ -117,8 +117,8 @@ impl Report for TrainingReport {
     }
 
     fn file(&self, path: &str) -> Option<Vec<u8>> {
-        // If a table can no longer be read, show the error in place of the curves.
-        let problem = |why: anyhow::Error| json!({"kind": "training", "problem": format!("{why:#}")});
+        // If a table can no longer be read, show the error instead of the curves.
+        let problem = |why: anyhow::Error| json!({"kind": "training", "problem": command_line::explain::line(&why)});
         (path == "/report.json").then(|| self.json().unwrap_or_else(problem).to_string().into_bytes())
     }
 

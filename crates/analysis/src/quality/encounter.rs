@@ -10,8 +10,7 @@ use serde::Serialize;
 
 /// Time for which a tagger and the boat it tagged keep that relation, s.
 const TAG_REMEMBERED_S: f64 = 10.0;
-/// An encounter ends when the boats are this much farther apart than its threshold, m: a bounce
-/// stays one encounter.
+/// Hysteresis of encounters, m: a bounce stays one encounter.
 const APART_M: f64 = 1.0;
 
 /// The relation between two boats.
@@ -98,8 +97,7 @@ struct Encounter {
 /// Counts the encounters of a game.
 pub(super) struct EncounterCounter {
     scenario: Scenario,
-    /// Ongoing encounters, indexed by pair: the lower vehicle times the number of vehicles, plus
-    /// the higher.
+    /// Ongoing encounters by pair: lower vehicle times number of vehicles, plus the higher.
     open: Vec<Option<Encounter>>,
     /// The last tagger and the time of the tag, s, by vehicle index.
     tagged_by: Vec<Option<(usize, f64)>>,

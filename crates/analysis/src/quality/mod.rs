@@ -206,8 +206,7 @@ impl ModeQuality {
         self.edge_s += if is_at_edge { step_s } else { 0.0 };
     }
 
-    /// Compares a mind's order with the previous one. A jump counts only within a mode, because
-    /// another mode has other aims.
+    /// Compares a mind's order with the previous one, within a mode: another mode has other aims.
     fn compare(&mut self, before: Option<&(MindState, Order)>, mind: &MindState, order: Order) {
         let same_mode = before.filter(|(before, _)| before == mind);
         let Some((_, before)) = same_mode else {

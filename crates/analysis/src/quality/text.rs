@@ -22,10 +22,10 @@ impl Quality {
         writeln!(
             f,
             "\n{:NAME$}{:>8}{:>9}{:>9}{:>9}{:>10}{:>8}",
-            "", "time", "course", "speed", "begun", "stands", "at the"
+            "", "time", "course", "speed", "entered", "stands", "at the"
         )?;
         writeln!(f, "{:NAME$}{:>8}{:>9}{:>9}{:>9}{:>10}{:>8}", "", "", "jumps", "jumps", "", "still", "edge")?;
-        writeln!(f, "{:NAME$}{:>8}{:>9}{:>9}{:>9}{:>10}{:>8}", "", "h", "a min", "a min", "a min", "%", "%")?;
+        writeln!(f, "{:NAME$}{:>8}{:>9}{:>9}{:>9}{:>10}{:>8}", "", "h", "per min", "per min", "per min", "%", "%")?;
         for (strategy, quality) in &self.strategies {
             writeln!(f, "{strategy}")?;
             for (role, of_role) in &quality.roles {
@@ -41,7 +41,7 @@ impl Quality {
     }
 
     fn write_encounters(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        writeln!(f, "\na game: hulls touch / near misses (nearer than the rules' collision distance)")?;
+        writeln!(f, "\nper game: hull contacts / near misses (within the rules' collision distance)")?;
         writeln!(f, "{:NAME$}{:>13}{:>13}{:>17}{:>13}", "", "mate", "enemy", "tagger, tagged", "all")?;
         for (strategy, quality) in &self.strategies {
             writeln!(f, "{}{}", name(strategy), encounters(&quality.encounters, quality.teams))?;
@@ -50,8 +50,8 @@ impl Quality {
     }
 
     fn write_strategies(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        writeln!(f, "\n{:NAME$}{:>15}{:>15}{:>20}", "", "orbits", "in an orbit", "nobody attacks")?;
-        writeln!(f, "{:NAME$}{:>15}{:>15}{:>20}", "", "a game", "s a game", "% of the game")?;
+        writeln!(f, "\n{:NAME$}{:>15}{:>15}{:>20}", "", "orbits", "in an orbit", "no attack")?;
+        writeln!(f, "{:NAME$}{:>15}{:>15}{:>20}", "", "per game", "s per game", "% of the game")?;
         for (strategy, quality) in &self.strategies {
             writeln!(f, "{}{}", name(strategy), team_row(quality))?;
         }

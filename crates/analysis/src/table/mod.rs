@@ -1,7 +1,7 @@
 //! Tables of single topics as CSV.
 //!
 //! The first column is `t_s`, the time of the game (or of the gateway's clock). Columns have the
-//! names of message fields, with boat and team names in place of numbers. Units are those of the
+//! names of message fields, with boat and team names instead of numbers. Units are those of the
 //! messages, except that times are in s. Missing values are empty cells.
 //!
 //! | topic | a row |
@@ -49,7 +49,7 @@ pub enum TableError {
         known: Vec<String>,
     },
     /// Messages of this kind have no table.
-    #[error("messages of {topic} are {schema}, which no table is known for")]
+    #[error("messages of {topic} have the type {schema}, which has no table")]
     Strange {
         /// The topic.
         topic: String,

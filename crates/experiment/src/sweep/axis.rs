@@ -6,33 +6,33 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::Path;
 
-/// A number, or a whole file, that changes from point to point. It has one of `values`, `range`, `normal` and `log_normal`.
+/// A number or a file that varies from point to point, given as one of `values`, `range`, `normal` or `log_normal`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Axis {
-    /// What changes: a kind of file and a key of it, as in `sea.wind.speed_m_s`, `boat.gps.noise_m`, `rules.tag_radius_m`,
-    /// `link.delay_s`, or `strategy.behaviour.pursue.weight`, in the strategies of the entries; or `sea`, `boat`, `rules`, `field` with files
-    /// as values; or `opponent` with strategy files.
+    /// What varies: a kind of file and its key, such as `sea.wind.speed_m_s`, `boat.gps.noise_m`, `rules.tag_radius_m`, `link.delay_s`,
+    /// or `strategy.behaviour.pursue.weight` in the entries' strategies; or, with files as values, `sea`, `boat`, `rules`, `field` or
+    /// `opponent` (a strategy).
     #[schemars(length(min = 1), extend("x-expected" = "a key such as sea.wind.speed_m_s"))]
     pub key: String,
-    /// Its levels, one by one: numbers, texts or files, all of one sort.
+    /// Its levels: numbers, texts or files, all of one type.
     #[schemars(length(max = 1000))]
     pub values: Vec<AxisValue>,
-    /// From and to: every number between is as likely, in a sampled design.
+    /// Lower and upper end; a sampled design draws from it uniformly.
     #[schemars(inner(range(min = -1e9, max = 1e9)))]
     pub range: Option<[f64; 2]>,
-    /// Whether the logarithms of a range are spaced evenly, in place of the numbers.
+    /// Whether the range is logarithmic.
     #[schemars(extend("default" = false))]
     pub log: bool,
-    /// Mean and standard deviation of a normal distribution, cut off 3 deviations from the mean.
+    /// Mean and standard deviation of a normal distribution, truncated at 3 standard deviations.
     #[schemars(inner(range(min = -1e9, max = 1e9)))]
     pub normal: Option<[f64; 2]>,
-    /// Median, and standard deviation of the logarithm, of a log-normal distribution, cut off at 3 of these.
+    /// Median and standard deviation of the logarithm of a log-normal distribution, truncated at 3 standard deviations.
     #[schemars(inner(range(min = 0, max = 1e9)))]
     pub log_normal: Option<[f64; 2]>,
-    /// How many levels a range or a distribution has in a grid: evenly spaced, or equally likely.
+    /// Number of levels in a grid: evenly spaced for a range, equally likely for a distribution.
     #[schemars(range(min = 2, max = 1000), extend("default" = 5))]
     pub count: u32,
-    /// The value where another axis changes alone. Default the middle level.
+    /// The value while another axis varies alone. Default the middle level.
     pub nominal: Option<AxisValue>,
     /// Line and column of the axis in the sweep file.
     #[serde(default)]
@@ -142,8 +142,8 @@ impl Axis {
         (0..count).map(|i| self.at(share(i))).collect()
     }
 
-    /// The values that suffice to check whether all are allowed: every listed value; of a range or
-    /// a distribution, both ends and the second level.
+    /// The values to check instead of all: every listed value; both ends and the second level of a
+    /// range or distribution.
     pub(super) fn telling_values(&self) -> Vec<AxisValue> {
         let mut values = self.levels();
         if self.values.is_empty() {

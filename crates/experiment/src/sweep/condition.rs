@@ -22,7 +22,7 @@ pub struct Condition {
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum ConditionError {
     /// Its form is wrong.
-    #[error("{0:?} is no condition, expected ENTRY.METRIC < NUMBER or > NUMBER, as in {1}.win_share < 0.5")]
+    #[error("{0:?} is not a condition, expected ENTRY.METRIC < NUMBER or > NUMBER, such as {1}.win_share < 0.5")]
     Form(String, String),
     /// The entry is unknown.
     #[error("there is no entry {0:?}, expected one of {1}")]

@@ -145,8 +145,8 @@ pub(crate) fn effects(plan: &Plan, observed: &Observations) -> Vec<Effect> {
     effects
 }
 
-/// The points grouped by the value of an axis, whatever the others; in a one-at-a-time design, only
-/// those where all others are nominal.
+/// The points grouped by the value of an axis; in a one-at-a-time design, only those where all
+/// other axes are nominal.
 fn groups(plan: &Plan, axis: usize) -> Vec<Group> {
     let (sweep, points) = (plan.sweep(), plan.points());
     let about = &sweep.axes[axis];

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// A sweep: how strategies do against one opponent at many points of a space of scenarios.
+/// A sweep: strategies play one opponent at many points of a space of scenarios.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Sweep {
     /// The sweep file's stem.
@@ -21,7 +21,7 @@ pub struct Sweep {
     #[serde(default)]
     #[schemars(skip)]
     pub path: PathBuf,
-    /// What it is meant for, in a line.
+    /// Purpose of the sweep, one line.
     #[schemars(extend("default" = ""))]
     pub about: String,
     /// The game file; the strategies of its teams are replaced.
@@ -30,23 +30,23 @@ pub struct Sweep {
     /// The strategy file that the entries play against.
     #[schemars(with = "FilePath")]
     pub opponent: PathBuf,
-    /// Games of each entry at each point, half of them on each side; an odd number is rounded up. All points play the same seeds.
+    /// Games per entry and point, half of them on each side; an odd number is rounded up. All points play the same seeds.
     #[schemars(range(min = 2, max = 1000000), extend("default" = 20))]
     pub games: u32,
-    /// The first seed; one more for every two games. It also chooses the points of a sampled design.
+    /// The first seed; it increases by one every two games. It also selects the points of a sampled design.
     #[schemars(range(min = 0, max = i64::MAX), extend("default" = 1))]
     pub seed: u64,
     /// Which points of the space are played.
     #[schemars(extend("default" = "grid"))]
     pub design: Design,
-    /// How many points a sampled design has.
+    /// Number of points of a sampled design.
     #[schemars(range(min = 1, max = 65536), extend("default" = 64))]
     pub points: u32,
-    /// The strategies that are compared.
+    /// The compared strategies.
     #[serde(rename = "entry")]
     #[schemars(length(min = 1, max = 100))]
     pub entries: Vec<Entrant>,
-    /// What changes from point to point.
+    /// The values that vary from point to point.
     #[serde(rename = "axis")]
     #[schemars(length(min = 1, max = 50))]
     pub axes: Vec<Axis>,
@@ -56,12 +56,12 @@ pub struct Sweep {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Design {
-    /// Every level of every axis with every level of every other.
+    /// All combinations of the levels of all axes.
     Grid,
-    /// The nominal point, and every level of every axis with all others at their nominal values.
+    /// The nominal point, and each level of each axis with all other axes at their nominal values.
     OneAtATime,
-    /// As many points as `points` says, each axis cut into as many equally likely pieces with one point in each (McKay and
-    /// others, Technometrics 1979).
+    /// `points` points: each axis is divided into `points` equally likely intervals with one point each (McKay and others,
+    /// Technometrics 1979).
     LatinHypercube,
     /// The first `points` of a scrambled Sobol sequence (Burley, JCGT 2020).
     Sobol,
@@ -148,7 +148,7 @@ fn checked(diagnostics: &mut Diagnostics, document: &Document<Sweep>) -> Option<
         let name_path = format!("entry.{i}.name");
         entry.strategy = strategies.read(diagnostics, document, &format!("entry.{i}.strategy"), &entry.strategy);
         if document.is_sound(&name_path) && !names.insert(&entry.name) {
-            let message = format!("name is {:?} again, expected a different one for each entry", entry.name);
+            let message = format!("the name {:?} is used twice, expected a unique name for each entry", entry.name);
             diagnostics.note(document.at(&name_path), message);
         }
     }
@@ -162,7 +162,7 @@ fn checked(diagnostics: &mut Diagnostics, document: &Document<Sweep>) -> Option<
             check_axis(diagnostics, document, &at, axis);
             if !keys.insert(axis.key.clone()) {
                 diagnostics
-                    .note(key_at, format!("key is {:?} again, expected a different one for each axis", axis.key));
+                    .note(key_at, format!("the key {:?} is used twice, expected a unique key for each axis", axis.key));
             }
         }
     }
@@ -181,7 +181,10 @@ fn check_axis(diagnostics: &mut Diagnostics, document: &Document<Sweep>, at: &st
     let problem = if !axis.is_of_files()
         && let Err(error) = axis.setting("team", &AxisValue::Number(0.0), Path::new(""))
     {
-        wrong("key", format!("key is {:?}, expected sea, boat, rules, field or opponent, or more: {error}", axis.key))
+        wrong(
+            "key",
+            format!("key is {:?}, expected sea, boat, rules, field, opponent or a longer key: {error}", axis.key),
+        )
     } else if given.len() != 1 {
         let found = if given.is_empty() { "none".to_owned() } else { given.join(" and ") };
         wrong("key", format!("{} has {found}, expected one of values, range, normal, log_normal", axis.key))
@@ -190,17 +193,17 @@ fn check_axis(diagnostics: &mut Diagnostics, document: &Document<Sweep>, at: &st
     } else if axis.is_of_files() && axis.values.is_empty() {
         wrong(given[0], format!("{} has no values, expected {}", axis.key, files()))
     } else if axis.values.is_empty() && given[0] == "values" {
-        wrong("values", format!("{} has no values, expected one at least", axis.key))
+        wrong("values", format!("{} has no values, expected at least one", axis.key))
     } else if axis.values.windows(2).any(|pair| sort(&pair[0]) != sort(&pair[1])) {
-        wrong("values", format!("values of {} are of different sorts, expected all numbers or all texts", axis.key))
+        wrong("values", format!("values of {} have different types, expected all numbers or all texts", axis.key))
     } else if axis.values.iter().enumerate().any(|(k, value)| axis.values[..k].contains(value)) {
-        wrong("values", format!("values of {} has one twice, expected different ones", axis.key))
+        wrong("values", format!("values of {} contains a duplicate, expected unique values", axis.key))
     } else if let Some([low, high]) = axis.range.filter(|[low, high]| low >= high) {
         wrong("range", format!("range is [{low}, {high}], expected the lower number first"))
     } else if let Some([low, _]) = axis.range.filter(|[low, _]| axis.log && *low <= 0.0) {
         wrong("range", format!("range begins at {low}, expected more than 0 with log"))
     } else if axis.log && axis.range.is_none() {
-        wrong("log", "log is given without range, expected with it only".to_owned())
+        wrong("log", "log is given without range, which it requires".to_owned())
     } else if let Some([_, sigma]) = axis.normal.filter(|[_, sigma]| *sigma <= 0.0) {
         wrong("normal", format!("normal has a deviation of {sigma}, expected more than 0"))
     } else if let Some(pair) =

@@ -35,7 +35,7 @@ impl Journal {
     /// [`StudyError`] if the file cannot be written or already contains games.
     pub fn begin(folder: &Path, plan: &Plan) -> Result<Journal, StudyError> {
         let path = folder.join(NAME);
-        std::fs::create_dir_all(folder).map_err(io("make the folder", folder))?;
+        std::fs::create_dir_all(folder).map_err(io("create the folder", folder))?;
         let games = text_if_any(&path)?.lines().count().saturating_sub(1);
         if games > 0 {
             return Err(StudyError::Exists { folder: folder.to_owned(), games });

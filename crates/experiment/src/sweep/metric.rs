@@ -4,7 +4,7 @@ use serde::Serialize;
 
 /// The measurements of a team in a game; NaN where undefined.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[expect(missing_docs, reason = "METRICS says what they are")]
+#[expect(missing_docs, reason = "METRICS describes them")]
 pub struct TeamMetrics {
     pub score: f64,
     pub grabs: f64,
@@ -22,7 +22,7 @@ pub struct TeamMetrics {
 
 /// The measurements of a game; NaN where undefined.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[expect(missing_docs, reason = "METRICS says what they are")]
+#[expect(missing_docs, reason = "METRICS describes them")]
 pub struct Metrics {
     pub win_share: f64,
     pub own: TeamMetrics,
@@ -111,28 +111,28 @@ const fn metric(
 /// All metrics in the order of the columns: of the entry's team, of its opponent's, and of the
 /// game.
 pub static METRICS: [Metric; 30] = [
-    metric("win_share", "", "1 for a game won, half of that for a draw", |all| &mut all.win_share),
+    metric("win_share", "", "1 for a win, 0.5 for a draw", |all| &mut all.win_share),
     metric("score", "", "points", |all| &mut all.own.score),
-    metric("grabs", "", "flags taken", |all| &mut all.own.grabs),
-    metric("captures", "", "flags brought in", |all| &mut all.own.captures),
+    metric("grabs", "", "flags grabbed", |all| &mut all.own.grabs),
+    metric("captures", "", "flags captured", |all| &mut all.own.captures),
     metric("tags", "", "opponents tagged", |all| &mut all.own.tags),
     metric("tagged", "", "times tagged, by an opponent or the boundary", |all| &mut all.own.tagged),
     metric("out_of_bounds", "", "times a boat left the field", |all| &mut all.own.out_of_bounds),
-    metric("collisions", "", "times a boat was nearer to another than the collision distance", |all| {
+    metric("collisions", "", "times one of its boats was within the collision distance of another", |all| {
         &mut all.own.collisions
     }),
-    metric("tagged_s", "s", "time tagged, all boats together", |all| &mut all.own.tagged_s),
-    metric("outside_s", "s", "time outside of the field, all boats together", |all| &mut all.own.outside_s),
-    metric("distance_m", "m", "distance over the ground, all boats together", |all| &mut all.own.distance_m),
-    metric("energy_kj", "kJ", "energy taken from batteries, all boats together; none without batteries", |all| {
+    metric("tagged_s", "s", "time tagged, sum over its boats", |all| &mut all.own.tagged_s),
+    metric("outside_s", "s", "time outside the field, sum over its boats", |all| &mut all.own.outside_s),
+    metric("distance_m", "m", "distance over the ground, sum over its boats", |all| &mut all.own.distance_m),
+    metric("energy_kj", "kJ", "energy drawn from batteries, sum over its boats; empty without batteries", |all| {
         &mut all.own.energy_kj
     }),
-    metric("edge_m", "m", "the least distance of its boats to the edge of the field, below 0 outside", |all| {
+    metric("edge_m", "m", "smallest distance of its boats from the edge of the field, negative outside", |all| {
         &mut all.own.edge_m
     }),
     metric("opponent_score", "", "the opponent's points", |all| &mut all.opponent.score),
-    metric("opponent_grabs", "", "flags that the opponent took", |all| &mut all.opponent.grabs),
-    metric("opponent_captures", "", "flags that the opponent brought in", |all| &mut all.opponent.captures),
+    metric("opponent_grabs", "", "flags that the opponent grabbed", |all| &mut all.opponent.grabs),
+    metric("opponent_captures", "", "flags that the opponent captured", |all| &mut all.opponent.captures),
     metric("opponent_tags", "", "boats of the entry that the opponent tagged", |all| &mut all.opponent.tags),
     metric("opponent_tagged", "", "times that boats of the opponent were tagged", |all| &mut all.opponent.tagged),
     metric("opponent_out_of_bounds", "", "times that a boat of the opponent left the field", |all| {
@@ -141,35 +141,32 @@ pub static METRICS: [Metric; 30] = [
     metric(
         "opponent_collisions",
         "",
-        "times that one of the opponent's was nearer to another than the collision distance",
+        "times that one of the opponent's boats was within the collision distance of another",
         |all| &mut all.opponent.collisions,
     ),
     metric("opponent_tagged_s", "s", "time that the opponent's boats were tagged", |all| &mut all.opponent.tagged_s),
-    metric("opponent_outside_s", "s", "time that the opponent's boats were outside of the field", |all| {
+    metric("opponent_outside_s", "s", "time that the opponent's boats were outside the field", |all| {
         &mut all.opponent.outside_s
     }),
     metric("opponent_distance_m", "m", "distance of the opponent's boats over the ground", |all| {
         &mut all.opponent.distance_m
     }),
-    metric("opponent_energy_kj", "kJ", "energy that the opponent's boats took from batteries", |all| {
+    metric("opponent_energy_kj", "kJ", "energy that the opponent's boats drew from batteries", |all| {
         &mut all.opponent.energy_kj
     }),
     metric(
         "opponent_edge_m",
         "m",
-        "the least distance of the opponent's boats to the edge of the field, below 0 outside",
+        "smallest distance of the opponent's boats from the edge of the field, negative outside",
         |all| &mut all.opponent.edge_m,
     ),
-    metric("score_difference", "", "points less the opponent's", |all| &mut all.score_difference),
-    metric("contacts", "", "times that two hulls touched, of any boats", |all| &mut all.contacts),
-    metric(
-        "near_misses",
-        "",
-        "times that two boats were nearer than the collision distance and did not touch, of any boats",
-        |all| &mut all.near_misses,
-    ),
-    metric("closest_m", "m", "the least distance of any two boats' centres", |all| &mut all.closest_m),
-    metric("duration_s", "s", "how long the game lasted", |all| &mut all.duration_s),
+    metric("score_difference", "", "points minus the opponent's", |all| &mut all.score_difference),
+    metric("contacts", "", "times that the hulls of any two boats touched", |all| &mut all.contacts),
+    metric("near_misses", "", "times that any two boats were within the collision distance without touching", |all| {
+        &mut all.near_misses
+    }),
+    metric("closest_m", "m", "smallest distance between the centres of any two boats", |all| &mut all.closest_m),
+    metric("duration_s", "s", "duration of the game", |all| &mut all.duration_s),
 ];
 
 /// The metrics shown in a summary and tested for interactions.

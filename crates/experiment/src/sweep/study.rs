@@ -73,7 +73,7 @@ pub enum StudyError {
         error: std::io::Error,
     },
     /// The folder already contains a study.
-    #[error("{} holds a sweep of {games} games already; --resume goes on with it, or --out names another folder", folder.display())]
+    #[error("{} already contains a sweep of {games} games; continue it with --resume, or choose another folder with --out", folder.display())]
     Exists {
         /// The folder.
         folder: PathBuf,
@@ -81,15 +81,15 @@ pub enum StudyError {
         games: usize,
     },
     /// The folder contains no study.
-    #[error("{} holds no sweep to go on with", folder.display())]
+    #[error("{} contains no sweep to resume", folder.display())]
     Missing {
         /// The folder.
         folder: PathBuf,
     },
     /// The study belongs to another sweep.
     #[error(
-        "{} holds another sweep than this: its files, its seed, its games or Squall's version have changed; \
-         expected {expected}, found {found}",
+        "{} contains a different sweep: the files, the seed, the number of games or Squall's version have \
+         changed; expected digest {expected}, found {found}",
         folder.display()
     )]
     Other {
@@ -101,7 +101,7 @@ pub enum StudyError {
         found: String,
     },
     /// A table cannot be created.
-    #[error("cannot make {what}: {why}")]
+    #[error("cannot create {what}: {why}")]
     Table {
         /// The name of the table.
         what: &'static str,
@@ -116,7 +116,7 @@ impl Study {
     /// # Errors
     /// [`StudyError`] if a file cannot be written or the folder already contains a study.
     pub fn begin(folder: &Path, plan: &Plan) -> Result<Study, StudyError> {
-        std::fs::create_dir_all(folder).map_err(io("make the folder", folder))?;
+        std::fs::create_dir_all(folder).map_err(io("create the folder", folder))?;
         let games = rows_in(plan, &text_if_any(&folder.join(GAMES))?).len();
         if games > 0 {
             return Err(StudyError::Exists { folder: folder.to_owned(), games });

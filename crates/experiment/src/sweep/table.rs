@@ -31,7 +31,6 @@ const BOATS: &str = "boats";
 /// The last columns.
 const LAST: [&str; 2] = ["digest", "error"];
 
-/// A cell.
 enum Cell {
     Whole(u64),
     /// NaN for a missing number.
@@ -57,7 +56,6 @@ fn columns(plan: &Plan) -> impl Iterator<Item = &str> {
     FIRST.into_iter().chain(axes).chain(METRICS.iter().map(|metric| metric.name)).chain(LAST)
 }
 
-/// The cells of a row, by column.
 fn cells<'a>(plan: &'a Plan, row: &'a Row) -> impl Iterator<Item = Cell> + 'a {
     let Row { job, boats, digest, result } = row;
     let first = [

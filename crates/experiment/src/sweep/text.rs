@@ -29,7 +29,7 @@ pub fn text(report: &Report) -> String {
     line(format!("{}: {}", report.sweep, report.about));
     line(format!("{} against {}", report.game, report.opponent));
     let (done, points) = (report.games_done, report.points.len());
-    line(format!("{done} of {} games at {points} points; means a game ± 95 % over seeds", report.games));
+    line(format!("{done} of {} games at {points} points; means per game ± 95 % over seeds", report.games));
     for effect in &report.effects {
         line(String::new());
         table(effect, &mut line);
@@ -86,11 +86,11 @@ fn differences(report: &Report, line: &mut impl FnMut(String)) {
         let mut about = String::new();
         let _ = write!(
             about,
-            "\n{entry} less {}, on the same seeds: {:+.0} % of games won in the mean",
+            "\n{entry} minus {}, on the same seeds: {:+.0} % of games won on average",
             report.entries[0],
             100.0 * mean
         );
-        let _ = write!(about, ";\nsurely more at {better} and surely less at {worse} of {} points", all.len());
+        let _ = write!(about, ";\nsignificantly more at {better} and fewer at {worse} of {} points", all.len());
         line(about);
     }
 }
@@ -100,7 +100,7 @@ fn interactions(all: &[Interaction], line: &mut impl FnMut(String)) {
         return;
     }
     let matter = all.iter().filter(|one| one.matters);
-    line(format!("\ninteractions that matter: {} of {}", matter.clone().count(), all.len()));
+    line(format!("\nsignificant interactions: {} of {}", matter.clone().count(), all.len()));
     for one in matter.take(SHOWN) {
         let [low, second, first, both] = one.cells;
         line(format!("  {} of {}: {} with {}", one.metric, one.entry, one.axes[0], one.axes[1]));

@@ -66,7 +66,7 @@ pub struct Tried {
 #[derive(Debug, thiserror::Error)]
 pub enum UntilError {
     /// The axis is ambiguous.
-    #[error("there are {0} axes with numbers, expected --along with the key of one of them: {1}")]
+    #[error("{0} axes are numeric; choose one with --along: {1}")]
     Axes(usize, String),
     /// A game cannot start.
     #[error("{0}")]

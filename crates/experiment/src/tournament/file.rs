@@ -23,25 +23,25 @@ pub struct Tournament {
     /// The sea file. Default the game's.
     #[schemars(with = "Option<FilePath>")]
     pub sea: Option<PathBuf>,
-    /// Games of each pairing, half of them on each side; an odd number is rounded up.
+    /// Games per pairing, half of them on each side; an odd number is rounded up.
     #[schemars(range(min = 2, max = 1000000), extend("default" = 200))]
     pub games: u32,
-    /// The first seed; one more for every two games of a pairing.
+    /// The first seed; it increases by one every two games of a pairing.
     #[schemars(range(min = 0, max = i64::MAX), extend("default" = 1))]
     pub seed: u64,
     /// Whether entries also play against themselves.
     #[schemars(extend("default" = false))]
     pub self_play: bool,
-    /// The name of an entry: only its pairings with the others are played. Default every pairing.
+    /// The name of an entry, to play only its pairings. Default every pairing.
     #[schemars(with = "Option<Name>")]
     pub challenger: Option<String>,
-    /// Who enters.
+    /// The entries.
     #[serde(rename = "entry")]
     #[schemars(length(min = 2, max = 100))]
     pub entries: Vec<Entrant>,
 }
 
-/// Who enters.
+/// A strategy that takes part.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Entrant {
     /// Its name in the tables.
@@ -104,7 +104,7 @@ impl ScenarioFile for Tournament {
             let [name_path, path] = ["name", "strategy"].map(|key| format!("entry.{i}.{key}"));
             entry.strategy = strategies.read(diagnostics, document, &path, &entry.strategy);
             if document.is_sound(&name_path) && !names.insert(&entry.name) {
-                let message = format!("name is {:?} again, expected a different one for each entry", entry.name);
+                let message = format!("the name {:?} is used twice, expected a unique name for each entry", entry.name);
                 diagnostics.note(document.at(&name_path), message);
             }
         }

@@ -43,7 +43,7 @@ enum Outcome {
 
 /// An invalid line.
 #[derive(Debug, Error)]
-#[error("line {line} is no game of a league: {why}")]
+#[error("line {line} is not a league game: {why}")]
 pub struct LeagueError {
     line: usize,
     why: String,
@@ -64,7 +64,7 @@ impl League {
                 None => text.to_owned(),
                 Some((body, sum)) => Some(format!("{body}}}"))
                     .filter(|body| format!("{}\"}}", checksum(body)) == sum)
-                    .ok_or_else(|| failed("it has changed since it was written: its checksum is another".to_owned()))?,
+                    .ok_or_else(|| failed("its checksum does not match".to_owned()))?,
             };
             let Line { pairing, seed, outcome, .. } =
                 serde_json::from_str(&text).map_err(|why| failed(why.to_string()))?;

@@ -29,11 +29,11 @@ pub fn text(report: &Report, columns: usize) -> String {
     let sea = report.sea.as_ref().map_or(String::new(), |sea| format!(", sea {sea}"));
     add_line(&mut text, format_args!("{}: {}{sea}", report.tournament, report.game));
     match report.matrix.first() {
-        None => add_line(&mut text, format_args!("no seed of which all games were played: no result")),
+        None => add_line(&mut text, format_args!("no result: no seed has all its games")),
         Some(Cell { games, seeds, .. }) => {
             let (count, first, last) = (report.seeds_counted, seeds.first, seeds.last);
-            add_line(&mut text, format_args!("{games} games a pairing, half of them on each side"));
-            add_line(&mut text, format_args!("means a game ± 95 %, over {count} seeds from {first} to {last}\n"));
+            add_line(&mut text, format_args!("{games} games per pairing, half of them on each side"));
+            add_line(&mut text, format_args!("means per game ± 95 %, over {count} seeds from {first} to {last}\n"));
             entries(&mut text, report, columns);
             ratings(&mut text, report);
             match &report.challenger {
@@ -106,7 +106,7 @@ fn estimate(estimate: &Estimate) -> String {
 
 /// The wins of each entry against each other.
 fn matrix(text: &mut String, report: &Report, columns: usize) {
-    add_line(text, format_args!("\nrow beats column: won % / drawn %, and the row's score less the column's a game"));
+    add_line(text, format_args!("\nrow against column: won % / drawn %, and the score difference per game"));
     let against = |column: &Row| {
         let cell = |row: &Row| {
             let cell = report.matrix.iter().find(|cell| cell.row == row.name && cell.column == column.name);
@@ -120,7 +120,7 @@ fn matrix(text: &mut String, report: &Report, columns: usize) {
 /// The results of the challenger against each other entry.
 fn pairings(text: &mut String, report: &Report, challenger: &str) {
     let width = width(&names(report));
-    add_line(text, format_args!("\n{challenger} against each, with the share of decided games that it won ± 95 %"));
+    add_line(text, format_args!("\n{challenger} against each entry, with its share of the decided games ± 95 %"));
     add_line(
         text,
         format_args!("{:width$}{:>7}{:>7}{:>7}{:>20}{:>16}", "", "won", "drawn", "lost", "of decided", "points"),
@@ -149,7 +149,7 @@ fn beaten(cell: &Cell) -> String {
 /// The ratings of the entries.
 fn ratings(text: &mut String, report: &Report) {
     let width = width(&names(report));
-    add_line(text, format_args!("\nElo ratings with 95 %: 100 points ahead are 64 % of the points of a game"));
+    add_line(text, format_args!("\nElo ratings with 95 % intervals: a lead of 100 means an expected result of 64 %"));
     let mut rows: Vec<&Row> = report.entries.iter().collect();
     rows.sort_by(|a, b| b.rating.elo.total_cmp(&a.rating.elo));
     for Row { name, rating: Rating { elo, low, high }, .. } in rows {
@@ -177,7 +177,7 @@ fn missing(text: &mut String, report: &Report) {
         add_line(text, format_args!("  and {} more", failures.len() - LISTED));
     }
     if *games_left_out > 0 {
-        add_line(text, format_args!("{games_left_out} games are left out, since others of their seed are missing"));
+        add_line(text, format_args!("{games_left_out} games are excluded because others of their seed are missing"));
     }
 }
 
@@ -185,7 +185,7 @@ fn missing(text: &mut String, report: &Report) {
 fn again(text: &mut String, report: &Report) {
     let sea = report.sea.as_ref().map_or(String::new(), |sea| format!(" --sea {sea}"));
     let sides: String = report.teams.iter().zip(["A", "B"]).map(|(team, file)| option(team, file)).collect();
-    add_line(text, format_args!("\nany of these games again, with strategy files for A and B:"));
+    add_line(text, format_args!("\nto replay one of these games, insert strategy files for A and B:"));
     add_line(text, format_args!("  squall run {}{sea}{sides} --seed {} --in-process", report.game, report.seed));
     for row in &report.entries {
         add_line(text, format_args!("  {:<16} {}", row.name, row.strategy));

@@ -66,7 +66,7 @@ pub struct Fit {
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum NoFit {
     /// An unknown parameter name.
-    #[error("{0} is no parameter, expected some of {list}", list = names().join(", "))]
+    #[error("{0} is not a parameter, expected some of {list}", list = names().join(", "))]
     Unknown(String),
     /// The boat has no such parameter.
     #[error("the boat has no {0}")]
@@ -75,13 +75,13 @@ pub enum NoFit {
     #[error("no parameter to fit")]
     Nothing,
     /// No row at which a segment could begin.
-    #[error("no row of the log has heading, surge and yaw rate at once, and whatever else the log measures")]
+    #[error("no row of the log has a value for every measured channel")]
     NoStart,
     /// The search did not converge.
     #[error("the search failed: {0}")]
     Search(String),
     /// The log does not determine some parameters.
-    #[error("the log does not determine {0}: leave some out with --fit, or record more")]
+    #[error("the log does not determine {0}; omit some of them with --fit, or record more data")]
     Undetermined(String),
 }
 
@@ -171,7 +171,7 @@ pub fn fit(
 /// Reports the fitted parameters and their uncertainty.
 fn report(problem: &Problem<'_>) -> Result<Fit, NoFit> {
     let at = problem.place();
-    let lost = || NoFit::Search("the boat's numbers go bad near the best fit".to_owned());
+    let lost = || NoFit::Search("the boat's state becomes non-finite near the best fit".to_owned());
     let jacobian = problem.jacobian().ok_or_else(lost)?;
     let residuals = problem.residuals().ok_or_else(lost)?;
     let (measured, fitted) = problem.sizes();

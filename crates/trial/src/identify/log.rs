@@ -51,7 +51,7 @@ impl Log {
     /// If columns are missing or a cell is not a number.
     pub fn of_sheet(sheet: &Sheet, boat: &Boat) -> Result<Log, Mistake> {
         if matches!(boat.drive, Drive::Kinematic(_)) {
-            return Err(sheet.mistake(None, format!("{} is kinematic, and has no hull to identify", boat.name)));
+            return Err(sheet.mistake(None, format!("{} is kinematic and has no hull to identify", boat.name)));
         }
         let orders = Orders::of_sheet(sheet, &Engine::new(boat))?;
         let times_s = sheet.times(LONGEST_S)?;
@@ -66,7 +66,7 @@ impl Log {
             return Err(sheet.mistake(Some(1), "one of the columns x_m and y_m, expected both or none".to_owned()));
         }
         if times_s.len() < ROWS_MIN {
-            return Err(sheet.mistake(None, format!("{} rows, expected {ROWS_MIN} at least", times_s.len())));
+            return Err(sheet.mistake(None, format!("{} rows, expected at least {ROWS_MIN}", times_s.len())));
         }
         let mut measured = Vec::with_capacity(times_s.len());
         for row in 0..times_s.len() {
