@@ -10,8 +10,8 @@ use std::path::PathBuf;
 
 #[derive(clap::Args, Clone, Debug)]
 pub(crate) struct HubArgs {
-    /// Endpoint to listen on, for example tcp/0.0.0.0:7447 [default: loopback port 7447, or a free port if it is
-    /// taken]
+    /// Endpoint to listen on, for example tcp/0.0.0.0:7447, or quic/0.0.0.0:7448 for lossy links; may be repeated
+    /// [default: loopback port 7447, or a free port if it is taken]
     #[arg(long, value_name = "ENDPOINT", value_parser = endpoint)]
     pub(crate) listen: Vec<String>,
     /// Announces the game by multicast on the local network; without --listen, listens on all interfaces

@@ -37,7 +37,11 @@ class Play:
     def start(self):
         """Everything, up to boats under way; returns the gateways."""
         scenario = self.machines.out / "links.toml"
-        scenario.write_text(f'base = "{ROOT}/scenarios/games/mixed_2v2.toml"\nduration_s = 86400.0\n', encoding="utf-8")
+        keys = f"duration_s = 86400.0\norder_ttl_s = {self.args.order_ttl_s}\n"
+        scenario.write_text(f'base = "{ROOT}/scenarios/games/mixed_2v2.toml"\n{keys}', encoding="utf-8")
+        config = self.machines.out / "gateway.toml"
+        keys = f"order_ttl_s = {self.args.order_ttl_s}\nfailsafe.rearm_within_s = {self.args.rearm_within_s}\n"
+        config.write_text(f'base = "{ROOT}/scenarios/gateways/emulated.toml"\n{keys}', encoding="utf-8")
         water = f"tcp/127.0.0.1:{PORT + 1}"
         afloat = [word for boat in BOATS for word in ("--afloat", boat)]
         self.squall("water", self.boats_at, "sim", scenario, *afloat, "--listen", water, "--pace", "realtime",
@@ -54,7 +58,7 @@ class Play:
             boats = (f"{team}_one", f"{team}_two")
             self.squall(f"agents_{team}", self.agents_at, "agent", *place, "--vehicle", *boats)
         gateways = {boat: self.squall(f"gateway_{boat}", self.boats_at, "gateway", "surveyor", *place, "--arm",
-                                      "--vehicle", boat, "--link", link, "--no-record", "--config", self.args.config)
+                                      "--vehicle", boat, "--link", link, "--no-record", "--config", config)
                     for boat, link in links.items()}
         for gateway in gateways.values():
             wait_for(gateway, "armed")
@@ -71,22 +75,30 @@ class Play:
         marks = {boat: gateway.mark() for boat, gateway in gateways.items()}
         begin_ns = time.monotonic_ns()
         until = time.monotonic() + self.args.for_s
+        cut = time.monotonic() + (self.args.cut_every_s or 0.0)
         while time.monotonic() < until:
             ended = [program.name for program in self.machines.programs if program.child.poll() is not None]
             if ended:
                 raise RuntimeError(f"{ended} ended; see {self.machines.out}")
+            if self.args.cut_every_s and time.monotonic() >= cut:
+                self.machines.tell_link("cut", NEAR, FAR)
+                time.sleep(2.0)
+                self.machines.tell_link("restore")
+                cut += self.args.cut_every_s
             time.sleep(1.0)
-        causes, first_s = [], None
+        causes, first_s, armed = [], None, 0
         for boat, gateway in gateways.items():
             for at_ns, line in gateway.lines[marks[boat]:]:
-                if "failsafe" in line:
+                armed += line.split()[-1:] == ["armed"] or " armed (was failsafe" in line
+                if "failsafe:" in line and "armed (was" not in line:
                     causes.append(line)
                     at_s = (at_ns - begin_ns) / 1e9
                     first_s = at_s if first_s is None else min(first_s, at_s)
         sent = self.machines.link_statistics()
         return {"far": self.args.far, "transport": self.args.transport, "delay_ms": self.args.delay_ms,
-                "loss_pct": self.args.loss_pct, "rate_kbit": self.args.rate_kbit, "played_s": self.args.for_s,
-                "first_failsafe_s": first_s and round(first_s, 1), "failsafes": len(causes), "causes": causes[:4],
+                "loss_pct": self.args.loss_pct, "rate_kbit": self.args.rate_kbit,
+                "order_ttl_s": self.args.order_ttl_s, "played_s": self.args.for_s,
+                "first_failsafe_s": first_s and round(first_s, 1), "failsafes": len(causes), "armed_again": armed, "causes": causes[:4],
                 "kbit_s": {way: round(8e-3 * count / self.args.for_s, 1) for way, count in sent["bytes"].items()}}
 
 
@@ -105,7 +117,9 @@ def main():
     parser.add_argument("--loss-pct", type=float, default=0.0, help="share of packets that are lost [0]")
     parser.add_argument("--rate-kbit", type=float, help="rate limit of each direction [none]")
     parser.add_argument("--for-s", type=float, default=60.0, help="how long to play [60]")
-    parser.add_argument("--config", default="emulated", help="the gateway file [emulated]")
+    parser.add_argument("--order-ttl-s", type=float, default=1.0, help="order_ttl_s of game and gateways [1]")
+    parser.add_argument("--rearm-within-s", type=float, default=0.0, help="failsafe.rearm_within_s [0]")
+    parser.add_argument("--cut-every-s", type=float, help="cuts the link for 2 s this often [never]")
     parser.add_argument("--seed", type=int, default=1, help="random seed of the losses [1]")
     args = parser.parse_args()
     args.squall, args.out = args.squall.resolve(), args.out.resolve()

@@ -42,11 +42,16 @@ pub fn address(text: &str) -> Result<SocketAddr, String> {
 /// Parses the endpoint of a node from the command line.
 ///
 /// # Errors
-/// If it lacks the protocol or the address.
+/// If it is not a known protocol, a host and a port.
 pub fn endpoint(text: &str) -> Result<String, String> {
-    let is_whole = text.split_once('/').is_some_and(|(protocol, address)| !protocol.is_empty() && !address.is_empty());
-    let wrong = || "expected PROTOCOL/ADDRESS, such as tcp/192.168.1.5:7447".to_owned();
-    is_whole.then(|| text.to_owned()).ok_or_else(wrong)
+    const PROTOCOLS: [&str; 4] = ["tcp", "quic", "tls", "udp"];
+    let (protocol, address) = text.split_once('/').unwrap_or_default();
+    let (host, port) = address.split(['?', '#']).next().and_then(|it| it.rsplit_once(':')).unwrap_or_default();
+    // `tcp://HOST:PORT` is the form of a boat's link.
+    let is_host = !host.is_empty() && !host.starts_with('/');
+    let is_endpoint = PROTOCOLS.contains(&protocol) && is_host && port.parse::<u16>().is_ok();
+    let wrong = || "expected tcp/HOST:PORT or quic/HOST:PORT, such as tcp/192.168.1.5:7447".to_owned();
+    is_endpoint.then(|| text.to_owned()).ok_or_else(wrong)
 }
 
 /// Lets all options take negative numbers, so that their parsers report the allowed range; clap would
@@ -76,7 +81,13 @@ mod tests {
         for text in ["-1", "1e9", "nan", "abc"] {
             assert_eq!(seconds(text), Err("expected a number from 0 to 1000000 s".to_owned()), "{text}");
         }
-        assert!(endpoint("127.0.0.1:7447").is_err() && endpoint("tcp/127.0.0.1:7447").is_ok());
+        for text in ["tcp/127.0.0.1:7447", "quic/[::1]:7447", "tcp/boat.local:7447#iface=wlan0"] {
+            assert_eq!(endpoint(text).as_deref(), Ok(text));
+        }
+        for text in ["127.0.0.1:7447", "tcp://127.0.0.1:7447", "tcp/127.0.0.1", "tcp/:7447", "http/a:80", "tcp/a:x", ""]
+        {
+            assert!(endpoint(text).is_err(), "{text}");
+        }
         assert!(address("localhost:8088").is_err() && address("[::1]:8088").is_ok());
     }
 }
