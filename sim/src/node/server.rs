@@ -52,6 +52,8 @@ pub(super) struct GameServer<'w> {
     pictures: Vec<Publisher>,
     /// In real time, by team.
     throttles: Vec<Throttle>,
+    /// Subscriptions to the bytes of boats' links, while someone wants them.
+    link_reports: BTreeMap<VehicleId, Declaration>,
     /// The decision whose pictures were sent last.
     asked: Option<u64>,
     frames: Publisher,
@@ -143,6 +145,7 @@ impl<'w> GameServer<'w> {
             inbox: messages,
             time: WorkingTime::new(clock::now()),
             pictures: pictures?,
+            link_reports: BTreeMap::new(),
             throttles: scenario.teams.iter().filter(|_| !is_lockstep).map(|_| Throttle::new(clock::now())).collect(),
             asked: None,
             external_orders,
@@ -353,8 +356,27 @@ impl<'w> GameServer<'w> {
         self.send_run(if self.pacing.is_paused() { Phase::Paused } else { Phase::Playing }, rate)
     }
 
+    /// Subscribes to the bytes of a boat's link while they are recorded or observed. A gateway
+    /// behind a slow link sends them only then: they are most of its traffic.
+    fn follow_links(&mut self) -> Result<(), NodeError> {
+        let scenario = self.contest.scenario();
+        for vehicle in scenario.externals() {
+            let publisher = self.reports.get(&(vehicle, Reported::Link));
+            let is_wanted = self.recorder.is_some() || publisher.is_some_and(Publisher::is_heard);
+            if !is_wanted {
+                self.link_reports.remove(&vehicle);
+            } else if !self.link_reports.contains_key(&vehicle) {
+                let (what, inbox) = ((vehicle, Reported::Link), Arc::clone(&self.inbox));
+                let subscription = subscriptions::subscribe_report(&self.bus, &self.game, scenario, what, inbox)?;
+                self.link_reports.insert(vehicle, subscription);
+            }
+        }
+        Ok(())
+    }
+
     /// Publishes the run state if there are observers.
     fn send_run(&mut self, phase: Phase, rate: f64) -> Result<(), NodeError> {
+        self.follow_links()?;
         let is_news = std::mem::take(&mut self.is_news);
         let is_due = self.recorder.is_some() && (is_news || clock::since(self.run_recorded) >= RECORD_EVERY);
         if !self.run.is_heard() && !is_due {

@@ -84,18 +84,22 @@ impl Inboxes {
             others.push(Incoming::Look);
         }
     }
+}
 
-    /// A callback for gateway reports about a boat.
-    fn report(&self, vehicle: VehicleId, what: Reported) -> impl Fn(&[u8]) + Send + Sync + use<> {
-        let others = Arc::clone(&self.others);
-        move |bytes: &[u8]| match Reported::split_ticket(bytes) {
-            Some((ticket, message)) => {
-                others.push(Incoming::Report { ticket, vehicle, what, message: message.to_vec() });
-            }
-            // Counted with all other refusals, which the result and the page show.
-            None => others.refuse(Refusal::Garbage),
-        }
-    }
+/// Subscribes to gateway reports about a boat.
+pub(super) fn subscribe_report(
+    bus: &Bus,
+    game: &GameName,
+    scenario: &Scenario,
+    (vehicle, what): (VehicleId, Reported),
+    others: Arc<MessageInbox>,
+) -> Result<Declaration, BusError> {
+    let key = topic::report(game, what, &scenario.vehicles[vehicle.index()].name);
+    bus.subscribe(key, move |bytes: &[u8]| match Reported::split_ticket(bytes) {
+        Some((ticket, message)) => others.push(Incoming::Report { ticket, vehicle, what, message: message.to_vec() }),
+        // Counted with all other refusals, which the result and the page show.
+        None => others.refuse(Refusal::Garbage),
+    })
 }
 
 /// The publishers of gateway reports, for each real boat.
@@ -155,10 +159,7 @@ pub(super) fn open(
         bus.show_alive(topic::alive(game, &bus.id()))?,
     ];
     for vehicle in scenario.externals() {
-        for what in Reported::ALL {
-            let key = topic::report(game, what, &scenario.vehicles[vehicle.index()].name);
-            declarations.push(bus.subscribe(key, inboxes.report(vehicle, what))?);
-        }
+        declarations.push(subscribe_report(bus, game, scenario, (vehicle, Reported::Status), others())?);
     }
     for (i, RecordedTopic { topic, .. }) in recorded.iter().enumerate() {
         let others = others();
