@@ -9,13 +9,13 @@ use crate::time::SimTime;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// From when on chance is drawn anew, and by which seed.
+/// A time after which another seed applies. Earlier draws are unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Reseed {
-    /// What is drawn after this time is drawn by `seed`, s.
+    /// Time, s.
     #[schemars(range(min = 0, max = 86400))]
     pub after_s: f64,
-    /// Chooses what is drawn.
+    /// Seed of all later draws.
     #[schemars(range(min = 0, max = i64::MAX))]
     pub seed: u64,
 }

@@ -23,9 +23,9 @@ pub struct Plan {
     /// The field file's stem.
     #[schemars(skip)]
     pub name: String,
-    /// Geographic position of the local origin. A boat that goes out on the water steers by it.
+    /// Geographic position of the local origin. Real boats navigate by it.
     pub datum: LatLon,
-    /// The corner of the first team's end that is to starboard as it looks at its opponent, [x, y] in m.
+    /// The corner to starboard of the first team's end, seen towards the opponent, [x, y] in m.
     #[schemars(with = "[f64; 2]", inner(range(min = -1000000, max = 1000000)))]
     #[schemars(extend("x-field" = "corner", "default" = [0, 0]))]
     pub corner: Ned,
@@ -38,7 +38,7 @@ pub struct Plan {
     /// Extent across, m.
     #[schemars(range(min = 10, max = 20000))]
     pub depth_m: f64,
-    /// Distance of the flags from the ends, m: more than 0 and less than half the width. Default width / 8.
+    /// Distance of the flags from the ends, m, above 0 and below half the width. Default: width / 8.
     #[serde(deserialize_with = "number_or_nan")]
     #[schemars(with = "Option<f64>", extend("x-estimated" = true))]
     pub flag_inset_m: f64,
@@ -46,7 +46,7 @@ pub struct Plan {
     #[serde(default)]
     #[schemars(skip)]
     pub extra_flags: Vec<Flag>,
-    /// What stands in the water.
+    /// Solid obstacles.
     #[serde(default)]
     #[schemars(skip)]
     pub obstacles: Vec<Obstacle>,

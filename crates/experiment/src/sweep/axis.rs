@@ -6,33 +6,35 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::Path;
 
-/// A number, or a whole file, that changes from point to point. It has one of `values`, `range`, `normal` and `log_normal`.
+/// What varies between points. It has one of `values`, `range`, `normal` and `log_normal`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Axis {
-    /// What changes: a kind of file and a key of it, as in `sea.wind.speed_m_s`, `boat.gps.noise_m`, `rules.tag_radius_m`,
-    /// `link.delay_s`, or `strategy.behaviour.pursue.weight`, in the strategies of the entries; or `sea`, `boat`, `rules`, `field` with files
-    /// as values; or `opponent` with strategy files.
+    /// A kind of file and its key, such as `sea.wind.speed_m_s`, `boat.gps.noise_m`,
+    /// `rules.tag_radius_m`, `link.delay_s`, or, for the entries' strategies,
+    /// `strategy.behaviour.pursue.weight`; `sea`, `boat`, `rules` or `field`, with files as values;
+    /// or `opponent`, with strategy files.
     #[schemars(length(min = 1), extend("x-expected" = "a key such as sea.wind.speed_m_s"))]
     pub key: String,
-    /// Its levels, one by one: numbers, texts or files, all of one sort.
+    /// Levels: numbers, texts or files, all of one type.
     #[schemars(length(max = 1000))]
     pub values: Vec<AxisValue>,
-    /// From and to: every number between is as likely, in a sampled design.
+    /// From and to; uniform in a sampled design.
     #[schemars(inner(range(min = -1e9, max = 1e9)))]
     pub range: Option<[f64; 2]>,
-    /// Whether the logarithms of a range are spaced evenly, in place of the numbers.
+    /// Whether the levels of a range are spaced logarithmically.
     #[schemars(extend("default" = false))]
     pub log: bool,
-    /// Mean and standard deviation of a normal distribution, cut off 3 deviations from the mean.
+    /// Mean and standard deviation of a normal distribution, truncated at 3 standard deviations.
     #[schemars(inner(range(min = -1e9, max = 1e9)))]
     pub normal: Option<[f64; 2]>,
-    /// Median, and standard deviation of the logarithm, of a log-normal distribution, cut off at 3 of these.
+    /// Median, and standard deviation of the logarithm, of a log-normal distribution, truncated at
+    /// 3 standard deviations.
     #[schemars(inner(range(min = 0, max = 1e9)))]
     pub log_normal: Option<[f64; 2]>,
-    /// How many levels a range or a distribution has in a grid: evenly spaced, or equally likely.
+    /// Number of levels in a grid: evenly spaced for a range, equally likely for a distribution.
     #[schemars(range(min = 2, max = 1000), extend("default" = 5))]
     pub count: u32,
-    /// The value where another axis changes alone. Default the middle level.
+    /// Value while another axis varies alone. Default: the middle level.
     pub nominal: Option<AxisValue>,
     /// Line and column of the axis in the sweep file.
     #[serde(default)]

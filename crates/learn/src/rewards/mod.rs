@@ -13,22 +13,22 @@ use scenario::{Diagnostics, Document, ScenarioFile};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What is worth how much to a boat: the sum of all that follows.
+/// The reward of a boat: the sum of all parts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Rewards {
-    /// What the own boat does, and what happens to it.
+    /// Events of the boat itself.
     pub boat: Worth,
-    /// What any boat of the own team does, this one included.
+    /// Events of any boat of its team, including itself.
     pub team: Worth,
-    /// What any boat of the enemies does.
+    /// Events of any enemy.
     pub enemy: Worth,
     /// The end of the game, for every boat of a team.
     pub end: End,
-    /// For being on the way: see [`Potential`].
+    /// Potential-based shaping.
     pub potential: Potential,
-    /// For coming nearer to a place: see [`Place`].
+    /// Rewards for positions.
     pub place: Place,
-    /// Each second of the game.
+    /// Per second of the game.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub second: f64,
 }
@@ -48,25 +48,25 @@ impl ScenarioFile for Rewards {
     }
 }
 
-/// What events of a boat are worth.
+/// Events of a boat.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Worth {
-    /// It took the enemies' flag.
+    /// It grabbed the enemies' flag.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub grab: f64,
-    /// It brought that home.
+    /// It captured the flag.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub capture: f64,
     /// It tagged an enemy.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub tag: f64,
-    /// It tagged an enemy that carried a flag: instead of `tag`.
+    /// It tagged a carrier; replaces `tag`.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub tag_carrier: f64,
     /// It was tagged by an enemy.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub tagged: f64,
-    /// It was tagged by an enemy while it carried a flag: instead of `tagged`.
+    /// It was tagged while carrying a flag; replaces `tagged`.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub tagged_carrying: f64,
     /// It was untagged.
@@ -75,57 +75,59 @@ pub struct Worth {
     /// It left the field.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub left_field: f64,
-    /// It came nearer to another boat than the collision distance.
+    /// It came within the collision distance of another boat.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub collided: f64,
 }
 
-/// What the end of a game is worth.
+/// The end of the game.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct End {
-    /// For a game won; one that is lost costs as much.
+    /// Win; a loss costs as much.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub win: f64,
-    /// For every point more than the enemies have.
+    /// Per point of lead.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub point: f64,
 }
 
-/// Potential-based shaping (Ng, Harada and Russell, ICML 1999): the discounted gain of a potential that depends on the state alone, and
-/// is 0 at the end of a game. It does not change which policy is the best one.
+/// Discounted gain of a potential that depends only on the state, and is 0 at the end of a game
+/// (Ng, Harada and Russell, ICML 1999). It does not change the optimal policy.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Potential {
-    /// At the enemies' flag; 0 where that is a field's width away. A carrier has as much, and again as much when it has brought
-    /// the flag home. A tagged boat has none.
+    /// At the enemies' flag; 0 a field's width away. A carrier has this much, and as much again
+    /// after the capture; a tagged boat has none.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub attack: f64,
-    /// Of a tagged boat: less than nothing by this much for a field's width from where it is untagged.
+    /// Negative, for a tagged boat: this much per field's width from its untag place.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub untag: f64,
 }
 
-/// What it is worth to be in a place: in each step a boat gets what that gains, and what it loses is taken from it. Where a reward a step
-/// later is worth γ, it is as if each step in the place were worth (1 - γ) of this, with the place as a potential. Unlike [`Potential`]
-/// it says what a boat is to do: it is for policies that do one thing alone. To a tagged boat all places are worth nothing.
+/// Values of positions: each step adds the change in value. With discount γ, it is as if each step
+/// in the position earned (1 - γ) of the value. Unlike `potential`, these change the optimal
+/// policy: use them for policies with a single task. For a tagged boat all are 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Place {
     /// At the enemies' flag, or anywhere with it; 0 a field's width away.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub flag: f64,
-    /// At home, where a flag is brought and a tagged boat is untagged; 0 a field's width away.
+    /// At the capture or untag place; 0 a field's width away.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub home: f64,
-    /// At the nearest intruder, an untagged enemy on the own side; 0 a field's width away, and where there is none.
+    /// At the nearest intruder, an untagged enemy on the own side; 0 a field's width away, and
+    /// without intruders.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub intruder: f64,
-    /// An eighth of the field's width before the own flag, towards the untagged enemy that is nearest to it, or where that enemy is, if
-    /// that is nearer; 0 a quarter of the field's width away.
+    /// An eighth of the field's width from the own flag towards its nearest untagged enemy, or at
+    /// that enemy if nearer; 0 a quarter of the width away.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub guard: f64,
-    /// The same with an untagged mate on the enemies' side in place of the flag: the one whose nearest untagged enemy is nearest.
+    /// As `guard`, for an untagged mate on the enemies' side instead of the flag: the one nearest
+    /// to an untagged enemy.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub shield: f64,
-    /// A quarter of the field's width from every untagged enemy, or more; 0 where one is.
+    /// At least a quarter of the field's width from every untagged enemy; 0 at one.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub clear: f64,
 }

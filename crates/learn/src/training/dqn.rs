@@ -4,44 +4,44 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How updates are made: double deep Q-learning (van Hasselt, Guez and Silver, AAAI 2016), for discrete actions.
+/// Double deep Q-learning (van Hasselt, Guez and Silver, AAAI 2016), for discrete actions.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Dqn {
-    /// Steps of every game to an update.
+    /// Steps of every game per update.
     #[schemars(range(min = 1, max = 65536), extend("default" = 16))]
     pub steps: usize,
-    /// Steps of the optimiser to an update, each of one minibatch.
+    /// Optimiser steps per update, one minibatch each.
     #[schemars(range(min = 1, max = 100_000), extend("default" = 64))]
     pub minibatches: u32,
-    /// Transitions to a step of the optimiser, drawn from the replay buffer.
+    /// Transitions per optimiser step, drawn from the replay buffer.
     #[schemars(range(min = 1, max = 1_000_000), extend("default" = 512))]
     pub minibatch: usize,
-    /// The newest transitions that the replay buffer keeps. In memory and in `state.bin` each takes 8 bytes for every number of the
-    /// observation, and some 10 more.
+    /// Transitions in the replay buffer, the newest. Each takes 8 bytes per value of the
+    /// observation, and about 10 more, in memory and in `state.bin`.
     #[schemars(range(min = 1000, max = 10_000_000), extend("default" = 250_000))]
     pub buffer: usize,
-    /// Nothing is learnt before the replay buffer has so many transitions.
+    /// Transitions in the replay buffer before learning starts.
     #[schemars(range(min = 1, max = 10_000_000), extend("default" = 20_000))]
     pub warm_up: usize,
-    /// How far one step of the optimiser goes.
+    /// Step size of the optimiser.
     #[schemars(range(min = 0, max = 1), extend("default" = 0.0003))]
     pub learning_rate: f32,
-    /// What a reward one step later is worth.
+    /// Discount factor per step.
     #[schemars(range(min = 0, max = 1), extend("default" = 0.995))]
     pub discount: f32,
-    /// What rewards are multiplied with before anything is learnt from them: values should be about 1 to 10.
+    /// Factor on rewards; values should be about 1 to 10.
     #[schemars(range(min = 0.000_001, max = 1_000_000), extend("default" = 1))]
     pub reward_scale: f32,
-    /// The target network becomes the learnt one after so many steps of the optimiser.
+    /// Optimiser steps between updates of the target network.
     #[schemars(range(min = 1, max = 1_000_000), extend("default" = 500))]
     pub target_every: u32,
-    /// The share of actions that are drawn uniformly, at first.
+    /// Initial share of uniformly random actions.
     #[schemars(range(min = 0, max = 1), extend("default" = 1))]
     pub epsilon: f32,
-    /// The same in the end.
+    /// Final share of uniformly random actions.
     #[schemars(range(min = 0, max = 1), extend("default" = 0.05))]
     pub epsilon_end: f32,
-    /// It falls evenly over the first samples, so many.
+    /// Samples over which the share falls linearly.
     #[schemars(range(min = 1, max = 1_000_000_000_000_u64), extend("default" = 300_000))]
     pub epsilon_samples: u64,
 }

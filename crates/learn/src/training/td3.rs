@@ -4,48 +4,50 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How updates are made: the twin delayed deep deterministic policy gradient (Fujimoto, van Hoof and Meger, ICML 2018), for continuous
-/// actions.
+/// Twin delayed deep deterministic policy gradient (Fujimoto, van Hoof and Meger, ICML 2018), for
+/// continuous actions.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Td3 {
-    /// Steps of every game to an update.
+    /// Steps of every game per update.
     #[schemars(range(min = 1, max = 65536), extend("default" = 16))]
     pub steps: usize,
-    /// Steps of the optimiser to an update, each of one minibatch.
+    /// Optimiser steps per update, one minibatch each.
     #[schemars(range(min = 1, max = 100_000), extend("default" = 64))]
     pub minibatches: u32,
-    /// Transitions to a step of the optimiser, drawn from the replay buffer.
+    /// Transitions per optimiser step, drawn from the replay buffer.
     #[schemars(range(min = 1, max = 1_000_000), extend("default" = 512))]
     pub minibatch: usize,
-    /// The newest transitions that the replay buffer keeps. In memory and in `state.bin` each takes 8 bytes for every number of the
-    /// observation, and some 20 more.
+    /// Transitions in the replay buffer, the newest. Each takes 8 bytes per value of the
+    /// observation, and about 20 more, in memory and in `state.bin`.
     #[schemars(range(min = 1000, max = 10_000_000), extend("default" = 250_000))]
     pub buffer: usize,
-    /// Nothing is learnt before the replay buffer has so many transitions; in the first stage actions are drawn uniformly until then.
+    /// Transitions in the replay buffer before learning starts; until then, actions in the first
+    /// stage are uniformly random.
     #[schemars(range(min = 1, max = 10_000_000), extend("default" = 20_000))]
     pub warm_up: usize,
-    /// How far one step of the optimisers goes.
+    /// Step size of the optimisers.
     #[schemars(range(min = 0, max = 1), extend("default" = 0.0003))]
     pub learning_rate: f32,
-    /// What a reward one step later is worth.
+    /// Discount factor per step.
     #[schemars(range(min = 0, max = 1), extend("default" = 0.995))]
     pub discount: f32,
-    /// What rewards are multiplied with before anything is learnt from them: values should be about 1 to 10.
+    /// Factor on rewards; values should be about 1 to 10.
     #[schemars(range(min = 0.000_001, max = 1_000_000), extend("default" = 1))]
     pub reward_scale: f32,
-    /// How far the target networks go towards the learnt ones with each step of the policy's optimiser (Polyak averaging).
+    /// Share of the learnt weights that target networks adopt per step of the policy's optimiser
+    /// (Polyak averaging).
     #[schemars(range(min = 0, max = 1), extend("default" = 0.005))]
     pub target_rate: f32,
-    /// Standard deviation of the noise that is added to actions as they are played.
+    /// Standard deviation of exploration noise on actions.
     #[schemars(range(min = 0, max = 10), extend("default" = 0.1))]
     pub exploration: f32,
-    /// Standard deviation of the noise that is added to the target policy's actions.
+    /// Standard deviation of noise on the target policy's actions.
     #[schemars(range(min = 0, max = 10), extend("default" = 0.2))]
     pub smoothing: f32,
-    /// That noise is limited to this.
+    /// Limit of that noise.
     #[schemars(range(min = 0, max = 10), extend("default" = 0.5))]
     pub smoothing_max: f32,
-    /// The policy learns with every so many steps of the critics' optimisers.
+    /// Steps of the critics' optimisers per step of the policy's.
     #[schemars(range(min = 1, max = 1000), extend("default" = 2))]
     pub delay: u32,
 }
