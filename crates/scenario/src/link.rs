@@ -7,7 +7,7 @@ use primitives::frame::Ned;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The radio link between the minds ashore and each boat. Any number may be drawn for every game.
+/// The radio link between the minds ashore and each boat.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Link {
     /// Minimum delay of a message, s.

@@ -41,7 +41,7 @@ struct Section {
 fn collect(sections: &mut Vec<Section>, heading: &str, path: &str, (about, said): (&Value, &str)) {
     let mut text = in_a_line(about.get(TABLE).unwrap_or(&about["description"]));
     text = if text.is_empty() || text == said { String::new() } else { format!("\n{text}\n") };
-    table(&mut text, about, |key, _| key != "base");
+    table(&mut text, about, |key, about| key != "base" && about.get("const").is_none());
     match sections.iter_mut().find(|section| section.text == text) {
         Some(section) => section.heading.push_str(&heading.replacen("###", ",", 1)),
         None => sections.push(Section { heading: heading.to_owned(), text }),
@@ -91,7 +91,7 @@ pub fn reference() -> String {
 
 /// The keys with a choice of words, and the meaning of each word.
 fn choices(page: &mut String, root: &Value) {
-    page.push_str("\n## Choices\n\n| key | choice | meaning |\n|---|---|---|\n");
+    page.push_str("\n## Choices\n\n| key | choices |\n|---|---|\n");
     for (key, name) in [
         ("assignment", "Assignment"),
         ("turn", "Turn"),
@@ -100,9 +100,9 @@ fn choices(page: &mut String, root: &Value) {
         ("beyond_halt", "BeyondHalt"),
         ("by", "Proposer"),
     ] {
-        for choice in root["definitions"][name]["oneOf"].as_array().into_iter().flatten() {
-            let _ = writeln!(page, "| `{key}` | `{}` | {} |", choice["const"], description(choice));
-        }
+        let choices = root["definitions"][name]["oneOf"].as_array().into_iter().flatten();
+        let choices: Vec<_> = choices.map(|choice| format!("`{}`: {}", choice["const"], description(choice))).collect();
+        let _ = writeln!(page, "| `{key}` | {} |", choices.join("<br>"));
     }
 }
 
@@ -123,7 +123,7 @@ fn names(page: &mut String) {
             let _ = writeln!(page, "| `{name}(place)`{two} | {meaning} |");
         }
     }
-    page.push_str("\n## Places\n\nA place is `[x, y]`, a named point of the team such as `CFX`, or one of these.\n");
+    page.push_str("\n## Places\n\nA place is `[x, y]`, a named point of the team such as `CFX`, or one of these: of several, the nearest.\n");
     page.push_str("\n| place | meaning |\n|---|---|\n");
     for mark in Mark::all() {
         let _ = writeln!(page, "| `{}` | {} |", mark.name(), line(mark.meaning()));
@@ -137,7 +137,7 @@ fn names(page: &mut String) {
 fn behaviours(page: &mut String, root: &Value) {
     // A full stop has the common keys of all kinds and none of its own.
     let common = &root["definitions"]["FullStop"];
-    page.push_str("\n## `[behaviour.NAME]`\n\nKeys of every kind:\n");
+    page.push_str("\n## `[behaviour.NAME]`\n\nKeys of every kind. Speeds are limited to the boat's top speed.\n");
     table(page, common, |_, _| true);
     for about in root["properties"]["behaviour"]["additionalProperties"]["oneOf"].as_array().into_iter().flatten() {
         let name = about["properties"]["kind"]["const"].as_str().unwrap_or_default();
@@ -166,7 +166,7 @@ fn table(page: &mut String, about: &Value, wanted: impl Fn(&str, &Value) -> bool
         let (meaning, described) = text.split_once("Default: ").unwrap_or((&text, ""));
         let default = match about.get("default") {
             None if is_required(key, about) => "*required*".to_owned(),
-            None | Some(Value::Object(_)) => described.trim_end_matches('.').to_owned(),
+            None | Some(Value::Object(_) | Value::Null) => described.trim_end_matches('.').to_owned(),
             Some(default) => default.to_string(),
         };
         let value = if key == "when" { "condition".to_owned() } else { value_of(about) };
@@ -195,7 +195,7 @@ fn range(about: &Value) -> String {
     };
     match (bound(["minimum", "minItems"]), bound(["maximum", "maxItems"])) {
         (Some(least), Some(most)) if least == most => least,
-        (Some(least), Some(most)) => format!("{least} to {most}"),
+        (Some(least), Some(most)) => format!("{least}..{most}"),
         (Some(least), None) => format!("at least {least}"),
         (None, Some(most)) => format!("up to {most}"),
         (None, None) => String::new(),
@@ -212,6 +212,7 @@ fn value_of(about: &Value) -> String {
     if let Some(choices) = about["oneOf"].as_array() {
         return choices.iter().map(choice).collect::<Vec<_>>().join(", ");
     }
+    let is_expression = about["title"] == "a number or an expression";
     let (kind, range) = match about["type"].as_str() {
         Some("array") if !is_pair(about) => {
             return [range(about), items_of(&about["items"])].join(" ").trim().to_owned();
@@ -221,6 +222,7 @@ fn value_of(about: &Value) -> String {
     };
     match (kind.as_str(), range.as_str()) {
         (_, "") => kind,
+        _ if is_expression => format!("{range}\\*"),
         ("number", _) => range,
         _ => format!("{kind}, {range}"),
     }
@@ -251,7 +253,6 @@ fn items_of(about: &Value) -> String {
 /// The type in a schema, in words.
 fn kind_of(about: &Value) -> String {
     match about["title"].as_str() {
-        Some("a number or an expression") => return "expression".to_owned(),
         Some(title @ ("boat" | "place")) => return title.to_owned(),
         _ => {}
     }

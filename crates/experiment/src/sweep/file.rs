@@ -149,7 +149,7 @@ fn checked(diagnostics: &mut Diagnostics, document: &Document<Sweep>) -> Option<
         let name_path = format!("entry.{i}.name");
         entry.strategy = strategies.read(diagnostics, document, &format!("entry.{i}.strategy"), &entry.strategy);
         if document.is_sound(&name_path) && !names.insert(&entry.name) {
-            let message = format!("name is {:?} again, expected a different one for each entry", entry.name);
+            let message = format!("name {:?} is used twice, expected a unique name for each entry", entry.name);
             diagnostics.note(document.at(&name_path), message);
         }
     }
@@ -201,7 +201,7 @@ fn check_axis(diagnostics: &mut Diagnostics, document: &Document<Sweep>, at: &st
     } else if let Some([low, _]) = axis.range.filter(|[low, _]| axis.log && *low <= 0.0) {
         wrong("range", format!("range begins at {low}, expected more than 0 with log"))
     } else if axis.log && axis.range.is_none() {
-        wrong("log", "log is given without range, expected with it only".to_owned())
+        wrong("log", "log is given without range, expected only with it".to_owned())
     } else if let Some([_, sigma]) = axis.normal.filter(|[_, sigma]| *sigma <= 0.0) {
         wrong("normal", format!("normal has a deviation of {sigma}, expected more than 0"))
     } else if let Some(pair) =

@@ -104,7 +104,7 @@ impl ScenarioFile for Tournament {
             let [name_path, path] = ["name", "strategy"].map(|key| format!("entry.{i}.{key}"));
             entry.strategy = strategies.read(diagnostics, document, &path, &entry.strategy);
             if document.is_sound(&name_path) && !names.insert(&entry.name) {
-                let message = format!("name is {:?} again, expected a different one for each entry", entry.name);
+                let message = format!("name {:?} is used twice, expected a unique name for each entry", entry.name);
                 diagnostics.note(document.at(&name_path), message);
             }
         }

@@ -5,8 +5,8 @@ use crate::sensor::Sensors;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// A kind of boat. The origin is midships: x ahead, y to starboard, yaw clockwise. Any number may
-/// be drawn for every game.
+/// A kind of boat. The origin is midships: x ahead, y to
+/// starboard, yaw clockwise.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[schemars(extend("x-drawn" = true))]
 pub struct Boat {

@@ -29,7 +29,7 @@ pub struct Game {
     /// Random seed: selects the game.
     #[schemars(range(min = 0, max = i64::MAX), extend("default" = 1))]
     pub(crate) seed: u64,
-    /// Seeds that replace `seed` during the game, by ascending time.
+    /// Seeds that replace `seed` during the game, in order of time.
     #[schemars(length(max = 1000), extend("default" = []))]
     pub(crate) reseed: Vec<Reseed>,
     /// End of the game, s. Default: `time_limit_s` of the rules.
@@ -48,7 +48,7 @@ pub struct Game {
     #[schemars(range(min = 0.01, max = 3600), extend("default" = 1))]
     pub(crate) order_ttl_s: f64,
     /// The two teams; the first has the end at the field's `corner`.
-    #[schemars(length(equal = 2), extend("x-expected" = "exactly two [[team]] for now"))]
+    #[schemars(length(equal = 2), extend("x-expected" = "exactly two [[team]]"))]
     pub(crate) team: Vec<Team>,
     /// Single boats. They precede all fleets in processing order.
     pub(crate) vehicle: Vec<Vehicle>,
@@ -56,7 +56,6 @@ pub struct Game {
     pub(crate) fleet: Vec<Fleet>,
 }
 
-/// A team.
 #[derive(Debug, Deserialize, JsonSchema)]
 pub(crate) struct Team {
     /// Name.
@@ -65,7 +64,6 @@ pub(crate) struct Team {
     pub(crate) strategy: Option<FilePath>,
 }
 
-/// A boat.
 #[derive(Debug, Deserialize, JsonSchema)]
 pub(crate) struct Vehicle {
     /// Name, unique in the game.

@@ -4,7 +4,7 @@ use crate::sea::{Eddy, PROFILE_EXPONENT, RandomEddies, Wander};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// Water and wind. Any number may be drawn for every game.
+/// Water and wind.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[schemars(extend("x-drawn" = true))]
 pub struct Sea {

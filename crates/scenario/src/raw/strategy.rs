@@ -123,7 +123,7 @@ impl JsonSchema for Behaviour {
         for moment in Moment::all() {
             let mut values = generator.subschema_for::<Values>().to_value();
             let when = moment.meaning().replacen("It", "it", 1);
-            values["description"] = format!("Values given to variables when {when}").into();
+            values["description"] = format!("Sets variables when {when}").into();
             values["default"] = json!({});
             common["properties"][moment.name()] = values;
         }

@@ -18,8 +18,8 @@ pub struct Behaviour {
     /// It runs only while this holds. Default: always.
     #[schemars(with = "Option<String>")]
     pub when: Option<Expression>,
-    /// Weight against other behaviours, at most that of the op_region and avoid_collision in its
-    /// modes. These two and avoid_obstacle default to 300.
+    /// Weight, at most that of the modes' op_region and avoid_collision. Safety behaviours default to
+    /// 300.
     #[schemars(range(min = 0, max = 1000), extend("default" = 100))]
     pub weight: Parameter,
     /// It completes after running this long, s. Default: never.

@@ -48,7 +48,7 @@ pub enum Fact {
     Disabled,
     /// The boat may tag now: it is in play, and its cooldown is over.
     CanTag,
-    /// An enemy carries a flag of the own team.
+    /// An enemy carries an own flag.
     FlagTaken,
     /// The boat or a mate carries a flag.
     EnemyFlagTaken,
@@ -66,7 +66,7 @@ pub enum Fact {
     Mates,
     /// Number of tagged mates.
     MatesTagged,
-    /// The boat's index in its team, from 0, in the order of the game file.
+    /// Index in the team, from 0, in the order of the game file.
     Rank,
     /// Points of the own team.
     Score,

@@ -95,8 +95,8 @@ pub struct Helm {
     /// more would outweigh safety.
     #[schemars(range(min = 0, max = 0.1), extend("default" = 0))]
     pub hysteresis: f64,
-    /// Whether to correct for estimated drift and lasting heading error. Otherwise course and speed
-    /// over the ground differ from those requested.
+    /// Whether to correct for estimated drift and heading error, so that course and speed over the
+    /// ground match those requested.
     #[schemars(rename = "compensate_drift", extend("x-field" = "compensates_drift", "default" = true))]
     pub compensates_drift: bool,
 }

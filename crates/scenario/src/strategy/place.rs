@@ -26,14 +26,13 @@ pub enum Place {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, VariantArray, IntoStaticStr, EnumMessage)]
 #[strum(serialize_all = "snake_case")]
 pub enum Mark {
-    /// Home of the own flag; the nearest of several.
+    /// Home of the own flag.
     OwnFlag,
-    /// Home of the enemy's flag; the nearest of several not taken.
+    /// Home of the enemy's flag, if the flag is there.
     EnemyFlag,
-    /// Where a flag must be brought; the nearest of several.
+    /// Where a flag must be brought.
     CapturePlace,
-    /// Where a tagged boat is untagged, the nearest of several; the enemy's flag while the boat
-    /// must leave that place first.
+    /// Where a tagged boat is untagged; the enemy's flag while it must leave that place first.
     UntagPlace,
 }
 
@@ -41,24 +40,24 @@ pub enum Mark {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, VariantArray, IntoStaticStr, EnumMessage)]
 #[strum(serialize_all = "snake_case")]
 pub enum Boat {
-    /// The nearest untagged enemy.
+    /// Nearest untagged enemy.
     NearestEnemy,
-    /// The nearest untagged enemy on the own side.
+    /// Nearest untagged enemy on the own side.
     NearestIntruder,
-    /// The untagged enemy nearest to an own flag.
+    /// Untagged enemy nearest to an own flag.
     NearestAttacker,
-    /// The enemy, tagged or not, nearest to the enemy's flag.
+    /// Enemy, tagged or not, nearest to the enemy's flag.
     NearestDefender,
-    /// The untagged enemy on the own side assigned to this boat. Starting with the enemy nearest to
-    /// an own flag, each goes to the boat of the team that meets it soonest, one boat per enemy.
+    /// Untagged enemy on the own side assigned to this boat. Starting with the enemy nearest to an
+    /// own flag, each goes to the boat of the team that meets it soonest, one boat per enemy.
     AssignedIntruder,
-    /// The enemy that carries a flag of the own team; the nearest of several.
+    /// Enemy that carries an own flag.
     FlagCarrier,
-    /// The enemy of the same rank; ranks repeat if there are fewer enemies.
+    /// Enemy of the same rank; ranks repeat if there are fewer enemies.
     Opponent,
-    /// The nearest mate.
+    /// Nearest mate.
     NearestMate,
-    /// The mate that carries a flag; the nearest of several.
+    /// Mate that carries a flag.
     MateCarrier,
 }
 

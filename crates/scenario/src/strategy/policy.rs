@@ -27,7 +27,7 @@ pub struct Policy {
     /// Half width of the peak at the proposed course, degrees.
     #[schemars(range(min = 0, max = 180), extend("default" = 10))]
     pub peak_width_deg: Parameter,
-    /// Width of the slope from the peak to 0, degrees.
+    /// Width from the peak to zero, degrees.
     #[schemars(range(min = 0, max = 180), extend("default" = 60))]
     pub base_width_deg: Parameter,
     /// Weight of course against speed.
@@ -38,7 +38,7 @@ pub struct Policy {
 /// The keys for a model.
 #[derive(JsonSchema)]
 struct ModelKeys {
-    /// ONNX file. Default: none, an external source proposes.
+    /// ONNX file. Default: an external source proposes.
     #[schemars(extend("minLength" = 1, "x-expected" = "the path of a file"))]
     #[expect(dead_code, reason = "only the schema is used")]
     model: Option<String>,

@@ -67,7 +67,7 @@ pub struct Waypoint {
     /// A point nearer than this is reached, m.
     #[schemars(range(min = 0.1, max = 1000), extend("default" = 3))]
     pub capture_radius_m: Parameter,
-    /// A point within this distance is also reached when the boat passes it, m.
+    /// A point within this distance is also reached by passing it, m.
     #[schemars(range(min = 0, max = 1000), extend("default" = 15))]
     pub slip_radius_m: Parameter,
     /// Steers for the point on the leg this far ahead, m; 0: for the next point.
@@ -93,7 +93,7 @@ pub struct Loiter {
     /// A corner nearer than this is reached, m.
     #[schemars(range(min = 0.1, max = 1000), extend("default" = 3))]
     pub capture_radius_m: Parameter,
-    /// A corner within this distance is also reached when the boat passes it, m.
+    /// A corner within this distance is also reached by passing it, m.
     #[schemars(range(min = 0, max = 1000), extend("default" = 15))]
     pub slip_radius_m: Parameter,
     /// Beyond this distance from the polygon, the boat approaches it first, m.
@@ -177,7 +177,7 @@ pub struct CutRange {
     /// From 0, only rate of closure, to 100, only CPA.
     #[schemars(range(min = 0, max = 100), extend("default" = 50))]
     pub patience: Parameter,
-    /// Time for which a course is evaluated, s.
+    /// Time horizon of a course, s.
     #[schemars(range(min = 0.1, max = 600), extend("default" = 15))]
     pub time_on_leg_s: Parameter,
     /// Distance at which it gives up, m; 0: never.
@@ -241,10 +241,10 @@ pub struct Shield {
 pub struct Attractor {
     /// Place.
     pub to: Place,
-    /// Distance below which it has full weight, m.
+    /// Distance of full weight, m.
     #[schemars(range(min = 0, max = 10_000), extend("default" = 10))]
     pub inner_m: Parameter,
-    /// Distance beyond which it has no weight, m.
+    /// Distance of zero weight, m.
     #[schemars(range(min = 0, max = 10_000), extend("default" = 50))]
     pub outer_m: Parameter,
     /// Speed, m/s.
@@ -259,10 +259,10 @@ pub struct AvoidCollision {
     /// Boats to avoid.
     #[schemars(extend("default" = "all"))]
     pub contacts: Contacts,
-    /// Distance below which it has full weight, m.
+    /// Distance of full weight, m.
     #[schemars(range(min = 0, max = 10_000), extend("default" = 9))]
     pub inner_m: Parameter,
-    /// Distance beyond which it has no weight, m.
+    /// Distance of zero weight, m.
     #[schemars(range(min = 0, max = 10_000), extend("default" = 15))]
     pub outer_m: Parameter,
     /// CPA of utility one half; less is worse, m.
@@ -271,7 +271,7 @@ pub struct AvoidCollision {
     /// CPA of full utility, m.
     #[schemars(range(min = 0, max = 10_000), extend("default" = 6))]
     pub cpa_max_m: Parameter,
-    /// Time for which a course is evaluated, s.
+    /// Time horizon of a course, s.
     #[schemars(range(min = 0.1, max = 600), extend("default" = 20))]
     pub time_on_leg_s: Parameter,
     /// How the weight falls between the two distances.
@@ -323,10 +323,10 @@ pub enum Grade {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(extend("x-weight" = 300))]
 pub struct AvoidObstacle {
-    /// Distance below which it has full weight, m.
+    /// Distance of full weight, m.
     #[schemars(range(min = 0, max = 10_000), extend("default" = 4))]
     pub inner_m: Parameter,
-    /// Distance beyond which it has no weight, m.
+    /// Distance of zero weight, m.
     #[schemars(range(min = 0, max = 10_000), extend("default" = 15))]
     pub outer_m: Parameter,
     /// Passing distance of utility one half; less is worse, m.
@@ -335,7 +335,7 @@ pub struct AvoidObstacle {
     /// Passing distance of full utility, m.
     #[schemars(range(min = 0, max = 10_000), extend("default" = 4))]
     pub cpa_max_m: Parameter,
-    /// Time for which a course is evaluated, s.
+    /// Time horizon of a course, s.
     #[schemars(range(min = 0.1, max = 600), extend("default" = 20))]
     pub time_on_leg_s: Parameter,
 }
@@ -409,7 +409,7 @@ pub struct ConstantHeading {
     /// Half width of the peak, degrees.
     #[schemars(range(min = 0, max = 180), extend("default" = 10))]
     pub peak_width_deg: Parameter,
-    /// Width of the slope from the peak to 0, degrees.
+    /// Width from the peak to zero, degrees.
     #[schemars(range(min = 0, max = 180), extend("default" = 170))]
     pub base_width_deg: Parameter,
 }
@@ -423,7 +423,7 @@ pub struct ConstantSpeed {
     /// Half width of the peak, m/s.
     #[schemars(range(min = 0, max = 60), extend("default" = 0))]
     pub peak_width_m_s: Parameter,
-    /// Width of the slope from the peak to 0, m/s.
+    /// Width from the peak to zero, m/s.
     #[schemars(range(min = 0, max = 60), extend("default" = 0.2))]
     pub base_width_m_s: Parameter,
 }
