@@ -58,7 +58,7 @@ pub struct Rules {
     /// Maximum distance from the capture place, m; no effect with "own_side".
     #[schemars(range(min = 0.1, max = 1000), extend("default" = 10))]
     pub capture_radius_m: f64,
-    /// Distance between the centres of boats below which they have collided, m.
+    /// Minimum distance between the centres of boats without a collision, m.
     #[schemars(range(min = 0, max = 100), extend("default" = 3))]
     pub collision_distance_m: f64,
     /// Contact between boats; walls and obstacles are always solid.
@@ -96,14 +96,12 @@ pub struct Rules {
     #[serde(default)]
     #[schemars(extend("default" = "automatic"))]
     pub tags_and_grabs: Acting,
-    /// Time between checks of boundary, tags and collisions, s; a multiple of the physics tick. 0:
-    /// every tick.
+    /// Interval of checks of boundary, tags and collisions, s, a multiple of the tick; 0: every tick.
     #[serde(default)]
     #[schemars(rename = "tag_look_period_s", with = "f64", !default, range(min = 0, max = 60))]
     #[schemars(extend("x-field" = "tag_look_period", "default" = 0))]
     pub tag_look_period: SimTime,
-    /// Time between checks of grabs, captures and untagging, s; a multiple of the physics tick. 0:
-    /// every tick.
+    /// Interval of checks of grabs, captures and untagging, s, a multiple of the tick; 0: every tick.
     #[serde(default)]
     #[schemars(rename = "flag_look_period_s", with = "f64", !default, range(min = 0, max = 60))]
     #[schemars(extend("x-field" = "flag_look_period", "default" = 0))]

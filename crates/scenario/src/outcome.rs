@@ -74,6 +74,7 @@ pub struct EventOutcome {
 }
 
 impl EventOutcome {
+    /// The event with the scenario's names.
     #[must_use]
     pub fn new(scenario: &Scenario, logged: &Logged) -> EventOutcome {
         let name = |vehicle: VehicleId| scenario.vehicles[vehicle.index()].name.clone();

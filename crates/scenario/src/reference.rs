@@ -150,7 +150,8 @@ fn behaviours(page: &mut String, root: &Value) {
     }
 }
 
-/// A table of the keys that are `wanted`, required ones first.
+/// A table of the keys that are `wanted`, required ones first. The default, in brackets, is that of
+/// the schema, or else the last sentence of the description.
 fn table(page: &mut String, about: &Value, wanted: impl Fn(&str, &Value) -> bool) {
     let required: Vec<&str> = about["required"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
     let keys = about["properties"].as_object().into_iter().flatten().filter(|(key, about)| wanted(key, about));
@@ -159,10 +160,9 @@ fn table(page: &mut String, about: &Value, wanted: impl Fn(&str, &Value) -> bool
     if first.is_empty() && rest.is_empty() {
         return;
     }
-    page.push_str("\n| key | value | default | meaning |\n|---|---|---|---|\n");
+    page.push_str("\n| key | value (default) | meaning |\n|---|---|---|\n");
     for (key, about) in first.into_iter().chain(rest) {
         let text = description(about);
-        // A default that is not a constant is the last sentence of the description.
         let (meaning, described) = text.split_once("Default: ").unwrap_or((&text, ""));
         let default = match about.get("default") {
             None if is_required(key, about) => "*required*".to_owned(),
@@ -170,7 +170,8 @@ fn table(page: &mut String, about: &Value, wanted: impl Fn(&str, &Value) -> bool
             Some(default) => default.to_string(),
         };
         let value = if key == "when" { "condition".to_owned() } else { value_of(about) };
-        let _ = writeln!(page, "| `{key}` | {value} | {default} | {} |", meaning.trim_end());
+        let default = if default.is_empty() { default } else { format!(" ({default})") };
+        let _ = writeln!(page, "| `{key}` | {value}{default} | {} |", meaning.trim_end());
     }
 }
 
@@ -196,7 +197,7 @@ fn range(about: &Value) -> String {
     match (bound(["minimum", "minItems"]), bound(["maximum", "maxItems"])) {
         (Some(least), Some(most)) if least == most => least,
         (Some(least), Some(most)) => format!("{least}..{most}"),
-        (Some(least), None) => format!("at least {least}"),
+        (Some(least), None) => format!("{least} or more"),
         (None, Some(most)) => format!("up to {most}"),
         (None, None) => String::new(),
     }
@@ -243,7 +244,7 @@ fn choice(about: &Value) -> String {
 fn items_of(about: &Value) -> String {
     match about["oneOf"].as_array() {
         Some(choices) => format!("of {}", choices.iter().map(choice).collect::<Vec<_>>().join(", ")),
-        None if about.get("anyOf").is_some() => "values".to_owned(),
+        None if about.get("anyOf").is_some() && about.get("title").is_none() => "values".to_owned(),
         None if is_pair(about) => "pairs".to_owned(),
         None if about["type"] == "array" => format!("lists of {}", items_of(&about["items"])),
         None => format!("{}s", kind_of(about)),

@@ -104,8 +104,8 @@ pub struct Mavlink {
     /// The boat's system, 1 to 255; 0: the first boat heard.
     #[schemars(range(min = 0, max = 255), extend("default" = 0))]
     pub boat_system: u8,
-    /// The gateway's system. ArduPilot's failsafe for a lost ground station watches the system that
-    /// its parameter names, 255 by default.
+    /// The gateway's system. ArduPilot's ground station failsafe watches the system in its parameter,
+    /// 255 by default.
     #[schemars(range(min = 1, max = 255), extend("default" = 255))]
     pub system: u8,
     /// The gateway's component.
@@ -274,8 +274,7 @@ pub struct CurrentWatch {
     /// A; 0: off.
     #[schemars(range(min = 0, max = 1000), extend("default" = 0.5))]
     pub thruster_min_a: f64,
-    /// Bilge pump current from which the pump counts as running, A; 0: off. A running pump means
-    /// water in the boat.
+    /// Current from which a bilge pump counts as running, A; 0: off. It means water in the boat.
     #[schemars(range(min = 0, max = 1000), extend("default" = 0.1))]
     pub bilge_a: f64,
     /// Duration before it counts, s.
