@@ -66,9 +66,9 @@ fn what_metadata_leave_open_or_contradict_is_refused() {
     let nothing = PartialSpec::default();
     let other = PartialSpec { action: Some(ActionSpace::Continuous), ..nothing };
     for (metadata, said, want) in [
-        (without("squall.observation"), nothing, "no squall.observation, expected it there or observation here"),
-        (without("squall.action"), nothing, "no squall.action, expected it there or action here"),
-        (without("squall.period_s"), nothing, "no squall.period_s, expected it there or period_s here"),
+        (without("squall.observation"), nothing, "no squall.observation, expected it there, or observation here"),
+        (without("squall.action"), nothing, "no squall.action, expected it there, or action here"),
+        (without("squall.period_s"), nothing, "no squall.period_s, expected it there, or period_s here"),
         (
             with("squall.observation", "moos"),
             nothing,
