@@ -139,7 +139,7 @@ def test_a_plan_of_another_version_is_refused(sweep: Path) -> None:
     text, files, _ = SweepPlan.open(sweep).pack()
     with pytest.raises(ValueError, match="same version of Squall"):
         SweepPlan.unpack((text, files, "0" * 32))
-    with pytest.raises(ValueError, match="not among the files kept"):
+    with pytest.raises(ValueError, match="not among the stored files"):
         SweepPlan.unpack((text, files[:2], "0" * 32))
     with pytest.raises(ValueError, match="cannot read the packed plan"):
         SweepPlan.unpack((text[:-1], files, "0" * 32))

@@ -91,7 +91,7 @@ fn who_is_led_to_a_false_sim_tells_it_nothing_that_opens_the_true_one() {
     let false_sim = FakeSim::open(&endpoint, &intruder);
     let mut led_astray = agent(&endpoint, &sim.game, &FOUR[..1]);
     let refused = led_astray.refusal();
-    assert!(refused.contains("the token is not that of this game"), "{refused}");
+    assert!(refused.contains("wrong token for this game"), "{refused}");
     let asked = false_sim.asked();
     assert!(asked.iter().any(|payload| payload.contains("mac")), "{asked:?}");
     assert!(asked.iter().all(|payload| !payload.contains(&token().hex())), "{asked:?}");

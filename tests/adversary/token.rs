@@ -36,7 +36,7 @@ fn without_the_token_nobody_joins_or_controls() {
     assert!(matches!(join(&sim, Some(token()), Role::Agent), Ok(JoinReply::Granted { .. })));
     let refused = sim.squall(&["agent", "--vehicle", "red_one"]).env(TOKEN_VARIABLE, Token::random().hex()).output();
     let refused = stderr(&refused.expect("the program starts"));
-    assert!(refused.contains("the token is not that of this game"), "{refused}");
+    assert!(refused.contains("wrong token for this game"), "{refused}");
     sim.stop();
 }
 

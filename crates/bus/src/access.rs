@@ -32,13 +32,13 @@ const ANYBODY: Rights = Rights {
         "say/{team}",
         "policy/{boat}",
         "nav/{boat}",
-        // The sim receives reports with the gateway's ticket and forwards them. Without keys, any
-        // node can publish as a gateway, but none can publish as the sim.
+        // The sim forwards reports that carry the gateway's ticket. Without keys, any node can
+        // publish as a gateway, but none can publish as the sim.
         "report/status/{boat}",
         "report/link/{boat}",
         "control",
-        // Anyone who sees danger must be able to stop boats without looking for a secret first:
-        // without a token and, with keys, in any role.
+        // Anyone who sees danger must be able to stop boats without a secret: without a token and,
+        // with keys, in any role.
         "stop/{boat}",
     ],
     hears: &[
@@ -68,8 +68,8 @@ const ANYBODY: Rights = Rights {
     ],
     answers: &["helm/{boat}", "operate/{boat}"],
 };
-/// The agents of a team and policies that propose actions to them: no truth, and nothing from other
-/// teams.
+/// The agents of a team and policies that propose actions to them: no true state, and nothing from
+/// other teams.
 const TEAM: Rights = Rights {
     publishes: &["order/{team}/*", "say/{team}", "policy/{boat}", "control", "stop/{boat}"],
     hears: &["picture/{team}", "say/{team}", "policy/{boat}", "run", "control", "released"],
@@ -82,8 +82,8 @@ const GATEWAY: Rights = Rights {
     asks: &["scenario", "join/gateway/{boat}"],
     answers: &["operate/{boat}"],
 };
-// Receives everything published and what helms decide, but changes nothing except that, like every
-// node, it may stop boats.
+// Receives everything published and the decisions of helms, and may stop boats like every node, but
+// changes nothing else.
 const OBSERVER: Rights = Rights {
     publishes: &["control", "stop/{boat}"],
     asks: &["scenario", "events", "water", "helm/{boat}"],
@@ -109,10 +109,10 @@ fn rights(identity: &Identity) -> &'static Rights {
     }
 }
 
-/// Whether a node may query `key` at all; if not, no answer ever comes.
+/// Whether a node may query `key` at all; without the right, no answer ever comes.
 pub(crate) fn may_ask(identity: &Identity, key: &str) -> bool {
-    // Checks the kind alone: this only spares a node without the right the wait for an answer. The
-    // rule at the hub, with topics spelled out, is what binds.
+    // Checks the kind alone, to spare a node without the right the wait for an answer. The hub's
+    // rule, with topics spelled out, is binding.
     let kind = key.split('/').nth(2);
     rights(identity).asks.iter().any(|pattern| pattern.split('/').next() == kind)
 }
@@ -156,7 +156,7 @@ impl Subject {
             (&["reply"], &["egress"], self.keys(game, asks)),
             (&["declare_queryable", "reply"], &["ingress"], self.keys(game, answers)),
             (&["query"], &["egress"], self.keys(game, answers)),
-            // Subscriptions and queryables here are no secret: publishers must know of them.
+            // Subscriptions and queryables here are no secret: publishers must know them.
             (&["declare_subscriber", "declare_queryable"], &["egress"], vec![topic::matching(game, "**")]),
             // Outward only: a token that another node shows in the sim's name would be believed.
             // Agents and gateways show none for the same reason; the hub sees their links.
@@ -196,7 +196,7 @@ fn subjects(scenario: &Scenario, has_keys: bool) -> Vec<Subject> {
         let own = names(scenario.vehicles.iter().filter(|boat| boat.team.index() == i).collect());
         subjects.push(subject(Identity::Team(team.clone()), std::slice::from_ref(team), &own));
     }
-    // Keys may be made for one gateway per boat, or for one machine that runs all gateways.
+    // Keys may exist for one gateway per boat, or for one machine that runs all gateways.
     let externals = names(scenario.externals().map(|boat| &scenario.vehicles[boat.index()]).collect());
     for boat in &externals {
         subjects.push(subject(Identity::Gateway(Some(boat.clone())), &[], std::slice::from_ref(boat)));
@@ -223,8 +223,8 @@ pub(crate) fn control(game: &GameName, scenario: &Scenario, has_keys: bool) -> V
         }
     };
     json!({
-        // Deny by default: anything that a later zenoh adds or a node invents stays closed until a
-        // rule above opens it.
+        // Deny by default: whatever a later zenoh adds or a node invents stays closed until a rule
+        // above opens it.
         "enabled": true, "default_permission": "deny", "rules": rules,
         "subjects": all.iter().map(subject).collect::<Vec<Value>>(), "policies": policies,
     })

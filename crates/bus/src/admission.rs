@@ -1,10 +1,10 @@
-//! Keeps room at a hub's port for new nodes, however many other connections there are.
+//! Keeps a hub's port open for new nodes, however many other connections there are.
 //!
-//! A connection is pending until zenoh has made it a link. The number of pending connections is
-//! limited: a newcomer beyond it ends another one, chosen by the rule of [`Connections`]. zenoh's
-//! TLS listener (1.10, `tls-listener` 0.11) needs more than that: once the process has run out of
-//! file descriptors, the listener only tries to accept and closes none of its connections, so it
-//! would never recover. When descriptors run short, the port is closed briefly and the reserved
+//! A connection is pending until zenoh has made it a link. Pending connections are limited: a
+//! newcomer beyond the limit ends another one, chosen by the rule of [`Connections`]. zenoh's TLS
+//! listener (1.10, `tls-listener` 0.11) needs more than that: once the process has run out of file
+//! descriptors, the listener only tries to accept and closes none of its connections, so it would
+//! never recover. When descriptors run short, the port is closed briefly and the reserved
 //! descriptors are lent to connections accepted already. The listener then has nothing more to
 //! accept, and closes the ended ones.
 
@@ -24,7 +24,6 @@ use zenoh::{Session, Wait};
 const LOOK: Duration = Duration::from_millis(100);
 const LOOK_OFTEN: Duration = Duration::from_millis(10);
 
-/// The connections that have become links.
 type Links = Mutex<BTreeSet<Ends>>;
 
 /// The state of the port.
@@ -40,8 +39,7 @@ struct Port {
     is_closed: bool,
 }
 
-/// Starts keeping room at these ports for as long as the session is open; at most `waiting_max`
-/// connections may be pending.
+/// Guards these ports while the session is open; at most `waiting_max` connections may be pending.
 pub(crate) fn begin(session: &Session, numbers: Vec<u16>, files: OpenFiles, waiting_max: usize) -> zenoh::Result<()> {
     let links = Arc::new(Links::default());
     let watched = Arc::downgrade(&links);
@@ -49,16 +47,16 @@ pub(crate) fn begin(session: &Session, numbers: Vec<u16>, files: OpenFiles, wait
         let Some(ends) = linger::ends(event.link()) else { return };
         match event.kind() {
             SampleKind::Put => links.lock().insert(ends),
-            // Identified by both addresses, since descriptors are reused: the same number may
-            // be another connection by now.
+            // Identified by both addresses, since descriptors are reused: the same number may now
+            // be another connection.
             SampleKind::Delete => links.lock().remove(&ends),
         };
     };
     session.info().link_events_listener().history(true).callback(note).background().wait()?;
     let waiting = Connections::new(waiting_max);
     let listeners = listeners(&numbers);
-    // Connections that the system has accepted already must fit into the reserved descriptors,
-    // beside those still on loan.
+    // Connections already accepted by the system must fit into the reserved descriptors, beside
+    // those still on loan.
     let queue_max = i32::try_from(files.kept() / 4).unwrap_or(i32::MAX);
     for listener in &listeners {
         // `listen` on a listening socket only changes the length of its queue.

@@ -14,11 +14,11 @@ use serde::Serialize;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Message priority. No message waits for a link: what a congested link cannot take at once is
-/// dropped, and senders that must be heard repeat.
+/// Message priority. No message waits for a link: a congested link drops what it cannot take
+/// immediately, and senders repeat what must arrive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Priority {
-    /// Stops of boats: sent at once, before everything else.
+    /// Stops of boats: sent immediately, before everything else.
     Urgent,
     /// Everything sent at every decision.
     Normal,
@@ -57,7 +57,7 @@ impl Bus {
     /// Connects to a hub.
     ///
     /// # Errors
-    /// [`BusError`] if no hub listens there now.
+    /// [`BusError`] if no hub listens there.
     pub fn leaf(net: &Net) -> Result<Bus, BusError> {
         runtime().open_leaf(net).map(|session| Bus::of(session, net))
     }
@@ -172,7 +172,7 @@ impl Bus {
         self.session.who_is_alive(key, limit)
     }
 
-    /// Closes the session, so that other nodes learn of it at once.
+    /// Closes the session; other nodes learn of it immediately.
     pub fn close(&self) {
         self.session.close();
     }

@@ -1,5 +1,5 @@
-//! The wall clock of everything that runs on the network: for pacing and timeouts. The core
-//! receives the time as an argument and never reads a clock.
+//! The wall clock of network code: for pacing and timeouts. The core receives the time as an
+//! argument and never reads a clock.
 
 use crate::runtime::runtime;
 use std::time::{Duration, Instant};
@@ -23,8 +23,7 @@ pub fn suspended() -> Duration {
     runtime().suspended()
 }
 
-/// Sleeps where no condition can be waited for: between two attempts, or two pictures for a
-/// person.
+/// Sleeps where no condition can be waited for: between two attempts, or two screen updates.
 pub fn rest(time: Duration) {
     runtime().sleep(time);
 }

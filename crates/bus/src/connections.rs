@@ -1,5 +1,5 @@
-//! The open connections of a server with limited room: a newcomer always gets in, and the
-//! connection that has idled longest makes room for it.
+//! The open connections of a server with limited slots: a newcomer always gets one, from the
+//! connection that has idled longest.
 
 use parking_lot::Mutex;
 use std::collections::BTreeMap;
@@ -28,14 +28,14 @@ struct Entry {
     close: Box<dyn FnOnce() + Send>,
 }
 
-/// Room for one connection, freed on drop.
+/// A slot for one connection, freed on drop.
 pub struct Slot {
     open: Arc<Mutex<Open>>,
     number: u64,
 }
 
 impl Connections {
-    /// Room for at most `most` connections.
+    /// Slots for at most `most` connections.
     #[must_use]
     pub fn new(most: usize) -> Connections {
         Connections { open: Arc::default(), most }
@@ -74,8 +74,8 @@ impl Open {
         self.connections.values().for_each(|entry| *by_address.entry(entry.from).or_insert(0) += 1);
         let share = |entry: &Entry| by_address.get(&entry.from).copied().unwrap_or(0);
         let most_idle =
-            // The address with the most connections first: a host that opens thousands makes room
-            // at its own cost, and a host with a single connection keeps it however long it idles.
+            // The address with the most connections first: a host that opens thousands evicts its
+            // own, and a host with a single connection keeps it however long it idles.
             |(_, a): &(&u64, &Entry), (_, b): &(&u64, &Entry)| share(b).cmp(&share(a)).then(a.used.cmp(&b.used));
         self.connections.iter().min_by(most_idle).map(|(number, _)| *number)
     }
@@ -125,7 +125,7 @@ mod tests {
         all[0].0.touch();
         all.push(admit(&connections, STRANGER));
         assert_eq!(closed(&all), [false, true, false, false]);
-        // A connection that has left makes room as well.
+        // A connection that has left frees its slot too.
         all.remove(2);
         all.push(admit(&connections, STRANGER));
         assert_eq!(closed(&all), [false, true, false, false]);

@@ -6,30 +6,30 @@ use messages::{Control, ControlReply};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// How long the sim may take to answer a stop before the stop is repeated.
+/// Time for the sim's answer to a stop before the stop is repeated.
 const STOP_ANSWER: Duration = Duration::from_millis(200);
 
-/// How often a node that may not query the sim publishes a stop.
+/// Number of times that a node without the right to query the sim publishes a stop.
 const SAID_UNASKED: u32 = 3;
 
 /// The sim's answer to one of several queries.
 type Answered = Watched<Option<Result<ControlReply, BusError>>>;
 
 /// Controls a game. Commands that stop boats are published to all nodes, including gateways, and
-/// need no token; since a link may lose them, they are repeated until the sim has answered. Other
+/// need no token; they are repeated until the sim answers, since a link may lose them. Other
 /// commands are queries to the sim.
 ///
 /// # Errors
 /// [`BusError`] if the sim refuses or does not answer (gateways may still have received a stop), if
-/// it requires a token that is not known, or if the session is closed.
+/// it requires an unknown token, or if the session is closed.
 ///
 /// # Panics
 /// Never: a control is JSON.
 pub fn control(bus: &Bus, game: &GameName, control: Control) -> Result<(), BusError> {
     let key = topic::control(game);
     let reply: Option<ControlReply> =
-        // Pausing or ending a game can wait for a query and its challenge. A stop is published at
-        // once and sent as a query too, since published messages may be lost.
+        // Pausing or ending a game can wait for a query and its challenge. A stop is published
+        // immediately and sent as a query too, since published messages may be lost.
         if control.stops() { stop(bus, &key, control)? } else { bus.request(&key, &control, ANSWER)? };
     match reply {
         Some(Ok(())) => Ok(()),
@@ -58,12 +58,11 @@ fn stop(bus: &Bus, key: &str, control: Control) -> Result<Option<ControlReply>, 
     Ok(None)
 }
 
-/// Queries the sim. On a slow link, the next query goes out before the answer to this one has
-/// arrived.
+/// Queries the sim. On a slow link, the next query goes out before the answer to this one arrives.
 fn ask(bus: &Bus, key: &str, control: Control, limit: Duration, answered: &Arc<Answered>) {
     let (bus, key, answered) = (bus.clone(), key.to_owned(), Arc::clone(answered));
-    // In its own thread, since a query blocks until answered or timed out, and the stop must be
-    // repeated meanwhile.
+    // In its own thread: a query blocks until answered or timed out, and the stop must be repeated
+    // meanwhile.
     let asked = start_thread("stop-question", move || {
         if let Some(reply) = bus.request(&key, &control, limit).transpose() {
             answered.visit(|answered| *answered = Some(reply));

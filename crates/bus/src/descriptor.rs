@@ -24,7 +24,7 @@ pub(crate) enum Kind {
 /// The numbers of all descriptors.
 ///
 /// # Errors
-/// If the system lists none, or no descriptor is left to read the list with.
+/// If the system lists none, or no descriptor is left for reading the list.
 pub(crate) fn all() -> io::Result<Vec<RawFd>> {
     // Linux has the first, macOS and the BSDs the second. If neither exists, links keep their
     // linger time and the port keeps zenoh's limits.
@@ -42,14 +42,13 @@ fn borrow<'a>(descriptor: RawFd) -> BorrowedFd<'a> {
     unsafe { BorrowedFd::borrow_raw(descriptor) }
 }
 
-/// The current kind of this descriptor.
 pub(crate) fn kind(descriptor: RawFd) -> Kind {
     let borrowed = borrow(descriptor);
     let socket = SockRef::from(&borrowed);
     let Some(local) = socket.local_addr().ok().and_then(|address| address.as_socket()) else { return Kind::Other };
     match socket.peer_addr() {
         Ok(peer) => peer.as_socket().map_or(Kind::Other, |peer| Kind::Connection((local, peer))),
-        // Neither a listener nor a datagram socket has a peer; the socket type tells them apart.
+        // Neither a listener nor a datagram socket has a peer; the socket type distinguishes them.
         Err(_) if socket.r#type().is_ok_and(|kind| kind == Type::STREAM) => Kind::Listener(local.port()),
         Err(_) => Kind::Other,
     }

@@ -41,16 +41,16 @@ pub enum BusError {
     Silent,
     /// The game requires its token.
     #[error(
-        "the game asks for its token, which `squall sim` showed when it began: give it by --token-file FILE, or in the \
+        "the game requires its token, which `squall sim` printed at its start: pass it with --token-file FILE, or in the \
          environment as SQUALL_TOKEN"
     )]
     NeedsToken,
     /// The token belongs to another game.
-    #[error("the token is not that of this game: `squall sim` showed it when it began")]
+    #[error("wrong token for this game: `squall sim` printed the token at its start")]
     WrongToken,
     /// A node answered without proving that it knows this token.
     #[error(
-        "{key} was answered, but not by a node that knows this token: it is the token of another game, or a stranger answers"
+        "no node with this token answered at {key}: the token is that of another game, or an untrusted node answered"
     )]
     Unsealed {
         /// The key of the query.
@@ -59,15 +59,15 @@ pub enum BusError {
     /// This node's keys or the peer's are wrong.
     #[error("{0}")]
     Keys(String),
-    /// A session with keys in a process where zenoh has more than one thread: its TLS links are not
-    /// safe there.
+    /// A session with keys in a process with more than one zenoh thread: its TLS links are not safe
+    /// there.
     #[error("a node with keys needs the environment variable ZENOH_RUNTIME = {KEYS_RUNTIME} from its start; {0}")]
     Threads(String),
-    /// The game has keys, and this node was given none.
-    #[error("{0} speaks TLS: the game has keys, give yours by --keys FOLDER (see `squall keys`)")]
+    /// The game has keys, and this node has none.
+    #[error("{0} uses TLS: the game has keys, pass yours with --keys FOLDER (see `squall keys`)")]
     NeedsKeys(String),
     /// A node with this certificate has no right to this query.
-    #[error("{identity} may not do this: its keys do not allow it, take those of an operator")]
+    #[error("the keys of {identity} do not allow this: use those of an operator")]
     NotAllowed {
         /// The identity in the certificate.
         identity: Identity,

@@ -10,7 +10,7 @@ use scenario::Scenario;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// How often a search retries.
+/// Interval of a search's attempts.
 const LOOK_AGAIN: Duration = Duration::from_millis(100);
 /// Timeout of a query.
 pub const ANSWER: Duration = Duration::from_secs(2);
@@ -58,8 +58,8 @@ impl<'a> GameSearch<'a> {
         }
     }
 
-    /// A session at the place of the game (this one, or the only one running), and the game with
-    /// its details.
+    /// A session at the place of the game (the named one, or the only one running), and the game
+    /// with its details.
     ///
     /// # Errors
     /// [`NotFound`] names what was still missing at the end.
@@ -77,7 +77,7 @@ impl<'a> GameSearch<'a> {
 /// One attempt of [`GameSearch::game`]; the next attempt gets the same `session`.
 ///
 /// # Errors
-/// As [`choose_game`], or if no hub listens there now.
+/// As [`choose_game`], or if no hub listens there.
 pub fn find_game(
     place: &Place,
     named: Option<&GameName>,
@@ -94,8 +94,7 @@ pub fn find_game(
 /// The game of this name, or the only one on the network, with its details.
 ///
 /// # Errors
-/// [`Missing`] if it is not there yet, if there are several to choose from, or if its sim has
-/// another version.
+/// [`Missing`] if it is not there yet, if there are several, or if its sim has another version.
 pub fn choose_game(bus: &Bus, named: Option<&GameName>) -> Result<(GameName, GameInfo), Missing> {
     let game = named.map_or_else(|| only_game(bus), |game| Ok(game.clone()))?;
     let info = game_info(bus, &game)?;
@@ -127,7 +126,6 @@ fn listed(games: &[GameName]) -> String {
     games.iter().map(GameName::as_str).collect::<Vec<_>>().join(", ")
 }
 
-/// The game's details, from the sim.
 fn game_info(bus: &Bus, game: &GameName) -> Result<GameInfo, Missing> {
     let answer = bus.ask(&topic::scenario(game), Vec::new(), ANSWER)?;
     let Some(bytes) = answer else {
@@ -157,9 +155,9 @@ fn understood(answer: &[u8]) -> Result<GameInfo, Refusal> {
 /// The result of joining.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Joined {
-    /// To be sent with every message.
+    /// The ticket that every message must carry.
     pub ticket: u64,
-    /// The vehicles, in the order asked for.
+    /// The vehicles, in the requested order.
     pub vehicles: Vec<VehicleId>,
     /// Game time of the answer.
     pub now: SimTime,
@@ -182,8 +180,8 @@ pub fn join(
     // answer that never comes.
     check_keys(bus, scenario, role, vehicles)?;
     let bus = bus.clone().with_token(place.net(Some(game))?.token);
-    // Gives the sim the node's session, so that the sim acts at once when that link ends: a killed
-    // process closes its socket, and its boats hold in the same decision.
+    // Gives the sim the node's session: the sim acts as soon as that link ends. A killed process
+    // closes its socket, and its boats hold in the same decision.
     let (version, node, asked) = (primitives::VERSION.to_owned(), bus.id(), clock::now());
     let request = JoinRequest { version, role, node, vehicles: vehicles.to_vec() };
     match bus.request(&topic::join(game, scenario, role, vehicles), &request, ANSWER)? {
@@ -200,7 +198,7 @@ fn check_keys(bus: &Bus, scenario: &Scenario, role: Role, vehicles: &[String]) -
     let Some(keys) = bus.keys() else { return Ok(()) };
     let is_own = |name: &String| match (keys.identity(), role) {
         (Identity::Team(team), Role::Agent) => {
-            // The sim refuses an unknown name itself.
+            // The sim itself refuses an unknown name.
             scenario.vehicle_by_name(name).is_none_or(|v| scenario.teams[scenario.team_of(v).index()].name == *team)
         }
         (Identity::Gateway(boat), Role::Gateway) => boat.as_ref().is_none_or(|boat| boat == name),

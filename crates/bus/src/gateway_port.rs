@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 /// The key of requests at control ports, in proofs.
 pub const GATEWAY_PORT_KEY: &str = "gateway control port";
-/// Upper bound of an answer's length, bytes.
+/// Maximum length of an answer, bytes.
 pub(crate) const ANSWER_BYTES_MAX: u64 = 1 << 20;
 /// Number of attempts: a port under attack may drop a connection before reading from it.
 const ATTEMPTS: usize = 3;

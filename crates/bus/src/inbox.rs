@@ -39,7 +39,7 @@ impl<T> InboxSender<T> {
         self.0.dropped.fetch_add(u64::from(is_dropped), Ordering::Relaxed);
     }
 
-    /// Enqueues `item` if there is room, and returns whether there was.
+    /// Enqueues `item` if there is a free slot, and returns whether there was.
     pub fn offer(&self, item: T) -> bool {
         let Queue { items, capacity, .. } = &*self.0;
         let surplus = items.visit(|items| {
@@ -67,7 +67,7 @@ impl<T> Inbox<T> {
         self.0.items.visit(VecDeque::pop_front)
     }
 
-    /// How many items have not fitted so far.
+    /// The number of items dropped so far.
     #[must_use]
     pub fn dropped(&self) -> u64 {
         self.0.dropped.load(Ordering::Relaxed)

@@ -2,7 +2,7 @@
 //!
 //! A game is a star: the sim's session is the *hub* (a zenoh router); agents and observers are
 //! *leaves* (zenoh clients with one link). By default the hub listens on loopback only and no node
-//! scouts, so that two runs on one machine never meet.
+//! scouts: two runs on one machine never meet.
 //!
 //! Functions here block or call back. Callbacks run on zenoh's threads and must only hand data
 //! over.

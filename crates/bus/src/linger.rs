@@ -1,10 +1,10 @@
-//! Disables the linger option on the sockets of zenoh's links, so that closing one never waits for
-//! its peer.
+//! Disables the linger option on the sockets of zenoh's links: closing one never waits for its
+//! peer.
 //!
 //! zenoh gives every TCP and TLS socket a linger time of ten seconds. Linux then blocks in `close`
 //! until the peer has received all data, even on a non-blocking socket, and zenoh closes sockets in
-//! the threads that serve all its other links. A peer that is cut off or stopped would therefore
-//! block all others for ten seconds. Without the option the system sends the remaining data in the
+//! the threads that serve all its other links. A cut-off or stopped peer would therefore block all
+//! others for ten seconds. Without the option the system sends the remaining data in the
 //! background.
 
 use crate::descriptor::{self, Ends, Kind};
@@ -41,11 +41,10 @@ fn disable_for(link: &Link) {
 /// stays open: zenoh holds its link during the report.
 fn disable_if(descriptor: RawFd, ends: Ends) {
     if matches!(descriptor::kind(descriptor), Kind::Connection(found) if found == ends) {
-        // A closed socket no longer needs it, so errors are ignored.
-        // Disabled, not zero: with zero the system discards the data sent last. Links that are
-        // never completed are not reported here; for those, `.cargo/config.toml` compiles zenoh's
-        // linger time to nothing. Before, `strace -f -T -e close` showed calls of 10.0 s;
-        // `tests/process/network.rs` guards it.
+        // A closed socket no longer needs it: errors are ignored. Disabled, not zero: with zero the
+        // system discards the data sent last. Links that are never completed are not reported here;
+        // for those, `.cargo/config.toml` compiles zenoh's linger time to nothing. Before, `strace
+        // -f -T -e close` showed calls of 10.0 s; `tests/process/network.rs` guards it.
         drop(descriptor::with_socket(descriptor, |socket| socket.set_linger(None)));
     }
 }

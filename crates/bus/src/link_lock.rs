@@ -7,7 +7,7 @@ use std::os::unix::fs::OpenOptionsExt;
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// Upper bound of a process number's length, bytes.
+/// Maximum length of a process number, bytes.
 const HOLDER_MAX: u64 = 32;
 
 /// The lock; freed when its process ends, for whatever reason.
@@ -75,7 +75,7 @@ fn read(file: &mut File) -> Option<u32> {
     text.trim().parse().ok()
 }
 
-/// The lock file of a link; a device is identified by itself, not by the path given.
+/// The lock file of a link; a device is identified by itself, not by its path.
 fn path(link: &str) -> io::Result<PathBuf> {
     let device = link.strip_prefix("serial://").map(|rest| rest.split('?').next().unwrap_or(rest));
     let real = device.and_then(|device| std::fs::canonicalize(device).ok()).map(|path| path.display().to_string());

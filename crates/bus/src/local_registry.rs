@@ -1,5 +1,5 @@
-//! The games and gateways running on this machine, one small file each, so that `list`, `watch` and
-//! `tell` find them without an address.
+//! The games and gateways running on this machine, one small file each: `list`, `watch` and `tell`
+//! find them without an address.
 //!
 //! A convenience only: a node with a given address never reads it.
 
@@ -89,7 +89,8 @@ pub(crate) fn private_folder() -> std::io::Result<PathBuf> {
 fn make_private(folder: &Path) -> std::io::Result<()> {
     fs::DirBuilder::new().recursive(true).mode(0o700).create(folder)?;
     if !is_private(folder) {
-        let problem = format!("{} is open to others, expected a folder of mode 700 of this user", folder.display());
+        let problem =
+            format!("{} is accessible to other users, expected mode 700 and this user as its owner", folder.display());
         return Err(std::io::Error::other(problem));
     }
     Ok(())
@@ -116,7 +117,7 @@ impl Registration {
         let unfinished = self.0.with_added_extension("new");
         let mut file = fs::OpenOptions::new().write(true).create(true).truncate(true).mode(0o600).open(&unfinished)?;
         file.write_all(&serde_json::to_vec(entry)?)?;
-        // Renamed when complete: others read the folder at any time, and would not recognise half a
+        // Renamed when complete: others read the folder at any time, and could not parse half a
         // file.
         fs::rename(&unfinished, &self.0)
     }

@@ -15,7 +15,7 @@ pub enum Missing {
     Forever(#[from] Refusal),
 }
 
-/// Why a game cannot be joined, where retrying does not help.
+/// Why a game cannot be joined even after retries.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum Refusal {
     /// The sim refuses, for this reason.

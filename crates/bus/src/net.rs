@@ -13,16 +13,16 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use zenoh::Config;
 
-/// The port a hub takes if it is free and no other is requested.
+/// The default port of a hub, if free.
 pub const DEFAULT_PORT: u16 = 7447;
 
-/// zenoh's settings for a link. Only its own messages, such as declarations, wait for a congested
-/// link (in us), and briefly; a link that cannot take even those is closed. A batch has up to 64
-/// kB: answers of a megabyte, and as many urgent messages as can be requested at once, fit in.
-/// Messages reassembled from fragments have a size limit.
+/// zenoh's settings for a link. Only its own messages, such as declarations, wait briefly for a
+/// congested link (in µs); a link that cannot take even those is closed. A batch has up to 64 kB:
+/// answers of a megabyte, and as many urgent messages as can be requested at once, fit in. Messages
+/// reassembled from fragments have a size limit.
 const LINKS: [(&str, &str); 5] = [
-    // zenoh would wait a millisecond for room before it drops. It waits in a thread that serves all
-    // nodes, so one stopped observer would slow down all.
+    // zenoh would wait a millisecond for a free slot before it drops. It waits in a thread that
+    // serves all nodes: one stopped observer would slow down all.
     ("transport/link/tx/queue/congestion_control/drop/wait_before_drop", "0"),
     ("transport/link/tx/queue/congestion_control/block/wait_before_close", "100000"),
     ("transport/link/tx/queue/size/real_time", "16"),
@@ -42,8 +42,8 @@ const MESSAGE_MAX: usize = 1 << 21;
 const QUESTION_MAX: usize = 1 << 16;
 const PUBLISHED_MAX: usize = 1 << 18;
 const ACCEPT_MS: usize = 5000;
-/// The most nodes linked to a hub, with as many pending: if the process may have four times as many
-/// files open.
+/// Maximum number of nodes linked to a hub, with as many pending, if the process may have four
+/// times as many files open.
 const NODES_MAX: usize = 1000;
 pub(crate) const FILES_MAX: u64 = 4 * NODES_MAX as u64;
 
@@ -81,7 +81,7 @@ impl Net {
     /// The zenoh configuration of a game's hub for at most `nodes` nodes.
     pub(crate) fn hub(&self, game: &GameName, scenario: &Scenario, nodes: usize) -> Result<Config, BusError> {
         if let Some(keys) = self.keys.as_ref().filter(|keys| *keys.identity() != Identity::Sim) {
-            let reason = format!("a sim is served with the keys of sim, these are those of {}", keys.identity());
+            let reason = format!("a sim needs the keys of sim, not those of {}", keys.identity());
             return Err(BusError::Keys(format!("{}: {reason}", keys.folder().display())));
         }
         let mut config = self.base()?;
@@ -107,8 +107,7 @@ impl Net {
     /// The zenoh configuration of a leaf. It keeps trying to connect, and reconnects after a cut.
     pub(crate) fn leaf(&self) -> Result<Config, BusError> {
         if let Some(keys) = self.keys.as_ref().filter(|keys| *keys.identity() == Identity::Sim) {
-            let reason =
-                "the keys of sim only serve games: take those of a team, a gateway, an observer or an operator";
+            let reason = "the keys of sim only serve games: use those of a team, a gateway, an observer or an operator";
             return Err(BusError::Keys(format!("{}: {reason}", keys.folder().display())));
         }
         let mut config = self.base()?;
@@ -196,7 +195,7 @@ pub(crate) fn nodes_max(files: OpenFiles) -> usize {
     usize::try_from(files.usual / 4).map_or(NODES_MAX, |nodes| nodes.min(NODES_MAX))
 }
 
-/// Limits the memory and files that nodes linked to a hub, or connecting to it, can make it hold.
+/// Limits the memory and files that linked or connecting nodes can make a hub hold.
 fn limit_strangers(config: &mut Config, game: &GameName, nodes: usize) -> Result<(), BusError> {
     let all = topic::matching(game, "**");
     let smaller = |messages: &[&str], size: usize| json!({ "messages": messages, "flows": ["ingress"], "key_exprs": [&all], "size_limit": size });

@@ -1,5 +1,5 @@
-//! The limit of open files of a hub. Some of the files that the system allows are reserved for when
-//! all others are taken.
+//! A hub's limit of open files. Some of the allowed files are reserved for when all others are
+//! taken.
 
 use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 

@@ -1,5 +1,5 @@
-//! The place of a game and its token. Both are looked up before each attempt to connect, since the
-//! sim may start later than the searching node, and the next sim may have another place and token.
+//! The place of a game and its token. Both are looked up before each attempt to connect: the sim
+//! may start later than the searching node, and the next sim may have another place and token.
 
 use crate::missing::{Missing, Refusal};
 use crate::token::CurrentToken;
@@ -50,7 +50,7 @@ impl Place {
     pub(crate) fn session(&self, game: Option<&GameName>, session: &mut PlacedSession) -> Result<Bus, Missing> {
         let net = self.net(game)?;
         match session {
-            // Opening a session costs five round trips, so it is kept while it leads to the same
+            // Opening a session costs five round trips: it is kept while it leads to the same
             // place.
             Some((there, bus)) if *there == net => return Ok(bus.clone()),
             Some((_, bus)) => bus.close(),

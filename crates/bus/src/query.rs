@@ -89,11 +89,11 @@ impl Bus {
 
     /// Sends a request to the sim at `key` that may need the game's token, and proves knowledge of
     /// it if challenged. Returns the first answer; `limit` applies to each query. Requests have the
-    /// highest priority, since some of them command boats.
+    /// highest priority, since some command boats.
     ///
     /// # Errors
-    /// [`BusError`] if the session is closed, if a required token is missing or wrong, if the keys
-    /// of this node do not allow the request, or if the answer cannot be read.
+    /// [`BusError`] if the session is closed, if a required token is missing or wrong, if this
+    /// node's keys do not allow the request, or if the answer cannot be read.
     pub fn request<B: Serialize, T: DeserializeOwned>(
         &self,
         key: &str,

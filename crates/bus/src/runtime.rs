@@ -1,9 +1,8 @@
 //! The environment of nodes: the clock, randomness, waiting, threads and the opening of sessions,
 //! behind one interface.
 //!
-//! Programs use [`System`]. Tests of whole games replace all of it at once
-//! (`crates/simulated_network`), so node code is identical in both, and no program contains a
-//! simulated network.
+//! Programs use [`System`]. Tests of whole games replace all of it (`crates/simulated_network`):
+//! node code is identical in both, and no program contains a simulated network.
 
 use crate::session::Session;
 use crate::zenoh_session::ZenohSession;

@@ -80,7 +80,7 @@ pub trait Session: Send + Sync {
     /// All tokens present under `key`.
     fn who_is_alive(&self, key: &str, limit: Duration) -> Result<Vec<String>, BusError>;
 
-    /// Closes the session, so that other nodes learn of it at once.
+    /// Closes the session; other nodes learn of it immediately.
     fn close(&self);
 }
 

@@ -1,4 +1,4 @@
-//! Whether the sim of a game is still alive, for agents, gateways and pages alike.
+//! Whether the sim of a game is still alive, for agents, gateways and pages.
 //!
 //! Two signs decide: the sim's liveliness token, and messages from it. A dying sim is heard until
 //! its token goes. If the link to it is cut, it falls silent first, and its token goes when the
@@ -13,11 +13,11 @@ use std::time::{Duration, Instant};
 /// How long a sim may be silent before it counts as dead.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Patience {
-    /// Upper bound in every case.
+    /// Limit in every case.
     pub silence: Duration,
-    /// If it was heard until its token went: the link may only have been reopened.
+    /// Limit if it was heard until its token went: the link may only have been reopened.
     pub missing: Duration,
-    /// If it was never heard and its token went: it has died, or the link is cut.
+    /// Limit if it was never heard and its token went: it has died, or the link is cut.
     pub unheard: Duration,
 }
 
@@ -102,7 +102,7 @@ impl SimLiveness {
         let Patience { silence, missing, unheard } = self.patience;
         // The order decides. A dying sim is heard until its token goes. If the link is cut, silence
         // comes first and zenoh drops the link after 10 s; an agent that left then would be missing
-        // once the cable is back.
+        // after the cable is back.
         let is_cut_off = |missed: Instant| missed.saturating_duration_since(self.heard_at) > missing;
         let limit = match self.missed_at {
             Some(_) if !self.is_heard => silence.min(unheard),

@@ -6,8 +6,8 @@ use std::os::unix::process::CommandExt;
 use std::process::Command;
 
 /// Restarts this program in the same process, with the same arguments and the threads required for
-/// a node with keys. Returns at once if it has them. Call it first of all: the restart discards all
-/// state of the process.
+/// a node with keys. Returns immediately if it has them. Call it first of all: the restart discards
+/// all state of the process.
 ///
 /// # Errors
 /// [`BusError::Threads`] if the program cannot be restarted.

@@ -21,12 +21,12 @@ use thiserror::Error;
 
 /// The environment variable that holds the token for the commands of a game.
 pub const TOKEN_VARIABLE: &str = "SQUALL_TOKEN";
-/// How long after the challenge a proof is valid: an intercepted one cannot be used later. A round
+/// How long a proof is valid after the challenge: an intercepted one cannot be used later. A round
 /// trip takes less.
 const GOOD_FOR: Duration = Duration::from_millis(900);
 /// Attempts at a request whose proofs arrive too late, as from a busy machine.
 pub const ATTEMPTS: usize = 5;
-/// Upper bound of open challenges; the oldest are discarded first.
+/// Maximum number of open challenges; the oldest are discarded first.
 const OPEN_MAX: usize = 1024;
 
 /// A game's secret: 256 random bits.
@@ -35,7 +35,7 @@ pub struct Token([u8; 32]);
 
 /// A text that is not a token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("a game's token is 64 hexadecimal digits, as `squall sim` shows it; this has {0} characters, or others")]
+#[error("not a token ({0} characters), expected the 64 hexadecimal digits that `squall sim` prints")]
 pub struct NotAToken(usize);
 
 impl Token {
@@ -224,7 +224,7 @@ pub enum Checked<T> {
     Garbage(serde_json::Error),
 }
 
-/// Admits requests whose sender knows the token. It lives where requests are answered.
+/// Admits requests whose sender knows the token.
 #[derive(Debug, Default)]
 pub struct Guard {
     token: CurrentToken,

@@ -17,7 +17,6 @@ use zenoh::qos::{self, CongestionControl};
 use zenoh::query::{ConsolidationMode, QueryTarget};
 use zenoh::sample::{Locality, SampleKind};
 
-/// A zenoh session.
 pub(crate) struct ZenohSession(zenoh::Session);
 
 /// Sends on one zenoh key.
@@ -143,7 +142,7 @@ impl Session for ZenohSession {
 
     fn watch_links(&self, receive: OnLinkLost) -> Result<Declaration, BusError> {
         // The link, not a liveliness token: any node could show a token in the name of an agent,
-        // and the link of a dead process ends at once.
+        // and the link of a dead process ends immediately.
         let callback = move |event: zenoh::session::TransportEvent| {
             if event.kind() == SampleKind::Delete {
                 receive(event.transport().zid().to_string());

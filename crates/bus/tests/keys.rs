@@ -1,4 +1,4 @@
-//! Keys of a game: which nodes are admitted, what each may do, and what the refused ones are told.
+//! Keys of a game: which nodes are admitted, what each may do, and the errors of refused ones.
 
 use bus::keys::{Bundle, Identity, make};
 use bus::{Bus, BusError, Delivery, Net, Priority, Query, Watched, clock};
@@ -159,8 +159,7 @@ fn keys_are_for_their_owner_only_and_never_written_over() {
     assert_eq!(Bundle::load(&own.path().join("sim")).expect("good keys").hosts(), ["localhost"]);
 }
 
-/// Whether `to` receives what `from` publishes. It does not if a message sent later has arrived
-/// alone.
+/// Whether `to` receives what `from` publishes. It does not if only a later message has arrived.
 fn is_heard(from: &Bus, to: &Bus, word: &str, free: &str) -> bool {
     let heard = Arc::new(Watched::new((false, false)));
     let [of_word, of_free] = [Arc::clone(&heard), Arc::clone(&heard)];
@@ -178,7 +177,7 @@ fn is_heard(from: &Bus, to: &Bus, word: &str, free: &str) -> bool {
         asked.send_raw(vec![1]).expect("open");
         sure.send_raw(vec![1]).expect("open");
     }
-    // Once more, now that all nodes know each other.
+    // Again, now that all nodes know each other.
     asked.send_raw(vec![1]).expect("open");
     heard.visit(|(_, free)| *free = false);
     sure.send_raw(vec![1]).expect("open");

@@ -1,9 +1,9 @@
 //! The messages between the sim, the gateway of a real boat, and its operators.
 //!
-//! A vehicle whose scenario says `source = "external"` has no physics. Its gateway reports its
-//! navigation ([`NavReport`]). The sim knows whose orders count and what the referee allows, and
-//! sends the effective command ([`ExternalOrder`]). Operator commands ([`OperatorCommand`]) and
-//! gateway status ([`GatewayStatus`]) are JSON.
+//! A vehicle with `source = "external"` has no physics. Its gateway reports its navigation
+//! ([`NavReport`]). The sim knows whose orders count and what the referee allows, and sends the
+//! effective command ([`ExternalOrder`]). Operator commands ([`OperatorCommand`]) and gateway
+//! status ([`GatewayStatus`]) are JSON.
 
 use crate::picture::Nav;
 use crate::{Message, Stamp, VehicleOrder};
@@ -17,15 +17,15 @@ use std::fmt;
 /// Navigation of a real boat, reported by its gateway.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NavReport {
-    /// Game time as the gateway last received it, and a sequence number that counts the reports.
+    /// Game time last received by the gateway, and the report's sequence number.
     pub stamp: Stamp,
-    /// The ticket that the sim issued when the gateway joined.
+    /// The ticket from the sim's join reply.
     pub ticket: u64,
     /// The reported boat.
     pub vehicle: VehicleId,
     /// Whether the fix is reliable. If not, `nav` is the last known navigation.
     pub valid: bool,
-    /// Age of the fix when the report was sent, ns.
+    /// Age of the fix on sending, ns.
     pub age_ns: i64,
     /// Position, heading and velocity.
     pub nav: Nav,
@@ -36,9 +36,9 @@ pub struct NavReport {
 pub struct ExternalOrder {
     /// Time and decision of the game.
     pub stamp: Stamp,
-    /// The time of the picture that the agent answered. It advances while the agent decides.
+    /// Time of the picture that the agent answered. It advances while the agent decides.
     pub given_ns: SimTime,
-    /// The order, as far as the referee allows it.
+    /// The order, limited by the referee.
     pub order: VehicleOrder,
 }
 
@@ -55,7 +55,7 @@ impl Message for ExternalOrder {
 /// Bytes between a gateway and its boat.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LinkBytes {
-    /// Game time as the gateway last received it, and a sequence number that counts these messages.
+    /// Game time last received by the gateway, and the message's sequence number.
     pub stamp: Stamp,
     /// The boat.
     pub vehicle: VehicleId,
@@ -71,7 +71,7 @@ impl Message for LinkBytes {
 }
 
 /// A gateway report for other nodes. The sim forwards it if it carries the ticket of the boat's
-/// gateway. Nobody else may publish it, so it cannot be forged and the ticket stays secret.
+/// gateway. No other node may publish it: it cannot be forged, and the ticket stays secret.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Reported {
     /// [`GatewayStatus`], as JSON.
@@ -84,14 +84,13 @@ impl Reported {
     /// All kinds.
     pub const ALL: [Reported; 2] = [Reported::Status, Reported::Link];
 
-    /// Encodes a report: the ticket (64 bits, little-endian), then the message that the sim
-    /// forwards.
+    /// Encodes a report: the ticket (64 bits, little-endian), then the message.
     #[must_use]
     pub fn with_ticket(ticket: u64, message: &[u8]) -> Vec<u8> {
         [&ticket.to_le_bytes(), message].concat()
     }
 
-    /// Splits a report into ticket and message; none if it is too short for a ticket.
+    /// Splits a report into ticket and message; none if it is too short.
     #[must_use]
     pub fn split_ticket(report: &[u8]) -> Option<(u64, &[u8])> {
         let (ticket, message) = report.split_first_chunk()?;
@@ -125,7 +124,7 @@ impl fmt::Display for Reported {
 pub enum OperatorCommand {
     /// Return the status.
     Status,
-    /// Follow orders from now on, if nothing required is missing.
+    /// Follow orders from now on, if every requirement is met.
     Arm,
     /// Stop following orders: standby.
     Disarm,
@@ -224,7 +223,7 @@ pub enum FleetCommand {
 pub enum GatewayCommand {
     /// A command for one boat.
     Boat {
-        /// The boat's name; the gateway of another boat refuses.
+        /// The boat's name; another boat's gateway refuses.
         name: String,
         /// The command.
         command: OperatorCommand,
@@ -244,7 +243,7 @@ impl GatewayCommand {
     }
 }
 
-/// A mission that a boat runs by itself.
+/// A mission that a boat runs on its own.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mission {
     /// Throttle, per cent.
@@ -269,46 +268,46 @@ pub struct OperatorReply {
 pub struct GatewayStatus {
     /// The boat.
     pub vehicle: String,
-    /// Address and port of its control port; earlier versions have none.
+    /// Address and port of its control port; absent in earlier versions.
     #[serde(default)]
     pub control: Option<String>,
-    /// Time since the gateway began, s.
+    /// Time since the gateway's start, s.
     pub at_s: f64,
     /// The link to the boat: `up`, or the reason why it is down.
     pub link: String,
     /// The supervisor's state.
     pub state: String,
-    /// What is missing for arming, in plain words.
+    /// Unmet requirements for arming, in plain words.
     pub missing: Vec<String>,
-    /// The boat's current alarms, in plain words: error code, leak, currents; earlier versions have
-    /// none.
+    /// Current alarms of the boat, in plain words: error code, leak, currents; absent in earlier
+    /// versions.
     #[serde(default)]
     pub alarms: Vec<String>,
     /// The failsafes so far, newest last. Recordings of earlier versions call them trips.
     #[serde(alias = "trips")]
     pub failsafes: Vec<FailsafeReport>,
-    /// The control mode that the boat reports: the Surveyor's letter.
+    /// Control mode reported by the boat: the Surveyor's letter.
     pub mode: Option<char>,
-    /// The operator that the boat reports to be in control.
+    /// Operator in control, as reported by the boat.
     pub operator: Option<String>,
     /// Navigation, if there is any.
     pub nav: Option<Nav>,
     /// Age of the last good fix, s.
     pub nav_age_s: Option<f64>,
-    /// The geofence, once a game defines the field; earlier versions have none.
+    /// The geofence, once a game defines the field; absent in earlier versions.
     #[serde(default)]
     pub geofence: Option<GeofenceReport>,
-    /// Age of mode and operator, s; earlier versions have none.
+    /// Age of mode and operator, s; absent in earlier versions.
     #[serde(default)]
     pub mode_age_s: Option<f64>,
     /// Battery, V.
     pub battery_v: Option<f64>,
-    /// Its age, s; earlier versions have none.
+    /// Its age, s; absent in earlier versions.
     #[serde(default)]
     pub battery_age_s: Option<f64>,
-    /// The sentence that was sent last.
+    /// The last sentence sent.
     pub last_sent: String,
-    /// In a dry run, the sentence that would have been sent last, if any. The gateway sends standby
+    /// In a dry run, the last sentence that would have been sent. The gateway sends standby
     /// instead.
     #[serde(default)]
     pub would_send: Option<String>,
@@ -319,15 +318,15 @@ pub struct GatewayStatus {
     pub latency_us: [Option<[f64; 2]>; 2],
 }
 
-/// The geofence of a boat, and how near the boat is to it.
+/// A boat's geofence, and the boat's distance from it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GeofenceReport {
     /// The corners of the permitted water, in order.
     pub outline: Vec<Ned>,
     /// The corners of each keep-out.
     pub keep_out: Vec<Vec<Ned>>,
-    /// Distance to the nearest edge of geofence or keep-outs, m; negative where the boat must not
-    /// be.
+    /// Distance to the nearest edge of geofence or keep-outs, m; negative outside the permitted
+    /// water.
     pub clearance_m: Option<f64>,
     /// Stopping distance from the current motion, m.
     pub stopping_m: Option<f64>,
@@ -338,7 +337,7 @@ pub struct GeofenceReport {
 /// A failsafe event: the supervisor stopped the boat.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FailsafeReport {
-    /// Time since the gateway began, s.
+    /// Time since the gateway's start, s.
     pub at_s: f64,
     /// The cause, in plain words.
     pub cause: String,

@@ -8,25 +8,25 @@ use serde::{Deserialize, Serialize};
 /// The state of a helm at one decision.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HelmReport {
-    /// The boat of the helm.
+    /// The helm's boat.
     pub vehicle: VehicleId,
     /// The time of the decision.
     pub at: SimTime,
-    /// The name of its strategy program.
+    /// The name of its program.
     pub program: String,
     /// The mode with its parent modes: `defending:loitering`.
     pub mode: String,
-    /// The chosen heading, compass degrees; none if the boat holds. Adding the drift gives the
+    /// Chosen heading, compass degrees; none if the boat holds. Heading plus drift gives the
     /// course.
     pub course_deg: Option<f64>,
-    /// The chosen speed through the water, m/s; none if the boat holds.
+    /// Chosen speed through the water, m/s; none if the boat holds.
     pub speed_m_s: Option<f64>,
-    /// Offset of the boat's heading from the ordered heading as the helm estimates it, degrees
-    /// clockwise. The helm subtracts it from the chosen heading. Recordings of earlier versions
-    /// have neither this nor the drift.
+    /// Estimated offset of the boat's heading from the ordered heading, degrees clockwise. The helm
+    /// subtracts it from the chosen heading. Recordings of earlier versions have neither this nor
+    /// the drift.
     #[serde(default)]
     pub heading_offset_deg: f64,
-    /// The drift as estimated by the helm.
+    /// The estimated drift.
     #[serde(default)]
     pub drift: DriftReport,
     /// Why the boat holds, if it does.
@@ -50,8 +50,8 @@ pub struct HelmReport {
     pub functions: Vec<FunctionReport>,
 }
 
-/// Velocity that wind, waves and current add to a boat's motion through the water, as its helm
-/// estimates it.
+/// Velocity that wind, waves and current add to a boat's motion through the water, as estimated by
+/// its helm.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct DriftReport {
     /// Towards north, m/s.
@@ -84,15 +84,15 @@ pub struct BehaviourReport {
     pub kind: String,
     /// Whether it runs, and whether it influences the helm.
     pub run_state: RunState,
-    /// Its current weight; 0 if it does not run.
+    /// Its current weight; 0 unless it runs.
     pub weight: f64,
 }
 
-/// The run state of a behaviour, as MOOS-IvP calls it.
+/// The run state of a behaviour, in the terms of MOOS-IvP.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RunState {
-    /// Its conditions do not permit it to run.
+    /// Its conditions prevent it from running.
     Idle,
     /// It runs but produces no objective function.
     Running,
@@ -113,10 +113,10 @@ pub struct PolicyReport {
     pub course_deg: Option<f64>,
     /// The proposed speed, m/s.
     pub speed_m_s: Option<f64>,
-    /// The chosen option, if it chooses among options of the strategy.
+    /// The chosen option, if it chooses among options.
     #[serde(default)]
     pub option: Option<String>,
-    /// The reason why it proposes nothing, if so.
+    /// Why it proposes nothing, if so.
     pub fault: Option<String>,
     /// Probability of each discrete action; empty for continuous actions.
     pub probabilities: Vec<f32>,
@@ -164,7 +164,7 @@ pub struct VariableReport {
 pub struct FunctionReport {
     /// The behaviour that produced it.
     pub behaviour: String,
-    /// The contact that it is about.
+    /// The contact concerned.
     pub contact: Option<VehicleId>,
     /// Its weight.
     pub weight: f64,

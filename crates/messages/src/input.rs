@@ -48,7 +48,7 @@ pub enum Input {
 }
 
 impl Input {
-    /// Whether the input fits this game: the game has the vehicle, and times are within bounds.
+    /// Whether the input fits this game: it has the vehicle, and times are within bounds.
     #[must_use]
     pub fn is_of(self, scenario: &Scenario) -> bool {
         let has = |vehicle: VehicleId| vehicle.index() < scenario.vehicles.len();
@@ -72,10 +72,10 @@ pub struct Inputs {
 }
 
 impl Inputs {
-    /// The version that did not yet record which picture an order answers.
+    /// The version without the pictures that orders answer.
     const WITHOUT_GIVEN_AT: u8 = 1;
 
-    /// Each input, or none where it is unknown or not of this game.
+    /// Each input; none where it is unknown or of another game.
     pub fn of(&self, scenario: &Scenario) -> impl Iterator<Item = Option<Input>> {
         let is_old = self.stamp.version <= Inputs::WITHOUT_GIVEN_AT;
         self.inputs.iter().map(move |record| match record.input().filter(|input| input.is_of(scenario))? {
@@ -94,7 +94,7 @@ pub struct InputRecord {
     pub kind: u8,
     /// Vehicle index, or -1.
     pub vehicle: i32,
-    /// For a report the time of the fix, for an order the time of the answered picture, ns.
+    /// For a report the time of the fix, for an order that of the answered picture, ns.
     pub at_ns: SimTime,
     /// The arguments of the kind.
     pub numbers: Vec<f64>,

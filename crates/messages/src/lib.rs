@@ -1,8 +1,8 @@
-//! Wire messages of every tick: one struct per topic, in step with `msg/*.msg`.
+//! Wire messages of every tick: one struct per topic, matching `msg/*.msg`.
 //!
-//! The structs use only types that ROS 2 has (fixed-width numbers, lists, nested messages). Tools
-//! that know the `.msg` files can therefore decode our bytes without us. `-1` means "none". The
-//! low-rate control plane ([`JoinRequest`], [`JoinReply`], [`Control`]) is JSON.
+//! The structs use only types of ROS 2 (fixed-width numbers, lists, nested messages): tools with
+//! the `.msg` files can decode our bytes. `-1` means "none". The low-rate control plane
+//! ([`JoinRequest`], [`JoinReply`], [`Control`]) is JSON.
 
 pub mod external;
 pub mod helm;
@@ -101,13 +101,13 @@ pub struct VehicleTruth {
 pub struct Orders {
     /// The stamp of the answered picture.
     pub stamp: Stamp,
-    /// The ticket that the sim issued when the agent joined.
+    /// The ticket from the sim's join reply.
     pub ticket: u64,
     /// One order per boat.
     pub orders: Vec<VehicleOrder>,
 }
 
-/// One order for one boat. Fields that its kind does not use are zero.
+/// One order for one boat. Unused fields are zero.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct VehicleOrder {
     /// The boat.
@@ -152,7 +152,7 @@ impl VehicleOrder {
 }
 
 impl Frame {
-    /// Events since the previous frame, without those that refer to things outside the game.
+    /// Events since the previous frame, except those that refer to things outside the game.
     pub fn logged<'a>(&'a self, scenario: &'a Scenario) -> impl Iterator<Item = Logged> + 'a {
         self.events.iter().filter_map(EventRecord::logged).filter(|logged| scenario.has(logged.event))
     }
@@ -188,7 +188,7 @@ pub struct Word {
     pub value: f64,
 }
 
-/// The proposal of a policy outside the helm for a boat.
+/// The proposal of an external policy for a boat.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PolicyProposal {
     /// Time and decision of the proposal.
@@ -244,7 +244,7 @@ pub enum JoinReply {
         ticket: u64,
         /// The vehicles, in the requested order.
         vehicles: Vec<VehicleId>,
-        /// Game time of joining. Earlier messages were not meant for this node.
+        /// Game time of joining. Earlier messages were not for this node.
         now_ns: SimTime,
     },
     /// Another node has the vehicle. A later retry may succeed.
@@ -252,7 +252,7 @@ pub enum JoinReply {
         /// The vehicle.
         vehicle: String,
     },
-    /// Refused for good: a retry will not help.
+    /// Refused for good: do not retry.
     Refused {
         /// The reason.
         reason: String,

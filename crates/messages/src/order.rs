@@ -3,17 +3,17 @@
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// One order for one boat, in force until the next one arrives or it expires.
+/// One order for one boat, in force until the next one or until it expires.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum Order {
-    /// Thrusters to zero: the safe order, and the order of a boat without an agent.
+    /// Zero thrust: the safe order, and the order of a boat without an agent.
     #[default]
     Hold,
-    /// The front seat's own controllers steer this heading.
+    /// The front seat's controllers steer this heading.
     Steer {
         /// Desired heading, radians clockwise from north.
         heading_rad: f64,
-        /// Desired speed ahead over the ground, m/s; never negative.
+        /// Desired speed ahead over the ground, m/s; at least 0.
         speed_m_s: f64,
     },
     /// Sets both thrusters directly, each from -1 (full astern) to 1 (full ahead).
@@ -23,13 +23,13 @@ pub enum Order {
         /// Starboard thruster.
         starboard: f64,
     },
-    /// The front seat's own controllers turn continuously: at every tick, the ordered heading is
-    /// this far from the current one.
+    /// The front seat's controllers turn continuously: at every tick, the ordered heading is this
+    /// far from the current one.
     Turn {
         /// Change of heading, radians clockwise, -pi to pi: half a turn to either side is two
         /// different orders.
         by_rad: f64,
-        /// Desired speed ahead over the ground, m/s; never negative.
+        /// Desired speed ahead over the ground, m/s; at least 0.
         speed_m_s: f64,
     },
 }

@@ -7,14 +7,13 @@ use serde::{Deserialize, Serialize};
 /// Bytes between a payload and a client.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PayloadBytes {
-    /// Time of the gateway's clock, and a sequence number that counts these messages.
+    /// Time of the gateway's clock, and the message's sequence number.
     pub stamp: Stamp,
-    /// The client's connection, counted from 1. For a serial line or UDP port, which all clients
-    /// share: 0.
+    /// The client's connection, from 1; 0 for a serial line or UDP port, which all clients share.
     pub connection: u32,
     /// Whether the bytes go to the payload.
     pub outward: bool,
-    /// The bytes; empty if their sender has closed the connection.
+    /// The bytes; empty after the sender closed the connection.
     pub data: Vec<u8>,
 }
 

@@ -97,7 +97,7 @@ pub struct Imu {
 pub struct OwnBoat {
     /// Its vehicle index.
     pub vehicle: VehicleId,
-    /// Its navigation, as measured by its sensors.
+    /// Navigation as measured by its sensors.
     pub nav: Nav,
     /// Time of the last satellite fix used, ns.
     pub fix_ns: SimTime,
@@ -153,8 +153,8 @@ impl Message for Picture {
 }
 
 impl Picture {
-    /// Upper bound of the magnitude of numbers in a picture, in the units of the message. The
-    /// helm's functions accept ten times as much, for sums and differences of a few such numbers.
+    /// Maximum magnitude of numbers in a picture, in the units of the message. The helm's functions
+    /// accept ten times as much, for sums and differences of a few such numbers.
     const NUMBER_MAX: f64 = 1e6;
 
     /// Removes boats with a non-finite or out-of-range number and returns their count. A mind can
@@ -185,7 +185,7 @@ impl Picture {
 }
 
 impl OwnBoat {
-    /// A boat in play with only its navigation known.
+    /// A boat in play of which only its navigation is known.
     #[must_use]
     pub fn new(vehicle: VehicleId, nav: Nav) -> OwnBoat {
         OwnBoat {

@@ -19,7 +19,7 @@ pub enum Refusal {
     Version,
     /// A ticket that is unknown or has expired.
     Ticket,
-    /// Orders for a past or future decision, or a report older than one already received.
+    /// Orders for a past or future decision, or a report older than the last one.
     WrongTick,
     /// A vehicle that does not exist or does not belong to the sender.
     NotYours,
@@ -27,17 +27,17 @@ pub enum Refusal {
     BadNumber,
     /// An agent gave no order for one of its vehicles. The boat holds.
     Missing,
-    /// Operator requests that the game cannot follow: another speed with real boats, a step of a
+    /// Operator requests that do not apply to the game: another speed with real boats, a step of a
     /// game that is not paused.
     OutOfPlace,
-    /// Messages that came faster than they could be read.
+    /// Messages faster than they could be read.
     Flood,
-    /// More team messages of one boat than a boat has variables.
+    /// More team messages of a boat than it has variables.
     Surplus,
     /// A team message that did not arrive in time, from a boat that had sent one at the previous
     /// decision.
     TeamMessageMissing,
-    /// A decision for which a policy's proposal did not arrive in time.
+    /// A decision without a timely proposal from a policy.
     ProposalMissing,
 }
 
@@ -46,16 +46,16 @@ impl Refusal {
     const ALL: [(Refusal, &str); 12] = [
         (Refusal::Garbage, "not understood"),
         (Refusal::Version, "of another version"),
-        (Refusal::Ticket, "with a ticket that nobody holds"),
+        (Refusal::Ticket, "with an unknown ticket"),
         (Refusal::WrongTick, "for another tick"),
-        (Refusal::NotYours, "about a boat of somebody else"),
+        (Refusal::NotYours, "about another node's boat"),
         (Refusal::BadNumber, "with a number out of range"),
-        (Refusal::Missing, "without an order for an own boat"),
-        (Refusal::OutOfPlace, "out of place"),
+        (Refusal::Missing, "without an order for a boat"),
+        (Refusal::OutOfPlace, "not applicable"),
         (Refusal::Flood, "too many at once"),
         (Refusal::Surplus, "more team messages than a boat has variables"),
-        (Refusal::TeamMessageMissing, "a team message that never came"),
-        (Refusal::ProposalMissing, "a proposal that never came"),
+        (Refusal::TeamMessageMissing, "missing team message"),
+        (Refusal::ProposalMissing, "missing proposal"),
     ];
 }
 

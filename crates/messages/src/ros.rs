@@ -1,4 +1,4 @@
-//! The `.msg` definitions, from which tools learn to decode our messages.
+//! The `.msg` definitions, with which tools decode our messages.
 
 /// Name and text of every definition, by name.
 pub const DEFINITIONS: [(&str, &str); 22] = [
@@ -29,14 +29,12 @@ pub const DEFINITIONS: [(&str, &str); 22] = [
 /// The package of all our definitions.
 const PACKAGE: &str = "squall_msgs/";
 
-/// The definition with this name.
 fn definition(name: &str) -> Option<&'static str> {
     DEFINITIONS.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
 }
 
-/// A definition with all nested definitions, in the form in which ROS 2 recordings carry them; none
-/// for a name that is not ours. `schema` is that of a [`Message`](crate::Message), as in
-/// `squall_msgs/msg/Frame`.
+/// A definition with all nested definitions, in the form of ROS 2 recordings; none for a name that
+/// is not ours. `schema` is that of a [`Message`](crate::Message), as in `squall_msgs/msg/Frame`.
 #[must_use]
 pub fn full_definition(schema: &str) -> Option<String> {
     let mut names = vec![schema.rsplit('/').next()?];

@@ -9,7 +9,7 @@ pub struct RunState {
     pub phase: Phase,
     /// Simulated time, s.
     pub now_s: f64,
-    /// The pace it was started with: `lockstep`, `realtime` or a factor such as `4x`.
+    /// Its initial pace: `lockstep`, `realtime` or a factor such as `4x`.
     pub pace: String,
     /// Target speed, or upper limit in lockstep, in simulated seconds per second; none is
     /// unlimited.
@@ -63,7 +63,7 @@ impl RecordingState {
         let file = &self.file;
         match &self.failed {
             Some(reason) if self.bytes == 0 => Some(format!("nothing is recorded in {file}: {reason}")),
-            Some(reason) => Some(format!("the recording {file} is not complete: {reason}")),
+            Some(reason) => Some(format!("the recording {file} is incomplete: {reason}")),
             None if self.dropped > 0 => {
                 Some(format!("the recording {file} lacks {} messages: the disk was too slow", self.dropped))
             }

@@ -1,6 +1,6 @@
-//! The key expressions of a game, which no other module spells out.
+//! The key expressions of a game; no other module contains any.
 //!
-//! All keys begin with `squall/<game>/`, so that games on one network do not interfere.
+//! All keys begin with `squall/<game>/`: games on one network do not interfere.
 
 use crate::Role;
 use crate::external::Reported;
@@ -21,7 +21,7 @@ impl GameName {
         if (1..=64).contains(&name.len()) && name.chars().all(allowed) {
             Ok(GameName(name.to_owned()))
         } else {
-            Err(format!("game name {name:?} is not 1 to 64 of the characters a-z 0-9 _ -"))
+            Err(format!("game name is {name:?}, expected 1 to 64 of a-z, 0-9, _ and -"))
         }
     }
 
@@ -101,7 +101,7 @@ pub fn external_order(game: &GameName, scenario: &Scenario, vehicle: VehicleId) 
     format!("squall/{}/external/{}", game.0, scenario.vehicles[vehicle.index()].name)
 }
 
-/// Gateway reports for other nodes, sent to the sim alone (publish): see [`Reported`].
+/// Gateway reports for other nodes, to the sim alone (publish): see [`Reported`].
 #[must_use]
 pub fn report(game: &GameName, what: Reported, vehicle: &str) -> String {
     format!("squall/{}/report/{what}/{vehicle}", game.0)

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 /// Wraps an angle to -pi (excluded) to pi (included).
 ///
-/// The common case, an angle already in range, costs two comparisons.
+/// An angle already in range costs two comparisons.
 #[inline]
 #[must_use]
 pub fn wrap_pi(angle_rad: f64) -> f64 {

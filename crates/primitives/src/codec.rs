@@ -1,7 +1,7 @@
 //! Encodes and decodes messages: CDR, little-endian, with the 4-byte encapsulation header.
 //!
 //! ROS 2 and its tools read this format. Every message begins with a [`Stamp`], whose version is
-//! checked first: a newer peer then causes a clear error instead of garbage.
+//! checked first: a newer peer causes a clear error instead of garbage.
 
 use crate::stamp::{Message, Stamp};
 use byteorder::LittleEndian;
@@ -21,7 +21,7 @@ pub enum DecodeError {
         /// The first bytes found, at most four.
         found: Vec<u8>,
     },
-    /// The sender speaks another version of this message.
+    /// The sender has another version of this message.
     #[error("{schema} is version {found}, this program reads version {expected}")]
     Version {
         /// The message's name.

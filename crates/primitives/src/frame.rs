@@ -1,5 +1,5 @@
-//! The two coordinate frames of a boat, the field's north-east-down and its own body, with the
-//! rotation between them.
+//! The coordinate frames of a boat: the field's north-east-down and its own body, with the rotation
+//! between them.
 //!
 //! Inside Squall positions are NED: `north_m` and `east_m` from the datum, headings in radians
 //! clockwise from north. Files, the terminal and Python use x east, y north and compass degrees.
@@ -8,7 +8,7 @@ use crate::math;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A vector in the horizontal plane of the field: north and east, in metres or metres per second.
+/// A horizontal vector on the field: north and east, in metres or metres per second.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Ned {
     /// Towards true north.
@@ -35,7 +35,7 @@ pub struct Pose {
     pub psi_rad: f64,
 }
 
-/// A boat's motion in the last tick, as the positions of its midships before and after.
+/// A boat's motion in the last tick: positions of midships before and after.
 #[derive(Clone, Copy, Debug)]
 pub struct Leg {
     /// Position before the tick.
@@ -46,7 +46,7 @@ pub struct Leg {
 
 /// A heading as its sine and cosine: the rotation between a boat's own frame and the field's.
 ///
-/// Computed once per tick and boat, so that rotating vectors needs no further sine or cosine.
+/// Computed once per tick and boat, so that rotations need no further sine or cosine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rotation {
     /// Sine of the heading.

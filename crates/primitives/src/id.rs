@@ -25,7 +25,7 @@ impl VehicleId {
         usize::from(self.0)
     }
 
-    /// The vehicle at `index`. The scenario has already checked the length of the list.
+    /// The vehicle at `index`. The scenario has already checked the list's length.
     #[inline]
     #[must_use]
     pub fn at(index: usize) -> VehicleId {

@@ -1,5 +1,5 @@
 //! Reads a user's input file up to a size limit. Regular files only: a pipe may never end, and
-//! devices do not hold data.
+//! devices hold no data.
 
 use std::fs::{File, Metadata, OpenOptions};
 use std::io::{Error, ErrorKind, Read};
@@ -11,18 +11,18 @@ use std::path::Path;
 /// # Errors
 /// The system's error, or that it is not a regular file.
 pub fn open(path: &Path) -> Result<File, Error> {
-    // A pipe is not even opened: opening it blocks until it has a writer.
+    // A pipe is not even opened: that would block until it has a writer.
     is_file(&std::fs::metadata(path)?)?;
     // Some regular files of `/proc` never end: reading `kmsg` waits for the kernel's next message.
-    // For files on a disk this flag has no effect.
+    // For files on disk this flag has no effect.
     let flags = rustix::fs::OFlags::NONBLOCK.bits() as i32;
     let file = OpenOptions::new().read(true).custom_flags(flags).open(path)?;
     is_file(&file.metadata()?)?;
     Ok(file)
 }
 
-/// Reads a file of at most `bytes_max` bytes. The reported size is ignored, because files of
-/// `/proc` report 0.
+/// Reads a file of at most `bytes_max` bytes. Ignores the reported size, since files of `/proc`
+/// report 0.
 ///
 /// # Errors
 /// The system's error, that it is not a regular file, or that it is too long.
@@ -38,7 +38,7 @@ pub fn read(path: &Path, bytes_max: u64) -> Result<Vec<u8>, Error> {
     Ok(bytes)
 }
 
-/// The same for a text.
+/// Reads a text file.
 ///
 /// # Errors
 /// As above, or that it is not UTF-8.
@@ -74,7 +74,7 @@ mod tests {
         assert_eq!(std::fs::metadata("/proc/self/pagemap").expect("it is there").len(), 0);
         let endless = read(Path::new("/proc/self/pagemap"), 1023).expect_err("it is refused");
         assert_eq!(endless.kind(), ErrorKind::FileTooLarge);
-        // Only root may open it; others are refused at once.
+        // Only root may open it; others are refused immediately.
         assert!(read(Path::new("/proc/kmsg"), 1 << 20).is_err());
         assert_eq!(read(Path::new("/dev/zero"), 10).expect_err("it is refused").kind(), ErrorKind::InvalidInput);
     }

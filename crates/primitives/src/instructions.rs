@@ -2,8 +2,8 @@
 //!
 //! The program is compiled for the baseline of each architecture. The hottest loops, in a helm's
 //! solver and over the wave components, are also compiled for processors with wider registers: the
-//! same operations, one by one, on more numbers at a time. No operation is fused or reordered, so
-//! all variants give the same bits.
+//! same operations on more numbers at a time. No operation is fused or reordered, so all variants
+//! give the same bits.
 
 /// An instruction set that this machine supports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! Finds pairs of boats within a reach, in a defined order.
 //!
-//! In small fleets, every pair is compared. Larger fleets are first sorted into square cells, so
-//! that the cost grows with the number of boats and near pairs, not with the square of the fleet.
+//! Small fleets are compared pair by pair. Larger fleets are first sorted into square cells: the
+//! cost grows with the number of boats and near pairs, not with the square of the fleet.
 
 use crate::frame::Ned;
 
@@ -76,14 +76,14 @@ impl Near {
     }
 }
 
-/// From a cell to the next one east, in keys.
+/// Difference of keys to the next cell east.
 const COLUMN: u64 = 1 << 16;
-/// From a cell to the next one north, in keys.
+/// Difference of keys to the next cell north.
 const ROW: u64 = 1 << 40;
 
 /// A vehicle and its cell in one number: 24 bits of row, 24 of column, 16 of vehicle.
 fn key(at: Ned, reach_m: f64, vehicle: u16) -> u64 {
-    // Slightly wider than the reach, so that rounding never puts near boats two cells apart.
+    // Slightly wider than the reach: rounding never puts near boats two cells apart.
     let cell_m = reach_m * 1.000_001;
     // Boats millions of cells away share the outermost cell, which is searched like any other.
     let cell = |metres: f64| ((metres / cell_m).floor().clamp(-8e6, 8e6) + 8_388_608.0) as u64;

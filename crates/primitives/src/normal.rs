@@ -2,15 +2,15 @@
 //! position drawn from different bits (Doornik 2005).
 //!
 //! The bell curve is covered by 256 layers of equal area. In 98 of 100 draws a table look-up and a
-//! comparison give the number; only draws beyond the curve's edge need an exponential. We implement
-//! it here because every tick draws dozens of them and a library may change its algorithm for the
-//! same seed.
+//! comparison give the number; only draws beyond the curve's edge need an exponential. It is
+//! implemented here because every tick draws dozens of numbers, and a library may change its
+//! algorithm for the same seed.
 
 use std::sync::LazyLock;
 
 const LAYERS: usize = 256;
-/// Where the lowest layer's tail begins, and the area of every layer. With these values the 256th
-/// layer ends at 0.
+/// Start of the lowest layer's tail, and the area of every layer. With these values the 256th layer
+/// ends at 0.
 const TAIL_FROM: f64 = 3.654_152_885_361_009;
 const AREA: f64 = 0.004_928_673_233_974_658;
 
@@ -31,7 +31,7 @@ static LAYER: LazyLock<[Layer; LAYERS + 1]> = LazyLock::new(|| {
 struct Layer {
     /// Its right edge.
     edge: f64,
-    /// The height of the bell curve at the edge: where the layer begins.
+    /// Height of the bell curve at the edge, where the layer begins.
     bell: f64,
 }
 
@@ -54,7 +54,7 @@ pub(crate) fn normal(mut bits: impl FnMut(u64) -> u64) -> f64 {
     inside(first).unwrap_or_else(|layer_x| try_on(layer_x, bits))
 }
 
-/// The number if it lies under the next layer; otherwise the drawn layer and position.
+/// The number if it is under the next layer; otherwise the drawn layer and position.
 #[inline]
 fn inside(drawn: u64) -> Result<f64, (usize, f64)> {
     let (layers, layer) = (&*LAYER, (drawn % LAYERS as u64) as usize);

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Deserializer};
 
-/// Reads a number; an omitted one is NaN until validation of the file estimates it. A scenario that
-/// is read back must have all numbers.
+/// Reads a number; an omitted one is NaN until validation of the file estimates it. A deserialised
+/// scenario must have all numbers.
 ///
 /// # Errors
 /// If the value is not a number.

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::fmt::Write;
 
-/// The longest line of a message, characters: longer ones go unread.
+/// Maximum length of a printed line, characters.
 const LINE_MAX: usize = 2000;
 /// Characters shown of the end of a longer line.
 const TAIL: usize = 400;
@@ -68,7 +68,7 @@ fn spelt(text: &str, is_spelt: impl Fn(char) -> bool) -> Cow<'_, str> {
 }
 
 fn shortened(text: &str) -> Cow<'_, str> {
-    // The byte count is known, and no smaller than the character count.
+    // The byte count is known, and at least the character count.
     let surplus = if text.len() > LINE_MAX { text.chars().count().saturating_sub(LINE_MAX) } else { 0 };
     if surplus == 0 {
         return Cow::Borrowed(text);

@@ -1,21 +1,21 @@
 //! Reseeding: a game unchanged up to a time and redrawn after it, for one past and several futures.
 //!
-//! Draws after the time use another seed. Earlier draws stay, and so do those made once for the
-//! whole game (waves, starting positions, roles). A process with memory, such as gusts or receiver
-//! drift, continues from its state, so the new future is a possible continuation of the same past.
+//! Draws after the time use another seed. Earlier draws stay, and so do those for the whole game
+//! (waves, start positions, roles). A process with memory, such as gusts or receiver drift,
+//! continues from its state: the new future is a possible continuation of the same past.
 
 use crate::stream::Noise;
 use crate::time::SimTime;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// From when on chance is drawn anew, and by which seed.
+/// A time after which another seed applies. Earlier draws are unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Reseed {
-    /// What is drawn after this time is drawn by `seed`, s.
+    /// Time, s.
     #[schemars(range(min = 0, max = 86400))]
     pub after_s: f64,
-    /// Chooses what is drawn.
+    /// Seed of all later draws.
     #[schemars(range(min = 0, max = i64::MAX))]
     pub seed: u64,
 }
@@ -41,7 +41,7 @@ impl Seeds {
         Seeds { first, later: reseed.iter().map(|one| (SimTime::from_s(one.after_s), one.seed)).collect() }
     }
 
-    /// The seed for draws made once for the whole game.
+    /// The seed of draws for the whole game.
     #[must_use]
     pub fn first(&self) -> u64 {
         self.first
@@ -73,9 +73,9 @@ impl TimedNoise {
     #[inline]
     #[must_use]
     pub fn at(&self, now: SimTime) -> Noise {
-        // A new key from a time on instead of a snapshot. This replays the past, at most twice the
-        // time of a branch. In return, a branch is a game like any other, with a seed and a key on
-        // the command line, minds included.
+        // A new key from a time on, instead of a snapshot. This replays the past, at most doubling
+        // the time of a branch. In return, a branch is a game like any other, with a seed and a key
+        // on the command line, minds included.
         let begun = |(after, _): &&(SimTime, Noise)| *after < now;
         self.later.iter().rev().find(begun).map_or(self.first, |(_, noise)| *noise)
     }

@@ -1,4 +1,4 @@
-//! The common start of per-tick messages, and the trait that defines them.
+//! The common first field of per-tick messages, and their trait.
 
 use crate::time::SimTime;
 use serde::{Deserialize, Serialize};
@@ -9,7 +9,7 @@ pub trait Message {
     const SCHEMA: &'static str;
     /// The version of its layout.
     const VERSION: u8;
-    /// The oldest version still read: it has the same layout, but some fields differ in meaning.
+    /// The oldest version still read: same layout, but some fields differ in meaning.
     const OLDEST: u8 = Self::VERSION;
 }
 

@@ -1,7 +1,7 @@
 //! Randomness: one seed per game, from which each named use derives an independent stream.
 //!
-//! A stream is ChaCha8 keyed by the seed and the stream's name, so a new consumer never shifts the
-//! numbers of another one. We implement the few samplers here because a library may change its
+//! A stream is ChaCha8 keyed by the seed and the stream's name: a new consumer never shifts the
+//! numbers of another. The few samplers are implemented here because a library may change its
 //! algorithm for the same seed.
 
 use crate::normal::{normal, unit};
@@ -24,7 +24,7 @@ impl Stream {
         Stream(ChaCha8Rng::from_seed(key))
     }
 
-    /// A whole number, uniform over 2^64 values.
+    /// 64 uniform random bits.
     pub fn bits(&mut self) -> u64 {
         self.0.next_u64()
     }
@@ -39,7 +39,7 @@ impl Stream {
         low + (high - low) * self.unit()
     }
 
-    /// A uniform whole number below `bound`, by rejection.
+    /// A uniform integer below `bound`, by rejection.
     ///
     /// # Panics
     /// If `bound` is 0.
@@ -69,7 +69,7 @@ impl Stream {
 
 /// Stateless noise: a random number for every count.
 ///
-/// For draws at every tick. A world reset to an earlier tick finds the same numbers again. The
+/// For draws at every tick: a world reset to an earlier tick finds the same numbers again. The
 /// mixing is the finaliser of SplitMix64 (Steele, Lea and Flood 2014), applied to a counter that
 /// starts at a key derived from seed and name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,7 +82,7 @@ impl Noise {
         Noise(Stream::new(seed, name).bits())
     }
 
-    /// A whole number, uniform over 2^64 values.
+    /// 64 uniform random bits.
     #[inline]
     #[must_use]
     pub fn bits(&self, count: u64) -> u64 {
@@ -99,8 +99,8 @@ impl Noise {
         unit(self.bits(count))
     }
 
-    /// Two independent normal numbers, of mean 0 and variance 1. Uses up two units: those of twice
-    /// the count and of the next number.
+    /// Two independent normal numbers of mean 0 and variance 1. Uses two units: those of twice the
+    /// count and of the next number.
     #[inline]
     #[must_use]
     pub fn normal_pair(&self, count: u64) -> (f64, f64) {

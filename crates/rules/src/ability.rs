@@ -6,9 +6,9 @@ use primitives::time::SimTime;
 /// The facts that decide whether a boat may act.
 #[derive(Clone, Copy, Debug)]
 pub struct Ability {
-    /// It is tagged and not freed yet.
+    /// It is tagged.
     pub tagged: bool,
-    /// It is temporarily out of action (power play).
+    /// It is out of action by power play.
     pub disabled: bool,
     /// It is outside the field.
     pub outside: bool,
@@ -47,7 +47,7 @@ impl Rules {
     }
 }
 
-/// Remaining wait until `tag_ready`, s; never below 0.
+/// Remaining wait until `tag_ready`, s; at least 0.
 #[must_use]
 pub fn tag_wait_s(tag_ready: SimTime, now: SimTime) -> f64 {
     (tag_ready - now).as_s().max(0.0)

@@ -1,4 +1,4 @@
-//! Requests of boats to the referee, for rules that require requests.
+//! Requests of boats to the referee, under rules that require them.
 
 /// The requests of one boat.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

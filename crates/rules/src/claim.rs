@@ -1,4 +1,4 @@
-//! Claims: competing attempts of boats in the same tick, and who succeeds.
+//! Claims: competing attempts of boats in one tick, and which of them succeed.
 
 use super::{Resolution, TagChoice};
 use std::cmp::Ordering;
@@ -20,10 +20,10 @@ impl Claim {
 /// Reduces the claims to the granted ones.
 ///
 /// Each boat claims one target, the nearest or the first. At once: of all boats that claim the same
-/// target the nearest gets it; the others lose nothing and may claim another target at the next
-/// look. Granted claims are ordered by target. In turn: a boat gets its target if no boat before it
-/// has claimed it, and claims nothing else. Granted claims are ordered by boat. Ties go to the
-/// lower index.
+/// target the nearest gets it; the others lose nothing and may claim again at the next look.
+/// Granted claims are ordered by target. In turn: a boat gets its target unless an earlier boat has
+/// claimed it, and claims nothing else. Granted claims are ordered by boat. Ties go to the lower
+/// index.
 pub(super) fn settle(claims: &mut Vec<Claim>, choice: TagChoice, resolution: Resolution) {
     claims.sort_unstable_by(|x, y| {
         let wanted = if choice == TagChoice::Nearest { x.nearer(y) } else { Ordering::Equal };

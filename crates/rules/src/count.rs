@@ -1,4 +1,4 @@
-//! Tallies of a game: the deeds of each boat and each team.
+//! Counts of a game's events for each boat and each team.
 
 use crate::event::{Event, TagCause};
 use primitives::id::{TeamId, VehicleId};
@@ -17,15 +17,15 @@ pub struct Counts {
     pub tagged: u32,
     /// Times the boat left the field.
     pub out_of_bounds: u32,
-    /// Collisions that involved the boat. A team's count adds up its boats', so a collision between
-    /// team-mates counts twice.
+    /// Collisions that involved the boat. A collision between team-mates counts twice for their
+    /// team.
     pub collisions: u32,
     /// Times the boat's agent was lost. Older recordings use its former name.
     #[serde(alias = "minds_lost")]
     pub agents_lost: u32,
 }
 
-/// The tally of a game, computed from its events.
+/// The counts of a game, computed from its events.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Tally {
     /// Counts, by vehicle index.
@@ -33,7 +33,7 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// The tally of `vehicles` boats before any event.
+    /// The counts of `vehicles` boats before any event.
     #[must_use]
     pub fn new(vehicles: usize) -> Tally {
         Tally { vehicles: vec![Counts::default(); vehicles] }

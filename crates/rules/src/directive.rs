@@ -1,30 +1,30 @@
-//! Directives: constraints that the rules impose on a boat, for the world or a gateway to enforce.
+//! Directives: constraints of the rules on a boat, enforced by the world or a gateway.
 
 use super::{Referee, Standing, TaggedBoat};
 use primitives::frame::Ned;
 use primitives::id::VehicleId;
 
-/// The constraint that the rules impose on one boat.
+/// The constraint of the rules on one boat.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Directive {
-    /// It follows its mind, at no more than this share of its top speed.
+    /// It follows its mind, up to this share of its top speed.
     Free {
         /// Between 0 and 1.
         speed_factor: f64,
     },
     /// It is tagged and driven straight home at this share of its top speed; its mind is ignored.
     DrivenHome {
-        /// The place where it is freed.
+        /// The untag place.
         to: Ned,
         /// Between 0 and 1.
         speed_factor: f64,
     },
-    /// It holds and its mind is ignored: temporarily out of action, or out of play for good.
+    /// It holds and its mind is ignored: out of action, or out of play for good.
     Hold,
 }
 
 impl Referee {
-    /// The constraint on a boat at `at`. Of two speed limits the lower one applies.
+    /// The constraint on a boat at `at`. The lower of two speed limits applies.
     #[inline]
     #[must_use]
     pub fn directive(&self, standing: &Standing, vehicle: VehicleId, at: Ned) -> Directive {

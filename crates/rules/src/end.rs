@@ -5,8 +5,8 @@ use crate::event::Event;
 use primitives::id::TeamId;
 
 impl Referee {
-    /// Ends the game when it is won or time is up. The highest score wins, even if two teams reach
-    /// the winning score in the same tick; equal scores are a draw.
+    /// Ends the game when it is won or the time is up. The highest score wins, even if both teams
+    /// reach the winning score in one tick; equal scores are a draw.
     pub(super) fn end(&self, standing: &mut Standing, events: &mut Vec<Event>) {
         let best = standing.score.iter().copied().max().unwrap_or(0);
         let won = self.rules.win_score.is_some_and(|win_score| best >= win_score);

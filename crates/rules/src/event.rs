@@ -8,7 +8,7 @@ use strum::IntoStaticStr;
 /// An event with its tick and time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Logged {
-    /// Physics tick, counted from 0 at the start of the game.
+    /// Physics tick, from 0.
     pub tick: u64,
     /// Simulated time.
     pub at: SimTime,
@@ -21,7 +21,7 @@ pub struct Logged {
 pub struct EventCursor(usize);
 
 impl EventCursor {
-    /// The events added to the log since the last read.
+    /// The events since the last read.
     pub fn read<'a, E>(&mut self, log: &'a [E]) -> &'a [E] {
         let new = log.get(self.0..).unwrap_or_default();
         self.0 = log.len();
@@ -32,7 +32,7 @@ impl EventCursor {
 /// The cause of a tag.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum TagCause {
-    /// An opponent came near enough on its own side.
+    /// An opponent within reach on its own side.
     Opponent(VehicleId),
     /// The boat left the field.
     Boundary,
@@ -63,9 +63,9 @@ pub enum Event {
         /// The cause of the tag.
         cause: TagCause,
     },
-    /// A tagged boat was freed and plays again.
+    /// A tagged boat was untagged.
     Untagged(VehicleId),
-    /// A carrier lost its flag, which is home again.
+    /// A carrier lost its flag, which returned home.
     FlagReturned {
         /// The boat that lost it.
         vehicle: VehicleId,
@@ -74,7 +74,7 @@ pub enum Event {
     },
     /// A boat left the field.
     LeftField(VehicleId),
-    /// A boat came back to the field.
+    /// A boat returned to the field.
     ReturnedToField(VehicleId),
     /// Two boats came closer than the collision distance.
     Collided {
@@ -85,15 +85,15 @@ pub enum Event {
     },
     /// A boat entered the keep-out circle of its own flag.
     EnteredKeepout(VehicleId),
-    /// A boat is temporarily out of action (power play).
+    /// A boat is out of action by power play.
     Disabled(VehicleId),
     /// A boat is back in action.
     Enabled(VehicleId),
-    /// A boat's agent is lost: the boat holds from now on.
+    /// A boat's agent is lost: the boat holds.
     AgentLost(VehicleId),
     /// A boat's agent is back.
     AgentBack(VehicleId),
-    /// A boat's state became non-finite: it stays at its last position and plays no more.
+    /// A boat's state became non-finite: it stays at its last position, out of play.
     Quarantined(VehicleId),
     /// The position of a real boat is no longer known: it must hold.
     NavLost(VehicleId),
@@ -103,19 +103,19 @@ pub enum Event {
     EStopped,
     /// An operator ended the E-stop.
     Released,
-    /// An operator makes all boats hold for now.
+    /// An operator made all boats hold.
     Halted,
     /// An operator ended the hold.
     WentOn,
     /// The game is over.
     Ended {
-        /// The winning team; `None` is a draw.
+        /// The winning team; `None`: a draw.
         winner: Option<TeamId>,
     },
 }
 
 impl Event {
-    /// The affected boat: the first of two in a collision, none at the end of a game.
+    /// The affected boat: the first in a collision, none at the end of a game.
     #[must_use]
     pub fn vehicle(self) -> Option<VehicleId> {
         match self {
@@ -139,7 +139,7 @@ impl Event {
         }
     }
 
-    /// The second boat involved: the tagger, or the other of two in a collision.
+    /// The second boat: the tagger, or the other in a collision.
     #[must_use]
     pub fn other(self) -> Option<VehicleId> {
         match self {
@@ -159,7 +159,7 @@ impl Event {
     }
 }
 
-/// An event encoded as numbers.
+/// An event as numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct EventRecord {
     /// Physics tick.

@@ -17,15 +17,15 @@ use primitives::omitted::number_or_nan;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What a field file states; [`Field::new`] derives the rest.
+/// The content of a field file; [`Field::new`] derives the rest.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Plan {
     /// The field file's stem.
     #[schemars(skip)]
     pub name: String,
-    /// Geographic position of the local origin. A boat that goes out on the water steers by it.
+    /// Geographic position of the local origin. Real boats navigate by it.
     pub datum: LatLon,
-    /// The corner of the first team's end that is to starboard as it looks at its opponent, [x, y] in m.
+    /// The corner to starboard of the first team's end, seen towards the opponent, [x, y] in m.
     #[schemars(with = "[f64; 2]", inner(range(min = -1000000, max = 1000000)))]
     #[schemars(extend("x-field" = "corner", "default" = [0, 0]))]
     pub corner: Ned,
@@ -38,15 +38,15 @@ pub struct Plan {
     /// Extent across, m.
     #[schemars(range(min = 10, max = 20000))]
     pub depth_m: f64,
-    /// Distance of the flags from the ends, m: more than 0 and less than half the width. Default width / 8.
+    /// Distance of the flags from the ends, m, above 0 and below half the width. Default: width / 8.
     #[serde(deserialize_with = "number_or_nan")]
     #[schemars(with = "Option<f64>", extend("x-estimated" = true))]
     pub flag_inset_m: f64,
-    /// Flags beyond the one each team has by default.
+    /// Flags in addition to each team's default flag.
     #[serde(default)]
     #[schemars(skip)]
     pub extra_flags: Vec<Flag>,
-    /// What stands in the water.
+    /// Solid obstacles.
     #[serde(default)]
     #[schemars(skip)]
     pub obstacles: Vec<Obstacle>,
@@ -59,11 +59,11 @@ pub struct Plan {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Walls {
-    /// Open water all round.
+    /// Open water all around.
     #[default]
     #[serde(alias = "None")]
     None,
-    /// A wall on every edge, which boats bump into.
+    /// A solid wall on every edge.
     #[serde(alias = "AllRound")]
     AllRound,
 }
@@ -82,14 +82,14 @@ pub struct Flag {
 pub enum Obstacle {
     /// A circle.
     Circle {
-        /// Its centre.
+        /// Centre.
         centre: Ned,
-        /// Its radius, m.
+        /// Radius, m.
         radius_m: f64,
     },
-    /// A polygon without self-crossings, corners in order (either way round).
+    /// A polygon without self-crossings.
     Polygon {
-        /// Its corners, at least three.
+        /// At least three corners, in order, either way round.
         corners: Vec<Ned>,
     },
 }
@@ -200,8 +200,7 @@ impl Zone {
         Zone { edges: sides(&corners).map(edge).collect(), corners }
     }
 
-    /// Whether `at` is inside or on an edge, with a tolerance of 1 nm, so that rounding does not
-    /// decide.
+    /// Whether `at` is inside or on an edge, with a tolerance of 1 nm against rounding.
     #[inline]
     #[must_use]
     pub fn contains(&self, at: Ned) -> bool {
@@ -218,9 +217,9 @@ pub struct Field {
     pub along: Ned,
     /// Unit vector a quarter turn to port of `along`.
     pub across: Ned,
-    /// The four corners, clockwise from corner 0.
+    /// Clockwise from corner 0.
     pub corners: [Ned; 4],
-    /// All flags; the first two are the teams' default flags.
+    /// The first two are the teams' default flags.
     pub flags: Vec<Flag>,
     /// Each team's own side, by team.
     pub zones: Vec<Zone>,
@@ -300,9 +299,9 @@ impl Field {
         if team.index() == 0 { self.plan.along_deg } else { self.plan.along_deg + 180.0 }
     }
 
-    /// Target of a boat of `team` at `at` that heads for a corner of its own end: the nearer of the
+    /// Target of a boat of `team` at `at` on its way to a corner of its own end: the nearer of the
     /// two points `inset_m` inside both edges. The corners themselves are on the boundary: a boat
-    /// that heads for one from outside would follow the edge on the wrong side.
+    /// from outside would follow the edge on the wrong side.
     #[must_use]
     pub fn inside_own_corner(&self, team: TeamId, at: Ned, inset_m: f64) -> Option<Ned> {
         // Clockwise: the field is to starboard of the direction from the first corner to the
@@ -314,9 +313,9 @@ impl Field {
         Some(if at.distance_squared(first) <= at.distance_squared(second) { first } else { second })
     }
 
-    /// The named point of `team`: a column (`PP P C S SS`, port to starboard) and a row (`B` back,
-    /// `F` flag line, `H` half of the own side, `M` between there and the centre, `C` centre line,
-    /// then `MX HX FX BX` on the other side), seen from the own end.
+    /// The named point of `team`, seen from its own end: a column (`PP P C S SS`, port to
+    /// starboard) and a row (`B` back, `F` flag line, `H` half of the own side, `M` between there
+    /// and the centre, `C` centre line, then `MX HX FX BX` on the other side).
     #[must_use]
     pub fn point(&self, team: TeamId, name: &str) -> Option<Ned> {
         let row_names = ROWS.iter().enumerate().rev();
@@ -419,7 +418,7 @@ mod tests {
 
     #[test]
     fn published_fields_come_out_where_they_were_sailed() {
-        // Corners and flags as listed in the 2025 West Point and 2023 Jervis Bay missions.
+        // Corners and flags as in the 2025 West Point and 2023 Jervis Bay missions.
         let popolopen = Field::new(plan((225.4522, 42.2876), 20.0, 160.0, 80.0, 20.0));
         assert_near(popolopen.flags[0].home, 194.71, 74.76);
         assert_near(popolopen.flags[1].home, 235.75, 187.53);
@@ -430,7 +429,7 @@ mod tests {
 
     #[test]
     fn boats_steer_for_points_inside_of_their_own_corners() {
-        // The targets of boats in the 2026 competition: 10 m from both edges.
+        // The targets in the 2026 competition: 10 m from both edges.
         let field = Field::new(plan((0.0, 0.0), 90.0, 160.0, 80.0, 20.0));
         for (team, from, want) in [
             (0, (40.0, 81.0), (10.0, 70.0)),

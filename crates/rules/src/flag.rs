@@ -1,4 +1,4 @@
-//! Flags: grabbed within a radius, captured at the place of capture, returned home when lost.
+//! Flags: grabbed within a radius, captured at the capture place, returned home when lost.
 
 use super::claim::{Claim, settle};
 use super::{Acting, Look, Notes, Referee, Resolution, Standing, TagChoice};
@@ -6,7 +6,8 @@ use crate::event::Event;
 use primitives::id::{FlagId, VehicleId};
 
 impl Referee {
-    /// Gives flags to opponents in reach, on request if the rules require it. No boat carries two.
+    /// Gives flags to opponents within reach, on request if the rules require it. No boat carries
+    /// two.
     ///
     /// A boat claims the nearest available flag; [`Resolution`] decides between several boats at
     /// one flag. A flag is available only if it has been home since the last look, except in turn.
@@ -43,8 +44,8 @@ impl Referee {
         }
     }
 
-    /// Scores the flags that carriers have brought in and returns them home. A flag grabbed at this
-    /// look counts at the next one at the earliest, even if the grab was at the place of capture.
+    /// Scores the flags at the capture place and returns them home. A flag grabbed at this look
+    /// counts at the next one at the earliest.
     ///
     /// With `capture_needs_own_flag`, all flags of the carrier's own team must be home after the
     /// grabs and before the captures of this look.
@@ -73,7 +74,7 @@ impl Referee {
 }
 
 impl Standing {
-    /// Takes the flag from a carrier and returns it home.
+    /// Returns a carrier's flag home.
     pub(super) fn drop_flag(&mut self, vehicle: VehicleId, events: &mut Vec<Event>) {
         if let Some(flag) = self.vehicles[vehicle.index()].carrying.take() {
             self.bring_home(flag);

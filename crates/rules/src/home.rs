@@ -1,4 +1,4 @@
-//! Home: the place where tagged boats are freed.
+//! Home: where tagged boats are untagged.
 
 use super::{Referee, Standing, UntagOn};
 use crate::event::Event;
@@ -6,10 +6,10 @@ use primitives::frame::Ned;
 use primitives::id::VehicleId;
 
 impl Referee {
-    /// Frees the tagged boats that are home, at the next look after the tag at the earliest.
+    /// Untags the tagged boats that are home, at the next look after the tag at the earliest.
     ///
-    /// Home ends at the boundary, although the corners' circles extend beyond it. A boat tagged for
-    /// leaving the field is therefore not freed until it is back on the field.
+    /// Home ends at the boundary, although the corners' circles extend beyond it: a boat tagged for
+    /// leaving the field is not untagged outside.
     pub(super) fn untag(&self, standing: &mut Standing, at: &impl Fn(usize) -> Ned, events: &mut Vec<Event>) {
         for (i, boat) in standing.vehicles.iter_mut().enumerate() {
             let was_at_home = boat.at_home;

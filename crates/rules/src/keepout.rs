@@ -35,7 +35,7 @@ impl Referee {
         }
     }
 
-    /// The home positions of those of `team`'s flags that are home.
+    /// The homes of those of `team`'s flags that are home.
     #[inline]
     fn own_flags_home(&self, standing: &Standing, team: TeamId) -> impl Iterator<Item = Ned> {
         self.field

@@ -38,127 +38,125 @@ use primitives::time::SimTime;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The rules of the game. The defaults are those of `aquaticus_2023`.
+/// The rules. The defaults are those of `aquaticus_2023`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Rules {
     /// The rules file's stem.
     #[schemars(skip)]
     pub name: String,
-    /// What is worth what.
+    /// Points for a team.
     pub points: Points,
-    /// A flag is grabbed closer than this, m.
+    /// Maximum distance for a grab, m.
     #[schemars(range(min = 0.1, max = 1000), extend("default" = 10))]
     pub grab_radius_m: f64,
-    /// An intruder is tagged closer than this, m.
+    /// Maximum distance for a tag, m.
     #[schemars(range(min = 0.1, max = 1000), extend("default" = 10))]
     pub tag_radius_m: f64,
-    /// A tagged boat plays again closer than this to its home, m.
+    /// Maximum distance from the untag place, m.
     #[schemars(range(min = 0.1, max = 1000), extend("default" = 10))]
     pub untag_radius_m: f64,
-    /// A flag is captured closer than this to the place of capture, m. Means nothing where the own side is the place.
+    /// Maximum distance from the capture place, m; no effect with "own_side".
     #[schemars(range(min = 0.1, max = 1000), extend("default" = 10))]
     pub capture_radius_m: f64,
-    /// Two boats closer than this, centre to centre, have collided, m.
+    /// Minimum distance between the centres of boats without a collision, m.
     #[schemars(range(min = 0, max = 100), extend("default" = 3))]
     pub collision_distance_m: f64,
-    /// What boats are to each other. Walls and obstacles are solid to all.
+    /// Contact between boats; walls and obstacles are always solid.
     #[serde(default)]
     #[schemars(extend("default" = "solid"))]
     pub contact: Contact,
     /// Where a flag must be brought.
     #[schemars(extend("default" = "own_flag"))]
     pub capture_at: CaptureAt,
-    /// Whether a capture needs the own flag at its home.
+    /// Whether a capture requires the team's own flag to be home.
     #[schemars(extend("default" = false))]
     pub capture_needs_own_flag: bool,
-    /// Where a tagged boat is freed.
+    /// Where a tagged boat is untagged.
     #[schemars(extend("default" = "own_flag"))]
     pub untag_at: UntagAt,
-    /// What frees it there.
+    /// Condition for untagging there.
     #[schemars(extend("default" = "entering"))]
     pub untag_on: UntagOn,
-    /// How long a boat waits after a successful tag before it can tag again, s.
+    /// Time between a successful tag and the boat's next tag, s.
     #[schemars(rename = "tag_cooldown_s", with = "f64", range(min = 0, max = 86400))]
     #[schemars(extend("x-field" = "tag_cooldown", "default" = 10))]
     pub tag_cooldown: SimTime,
-    /// Which of several intruders in reach is tagged.
+    /// Which of several intruders within reach is tagged.
     #[schemars(extend("default" = "nearest"))]
     pub tag_choice: TagChoice,
-    /// How what happens at one moment is resolved.
+    /// Order in which simultaneous actions are resolved.
     #[serde(default)]
     #[schemars(extend("default" = "at_once"))]
     pub resolution: Resolution,
-    /// Where a boat is judged to be when its side counts: for tags, and for captures on the own side.
+    /// Which position determines a boat's side, for tags and captures on its own side.
     #[serde(default)]
     #[schemars(extend("default" = "after_move"))]
     pub side_judged: SideJudged,
-    /// Whether boats tag and grab by being in reach, or must ask for it.
+    /// Whether boats within reach tag and grab automatically.
     #[serde(default)]
     #[schemars(extend("default" = "automatic"))]
     pub tags_and_grabs: Acting,
-    /// Time between the referee's looks at boundary, tags and collisions, s, a multiple of the physics tick; 0 is every
-    /// tick.
+    /// Interval of checks of boundary, tags and collisions, s, a multiple of the tick; 0: every tick.
     #[serde(default)]
     #[schemars(rename = "tag_look_period_s", with = "f64", !default, range(min = 0, max = 60))]
     #[schemars(extend("x-field" = "tag_look_period", "default" = 0))]
     pub tag_look_period: SimTime,
-    /// Time between the referee's looks at grabs, captures and boats that come home, s, a multiple of the physics tick; 0 is
-    /// every tick.
+    /// Interval of checks of grabs, captures and untagging, s, a multiple of the tick; 0: every tick.
     #[serde(default)]
     #[schemars(rename = "flag_look_period_s", with = "f64", !default, range(min = 0, max = 60))]
     #[schemars(extend("x-field" = "flag_look_period", "default" = 0))]
     pub flag_look_period: SimTime,
-    /// Whether leaving the field tags a boat.
+    /// Whether a boat that leaves the field is tagged.
     #[schemars(extend("default" = true))]
     pub boundary_tags: bool,
-    /// What a tagged boat does.
+    /// Who drives a tagged boat.
     #[schemars(extend("default" = "drives_itself"))]
     pub tagged_boat: TaggedBoat,
-    /// Share of its top speed that a tagged boat may use.
+    /// Maximum speed of a tagged boat, as a share of its top speed.
     #[schemars(range(min = 0.05, max = 1), extend("default" = 1))]
     pub tagged_speed_factor: f64,
-    /// Share of its top speed that a boat outside of the field may use.
+    /// Maximum speed outside the field, as a share of top speed.
     #[schemars(range(min = 0.05, max = 1), extend("default" = 1))]
     pub outside_speed_factor: f64,
-    /// What a team is shown of other boats. Without it, all of it and at once.
+    /// What a team learns about other boats. Default: everything, at once.
     #[serde(default)]
     #[schemars(with = "Option<Sharing>", !default, extend("x-drawn" = true))]
     pub sharing: Sharing,
-    /// Boats keep this far from their own flag while it is home, m; 0 is no such rule.
+    /// Minimum distance of boats from their own flag while it is home, m; 0: no limit.
     #[schemars(range(min = 0, max = 1000), extend("default" = 0))]
     pub flag_keepout_m: f64,
-    /// The game ends when a team has this score; 0 is no such rule.
+    /// Score that ends the game; 0: none.
     #[schemars(with = "u32", range(min = 0, max = 1000000), extend("default" = 0))]
     pub win_score: Option<u32>,
-    /// The game ends at this time, s.
+    /// End of the game, s.
     #[schemars(rename = "time_limit_s", with = "f64", range(min = 1, max = 86400))]
     #[schemars(extend("x-field" = "time_limit", "default" = 600))]
     pub time_limit: SimTime,
-    /// For how long one boat of each team is out of action, s; 0 is no such rule.
+    /// Time during which one boat of each team is out of action, s; 0: no power play.
     #[schemars(rename = "power_play_s", with = "f64", range(min = 0, max = 86400))]
     #[schemars(extend("x-field" = "power_play", "default" = 0))]
     pub power_play: SimTime,
 }
 
 impl Rules {
-    /// Distance at which two boats become relevant to each other by the rules, m: the reach of
-    /// `near` in [`Referee::advance`].
+    /// Distance at which the rules make two boats relevant to each other, m: the reach of `near` in
+    /// [`Referee::advance`].
     #[must_use]
     pub fn reach_m(&self) -> f64 {
         self.tag_radius_m.max(self.collision_distance_m)
     }
 }
 
-/// What is worth what.
+/// Points for a team.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Points {
-    /// For a grab.
+    /// Per grab.
     #[schemars(range(min = 0, max = 1000), extend("default" = 1))]
     pub grab: u32,
-    /// For a capture.
+    /// Per capture.
     #[schemars(range(min = 0, max = 1000), extend("default" = 2))]
     pub capture: u32,
-    /// For tagging an opponent, not for the boundary's tags.
+    /// Per tag of an opponent; boundary tags do not count.
     #[schemars(range(min = 0, max = 1000), extend("default" = 0))]
     pub tag: u32,
 }
@@ -178,7 +176,7 @@ pub enum CaptureAt {
     /// Its own flag's home.
     #[serde(alias = "OwnFlag")]
     OwnFlag,
-    /// Its own side: the scrimmage line is enough.
+    /// Its own side: crossing the scrimmage line is enough.
     #[serde(alias = "OwnSide")]
     OwnSide,
     /// Either corner of its own end.
@@ -186,7 +184,7 @@ pub enum CaptureAt {
     OwnCorners,
 }
 
-/// Where a tagged boat must come to play again.
+/// Where a tagged boat is untagged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum UntagAt {
@@ -198,19 +196,19 @@ pub enum UntagAt {
     OwnCorners,
 }
 
-/// What frees a tagged boat at its home.
+/// What untags a tagged boat at that place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum UntagOn {
-    /// Coming in: a boat that was tagged inside must leave and come back.
+    /// Entering: a boat that was tagged inside must leave and come back.
     #[serde(alias = "Entering")]
     Entering,
-    /// Being there.
+    /// Being inside.
     #[serde(alias = "Inside")]
     Inside,
 }
 
-/// Which of several intruders in reach is tagged.
+/// Which of several intruders within reach is tagged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum TagChoice {
@@ -222,62 +220,61 @@ pub enum TagChoice {
     First,
 }
 
-/// How what happens at one moment is resolved.
+/// Order in which simultaneous actions are resolved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Resolution {
-    /// Tags, grabs, captures, each judged from how things stood before it. Of several boats that reach the same intruder or
-    /// flag the nearest has it, and a boat that comes second has nothing at that moment: the order of the list counts
-    /// between equals only.
+    /// Tags, then grabs, then captures, each judged by the state before it. An intruder or flag
+    /// within reach of several boats goes to the nearest. Processing order decides only ties.
     #[default]
     AtOnce,
-    /// As in Pyquaticus: grabs, tags, captures, and in each the boats in the game's order, each with what those before
-    /// it have left.
+    /// As in Pyquaticus: grabs, then tags, then captures, each in processing order, judged by what
+    /// earlier boats left.
     InTurn,
 }
 
-/// Where a boat is judged to be when its side counts.
+/// Which position determines a boat's side.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SideJudged {
-    /// Where it is.
+    /// The present one.
     #[default]
     AfterMove,
-    /// Where it was before it moved, a physics tick ago: as in Pyquaticus.
+    /// The one before its last move, a physics tick ago, as in Pyquaticus.
     BeforeMove,
 }
 
-/// How boats come to tag and grab.
+/// Whether boats tag and grab automatically.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Acting {
-    /// Whoever is in reach does.
+    /// Every boat within reach acts.
     #[default]
     Automatic,
-    /// Only who asks. A boat asks as long as it is in reach by what its team's picture shows of it and of others: where
-    /// that is wrong or late, so is the request.
+    /// Only boats that request it act. A boat requests while its team's picture shows it within
+    /// reach; a wrong or late picture causes wrong or late requests.
     OnRequest,
 }
 
-/// What boats are to each other.
+/// Contact between boats.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Contact {
-    /// They bump into each other.
+    /// Boats collide physically.
     #[default]
     Solid,
-    /// They pass through each other, as in Pyquaticus. That they were too close is noted all the same.
+    /// Boats pass through each other, as in Pyquaticus. Collisions still count.
     Ghost,
 }
 
-/// What a tagged boat does.
+/// Who drives a tagged boat.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum TaggedBoat {
-    /// Its mind must drive it home.
+    /// Its mind.
     #[serde(alias = "DrivesItself")]
     DrivesItself,
-    /// It is driven straight home, whatever its mind says.
+    /// The referee: straight home, whatever its mind orders.
     #[serde(alias = "IsDriven")]
     IsDriven,
 }

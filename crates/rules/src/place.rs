@@ -1,4 +1,4 @@
-//! Places defined by the rules: where a flag is captured, and where a tagged boat is freed.
+//! Capture and untag places.
 //!
 //! The referee judges by these functions and agents steer by them. They depend only on the field,
 //! the rules and a position.
@@ -9,7 +9,7 @@ use primitives::frame::{Leg, Ned};
 use primitives::id::TeamId;
 
 impl Rules {
-    /// The position that decides which side a boat is on.
+    /// The position that decides a boat's side.
     #[inline]
     #[must_use]
     pub fn side_place(&self, leg: Leg) -> Ned {
@@ -19,7 +19,7 @@ impl Rules {
         }
     }
 
-    /// Whether a carrier of `team` that has moved along `leg` is at the place of capture.
+    /// Whether a carrier of `team` that has moved along `leg` is at a capture place.
     #[must_use]
     pub fn is_capture_place(&self, field: &Field, team: TeamId, leg: Leg) -> bool {
         match self.capture_at {
@@ -29,9 +29,8 @@ impl Rules {
         }
     }
 
-    /// Target of a carrier of `team` at `at`: the nearest place of capture or, where any place on
-    /// the own side counts, the nearest own flag. None on a field without flags or corners of that
-    /// team.
+    /// Target of a carrier of `team` at `at`: the nearest capture place or, if the whole own side
+    /// counts, the nearest own flag. None on a field without flags or corners of that team.
     #[must_use]
     pub fn capture_place(&self, field: &Field, team: TeamId, at: Ned) -> Option<Ned> {
         match self.capture_at {
@@ -40,7 +39,7 @@ impl Rules {
         }
     }
 
-    /// Whether a tagged boat of `team` at `at` is freed there.
+    /// Whether a tagged boat of `team` at `at` is untagged there.
     #[inline]
     #[must_use]
     pub fn is_untag_place(&self, field: &Field, team: TeamId, at: Ned) -> bool {
@@ -50,8 +49,8 @@ impl Rules {
         }
     }
 
-    /// Target of a tagged boat of `team` at `at`: the nearest place where it is freed. None on a
-    /// field without flags or corners of that team.
+    /// Target of a tagged boat of `team` at `at`: the nearest untag place. None on a field without
+    /// flags or corners of that team.
     #[must_use]
     pub fn untag_place(&self, field: &Field, team: TeamId, at: Ned) -> Option<Ned> {
         match self.untag_at {
@@ -60,8 +59,7 @@ impl Rules {
         }
     }
 
-    /// The centre of the nearest circle in which a tagged boat of `team` is freed; its radius is
-    /// `untag_radius_m`.
+    /// The centre of the nearest untag circle of `team`, with radius `untag_radius_m`.
     #[must_use]
     pub fn untag_centre(&self, field: &Field, team: TeamId, at: Ned) -> Option<Ned> {
         match self.untag_at {
@@ -81,9 +79,8 @@ fn is_near_own_corner(field: &Field, team: TeamId, at: Ned, radius_m: f64) -> bo
     field.own_corners(team).iter().any(|corner| at.distance_squared(*corner) < radius_m * radius_m)
 }
 
-/// Inset from both edges for boats that must come within `radius_m` of a corner, m. With half the
-/// radius it is 10 m in the 2026 competition, which has 20 m, and leaves 3 tenths of the radius to
-/// spare.
+/// Inset from both edges for boats that must come within `radius_m` of a corner, m. Half the radius
+/// is 10 m in the 2026 competition, and leaves 0.3 of the radius to spare.
 fn corner_inset_m(radius_m: f64) -> f64 {
     0.5 * radius_m
 }

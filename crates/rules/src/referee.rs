@@ -10,7 +10,7 @@ use primitives::near::Pair;
 use primitives::stream::Stream;
 use primitives::time::SimTime;
 
-/// The referee of a game, constant while the game runs. The changing part is the [`Standing`].
+/// The constant referee of a game. [`Standing`] changes.
 #[derive(Clone, Debug)]
 pub struct Referee {
     pub(super) rules: Rules,
@@ -18,7 +18,7 @@ pub struct Referee {
     pub(super) team_of: Vec<TeamId>,
 }
 
-/// The referee's scratch memory, reused at every look; it carries no state between looks.
+/// Scratch memory, reused at every look; it carries no state between looks.
 #[derive(Clone, Debug, Default)]
 pub struct Notes {
     pub(super) claims: Vec<Claim>,
@@ -33,14 +33,14 @@ pub struct Look<'a> {
     /// Requests by vehicle index, if the rules require them:
     /// [`Acting::OnRequest`](super::Acting::OnRequest).
     pub asks: &'a [Asks],
-    /// All pairs within at least [`Rules::reach_m`], in the order of [`primitives::near::Near`].
+    /// At least all pairs within [`Rules::reach_m`], in the order of [`primitives::near::Near`].
     pub near: &'a [Pair],
     /// Simulated time, later than the last look.
     pub now: SimTime,
 }
 
 impl Referee {
-    /// The referee for games by these rules on this field; `team_of` is indexed by vehicle.
+    /// A referee with these rules on this field; `team_of` is indexed by vehicle.
     #[must_use]
     pub fn new(rules: Rules, field: Field, team_of: Vec<TeamId>) -> Referee {
         Referee { rules, field, team_of }
@@ -64,8 +64,7 @@ impl Referee {
         &self.team_of
     }
 
-    /// The standing before the start. Power plays are drawn from `stream`; without that rule
-    /// nothing is drawn.
+    /// The standing before the start. Only power plays draw from `stream`.
     pub fn start(&self, stream: &mut Stream) -> Standing {
         let mut standing = Standing::new(self.team_of.len(), self.field.flags.len(), self.teams());
         self.draw_power_plays(&mut standing, stream);
@@ -74,13 +73,13 @@ impl Referee {
 
     /// Looks at all boats and appends events.
     ///
-    /// The order of the list below is the order of resolution. Every phase is judged from the
-    /// standing at its start, whatever the order of the boats, so that mirrored teams get mirrored
-    /// results. Results of this look count from the next one on: a flag brought home cannot be
-    /// grabbed yet, a grabbed flag cannot be captured yet, a tagged boat cannot be freed yet.
-    /// [`Resolution::InTurn`] is another order, for comparing games with those of Pyquaticus.
+    /// The order of the list below is the order of resolution. Every phase is judged by the
+    /// standing at its start, whatever the order of the boats: mirrored teams get mirrored results.
+    /// Results of this look count from the next one on: a flag brought home cannot be grabbed yet,
+    /// a grabbed flag cannot be captured yet, a tagged boat cannot be untagged yet.
+    /// [`Resolution::InTurn`] uses another order, for comparison with Pyquaticus.
     ///
-    /// Once the game is over, nothing happens any more.
+    /// Nothing happens after the end of the game.
     pub fn advance(&self, standing: &mut Standing, notes: &mut Notes, look: &Look<'_>, events: &mut Vec<Event>) {
         if standing.over {
             return;
@@ -116,8 +115,7 @@ impl Referee {
         self.end(standing, events);
     }
 
-    /// Removes a boat from the game because its state became non-finite. It loses its flag and
-    /// becomes a mere obstacle.
+    /// Retires a boat whose state became non-finite: it loses its flag and becomes an obstacle.
     pub fn retire(&self, standing: &mut Standing, vehicle: VehicleId, events: &mut Vec<Event>) {
         standing.vehicles[vehicle.index()].in_play = false;
         standing.drop_flag(vehicle, events);
@@ -130,7 +128,7 @@ impl Referee {
     }
 }
 
-/// Whether a periodic look is due; with a period of 0, always.
+/// Whether a periodic look is due; always, with a period of 0.
 fn is_due(now: SimTime, period: SimTime) -> bool {
     period <= SimTime::ZERO || now.0 % period.0 == 0
 }

@@ -18,7 +18,7 @@ pub struct Standing {
     pub score: Vec<u32>,
     /// Pairs of boats within the collision distance, lower index first, sorted.
     pub touching: Vec<(VehicleId, VehicleId)>,
-    /// Time out of action (power play) as from and until, by vehicle index.
+    /// Start and end of its power play, by vehicle index.
     pub disabled: Vec<(SimTime, SimTime)>,
     /// Whether the game is over.
     pub over: bool,
@@ -27,7 +27,7 @@ pub struct Standing {
 /// The standing of one boat.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct VehicleStanding {
-    /// Whether it takes part: a quarantined boat is a mere obstacle.
+    /// Whether it takes part: a quarantined boat is only an obstacle.
     pub in_play: bool,
     /// Whether it is tagged.
     pub tagged: bool,
@@ -39,7 +39,7 @@ pub struct VehicleStanding {
     pub tag_ready: SimTime,
     /// Whether it is outside the field.
     pub outside: bool,
-    /// Whether it was in its untagging place, and on the field, at the last look.
+    /// Whether it was at its untag place, and on the field, at the last look.
     pub at_home: bool,
     /// Whether it was in its own flag's keep-out circle at the last look.
     pub in_keepout: bool,
@@ -57,7 +57,6 @@ pub struct FlagStanding {
 }
 
 impl Standing {
-    /// The standing before any event.
     pub(super) fn new(vehicles: usize, flags: usize, teams: usize) -> Standing {
         let vehicle = VehicleStanding {
             in_play: true,
@@ -81,7 +80,6 @@ impl Standing {
         }
     }
 
-    /// Adds to a team's score.
     pub(super) fn award(&mut self, team: TeamId, points: u32) {
         let score = &mut self.score[team.index()];
         *score = score.saturating_add(points);

@@ -1,4 +1,4 @@
-//! Tags: a boat on its own side tags intruders in reach.
+//! Tags: a boat on its own side tags intruders within reach.
 
 use super::claim::{Claim, settle};
 use super::{Ability, Acting, Look, Notes, Referee, Standing};
@@ -7,8 +7,8 @@ use primitives::id::VehicleId;
 use primitives::near::Pair;
 
 impl Referee {
-    /// Tags intruders, each as soon as possible: automatically, or on request as soon as the boat
-    /// believes it is in reach.
+    /// Tags intruders as soon as possible: automatically, or on request once the boat believes it
+    /// is within reach.
     ///
     /// Each tagger claims one intruder; [`super::Resolution`] decides between several taggers of
     /// the same one. Only the successful tagger gets the points and the cooldown: a failed or late
@@ -41,9 +41,9 @@ impl Referee {
 
     /// Whether `tagger` may tag `target`, apart from their distance.
     ///
-    /// The tagger is on its own side; the intruder is there too and not on *its* own side. The
-    /// scrimmage line belongs to both sides: a boat on it is safe but can tag, so no boat is ever
-    /// both tagger and target.
+    /// Both must be on the tagger's own side, and the target not on *its* own side. The scrimmage
+    /// line belongs to both sides: a boat on it is safe but can tag, so no boat is ever both tagger
+    /// and target.
     fn may_tag(&self, standing: &Standing, tagger: usize, target: usize, look: &Look<'_>) -> bool {
         let (by, on) = (&standing.vehicles[tagger], &standing.vehicles[target]);
         let (own, other) = (self.team_of[tagger], self.team_of[target]);
@@ -61,7 +61,6 @@ impl Referee {
 }
 
 impl Standing {
-    /// Tags a boat.
     pub(super) fn put_tag(&mut self, vehicle: VehicleId, cause: TagCause, events: &mut Vec<Event>) {
         let boat = &mut self.vehicles[vehicle.index()];
         boat.tagged = true;

@@ -10,12 +10,13 @@ use std::f64::consts::PI;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ActionSpace {
-    /// The 17 of Pyquaticus: full or half speed, each with eight turns, and a stop.
+    /// Those of Pyquaticus: full or half speed in eight directions, and a stop.
     Pyquaticus,
-    /// Two numbers from -1 to 1: the turn from the present heading in half turns clockwise, and the speed, from none to the
-    /// boat's fastest.
+    /// Two numbers from -1 to 1: the turn in half turns clockwise, and the speed, from 0 to the
+    /// boat's maximum.
     Continuous,
-    /// The values of a variable of a strategy, to which its rules and modes answer: what a boat is at, not how it steers.
+    /// The values of a variable of a strategy: what its rules and modes do, not how the boat
+    /// steers.
     Options,
 }
 
@@ -76,14 +77,14 @@ pub struct SetPoint {
     pub speed_m_s: f64,
 }
 
-/// The number of turns at each speed, from half a turn to starboard to nearly half a turn to port.
+/// Number of turns at each speed, from half a turn to starboard to nearly half a turn to port.
 const TURNS: usize = 8;
-/// The speeds of the discrete actions, as shares of the top speed.
+/// Speeds of the discrete actions, as shares of the top speed.
 const SPEEDS: [f64; 2] = [1.0, 0.5];
 
 impl ActionSpace {
-    /// The number of discrete actions, if the space determines it: not for continuous ones, nor for
-    /// options, which depend on a strategy.
+    /// Number of discrete actions; none for continuous actions, and for options, which depend on a
+    /// strategy.
     #[must_use]
     pub fn count(self) -> Option<usize> {
         match self {
@@ -92,14 +93,14 @@ impl ActionSpace {
         }
     }
 
-    /// The number of a policy's outputs: a logit for each discrete action, or a number for each
-    /// dimension; for options a minimum.
+    /// Number of a policy's outputs: a logit for each discrete action, or a number for each
+    /// dimension; a minimum for options.
     #[must_use]
     pub fn outputs(self) -> usize {
         self.count().unwrap_or(2)
     }
 
-    /// Whether an action is one of several.
+    /// Whether actions are discrete.
     #[must_use]
     pub fn is_discrete(self) -> bool {
         self != ActionSpace::Continuous
@@ -114,7 +115,7 @@ impl ActionSpace {
         if self == ActionSpace::Continuous {
             return Some(Action::Continuous([turn_rad / PI, 2.0 * share - 1.0].map(|number| number as f32)));
         }
-        // A turn of one radian counts as much as the whole speed range; a stop has no turn.
+        // A turn of one radian counts as much as the whole speed range. A stop has no turn.
         let off = |action: usize| {
             let SetPoint { course_rad, speed_m_s } = self.set_point(Action::Discrete(action), 0.0, 1.0);
             let by_turn = if speed_m_s == 0.0 { 0.0 } else { wrap_pi(course_rad - turn_rad) };

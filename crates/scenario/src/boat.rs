@@ -4,7 +4,7 @@
 //! starboard, yaw clockwise. `sim::hull` contains the equation with these numbers.
 //!
 //! These types also declare the keys of boat files. For a key in another unit, `rename` sets the
-//! key's name, its description gives that unit, and `x-field` names the field.
+//! key's name, the description gives that unit, and `x-field` names the field.
 
 use crate::sensor::Sensors;
 use primitives::omitted::number_or_nan;
@@ -16,11 +16,11 @@ use serde::{Deserialize, Serialize};
 pub struct Boat {
     /// The boat file's stem, for example `surveyor_m1_8`.
     pub name: String,
-    /// Length over all, m.
+    /// Length overall, m.
     pub length_m: f64,
     /// Beam, m.
     pub beam_m: f64,
-    /// Draught, m: the depth down to which waves act on the boat.
+    /// Draught, m: waves act on the boat down to this depth.
     pub draught_m: f64,
     /// Inertia and resistance.
     pub hull: Hull,
@@ -31,18 +31,18 @@ pub struct Boat {
     /// Behaviour during a hold. Older recordings lack it.
     #[serde(default)]
     pub hold: Hold,
-    /// Sensors of its own state.
+    /// Sensors of the boat's own state.
     pub sensors: Sensors,
 }
 
-/// What a boat does when it holds: without an order, out of action, or told so by its mind.
+/// What a boat does without an order, out of action, or on a hold order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Hold {
-    /// Its thrusters are at zero: it lies in the water and drifts.
+    /// Stops its thrusters and drifts.
     #[default]
     Drifts,
-    /// Its front seat keeps it where it began to hold. When people ashore stop boats, it drifts all the same.
+    /// Keeps station where the hold began. It drifts if operators stop the boats.
     KeepsStation,
 }
 
@@ -57,7 +57,7 @@ pub enum Drive {
         autopilot: Autopilot,
     },
     /// The point boat of MOOS (uSimMarine under pMarinePID), for parity with other training
-    /// environments. The sea's only effect on it is the current.
+    /// environments. Of the sea, only the current affects it.
     Kinematic(Kinematic),
 }
 
@@ -72,20 +72,19 @@ impl Boat {
     }
 }
 
-/// What the wind gets hold of: projected areas and coefficients (Fossen 2021, ch. 10):
-/// X = −½ρ V² C_x A_F cos γ, Y = ½ρ V² C_y A_L sin γ, N = ½ρ V² C_n A_L L sin 2γ, with the relative wind V at the
-/// angle γ off the bow.
+/// Wind force (Fossen 2021, ch. 10): X = −½ρ V² C_x A_F cos γ, Y = ½ρ V² C_y A_L sin γ, N = ½ρ V²
+/// C_n A_L L sin 2γ, with relative wind V at angle γ off the bow.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Windage {
-    /// Area from ahead, m². Default 0.36 beam².
+    /// A_F: frontal area, m². Default: 0.36 beam².
     #[serde(deserialize_with = "number_or_nan")]
     #[schemars(with = "Option<f64>", range(min = 0, max = 1000), extend("x-estimated" = true))]
     pub frontal_area_m2: f64,
-    /// Area from the side, m². Default 0.16 L².
+    /// A_L: lateral area, m². Default: 0.16 L².
     #[serde(deserialize_with = "number_or_nan")]
     #[schemars(with = "Option<f64>", range(min = 0, max = 5000), extend("x-estimated" = true))]
     pub lateral_area_m2: f64,
-    /// Height at which the wind is taken, m. Default 0.25 L.
+    /// Height of the reference wind, m. Default: 0.25 L.
     #[serde(deserialize_with = "number_or_nan")]
     #[schemars(with = "Option<f64>", range(min = 0.05, max = 100), extend("x-estimated" = true))]
     pub height_m: f64,
@@ -100,49 +99,49 @@ pub struct Windage {
     pub yaw_coefficient: f64,
 }
 
-/// The point boat of MOOS (uSimMarine under pMarinePID), with its own constants.
+/// The point boat of MOOS (uSimMarine under pMarinePID) with its constants.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Kinematic {
-    /// Highest speed, m/s.
+    /// Maximum speed, m/s.
     #[schemars(range(min = 0.1, max = 60))]
     pub speed_max_m_s: f64,
-    /// Thrust in per cent and speed in m/s, both rising, with [0, 0].
+    /// Pairs of thrust (%) and speed (m/s), both ascending, including [0, 0].
     #[schemars(with = "Vec<ThrustAndSpeed>")]
     pub thrust_map: Vec<(f64, f64)>,
-    /// Largest thrust, per cent.
+    /// Maximum thrust, %.
     #[schemars(range(min = 1, max = 100), extend("default" = 100))]
     pub thrust_max: f64,
-    /// Largest rudder, per cent.
+    /// Maximum rudder, %.
     #[schemars(range(min = 1, max = 100), extend("default" = 100))]
     pub rudder_max: f64,
-    /// Degrees a second at full rudder and half thrust.
+    /// Rate of turn at full rudder and half thrust, degrees/s.
     #[schemars(range(min = 0, max = 1000))]
     pub turn_rate: f64,
-    /// Share of the speed that full rudder costs.
+    /// Share of speed lost at full rudder.
     #[schemars(range(min = 0, max = 1), extend("default" = 0.85))]
     pub turn_loss: f64,
-    /// Bias of the turn, rad/s.
-    #[schemars(description = "Bias of the turn, degrees a second.")]
+    /// Turn bias, rad/s.
+    #[schemars(description = "Turn bias, degrees/s.")]
     #[schemars(rename = "rotate_deg_s", range(min = -90, max = 90), extend("default" = 0, "x-field" = "rotate_rad_s"))]
     pub rotate_rad_s: f64,
-    /// Acceleration limit, m/s²; the boat does half of it, 0 is none.
+    /// Acceleration limit, m/s², of which the boat uses half; 0: no limit.
     #[schemars(range(min = 0, max = 100), extend("default" = 0))]
     pub acceleration_max_m_s2: f64,
-    /// Deceleration limit, m/s²; the boat does half of it, 0 is none.
+    /// Deceleration limit, m/s², of which the boat uses half; 0: no limit.
     #[schemars(range(min = 0, max = 100), extend("default" = 0.5))]
     pub deceleration_max_m_s2: f64,
-    /// Thrust over desired speed, per cent per m/s; 0 uses the speed loop.
+    /// Thrust per desired speed, % per m/s; 0: use `speed_pid`.
     #[schemars(range(min = 0, max = 1000), extend("default" = 0))]
     pub speed_factor: f64,
-    /// The speed loop. Required, unless speed_factor is given.
+    /// Speed loop. Required without `speed_factor`.
     #[serde(default)]
     #[schemars(with = "Option<Pid>", !default)]
     pub speed_pid: Pid,
-    /// The heading loop.
+    /// Heading loop.
     pub heading_pid: Pid,
 }
 
-/// Thrust in per cent, and the speed in m/s that it gives.
+/// A thrust in per cent and its speed in m/s.
 #[derive(JsonSchema)]
 #[schemars(inline)]
 #[expect(dead_code, reason = "the schema of a pair")]
@@ -151,13 +150,13 @@ pub struct ThrustAndSpeed(#[schemars(range(min = -100, max = 100))] f64, #[schem
 /// Gains of pMarinePID.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Pid {
-    /// Proportional.
+    /// Proportional gain.
     #[schemars(range(min = -1000, max = 1000), extend("default" = 0))]
     pub p: f64,
-    /// Integral.
+    /// Integral gain.
     #[schemars(range(min = -1000, max = 1000), extend("default" = 0))]
     pub i: f64,
-    /// Derivative.
+    /// Derivative gain.
     #[schemars(range(min = -1000, max = 1000), extend("default" = 0))]
     pub d: f64,
     /// Limit of the integral.
@@ -165,85 +164,85 @@ pub struct Pid {
     pub i_limit: f64,
 }
 
-/// Inertia and resistance of a hull. What is left out is estimated from length L, beam, mass m and thrust.
+/// Inertia and resistance. Omitted values are estimated from length L, beam, mass m and thrust.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Hull {
-    /// Mass with payload, kg.
+    /// Mass including payload, kg.
     #[schemars(range(min = 0.1, max = 1000000))]
     pub mass_kg: f64,
-    /// Moment of inertia about midships, kg m². Default m (L/4)² + m x_g².
+    /// Moment of inertia about midships, kg m². Default: m (L/4)² + m x_g².
     #[serde(deserialize_with = "number_or_nan")]
     #[schemars(with = "Option<f64>", range(min = 0.0001, max = 1000000000), extend("x-estimated" = true))]
     pub yaw_inertia_kg_m2: f64,
     /// Centre of gravity ahead of midships, m, within the hull.
     #[schemars(range(min = -50, max = 50), extend("default" = 0))]
     pub x_g_m: f64,
-    /// Added mass in surge A11, kg. Default 2.7 ρ (m/ρ)^(5/3) / L² with ρ = 1000 (Söding).
+    /// Added mass in surge A11, kg. Default: 2.7 ρ (m/ρ)^(5/3) / L², ρ = 1000 (Söding).
     #[serde(deserialize_with = "number_or_nan")]
     #[schemars(with = "Option<f64>", range(min = 0, max = 1000000), extend("x-estimated" = true))]
     pub added_surge_kg: f64,
-    /// Added mass in sway A22, kg. Default m.
+    /// Added mass in sway A22, kg. Default: m.
     #[serde(deserialize_with = "number_or_nan")]
     #[schemars(with = "Option<f64>", range(min = 0, max = 10000000), extend("x-estimated" = true))]
     pub added_sway_kg: f64,
-    /// Added moment of inertia in yaw A66, kg m². Default the moment of inertia.
+    /// Added moment of inertia in yaw A66, kg m². Default: the moment of inertia.
     #[serde(deserialize_with = "number_or_nan")]
     #[schemars(with = "Option<f64>", range(min = 0, max = 1000000000), extend("x-estimated" = true))]
     pub added_yaw_kg_m2: f64,
-    /// Added coupling of sway and yaw A26, kg m.
+    /// Added sway-yaw coupling A26, kg m.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub added_sway_yaw_kg_m: f64,
-    /// Linear resistance in surge -X_u, kg/s. Default what makes both thrusters full ahead give the autopilot's
-    /// speed_max_m_s, with the quadratic part as given (0 if that alone is more).
+    /// Linear surge resistance -X_u, kg/s. Default: such that both thrusters full
+    /// ahead give the autopilot's `speed_max_m_s` (at least 0).
     #[serde(deserialize_with = "number_or_nan")]
     #[schemars(with = "Option<f64>", range(min = 0, max = 1000000), extend("x-estimated" = true))]
     pub surge_linear_kg_s: f64,
-    /// Quadratic resistance in surge -X_|u|u, kg/m.
+    /// Quadratic surge resistance -X_|u|u, kg/m.
     #[schemars(range(min = 0, max = 1000000), extend("default" = 0))]
     pub surge_quadratic_kg_m: f64,
-    /// Linear resistance in sway -Y_v, kg/s. Default (m + A22) / 1 s.
+    /// Linear sway resistance -Y_v, kg/s. Default: (m + A22) / 1 s.
     #[serde(deserialize_with = "number_or_nan")]
     #[schemars(with = "Option<f64>", range(min = 0, max = 10000000), extend("x-estimated" = true))]
     pub sway_linear_kg_s: f64,
-    /// Lift-like resistance in sway -Y_|u|v, kg/m.
+    /// Lift-like sway resistance -Y_|u|v, kg/m.
     #[schemars(range(min = 0, max = 1000000), extend("default" = 0))]
     pub sway_lift_kg_m: f64,
-    /// Linear resistance in yaw -N_r, kg m²/s. Default (inertia + A66) / 1 s.
+    /// Linear yaw resistance -N_r, kg m²/s. Default: (inertia + A66) / 1 s.
     #[serde(deserialize_with = "number_or_nan")]
     #[schemars(with = "Option<f64>", range(min = 0, max = 1000000000), extend("x-estimated" = true))]
     pub yaw_linear_kg_m2_s: f64,
-    /// Quadratic resistance in yaw -N_|r|r, kg m².
+    /// Quadratic yaw resistance -N_|r|r, kg m².
     #[schemars(range(min = 0, max = 1000000000), extend("default" = 0))]
     pub yaw_quadratic_kg_m2: f64,
-    /// Resistance in yaw that grows with speed -N_|u|r, kg m.
+    /// Speed-dependent yaw resistance -N_|u|r, kg m.
     #[schemars(range(min = 0, max = 10000000), extend("default" = 0))]
     pub yaw_lift_kg_m: f64,
-    /// Cross-flow drag coefficient of the immersed side (Hoerner); 0 is no cross-flow.
+    /// Cross-flow drag coefficient of the immersed side (Hoerner); 0: no cross-flow.
     #[schemars(range(min = 0, max = 3), extend("default" = 0))]
     pub crossflow_coefficient: f64,
-    /// Draught that meets the cross-flow, m. Required with a coefficient, else 0.
+    /// Draught for cross-flow, m. Required with a coefficient. Default: 0.
     #[serde(deserialize_with = "number_or_nan")]
     #[schemars(with = "Option<f64>", range(min = 0, max = 20), extend("x-estimated" = true))]
     pub crossflow_draught_m: f64,
-    /// Length that meets the cross-flow, m. Default L.
+    /// Length for cross-flow, m. Default: L.
     #[serde(deserialize_with = "number_or_nan")]
     #[schemars(with = "Option<f64>", range(min = 0, max = 200), extend("x-estimated" = true))]
     pub crossflow_length_m: f64,
-    /// Share of the Munk moment (A22 - A11) u v that acts, where 1 is the bare hull in ideal flow.
+    /// Share of the Munk moment (A22 - A11) u v; 1: bare hull in ideal flow.
     #[schemars(range(min = 0, max = 1), extend("default" = 0.5))]
     pub munk_factor: f64,
 }
 
-/// Two fixed thrusters, one each side.
+/// Two fixed thrusters, one on each side.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Thruster {
-    /// Distance of each thruster from the centre line, m.
+    /// Distance of each thruster from the centreline, m.
     pub arm_m: f64,
     /// Thrust as a function of the setting.
     pub curve: ThrustCurve,
     /// Time constant of the response to a setting, s; 0 is immediate.
     pub lag_s: f64,
-    /// The fastest change of the commanded setting, in shares of full ahead per second.
+    /// Maximum rate of change of the commanded setting, shares of full ahead per second.
     pub slew_per_s: f64,
     /// Commands below this share of full ahead have no effect.
     pub deadband: f64,
@@ -251,41 +250,41 @@ pub struct Thruster {
     pub flaws: Flaws,
 }
 
-/// What keeps thrusters from doing what they are told. The default is nothing.
+/// Deviations from ideal thrusters. The default is none.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Flaws {
-    /// Largest setting that is taken up, as a share of full ahead or astern.
+    /// Maximum setting, as a share of full ahead or astern.
     #[schemars(range(min = 0.05, max = 1), extend("default" = 1))]
     pub saturation: f64,
-    /// Factor on the port thruster's thrust, and on the starboard one's.
+    /// Factors on port and starboard thrust.
     #[schemars(flatten, with = "Gains")]
     pub gain: (f64, f64),
-    /// Factor on thrust astern. The front seat does not know it.
+    /// Factor on thrust astern, unknown to the front seat.
     #[schemars(range(min = 0, max = 1), extend("default" = 1))]
     pub reverse_efficiency: f64,
-    /// Moment at full thrust that nobody asked for, N m clockwise.
+    /// Unintended moment at full thrust, N m clockwise.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub bias_newton_m: f64,
-    /// How long a command is on its way to the thrusters, s.
+    /// Delay of commands to the thrusters, s.
     #[schemars(range(min = 0, max = 5), extend("default" = 0))]
     pub latency_s: f64,
-    /// Without a new order for this long the thrusters stop, s. Default never.
+    /// The thrusters stop without a new order for this long, s. Default: never.
     #[schemars(range(min = 0.1, max = 3600))]
     pub watchdog_s: Option<f64>,
-    /// A battery that sags. Default one that does not.
+    /// A battery whose voltage falls. Default: a constant one.
     pub battery: Option<Battery>,
-    /// Propellers that suck air in waves. Default they do not.
+    /// Loss of thrust in waves. Default: none.
     pub ventilation: Option<Ventilation>,
 }
 
-/// The factors on the thrusters' thrust, by the names that they have in files.
+/// Both factors on thrust under their names in files.
 #[derive(JsonSchema)]
 #[expect(dead_code, reason = "the schema of two keys")]
 struct Gains {
-    /// Factor on the port thruster's thrust. The front seat does not know it.
+    /// Factor on port thrust, unknown to the front seat.
     #[schemars(range(min = 0, max = 2), extend("default" = 1, "x-field" = "gain.0"))]
     port_gain: f64,
-    /// Factor on the starboard thruster's thrust. The front seat does not know it.
+    /// Factor on starboard thrust, unknown to the front seat.
     #[schemars(range(min = 0, max = 2), extend("default" = 1, "x-field" = "gain.1"))]
     starboard_gain: f64,
 }
@@ -305,32 +304,32 @@ impl Default for Flaws {
     }
 }
 
-/// A battery whose voltage, and with it the thrust, falls with its charge.
+/// A battery whose voltage, and thereby the thrust, falls with its charge.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Battery {
     /// Energy when full, J.
     #[schemars(description = "Energy when full, W h.")]
     #[schemars(rename = "capacity_wh", range(min = 1, max = 1000000), extend("x-field" = "capacity_joule"))]
     pub capacity_joule: f64,
-    /// Charge at the start of a game.
+    /// Initial share of charge.
     #[schemars(range(min = 0, max = 1), extend("default" = 1))]
     pub charge: f64,
-    /// Power that both thrusters draw at full ahead, W.
+    /// Power of both thrusters at full ahead, W.
     #[schemars(rename = "full_power_w", range(min = 0, max = 1000000), extend("x-field" = "full_power_watt"))]
     pub full_power_watt: f64,
-    /// Power that everything else draws, W.
+    /// Power of all other consumers, W.
     #[schemars(rename = "hotel_power_w", range(min = 0, max = 100000))]
     #[schemars(extend("x-field" = "hotel_power_watt", "default" = 0))]
     pub hotel_power_watt: f64,
-    /// Share of the thrust that is lost when it is empty.
+    /// Share of thrust lost when empty.
     #[schemars(range(min = 0, max = 0.9), extend("default" = 0.15))]
     pub sag: f64,
 }
 
-/// Propellers near the surface, which suck air as waves bare them.
+/// Propellers that draw air when waves expose them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Ventilation {
-    /// How deep the propellers are in still water, m.
+    /// Depth of the propellers in still water, m.
     #[schemars(range(min = 0.01, max = 10))]
     pub depth_m: f64,
 }
@@ -347,29 +346,29 @@ pub enum ThrustCurve {
     },
 }
 
-/// A propeller: thrust k n |n| newton at n rad/s.
+/// Thrust k n |n| newtons at n rad/s.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Propeller {
-    /// k turning ahead, N s²/rad².
+    /// k ahead, N s²/rad².
     #[schemars(range(min = 0.00000001, max = 1000))]
     pub k_ahead: f64,
-    /// k turning astern, N s²/rad². Default k_ahead.
+    /// k astern, N s²/rad². Default: `k_ahead`.
     #[serde(deserialize_with = "number_or_nan")]
     #[schemars(with = "Option<f64>", range(min = 0.00000001, max = 1000), extend("x-estimated" = true))]
     pub k_astern: f64,
     /// Shaft speed at full ahead, rad/s.
     #[schemars(range(min = 0.1, max = 10000))]
     pub n_max_rad_s: f64,
-    /// Shaft speed at full astern, rad/s, a positive number. Default n_max_rad_s.
+    /// Shaft speed at full astern, rad/s, positive. Default: `n_max_rad_s`.
     #[serde(deserialize_with = "number_or_nan")]
     #[schemars(with = "Option<f64>", range(min = 0.1, max = 10000), extend("x-estimated" = true))]
     pub n_min_rad_s: f64,
 }
 
-/// The front seat: how the boat follows a heading and a speed.
+/// The front seat: follows a heading and a speed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Autopilot {
-    /// Highest speed that the front seat accepts, m/s.
+    /// Maximum speed setting, m/s.
     #[schemars(range(min = 0.1, max = 60))]
     pub speed_max_m_s: f64,
     /// Natural frequency of the heading loop, rad/s.

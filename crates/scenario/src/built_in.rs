@@ -10,12 +10,12 @@ static BUILT_IN: OnceLock<BuiltIn> = OnceLock::new();
 
 /// Sets the built-in files of this process. Later calls have no effect.
 pub fn set_built_in(files: BuiltIn) {
-    // A later caller has the same files: a process has one program.
+    // Later callers have the same files: a process has one program.
     let _ = BUILT_IN.set(files);
 }
 
-/// The built-in replacement for a file missing on disk: only for a file in a folder of a folder
-/// `scenarios`, as in `scenarios/seas/gale.toml`.
+/// The built-in replacement for a missing file in a folder of `scenarios`, such as
+/// `scenarios/seas/gale.toml`.
 #[must_use]
 pub fn built_in(path: &Path) -> Option<&'static [u8]> {
     let mut parts = path.components().rev().map(|part| part.as_os_str().to_str());

@@ -1,4 +1,4 @@
-//! Chance: whether a game depends on its seed.
+//! Whether a game depends on its seed.
 
 use super::{Scenario, StartPosition};
 use crate::link::Link;
@@ -23,7 +23,7 @@ impl Scenario {
             || self.boats.iter().any(|boat| are_random_sensors(&boat.sensors))
     }
 
-    /// Whether a team's boats are dealt different roles in a random order.
+    /// Whether a team's boats get different roles in a random order.
     fn deals_roles(&self) -> bool {
         let fellows = |(i, one): (usize, &super::Vehicle)| {
             let others =

@@ -1,4 +1,4 @@
-//! The list of problems found so far, and checks of single values that add to it.
+//! The problems found so far, and checks of single values.
 
 use super::draw::{Drawing, Drawn};
 use super::files::Files;
@@ -12,30 +12,24 @@ use crate::policy::PolicyModel;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// The sources read and the problems found in them.
+/// The sources read, and the problems found in them.
 #[derive(Debug)]
 pub struct Diagnostics {
     pub(super) sources: Sources,
     /// How numbers are drawn from distributions.
     pub(super) drawing: Drawing,
-    /// The drawn numbers.
     pub(super) drawn: Vec<Drawn>,
-    /// The files to read from.
     pub(super) files: Arc<Files>,
-    /// The only texts to read from, if any.
+    /// If any, the only texts to read from.
     pub(super) texts: Option<Vec<(PathBuf, String)>>,
-    /// Models already read.
     pub(super) models: Vec<PolicyModel>,
-    /// Results of files already read.
     pub(super) kept: Arc<Kept>,
-    /// The overrides of the game's own files.
     pub(super) overrides: Overrides,
     problems: Vec<Problem>,
     faults: usize,
 }
 
 impl Diagnostics {
-    /// Empty diagnostics.
     pub(super) fn new(drawing: Drawing) -> Diagnostics {
         Diagnostics {
             sources: Sources::default(),
@@ -51,14 +45,14 @@ impl Diagnostics {
         }
     }
 
-    /// Continues from the results of an earlier reading, if any. Returns whether there were any.
+    /// Continues from the results of an earlier reading. Returns whether there were any.
     pub(super) fn resume(&mut self, reading: &Reading) -> bool {
         let Some(known) = &reading.0 else { return false };
         (self.sources, self.kept) = (**known).clone();
         true
     }
 
-    /// Reports a fault of the value at `at`. Lines with a syntax error are not reported again.
+    /// Reports a fault of the value at `at`, unless its line has a syntax error.
     pub fn note(&mut self, at: usize, message: impl Into<String>) {
         self.faults += 1;
         if !self.sources.is_broken_line(at) {
@@ -158,7 +152,7 @@ pub(super) const NAME_PATTERN: &str = "^[a-z0-9_]{1,40}$";
 /// The same pattern in words.
 pub(super) const NAME_EXPECTED: &str = "1 to 40 of a-z, 0-9 and _";
 
-/// Whether this is a valid name of a vehicle, a team or a rival.
+/// Whether this is a valid name of a vehicle, team or rival.
 pub(super) fn is_name(name: &str) -> bool {
     let fits = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
     !name.is_empty() && name.len() <= 40 && name.chars().all(fits)

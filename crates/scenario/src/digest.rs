@@ -4,7 +4,7 @@ use super::Scenario;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Identifies a plan by its file's meaning and the content of its games' files: hex.
+/// The digest of a plan, from its file's meaning and the content of its games' files: hex.
 #[must_use]
 pub fn digest_of(meaning: &str, files: &[(PathBuf, Arc<[u8]>)]) -> String {
     let contents: Vec<u128> = files.iter().map(|(_, bytes)| xxhash_rust::xxh3::xxh3_128(bytes)).collect();
@@ -13,8 +13,8 @@ pub fn digest_of(meaning: &str, files: &[(PathBuf, Arc<[u8]>)]) -> String {
 }
 
 impl Scenario {
-    /// Identifies the games of all seeds of this scenario with this version of Squall,
-    /// independently of file locations: hex.
+    /// The digest of the games of all seeds of this scenario with this version of Squall,
+    /// independent of file locations: hex.
     ///
     /// # Panics
     /// If it cannot be serialised as JSON: maps with keys that are not strings.

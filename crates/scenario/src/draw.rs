@@ -1,8 +1,8 @@
-//! Randomised numbers, drawn anew for every game: distributions in place of numbers in a file.
+//! Randomised numbers: distributions in place of numbers in a file, drawn for every game.
 //!
 //! Reading a file replaces each distribution with a number, so that the rest of a scenario contains
-//! only numbers. Files with distributions are checked at both ends of them as well, so that no game
-//! fails in the middle of a campaign.
+//! only numbers. Files with distributions are checked at both ends of each, so that no game fails
+//! in the middle of a campaign.
 
 use super::diagnostics::Diagnostics;
 use super::kept::Reading;
@@ -18,8 +18,8 @@ const WITHIN_SIGMA: f64 = 3.0;
 /// A number drawn for a game.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Drawn {
-    /// Owner and key: the vehicle, `sea`, `link` or `sharing`, and the key, as in
-    /// `blue_one/hull.mass_kg`.
+    /// Owner and key, as in `blue_one/hull.mass_kg`; the owner is a vehicle, `sea`, `link` or
+    /// `sharing`.
     pub parameter: String,
     /// The number, in the file's unit.
     pub value: f64,
@@ -28,13 +28,10 @@ pub struct Drawn {
 /// The data for drawing a game again with another seed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Recipe {
-    /// The game file.
     pub(super) game: PathBuf,
-    /// The overrides of the game's own files.
     pub(super) overrides: Overrides,
     /// Every file, as read.
     pub(super) files: Vec<(PathBuf, String)>,
-    /// The results of reading them.
     #[serde(skip)]
     pub(super) reading: Reading,
     /// The seed of the present numbers.
@@ -79,8 +76,8 @@ pub(super) fn draw(
         let key = path.rsplit('.').next().unwrap_or(path);
         let message = format!(
             "{key} is not a distribution, expected one of {{ uniform = [low, high] }}, {{ normal = [mean, sigma] }}, \
-             {{ log_normal = [median, sigma] }} with a median above 0, {{ choice = [a, b, ...] }}; \
-             and times = a factor, if wanted"
+             {{ log_normal = [median, sigma] }} with a median above 0, {{ choice = [a, b, ...] }}, \
+             optionally with times = FACTOR"
         );
         diagnostics.note(node.at, message);
         return None;
@@ -91,7 +88,7 @@ pub(super) fn draw(
     Some(if is_whole { Value::Whole(value as i64) } else { Value::Number(value) })
 }
 
-/// The number drawn from a distribution with the stream of this name; none if it is invalid.
+/// The number drawn from a distribution with this stream; none if it is invalid.
 fn number(table: &Table, drawing: Drawing, stream: &str) -> Option<f64> {
     let kind = distribution_kind(table)?;
     let finite = |node: &Node| node.as_number().filter(|number| number.is_finite());

@@ -11,62 +11,61 @@ use primitives::time::SimTime;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What fails.
+/// The kind of fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FaultKind {
-    /// The agent is dead: the boat holds and reports nothing, and no order of it counts until the fault is over. Then the agent begins
-    /// anew and has forgotten everything.
+    /// The agent is lost: the boat holds, reports nothing and accepts no order. Afterwards the
+    /// agent restarts without its memory.
     AgentLost,
-    /// No order reaches the boat, and no report of it its team: its orders expire.
+    /// Orders do not reach the boat, nor its reports the team. Its orders expire.
     LinkLost,
-    /// The receiver gives the same fix again and again, with new times.
+    /// The receiver repeats the last fix with new times.
     GpsFrozen,
-    /// The receiver gives no fix.
+    /// The receiver outputs no fix.
     GpsLost,
-    /// Fixes are off by `offset_m`, in a direction that is drawn.
+    /// Fixes are off by `offset_m` in a random direction.
     GpsOffset,
     /// The compass is off by `offset_deg`.
     CompassOffset,
-    /// The port thruster stands still.
+    /// The port thruster stops.
     PortLost,
-    /// The starboard thruster stands still.
+    /// The starboard thruster stops.
     StarboardLost,
-    /// The port thruster goes on as it went.
+    /// The port thruster keeps its thrust.
     PortStuck,
-    /// The starboard thruster goes on as it went.
+    /// The starboard thruster keeps its thrust.
     StarboardStuck,
 }
 
-/// A fault of a game, as files say it.
+/// A fault during the game.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Fault {
-    /// What fails.
+    /// The kind of fault.
     pub kind: FaultKind,
-    /// The names of the boats that it befalls, each at times of its own where those are drawn. Default all.
+    /// Names of the affected boats, each with its own random times. Default: all.
     #[schemars(length(max = 10000))]
     pub boats: Vec<String>,
-    /// When it begins, s.
+    /// Start, s.
     #[schemars(range(min = 0, max = 86400))]
     pub at_s: Option<f64>,
-    /// In place of `at_s`: the mean time until it begins, and from its end until it begins again, s; drawn from an exponential
-    /// distribution.
+    /// Instead of `at_s`: mean time to the next fault, exponentially distributed, s.
     #[schemars(range(min = 0.1, max = 1000000))]
     pub every_s: Option<f64>,
-    /// How long it lasts, s. Default to the end of the game.
+    /// Duration, s. Default: to the end of the game.
     #[schemars(range(min = 0, max = 86400))]
     pub for_s: Option<f64>,
-    /// How far fixes are off, m, with the kind `gps_offset`.
+    /// Position error, m, for "gps_offset".
     #[schemars(range(min = 0, max = 10000))]
     pub offset_m: Option<f64>,
-    /// How far the compass is off, clockwise, degrees, with the kind `compass_offset`.
+    /// Compass error clockwise, degrees, for "compass_offset".
     #[schemars(range(min = -180, max = 180))]
     pub offset_deg: Option<f64>,
-    /// Its name in the file.
+    /// The fault's name in the file.
     #[serde(default)]
     #[schemars(skip)]
     pub name: String,
-    /// The boats that it befalls.
+    /// The affected boats.
     #[serde(default)]
     #[schemars(skip)]
     pub vehicles: Vec<VehicleId>,
@@ -77,9 +76,9 @@ pub struct Fault {
 pub struct FaultSpan {
     /// The kind of fault.
     pub kind: FaultKind,
-    /// Its beginning.
+    /// Start.
     pub from: SimTime,
-    /// Its end.
+    /// End.
     pub to: SimTime,
     /// The offset of fixes, m.
     pub offset_m: f64,
@@ -90,7 +89,7 @@ pub struct FaultSpan {
 }
 
 impl FaultSpan {
-    /// Whether it is in force at this time.
+    /// Whether the fault is active at `now`.
     #[inline]
     #[must_use]
     pub fn is_on(&self, now: SimTime) -> bool {
@@ -98,8 +97,7 @@ impl FaultSpan {
     }
 }
 
-/// The faults of a vehicle with this name in the game of `seeds`, which lasts at most until `end`;
-/// by beginning.
+/// The faults of one vehicle in the game of `seeds` that begin before `end`, by start.
 #[must_use]
 pub fn fault_spans(
     faults: &[Fault],

@@ -1,8 +1,8 @@
 //! Converts keys of files and their units to fields of types, in SI.
 //!
-//! A key with an `x-field` is stored in another field than its own name: `"gain.0"` is the first
-//! entry of the list `gain`. Units are converted where the names of key and field have different
-//! ones, and `[x, y]` becomes a position.
+//! A key with an `x-field` is stored in a field with another name: `"gain.0"` is the first entry of
+//! the list `gain`. Units are converted where the names of key and field have different ones, and
+//! `[x, y]` becomes a position.
 
 use primitives::frame::Ned;
 use primitives::time::SimTime;
@@ -35,7 +35,6 @@ pub(super) fn by_fields(mut values: Map<String, Value>, properties: &Value) -> V
     table
 }
 
-/// The field's value for a key's `value`.
 fn of_field(key: &str, field: &str, value: &Value) -> Value {
     if let Some([x, y]) = value.as_array().map(Vec::as_slice) {
         return json!(Ned::from_xy(x.as_f64().unwrap_or_default(), y.as_f64().unwrap_or_default()));

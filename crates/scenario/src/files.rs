@@ -1,4 +1,4 @@
-//! The files that scenarios are read from: those on disk, each read once, or stored copies.
+//! The files that scenarios are read from: on disk, each read once, or stored copies.
 
 use super::built_in::built_in;
 use primitives::input_file;
@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// The files that scenarios are read from, with built-in files in place of missing ones. Each file
-/// is read only once, so that its content is consistent.
+/// is read only once, for consistency.
 #[derive(Debug, Default)]
 pub struct Files {
     read: Mutex<Read>,
@@ -33,7 +33,7 @@ impl Read {
 }
 
 impl Files {
-    /// These files only, without access to the disk.
+    /// Only these files, without access to the disk.
     #[must_use]
     pub fn kept(files: Vec<(PathBuf, Vec<u8>)>) -> Files {
         let mut read = Read::default();
@@ -54,7 +54,7 @@ impl Files {
             return Ok(Arc::clone(&read.files[place].1));
         }
         if self.is_complete {
-            return Err("it is not among the files kept".to_owned());
+            return Err("it is not among the stored files".to_owned());
         }
         let bytes: Arc<[u8]> = match (input_file::read(path, bytes_max), built_in(path)) {
             (Ok(bytes), _) => bytes.into(),
@@ -89,6 +89,6 @@ mod tests {
         assert_eq!(read, [(first.as_path(), &b"1"[..]), (second.as_path(), b"2")]);
         let kept = Files::kept(vec![(first.clone(), b"kept".to_vec())]);
         assert_eq!(&*kept.read(&first, 9).expect("it is kept"), b"kept");
-        assert_eq!(kept.read(&second, 9), Err("it is not among the files kept".to_owned()));
+        assert_eq!(kept.read(&second, 9), Err("it is not among the stored files".to_owned()));
     }
 }

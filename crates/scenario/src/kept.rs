@@ -1,4 +1,4 @@
-//! Cached results of files: a game is drawn again without reading its files again.
+//! Cached results of files: redrawing a game does not read its files again.
 
 use super::diagnostics::Diagnostics;
 use super::kind::Kind;

@@ -18,17 +18,17 @@ use std::collections::BTreeSet;
 use std::fmt;
 use std::path::Path;
 
-/// The checked form of a kind of scenario file, implemented by the crate that uses the file; this
-/// crate implements it for the files of a game.
+/// The checked form of a kind of scenario file, implemented by the crate that uses it; here for the
+/// files of a game.
 pub trait ScenarioFile: Sized + 'static {
-    /// The file key by key; `schema.rs` describes the declaration of keys.
+    /// The keys of the file; `schema.rs` describes their declaration.
     type Keys: DeserializeOwned + JsonSchema;
-    /// The name of the kind, also that of its schema file.
+    /// The name of the kind and of its schema file.
     const NAME: &'static str;
     /// The folder of its files.
     const FOLDER: &'static str;
 
-    /// Converts a file that satisfies its schema. `None` if there are faults, which are reported.
+    /// Converts a file that satisfies its schema; `None` if there are faults, which are reported.
     fn check(diagnostics: &mut Diagnostics, document: &Document<Self::Keys>) -> Option<Self>;
 
     /// Reads and checks the file at `path`, its bases and the files it refers to. Distributions are
@@ -98,22 +98,22 @@ impl Kind {
         (self.check)(path)
     }
 
-    /// The one of `kinds` with the folder of `path`, if any.
+    /// The kind with the folder of `path`, if any.
     #[must_use]
     pub fn by_folder(kinds: &[Kind], path: &Path) -> Option<Kind> {
         let folder = path.parent()?.file_name()?;
         kinds.iter().copied().find(|kind| folder == kind.folder)
     }
 
-    /// The one of `kinds` with the most of these top-level keys; ties go to the first.
+    /// The kind with the most of these top-level keys; ties go to the first.
     #[must_use]
     pub fn by_keys(kinds: &[Kind], keys: &BTreeSet<String>) -> Kind {
         // `max_by_key` returns the last of equal elements.
         kinds.iter().copied().rev().max_by_key(|kind| kind.known(keys)).unwrap_or(Kind::GAME)
     }
 
-    /// The one of `kinds` that a file with these top-level keys belongs to, if clearly not this
-    /// one: with at least two more of them.
+    /// The kind to which a file with these top-level keys clearly belongs, if not to this one: with
+    /// at least two more of them.
     #[must_use]
     pub fn other_by_keys(self, kinds: &[Kind], keys: &BTreeSet<String>) -> Option<Kind> {
         Some(Kind::by_keys(kinds, keys)).filter(|other| other.known(keys) >= self.known(keys) + 2)

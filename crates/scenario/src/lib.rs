@@ -84,26 +84,26 @@ use thiserror::Error;
 pub struct Scenario {
     /// The game file's stem.
     pub name: String,
-    /// The seed, which selects the game; `--seed` overrides it.
+    /// Selects the game; `--seed` overrides it.
     pub seed: u64,
-    /// Later seeds that replace it during the game, by rising times.
+    /// Later seeds that replace it during the game, by ascending time.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub reseed: Vec<Reseed>,
     /// Physics tick.
     pub tick: SimTime,
     /// Physics ticks per decision of a mind.
     pub ticks_per_decision: u32,
-    /// In lockstep, wall-clock time that the sim waits for a mind before it counts as lost, s.
+    /// Lockstep: wall-clock time that the sim waits for a mind before it counts as lost, s.
     pub patience_s: f64,
-    /// In real time, maximum age (simulated time) of an order before the boat holds, s.
+    /// Real time: maximum age of an order, in simulated time, before the boat holds, s.
     pub order_ttl_s: f64,
     /// The field of play.
     pub field: Field,
     /// The rules of the game.
     pub rules: Rules,
-    /// The water and the air above it.
+    /// The sea.
     pub sea: Sea,
-    /// The radio links between minds and boats; `None`: without delay and loss.
+    /// The radio links between minds and boats; `None`: no delay and no loss.
     pub link: Option<Link>,
     /// Faults during the game.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -114,11 +114,11 @@ pub struct Scenario {
     pub boats: Vec<Boat>,
     /// The strategies in the game.
     pub strategies: Vec<Strategy>,
-    /// The vehicles, in order of processing.
+    /// The vehicles, in processing order.
     pub vehicles: Vec<Vehicle>,
     /// Numbers drawn for this game.
     pub drawn: Vec<Drawn>,
-    /// The data for drawing other numbers, if there are any to draw.
+    /// The data for redrawing the numbers, if there are any.
     pub recipe: Option<Recipe>,
 }
 
@@ -140,8 +140,8 @@ impl Scenario {
         })
     }
 
-    /// Checks that all references are valid and all names are well-formed. Scenarios loaded from
-    /// files satisfy this; those from other sources may not.
+    /// Checks that all references and names are valid. Scenarios from files satisfy this; those
+    /// from other sources may not.
     ///
     /// # Errors
     /// The first violation, as text.
@@ -152,7 +152,7 @@ impl Scenario {
         let mut names =
             self.vehicles.iter().map(|vehicle| &vehicle.name).chain(self.teams.iter().map(|team| &team.name));
         if let Some(name) = names.find(|name| !diagnostics::is_name(name)) {
-            return Err(format!("{name:?} is no name of a vehicle or a team"));
+            return Err(format!("{name:?} is not a valid name of a vehicle or team"));
         }
         for Vehicle { name, team, boat, strategy, .. } in &self.vehicles {
             within(&format!("the team of {name}"), team.index(), self.teams.len())?;
@@ -239,22 +239,22 @@ pub struct Vehicle {
     pub boat: usize,
     /// Index into [`Scenario::strategies`].
     pub strategy: usize,
-    /// Its start position. Older recordings use the field's former name.
+    /// Older recordings use the field's former name.
     #[serde(alias = "berth")]
     pub start_position: StartPosition,
     /// The source of its motion.
     pub source: Source,
 }
 
-/// Where a vehicle's motion comes from.
+/// The source of a vehicle's motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Source {
-    /// The program moves it through the scenario's sea.
+    /// Simulation in the scenario's sea.
     #[default]
     #[serde(alias = "Simulated")]
     Simulated,
-    /// It is a real boat: its gateway reports where it is. Such games are played in real time.
+    /// A real boat: its gateway reports its position. Such games run in real time.
     #[serde(alias = "External")]
     External,
 }
@@ -264,16 +264,16 @@ pub enum Source {
 pub enum StartPosition {
     /// A fixed pose.
     At(Pose),
-    /// Somewhere in a rectangle of the field, drawn from the game's `spawn` stream, pointing at the
+    /// A random position in a rectangle of the field, from the game's `spawn` stream, facing the
     /// opponent's end.
     Somewhere {
-        /// Bounds along the field, m from the vehicle's own end.
+        /// Bounds along the field, m from the team's own end.
         along_m: (f64, f64),
-        /// Bounds across the field, m from the edge to port as the team looks from its own end at its
-        /// opponent's. For the first team that edge joins corners 1 and 2 (`across` is the field's depth
-        /// less this); for the second it joins corners 0 and 3 (`across` is this).
+        /// Bounds across the field, m from the port edge as seen from the team's own end. For the
+        /// first team that edge joins corners 1 and 2 (`across` is the field's depth less this);
+        /// for the second it joins corners 0 and 3 (`across` is this).
         across_m: (f64, f64),
-        /// Smallest distance to any other vehicle and to obstacles, m.
+        /// Minimum distance to other vehicles and obstacles, m.
         gap_m: f64,
     },
 }

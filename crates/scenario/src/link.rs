@@ -1,49 +1,48 @@
-//! The links between a mind and its boat, and between a boat and its observations of others: radio
-//! links and contact reports with their delays and losses.
+//! Radio links between minds and boats, with their delays and losses.
 //!
-//! These belong to the game and are seeded like everything in it. Faults of the real network are
+//! They belong to the game and are seeded like everything in it. Faults of the real network are
 //! separate.
 
 use primitives::frame::Ned;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The radio link between the minds ashore and each boat. Any number may be drawn for every game.
+/// The radio link between the minds ashore and each boat.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Link {
-    /// Shortest time a message takes, s.
+    /// Minimum delay of a message, s.
     #[schemars(range(min = 0, max = 10), extend("default" = 0.02))]
     pub delay_s: f64,
-    /// Mean of what it takes longer, s.
+    /// Mean additional delay, s.
     #[schemars(range(min = 0, max = 10), extend("default" = 0))]
     pub jitter_s: f64,
-    /// Losses. Default none.
+    /// Message loss. Default: none.
     #[serde(default)]
     #[schemars(with = "Option<Loss>", !default)]
     pub loss: Loss,
-    /// How far it reaches, m. Default everywhere.
+    /// Range, m. Default: unlimited.
     #[schemars(range(min = 1, max = 1000000))]
     pub range_m: Option<f64>,
-    /// Where the station ashore stands, [x, y] in m from the datum. Default the middle of the field.
+    /// Position of the shore station, [x, y] in m from the datum. Default: the middle of the field.
     #[serde(default)]
     #[schemars(with = "Option<[f64; 2]>", !default, inner(range(min = -1000000, max = 1000000)))]
     #[schemars(extend("x-field" = "station"))]
     pub station: Ned,
 }
 
-/// Losses in bursts, after Gilbert and Elliott: the link is good or bad, and loses messages in either state.
+/// Burst losses (Gilbert-Elliott): the link alternates between a good and a bad state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Loss {
-    /// Share lost while the link is good.
+    /// Share lost in the good state.
     #[schemars(range(min = 0, max = 1), extend("default" = 0))]
     pub good: f64,
-    /// Share lost while it is bad.
+    /// Share lost in the bad state.
     #[schemars(range(min = 0, max = 1), extend("default" = 0.5))]
     pub bad: f64,
-    /// How long it stays good on average, s (always at 0).
+    /// Mean duration of the good state, s; 0: always good.
     #[schemars(range(min = 0, max = 86400), extend("default" = 0))]
     pub good_time_s: f64,
-    /// How long it stays bad on average, s.
+    /// Mean duration of the bad state, s.
     #[schemars(range(min = 0.01, max = 86400), extend("default" = 2))]
     pub bad_time_s: f64,
 }

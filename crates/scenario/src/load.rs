@@ -1,4 +1,4 @@
-//! Entry points: load a file by path, or return all of its faults.
+//! Entry points: load a file by path, or return all its faults.
 
 use super::diagnostics::Diagnostics;
 use super::draw::{Drawing, Drawn, Recipe};
@@ -30,13 +30,12 @@ pub fn load(path: &Path) -> Result<Scenario, Problems> {
 /// Reads and checks a game with overrides.
 ///
 /// # Errors
-/// All faults of all files, by file, line and column; also a strategy for a team that is not in the
-/// game.
+/// All faults of all files, by file, line and column; or a strategy for an unknown team.
 pub fn load_with(path: &Path, overrides: &Overrides) -> Result<Scenario, Problems> {
     load_with_files(path, overrides, &Arc::default())
 }
 
-/// The same, read from these files.
+/// As [`load_with`], from these files.
 ///
 /// # Errors
 /// All faults of all files, as above.
@@ -44,7 +43,7 @@ pub fn load_with_files(path: &Path, overrides: &Overrides, files: &Arc<Files>) -
     load_knowing(&Reading::default(), path, overrides, files)
 }
 
-/// The same, with some files already read, and with the same settings.
+/// As [`load_with_files`], with some files already read with the same settings.
 fn load_knowing(known: &Reading, path: &Path, overrides: &Overrides, files: &Arc<Files>) -> Result<Scenario, Problems> {
     let read = |drawing: Drawing| {
         let mut diagnostics = Diagnostics::new(drawing);
@@ -80,7 +79,7 @@ impl Scenario {
     /// This scenario's game with `seed`: distributions are drawn again.
     ///
     /// # Errors
-    /// Faults of the combination of numbers, though each alone is valid.
+    /// Faults of the combination of numbers, each valid alone.
     pub fn of_seed(&self, seed: u64) -> Result<Scenario, Problems> {
         let Some(recipe) = self.recipe.as_ref().filter(|recipe| recipe.seed != Some(seed)) else {
             return Ok(Scenario { seed, ..self.clone() });
@@ -99,8 +98,7 @@ impl Scenario {
     }
 }
 
-/// Reads and checks the file at `path` as one of its kind: for types that implement
-/// [`ScenarioFile`].
+/// Reads and checks the file at `path` as one of its kind.
 ///
 /// # Errors
 /// All faults of it, its bases and the files it refers to, by file, line and column.
@@ -140,8 +138,7 @@ pub fn draw_boat(path: &Path, seed: u64) -> Result<(Boat, Vec<Drawn>), Problems>
     of_seed(path, seed)
 }
 
-/// Reads and checks the sea file at `path`, and draws its numbers with this seed: those of the game
-/// with that seed.
+/// Reads and checks the sea file at `path`, and draws its numbers as in the game with this seed.
 ///
 /// # Errors
 /// All faults of it and its bases.
@@ -158,8 +155,8 @@ pub struct GameVariants {
 }
 
 impl GameVariants {
-    /// Reads the game with these values; later ones must set the same keys. Faults are returned by
-    /// [`GameVariants::load`].
+    /// Reads the game with these values; later ones must set the same keys. [`GameVariants::load`]
+    /// returns the faults.
     #[must_use]
     pub fn new(game: &Path, overrides: &Overrides) -> GameVariants {
         let mut diagnostics = Diagnostics::new(Drawing::Least);
@@ -193,8 +190,8 @@ pub fn default_of<F: ScenarioFile>() -> Result<F, Problems> {
 
 /// Reads and checks a scenario file of any of these kinds, and returns its kind.
 ///
-/// The kind follows from its folder. In any other folder it is the kind with the most of its
-/// top-level keys, including its bases' keys; ties go to the first of `kinds`.
+/// The folder determines the kind. In any other folder it is the kind with the most of the file's
+/// top-level keys, including those of its bases; ties go to the first of `kinds`.
 ///
 /// # Errors
 /// All faults of it, its bases and the files it refers to.
@@ -203,8 +200,7 @@ pub fn check_file(kinds: &[Kind], path: &Path) -> Result<Kind, Problems> {
     kind.check(path).map(|()| kind)
 }
 
-/// The one of `kinds` that a file belongs to by its folder or its keys, if clearly not the expected
-/// one.
+/// The kind that a file belongs to by its folder or its keys, if clearly not the expected one.
 #[must_use]
 pub fn other_kind(kinds: &[Kind], path: &Path, expected: Kind) -> Option<Kind> {
     match Kind::by_folder(kinds, path) {

@@ -29,10 +29,10 @@ pub struct Outcome {
     #[serde(default)]
     pub random: bool,
     /// Whether wind, waves or current favour one end of the field: a single game then does not show
-    /// the better team.
+    /// which team is better.
     #[serde(default)]
     pub ends_differ: bool,
-    /// The winning team's name; none for a draw or a game cut short.
+    /// The winning team's name; none for a draw or an unfinished game.
     pub winner: Option<String>,
     /// The team of each boat.
     pub boats: BTreeMap<String, String>,
@@ -97,7 +97,7 @@ impl EventOutcome {
         }
     }
 
-    /// The event as a sentence for people, without its time.
+    /// The event as a sentence, without its time.
     #[must_use]
     pub fn sentence(&self) -> String {
         let who = self.vehicle.as_deref().unwrap_or("nobody");
@@ -109,22 +109,22 @@ impl EventOutcome {
             "flag_returned" => format!("{who} loses the {team} flag"),
             "tagged" => format!("{who} is tagged by {other}"),
             "tagged_by_boundary" => format!("{who} is tagged by the boundary"),
-            "untagged" => format!("{who} is home and plays again"),
+            "untagged" => format!("{who} is untagged and back in play"),
             "left_field" => format!("{who} leaves the field"),
             "returned_to_field" => format!("{who} is back on the field"),
             "collided" => format!("{who} and {other} collide"),
-            "entered_keepout" => format!("{who} comes too near its own flag"),
+            "entered_keepout" => format!("{who} enters the keep-out of its own flag"),
             "disabled" => format!("{who} is out of action"),
             "enabled" => format!("{who} is back in action"),
             "agent_lost" => format!("{who} has LOST ITS AGENT and holds"),
             "agent_back" => format!("{who} has an agent again"),
-            "quarantined" => format!("{who} is QUARANTINED: its numbers went bad"),
-            "nav_lost" => format!("{who} is LOST: nobody reports where it is"),
-            "nav_back" => format!("{who} is found again"),
+            "quarantined" => format!("{who} is QUARANTINED: its state is not finite"),
+            "nav_lost" => format!("{who} is LOST: its position is no longer reported"),
+            "nav_back" => format!("{who} reports its position again"),
             "e_stopped" => "E-STOP: all boats hold".to_owned(),
             "released" => "the E-stop is released".to_owned(),
             "halted" => "all boats hold".to_owned(),
-            "went_on" => "boats go on".to_owned(),
+            "went_on" => "boats continue".to_owned(),
             "ended" if self.team.is_none() => "the game ends in a draw".to_owned(),
             "ended" => format!("{team} wins"),
             other => other.to_owned(),

@@ -11,15 +11,14 @@ use std::path::PathBuf;
 pub struct Overrides {
     /// The sea file.
     pub sea: Option<PathBuf>,
-    /// Strategy files by team name: all boats of that team follow it, including those with a
-    /// strategy of their own.
+    /// Strategy files by team name; they also replace the strategies of single boats.
     pub strategies: BTreeMap<String, PathBuf>,
-    /// Exchanges the strategies of the two teams; no boat of the game may have one of its own.
+    /// Exchanges the strategies of the two teams; no boat of the game may have its own.
     #[serde(default)]
     pub exchange_strategies: bool,
-    /// A rehearsal: every boat is simulated, whatever its source in the game.
+    /// A rehearsal: all boats are simulated, whatever their source.
     pub simulate_all: bool,
-    /// Overrides of single values; of several for one key the last one counts.
+    /// Overrides of single values; the last one for a key counts.
     #[serde(default)]
     pub settings: Vec<Setting>,
 }
@@ -31,7 +30,7 @@ impl Overrides {
     }
 
     /// The name of this team if a setting overrides a value of its strategy, otherwise an empty
-    /// name: the owner of the strategy's file, which teams share if they do not change it.
+    /// name: the owner of the strategy's file. Teams without overrides share a file.
     pub(super) fn owner_of_strategy<'a>(&self, team: &'a str) -> &'a str {
         if self.settings.iter().any(|setting| setting.team() == Some(team)) { team } else { "" }
     }

@@ -32,7 +32,7 @@ pub struct PolicySpec {
     pub observation: ObservationSpace,
     /// The action space.
     pub action: ActionSpace,
-    /// The time from one decision to the next, s.
+    /// Time between decisions, s.
     pub period_s: f64,
 }
 
@@ -43,7 +43,7 @@ pub struct PartialSpec {
     pub observation: Option<ObservationSpace>,
     /// The action space.
     pub action: Option<ActionSpace>,
-    /// The time from one decision to the next, s.
+    /// Time between decisions, s.
     pub period_s: Option<f64>,
 }
 
@@ -87,7 +87,7 @@ pub enum PolicyError {
         expected: String,
     },
     /// Neither the metadata nor the user specifies a field.
-    #[error("its metadata has no {key}, expected it there or {said_by} here")]
+    #[error("its metadata has no {key}, expected it there, or {said_by} here")]
     Unsaid {
         /// The key of the missing entry.
         key: &'static str,
@@ -95,7 +95,7 @@ pub enum PolicyError {
         said_by: &'static str,
     },
     /// The metadata contradicts the user's specification.
-    #[error("its metadata has {key} = {found}, expected {expected}, which is said here")]
+    #[error("its metadata has {key} = {found}, expected {expected}, as stated here")]
     Contradiction {
         /// The entry's key.
         key: &'static str,
@@ -104,8 +104,8 @@ pub enum PolicyError {
         /// The value specified elsewhere.
         expected: String,
     },
-    /// It has more than one input, or one of another size.
-    #[error("it takes {found}, expected {expected}")]
+    /// It does not have exactly one input, or its size is wrong.
+    #[error("its inputs are {found}, expected {expected}")]
     Input {
         /// Its inputs.
         found: String,
@@ -113,7 +113,7 @@ pub enum PolicyError {
         expected: String,
     },
     /// None of its outputs is suitable for an action, or several are.
-    #[error("it gives {found}, expected {expected}")]
+    #[error("its outputs are {found}, expected {expected}")]
     Output {
         /// Its outputs.
         found: String,
@@ -142,14 +142,13 @@ impl PolicyModel {
         self.network.clone()
     }
 
-    /// Index of the network output with the action: logits, the index of the action, or its
-    /// components.
+    /// Index of the network output with the action: logits, an index, or components.
     #[must_use]
     pub fn output(&self) -> usize {
         self.output
     }
 
-    /// The number of values that it receives.
+    /// The number of values of an observation.
     #[must_use]
     pub fn input_size(&self) -> usize {
         self.network.input_size()

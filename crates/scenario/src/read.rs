@@ -28,8 +28,8 @@ pub struct Document<T> {
 }
 
 impl<T> Document<T> {
-    /// The offset of the value at `path`, for example at `team.1.name`, or else of the innermost
-    /// table that lacks it.
+    /// The offset of the value at `path`, for example `team.1.name`, or else of the innermost
+    /// existing table.
     #[must_use]
     pub fn at(&self, path: &str) -> usize {
         self.tree.find(path).0.at
@@ -51,16 +51,15 @@ impl<T> Document<T> {
         !self.wrong.iter().any(|wrong| is_below(wrong, path) || is_below(path, wrong))
     }
 
-    /// Whether there were no faults in it, or in anything checked since it was read.
+    /// Whether no fault was found in it, or in anything checked since it was read.
     #[must_use]
     pub fn is_faultless(&self, diagnostics: &Diagnostics) -> bool {
         diagnostics.faults() == self.faults
     }
 }
 
-/// Maximum size of a file: files are written by people, and a larger one is something else.
+/// Maximum size of a file, bytes: files are written by people.
 const LARGEST_BYTES: u64 = 4 << 20;
-/// Maximum number of nested bases.
 const LONGEST_CHAIN: usize = 16;
 /// Keys that count only in a strategy file itself, not in its bases.
 const OWN: &[&str] = &["unsafe_i_know", "unsafe_because"];
@@ -174,9 +173,10 @@ pub(super) fn tree(
         if let Some(at) = asked_at
             && (paths.contains(&path) || paths.len() == LONGEST_CHAIN)
         {
-            let through = paths.iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(" on ");
-            let why = if paths.contains(&path) { "refers back to itself" } else { "is too deep" };
-            diagnostics.note(at, format!("base {why} ({through} on {}), expected an end", path.display()));
+            let through = paths.iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(", ");
+            let why = if paths.contains(&path) { "refers back to itself" } else { "has too many levels" };
+            diagnostics
+                .note(at, format!("base {why} ({through}, {}), expected a file without this base", path.display()));
             return None;
         }
         let (start, text) = text_of(diagnostics, &path, asked_at)?;
@@ -220,7 +220,7 @@ fn text_of(diagnostics: &mut Diagnostics, path: &Path, asked_at: Option<usize>) 
             let good = error.utf8_error().valid_up_to();
             let text = String::from_utf8_lossy(&error.as_bytes()[..good]).into_owned();
             let start = diagnostics.sources.add(path.to_owned(), text.into());
-            diagnostics.note_syntax(start + good, "found a byte that is not UTF-8, expected text");
+            diagnostics.note_syntax(start + good, "found invalid UTF-8, expected text");
             None
         }
     }
@@ -229,7 +229,7 @@ fn text_of(diagnostics: &mut Diagnostics, path: &Path, asked_at: Option<usize>) 
 fn bytes_of(diagnostics: &Diagnostics, path: &Path) -> Result<Vec<u8>, String> {
     if let Some(texts) = &diagnostics.texts {
         let kept = texts.iter().find(|(kept, _)| kept == path);
-        return kept.map(|(_, text)| text.clone().into_bytes()).ok_or_else(|| "is not among the files kept".into());
+        return kept.map(|(_, text)| text.clone().into_bytes()).ok_or_else(|| "is not among the stored files".into());
     }
     let bytes = diagnostics.files.read(path, LARGEST_BYTES);
     bytes.map(|bytes| bytes.to_vec()).map_err(|error| format!("cannot be read ({error}), expected a file"))

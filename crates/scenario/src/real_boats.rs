@@ -12,7 +12,7 @@ use thiserror::Error;
     .names.join(", ")
 )]
 pub struct RealBoats {
-    /// Names of the boats.
+    /// Their names.
     pub names: Vec<String>,
 }
 
@@ -23,7 +23,7 @@ impl Scenario {
         self.vehicles.iter().enumerate().filter(is_external).map(|(i, _)| VehicleId::at(i))
     }
 
-    /// Checks that the game can run without a clock: all its boats are simulated.
+    /// Checks that the game can run without a clock: all boats are simulated.
     ///
     /// # Errors
     /// [`RealBoats`] with the names of the others.

@@ -21,25 +21,47 @@ const EXPRESSIONS: &str = include_str!("reference/expressions.md");
 pub fn file_reference(kinds: &[Kind]) -> String {
     let mut page = FILES.to_owned();
     for kind in kinds.iter().filter(|kind| **kind != Kind::STRATEGY) {
-        let root = declared(*kind);
-        tables(&mut page, &format!("## `{}/`", kind.folder()), "", root);
+        let mut sections = vec![];
+        collect(&mut sections, &format!("## `{}/`", kind.folder()), "", (declared(*kind), ""));
+        for section in sections {
+            let _ = write!(page, "\n{}\n{}", section.heading, section.text);
+        }
     }
     page
 }
 
-/// The table of the keys at `path`, and those of the tables in it.
-fn tables(page: &mut String, heading: &str, path: &str, about: &Value) {
-    table(
-        page,
-        &format!("{heading}\n\n{}", in_a_line(about.get(TABLE).unwrap_or(&about["description"]))),
-        about,
-        |key| key != "base",
-    );
+/// A heading, and the text and table below it.
+struct Section {
+    heading: String,
+    text: String,
+}
+
+/// Collects the section of the keys at `path`, described as `said` already, and those of the tables
+/// in it. Equal tables share a section.
+fn collect(sections: &mut Vec<Section>, heading: &str, path: &str, (about, said): (&Value, &str)) {
+    let mut text = in_a_line(about.get(TABLE).unwrap_or(&about["description"]));
+    text = if text.is_empty() || text == said { String::new() } else { format!("\n{text}\n") };
+    table(&mut text, about, |key, about| key != "base" && about.get("const").is_none());
+    match sections.iter_mut().find(|section| section.text == text) {
+        Some(section) => section.heading.push_str(&heading.replacen("###", ",", 1)),
+        None => sections.push(Section { heading: heading.to_owned(), text }),
+    }
     for (key, about) in about["properties"].as_object().into_iter().flatten() {
         let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
-        for (about, heading) in [(about, format!("### `{path}`")), (&about["items"], format!("### `[[{path}]]`"))] {
+        let said = description(about);
+        for (about, heading) in [
+            (about, format!("### `{path}`")),
+            (&about["items"], format!("### `[[{path}]]`")),
+            (&about["additionalProperties"], format!("### `[{path}.NAME]`")),
+        ] {
             if about.get("properties").is_some() {
-                tables(page, &heading, &path, about);
+                collect(sections, &heading, &path, (about, &said));
+            }
+        }
+        for choice in about["oneOf"].as_array().into_iter().flatten() {
+            if choice["properties"].as_object().is_some_and(|keys| keys.len() > 1) {
+                let heading = format!("### `{path}` of kind {}", choice["properties"]["kind"]["const"]);
+                collect(sections, &heading, &path, (choice, &said));
             }
         }
     }
@@ -50,14 +72,13 @@ fn tables(page: &mut String, heading: &str, path: &str, about: &Value) {
 pub fn reference() -> String {
     let root = declared(Kind::STRATEGY);
     let mut page = OPENING.to_owned();
-    table(&mut page, "## The file", root, |_| true);
-    for (name, heading) in [
-        ("Helm", "## `helm`"),
-        ("Variable", "## A variable as a table"),
-        ("Mode", "## `[[mode]]`"),
-        ("Rule", "## `[[rule]]`"),
-    ] {
-        table(&mut page, heading, &root["definitions"][name], |_| true);
+    page.push_str("\n## The file\n");
+    table(&mut page, root, |_, _| true);
+    for (name, heading) in
+        [("Helm", "`helm`"), ("Variable", "A variable as a table"), ("Mode", "`[[mode]]`"), ("Rule", "`[[rule]]`")]
+    {
+        let _ = write!(page, "\n## {heading}\n");
+        table(&mut page, &root["definitions"][name], |_, _| true);
     }
     let quoted = |names: &[&str]| names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
     let (who, what) = (quoted(&Who::names()), quoted(&What::names()));
@@ -70,82 +91,87 @@ pub fn reference() -> String {
 
 /// The keys with a choice of words, and the meaning of each word.
 fn choices(page: &mut String, root: &Value) {
-    page.push_str("\n## Choices\n\n| key | choice | meaning |\n|---|---|---|\n");
+    page.push_str("\n## Choices\n\n| key | choices |\n|---|---|\n");
     for (key, name) in [
         ("assignment", "Assignment"),
         ("turn", "Turn"),
         ("contacts", "Contacts"),
         ("grade", "Grade"),
+        ("beyond_halt", "BeyondHalt"),
         ("by", "Proposer"),
     ] {
-        for choice in root["definitions"][name]["oneOf"].as_array().into_iter().flatten() {
-            let _ = writeln!(page, "| `{key}` | `{}` | {} |", choice["const"], description(choice));
-        }
+        let choices = root["definitions"][name]["oneOf"].as_array().into_iter().flatten();
+        let choices: Vec<_> = choices.map(|choice| format!("`{}`: {}", choice["const"], description(choice))).collect();
+        let _ = writeln!(page, "| `{key}` | {} |", choices.join("<br>"));
     }
 }
 
 fn names(page: &mut String) {
-    let kind = |is_truth: bool| if is_truth { "truth" } else { "number" };
-    page.push_str("\n### Facts\n\n| name | is a | meaning |\n|---|---|---|\n");
-    for fact in Fact::all() {
-        let _ = writeln!(page, "| `{}` | {} | {} |", fact.name(), kind(fact.is_truth()), fact.meaning());
+    page.push_str("\n### Facts\n");
+    for (is_truth, kind) in [(true, "truth"), (false, "number")] {
+        let _ = write!(page, "\n| {kind} | meaning |\n|---|---|\n");
+        for fact in Fact::all().iter().filter(|fact| fact.is_truth() == is_truth) {
+            let _ = writeln!(page, "| `{}` | {} |", fact.name(), line(fact.meaning()));
+        }
     }
-    page.push_str("\n### Measures\n\nOf a place or a boat, by its name.\n\n| call | is a | meaning |\n|---|---|---|\n");
-    for measure in Measure::all() {
-        let (name, meaning) = (measure.name(), measure.meaning());
-        let two = if measure.is_of_two() { format!(" `{name}(place, place)`") } else { String::new() };
-        let _ = writeln!(page, "| `{name}(place)`{two} | {} | {meaning} |", kind(measure.is_truth()));
+    page.push_str("\n### Measures\n\nOf a place or boat.\n");
+    for (is_truth, kind) in [(true, "truth"), (false, "number")] {
+        let _ = write!(page, "\n| {kind} | meaning |\n|---|---|\n");
+        for measure in Measure::all().iter().filter(|measure| measure.is_truth() == is_truth) {
+            let (name, meaning) = (measure.name(), line(measure.meaning()));
+            let two = if measure.is_of_two() { format!(" `{name}(from, to)`") } else { String::new() };
+            let _ = writeln!(page, "| `{name}(place)`{two} | {meaning} |");
+        }
     }
-    page.push_str(
-        "\n## Places\n\nA place is `[x, y]`, a named point of the own team such as `CFX`, or one of these.\n",
-    );
-    page.push_str("\n| place | what it is |\n|---|---|\n");
+    page.push_str("\n## Places\n\nA place is `[x, y]`, a named point of the team such as `CFX`, or one of these: of several, the nearest.\n");
+    page.push_str("\n| place | meaning |\n|---|---|\n");
     for mark in Mark::all() {
-        let _ = writeln!(page, "| `{}` | {} |", mark.name(), mark.meaning());
+        let _ = writeln!(page, "| `{}` | {} |", mark.name(), line(mark.meaning()));
     }
-    page.push_str("\n| boat | which it is |\n|---|---|\n");
+    page.push_str("\n| boat | meaning |\n|---|---|\n");
     for boat in Boat::all() {
-        let _ = writeln!(page, "| `{}` | {} |", boat.name(), boat.meaning());
+        let _ = writeln!(page, "| `{}` | {} |", boat.name(), line(boat.meaning()));
     }
 }
 
 fn behaviours(page: &mut String, root: &Value) {
     // A full stop has the common keys of all kinds and none of its own.
     let common = &root["definitions"]["FullStop"];
-    table(page, "## `[behaviour.NAME]`\n\nWhat every kind has.", common, |_| true);
+    page.push_str("\n## `[behaviour.NAME]`\n\nKeys of every kind. Speeds are limited to the boat's top speed.\n");
+    table(page, common, |_, _| true);
     for about in root["properties"]["behaviour"]["additionalProperties"]["oneOf"].as_array().into_iter().flatten() {
         let name = about["properties"]["kind"]["const"].as_str().unwrap_or_default();
-        let heading = format!("### `{name}`\n\n{}", description(about));
-        table(page, &heading, about, |key| common["properties"].get(key).is_none());
+        let _ = write!(page, "\n### `{name}`\n\n{}\n", description(about));
+        table(page, about, |key, _| common["properties"].get(key).is_none());
         if name == "loiter" {
-            table(page, "#### `ellipse`", &root["definitions"]["Ellipse"], |_| true);
+            page.push_str("\n#### `ellipse`\n");
+            table(page, &root["definitions"]["Ellipse"], |_, _| true);
         }
     }
 }
 
-/// A heading and a table of the keys that are `wanted`, required ones first.
-fn table(page: &mut String, heading: &str, about: &Value, wanted: impl Fn(&str) -> bool) {
-    let _ = write!(page, "\n{heading}\n");
+/// A table of the keys that are `wanted`, required ones first. The default, in brackets, is that of
+/// the schema, or else the last sentence of the description.
+fn table(page: &mut String, about: &Value, wanted: impl Fn(&str, &Value) -> bool) {
     let required: Vec<&str> = about["required"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
-    let keys = about["properties"].as_object().into_iter().flatten().filter(|(key, _)| wanted(key));
+    let keys = about["properties"].as_object().into_iter().flatten().filter(|(key, about)| wanted(key, about));
     let is_required = |key: &str, about| required.contains(&key) && !may_be_empty(about);
     let (first, rest): (Vec<_>, Vec<_>) = keys.partition(|(key, about)| is_required(key, about));
     if first.is_empty() && rest.is_empty() {
         return;
     }
-    page.push_str("\n| key | type | range | default | meaning |\n|---|---|---|---|---|\n");
+    page.push_str("\n| key | value (default) | meaning |\n|---|---|---|\n");
     for (key, about) in first.into_iter().chain(rest) {
+        let text = description(about);
+        let (meaning, described) = text.split_once("Default: ").unwrap_or((&text, ""));
         let default = match about.get("default") {
             None if is_required(key, about) => "*required*".to_owned(),
-            None | Some(Value::Object(_)) => String::new(),
+            None | Some(Value::Object(_) | Value::Null) => described.trim_end_matches('.').to_owned(),
             Some(default) => default.to_string(),
         };
-        let kind = match key.as_str() {
-            "kind" => "text: one of those below".to_owned(),
-            "when" => "expression".to_owned(),
-            _ => type_of(about),
-        };
-        let _ = writeln!(page, "| `{key}` | {kind} | {} | {default} | {} |", range(about), description(about));
+        let value = if key == "when" { "condition".to_owned() } else { value_of(about) };
+        let default = if default.is_empty() { default } else { format!(" ({default})") };
+        let _ = writeln!(page, "| `{key}` | {value}{default} | {} |", meaning.trim_end());
     }
 }
 
@@ -154,21 +180,25 @@ fn description(about: &Value) -> String {
 }
 
 fn in_a_line(text: &Value) -> String {
-    text.as_str().unwrap_or_default().replace('\n', " ")
+    line(text.as_str().unwrap_or_default())
+}
+
+/// A text in one line, as a cell of a table.
+fn line(text: &str) -> String {
+    text.trim().replace('\n', " ").replace('|', "\\|")
 }
 
 /// The allowed range of a number, or of a list's length.
 fn range(about: &Value) -> String {
-    let about = if is_pair(about) { &about["items"] } else { about };
     let bound = |keys: [&str; 2]| {
         let bound = keys.into_iter().find_map(|key| about.get(key))?;
         bound.as_i64().map(|whole| whole.to_string()).or(bound.as_f64().map(|number| number.to_string()))
     };
     match (bound(["minimum", "minItems"]), bound(["maximum", "maxItems"])) {
         (Some(least), Some(most)) if least == most => least,
-        (Some(least), Some(most)) => format!("{least} to {most}"),
-        (Some(least), None) => format!("at least {least}"),
-        (None, Some(most)) => format!("at most {most}"),
+        (Some(least), Some(most)) => format!("{least}..{most}"),
+        (Some(least), None) => format!("{least} or more"),
+        (None, Some(most)) => format!("up to {most}"),
         (None, None) => String::new(),
     }
 }
@@ -178,29 +208,65 @@ fn is_pair(about: &Value) -> bool {
     about["minItems"] == 2 && about["maxItems"] == 2 && about["items"].get("properties").is_none()
 }
 
+/// The allowed values, in words; a range alone is that of a number.
+fn value_of(about: &Value) -> String {
+    if let Some(choices) = about["oneOf"].as_array() {
+        return choices.iter().map(choice).collect::<Vec<_>>().join(", ");
+    }
+    let is_expression = about["title"] == "a number or an expression";
+    let (kind, range) = match about["type"].as_str() {
+        Some("array") if !is_pair(about) => {
+            return [range(about), items_of(&about["items"])].join(" ").trim().to_owned();
+        }
+        Some("array") => ("pair".to_owned(), range(&about["items"])),
+        _ => (kind_of(about), range(about)),
+    };
+    match (kind.as_str(), range.as_str()) {
+        (_, "") => kind,
+        _ if is_expression => format!("{range}\\*"),
+        ("number", _) => range,
+        _ => format!("{kind}, {range}"),
+    }
+}
+
+/// One of several values: a text, or a table by its kind and keys.
+fn choice(about: &Value) -> String {
+    match about["properties"].as_object() {
+        Some(keys) => {
+            let others: String = keys.keys().filter(|key| *key != "kind").map(|key| format!(", {key}")).collect();
+            format!("`{{ kind = {}{others} }}`", keys["kind"]["const"])
+        }
+        None => format!("`{}`", about["const"]),
+    }
+}
+
+/// The type of a list's entries.
+fn items_of(about: &Value) -> String {
+    match about["oneOf"].as_array() {
+        Some(choices) => format!("of {}", choices.iter().map(choice).collect::<Vec<_>>().join(", ")),
+        None if about.get("anyOf").is_some() && about.get("title").is_none() => "values".to_owned(),
+        None if is_pair(about) => "pairs".to_owned(),
+        None if about["type"] == "array" => format!("lists of {}", items_of(&about["items"])),
+        None => format!("{}s", kind_of(about)),
+    }
+}
+
 /// The type in a schema, in words.
-fn type_of(about: &Value) -> String {
+fn kind_of(about: &Value) -> String {
     match about["title"].as_str() {
-        Some("a number or an expression") => return "number or expression".to_owned(),
         Some(title @ ("boat" | "place")) => return title.to_owned(),
         _ => {}
     }
-    if let Some(choices) = about["oneOf"].as_array() {
-        return choices.iter().map(|choice| format!("`{}`", choice["const"])).collect::<Vec<_>>().join(", ");
-    }
     match about["anyOf"][0]["type"].as_str() {
-        Some("array") => return "pair of numbers, or text".to_owned(),
-        Some(_) => return "number, truth or text".to_owned(),
+        Some("array") => return "pair or text".to_owned(),
+        Some(_) => return "number, boolean or text".to_owned(),
         None => {}
     }
     match about["type"].as_str().unwrap_or_default() {
-        "integer" => "whole number".to_owned(),
-        "boolean" => "truth".to_owned(),
+        "string" if about.get("const").is_some() => "one of those below".to_owned(),
+        "string" if about["x-expected"] == "the path of a file" => "path".to_owned(),
         "string" => "text".to_owned(),
         "object" => "table".to_owned(),
-        "array" if is_pair(about) => "pair of numbers".to_owned(),
-        "array" if is_pair(&about["items"]) => "list of pairs of numbers".to_owned(),
-        "array" => format!("list of {}s", type_of(&about["items"])),
         name => name.to_owned(),
     }
 }

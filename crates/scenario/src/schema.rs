@@ -77,16 +77,15 @@ pub(super) fn may_be_empty(schema: &Value) -> bool {
     }
 }
 
-/// The schema of a distribution.
 const DISTRIBUTION: &str = include_str!("distribution.schema.json");
 /// The mark of tables whose numbers may be distributions.
 pub(super) const DRAWN: &str = "x-drawn";
 /// The description of a table whose key also has a description.
 pub(super) const TABLE: &str = "x-table";
 
-/// Converts the schema of a table to one for editors: without Squall's own marks, with
-/// distributions where they are allowed. Keys are required in entries of lists only, except those
-/// that default to an empty list or a table of defaults.
+/// Converts the schema of a table for editors: without Squall's own marks, with distributions where
+/// they are allowed. Keys are required in entries of lists only, except those that default to an
+/// empty list or a table of defaults.
 fn publish(value: &mut Value, is_drawn: bool, is_item: bool) {
     let object = match value {
         Value::Array(items) => return items.iter_mut().for_each(|item| publish(item, is_drawn, is_item)),

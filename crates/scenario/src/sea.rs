@@ -1,13 +1,13 @@
-//! The water and the air above it in a scenario: waves, wind and current.
+//! Waves, wind and current, checked and in SI.
 //!
-//! Checked and in SI. `sim::sea` defines their effect on boats. Waves and wind are given by the
-//! direction they come from, the current by the direction it flows to.
+//! `sim::sea` defines their effect on boats. Waves and wind are given by the direction they come
+//! from, the current by the direction it flows to.
 
 use primitives::frame::Ned;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The exponent of the wind's mean profile over open water.
+/// Exponent of the mean wind profile over open water.
 pub const PROFILE_EXPONENT: f64 = 0.12;
 
 /// Standard gravity, m/s².
@@ -22,11 +22,11 @@ pub struct Sea {
     pub water_density_kg_m3: f64,
     /// Depth of the water, m; `None`: too deep to affect waves.
     pub depth_m: Option<f64>,
-    /// Waves, if there are any.
+    /// The waves.
     pub waves: Option<Waves>,
-    /// Wind, if there is any.
+    /// The wind.
     pub wind: Option<Wind>,
-    /// The water's own motion.
+    /// The current.
     pub current: Current,
 }
 
@@ -41,7 +41,7 @@ impl Sea {
         calm && windless && !stream && eddies.is_empty() && random_eddies.is_none()
     }
 
-    /// Fresh water at rest, under no wind.
+    /// Fresh water at rest, without wind.
     #[must_use]
     pub fn at_rest() -> Sea {
         Sea {
@@ -55,10 +55,10 @@ impl Sea {
     }
 }
 
-/// A wave field: a spectrum, and its directional spreading.
+/// A spectrum with its directional spreading.
 ///
-/// The spectrum is JONSWAP's with its peak enhancement γ; γ = 1 is that of Pierson and Moskowitz in
-/// the two-parameter form of Bretschneider.
+/// The spectrum is JONSWAP's with peak enhancement γ; γ = 1 is that of Pierson and Moskowitz in the
+/// two-parameter form of Bretschneider.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Waves {
     /// Significant wave height, m.
@@ -67,7 +67,7 @@ pub struct Waves {
     pub tp_s: f64,
     /// Peak enhancement, 1 to 7.
     pub gamma: f64,
-    /// The compass bearing they come from, rad.
+    /// Compass bearing they come from, rad.
     pub from_rad: f64,
     /// The directional spreading.
     pub spreading: Spreading,
@@ -91,12 +91,12 @@ pub enum Spreading {
     },
 }
 
-/// Wind.
+/// A wind.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Wind {
     /// Mean speed 10 m above the water, m/s.
     pub speed_10m_m_s: f64,
-    /// The compass bearing it comes from, rad.
+    /// Compass bearing it comes from, rad.
     pub from_rad: f64,
     /// Exponent of the mean profile: U(z) = U10 (z / 10 m)^α.
     pub profile_exponent: f64,
@@ -105,12 +105,12 @@ pub struct Wind {
 }
 
 /// The variation of the wind about its mean. Gusts travel with the mean wind, unchanged (Taylor's
-/// hypothesis), so boats feel the same gust one after the other.
+/// hypothesis): boats feel the same gust one after the other.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Gusts {
     /// None.
     None,
-    /// As an Ornstein-Uhlenbeck process along the wind, and another across it.
+    /// One Ornstein-Uhlenbeck process along the wind, another across it.
     OrnsteinUhlenbeck {
         /// Standard deviation along the wind divided by the mean speed.
         intensity: f64,
@@ -121,12 +121,12 @@ pub enum Gusts {
     },
 }
 
-/// The water's own motion: the sum of all given components.
+/// The current: the sum of all given components.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Current {
     /// Uniform and constant, m/s.
     pub mean_m_s: Ned,
-    /// A wandering speed in the mean direction, uniform over the field.
+    /// A random variation of the speed in the mean direction, uniform over the field.
     pub wander: Option<Wander>,
     /// A tide.
     pub tide: Option<Tide>,
@@ -142,7 +142,7 @@ pub struct Current {
 /// A first-order Gauss-Markov process.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Wander {
-    /// The direction it acts in: the unit vector of the mean current, or its bearing where there is no mean.
+    /// Its direction: the unit vector of the mean current, or its bearing where there is no mean.
     #[serde(default)]
     #[schemars(skip)]
     pub toward: Ned,
@@ -152,7 +152,7 @@ pub struct Wander {
     /// Correlation time, s.
     #[schemars(range(min = 1, max = 86400), extend("default" = 300))]
     pub time_s: f64,
-    /// What mean and process together are clipped to, m/s.
+    /// Range to which the sum of mean and process is clipped, m/s.
     #[schemars(with = "[f64; 2]", inner(range(min = -10, max = 10)), extend("default" = [-10, 10]))]
     pub speed_m_s: (f64, f64),
 }
@@ -182,30 +182,30 @@ pub struct Shear {
     pub origin: Ned,
 }
 
-/// A vortex (Lamb-Oseen): v(r) = Γ / (2 π r) (1 − exp(−r² / a²)).
+/// A Lamb-Oseen vortex: v(r) = Γ / (2 π r) (1 − exp(−r² / a²)).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Eddy {
-    /// Its middle, [x, y] in m from the datum.
+    /// Centre, [x, y] in m from the datum.
     #[schemars(with = "[f64; 2]", inner(range(min = -1000000, max = 1000000)), extend("x-field" = "centre"))]
     pub centre: Ned,
-    /// Radius of its core, m. The fastest flow is at 1.121 of it.
+    /// Core radius, m; the flow is fastest at 1.121 of it.
     #[schemars(range(min = 1, max = 1000))]
     pub radius_m: f64,
-    /// Its fastest flow, m/s; positive turns clockwise.
+    /// Maximum flow, m/s; positive is clockwise.
     #[schemars(range(min = -5, max = 5))]
     pub peak_m_s: f64,
 }
 
-/// Vortices at random places.
+/// Vortices at random positions.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RandomEddies {
-    /// How many.
+    /// Number.
     #[schemars(range(min = 0, max = 100))]
     pub count: u32,
-    /// Radius of a core, from and to, m.
+    /// Core radius, from and to, m.
     #[schemars(with = "[f64; 2]", inner(range(min = 1, max = 1000)), extend("default" = [10, 40]))]
     pub radius_m: (f64, f64),
-    /// Fastest flow, from and to, m/s; either way round.
+    /// Maximum flow, from and to, m/s; in either direction.
     #[schemars(with = "[f64; 2]", inner(range(min = 0, max = 5)), extend("default" = [0.1, 0.3]))]
     pub peak_m_s: (f64, f64),
 }

@@ -5,77 +5,77 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What a boat knows of itself. What is `None` is known perfectly and at once.
+/// Sensors of a boat's own state. `None` measures perfectly and without delay.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Sensors {
-    /// Satellite navigation. Default perfect.
+    /// Satellite receiver. Default: perfect.
     pub gps: Option<Gps>,
-    /// Magnetic compass. Default perfect.
+    /// Magnetic compass. Default: perfect.
     pub compass: Option<Compass>,
-    /// Gyro and accelerometers. Default perfect.
+    /// Gyro and accelerometers. Default: perfect.
     pub imu: Option<Imu>,
 }
 
 /// A satellite receiver: position and velocity over the ground.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Gps {
-    /// Standard deviation of the wandering error, each axis, m.
+    /// Standard deviation of the slowly varying error, per axis, m.
     #[schemars(range(min = 0, max = 100), extend("default" = 0.8))]
     pub bias_m: f64,
-    /// Its correlation time, s.
+    /// Correlation time of that error, s.
     #[schemars(range(min = 1, max = 86400), extend("default" = 200))]
     pub bias_time_s: f64,
-    /// Standard deviation of the white noise, each axis, m.
+    /// Standard deviation of white noise, per axis, m.
     #[schemars(range(min = 0, max = 100), extend("default" = 0.1))]
     pub noise_m: f64,
-    /// Standard deviation of the velocity's noise, each axis, m/s.
+    /// Standard deviation of velocity noise, per axis, m/s.
     #[schemars(range(min = 0, max = 10), extend("default" = 0.05))]
     pub velocity_noise_m_s: f64,
     /// Time between fixes, s.
     #[schemars(range(min = 0.02, max = 10), extend("default" = 0.2))]
     pub period_s: f64,
-    /// Age of a fix when it comes out, s.
+    /// Age of a fix on output, s.
     #[schemars(range(min = 0, max = 2), extend("default" = 0.1))]
     pub latency_s: f64,
-    /// Times without fixes. Default none.
+    /// Periods without fixes. Default: none.
     #[serde(default)]
     #[schemars(with = "Option<Outage>", !default)]
     pub dropout: Outage,
-    /// Times in which position and velocity stand still. Default none.
+    /// Periods with constant position and velocity. Default: none.
     #[serde(default)]
     #[schemars(with = "Option<Outage>", !default)]
     pub freeze: Outage,
-    /// Jumps of the position. Default none.
+    /// Jumps of the position. Default: none.
     #[serde(default)]
     #[schemars(with = "Option<Jump>", !default)]
     pub jump: Jump,
 }
 
-/// Something that comes and goes by chance.
+/// Random periods.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Outage {
-    /// How often it begins, 1/s.
-    #[schemars(description = "How often it begins, 1/h.")]
+    /// Rate, 1/s.
+    #[schemars(description = "Rate, 1/h.")]
     #[schemars(rename = "per_hour", range(min = 0, max = 3600), extend("x-field" = "rate_per_s"))]
     pub rate_per_s: f64,
-    /// How long it lasts on average, s.
+    /// Mean duration, s.
     #[schemars(range(min = 0.1, max = 3600))]
     pub mean_s: f64,
 }
 
-/// Jumps: each lasts until the next.
+/// Jumps; each lasts until the next.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Jump {
-    /// How often, 1/s.
-    #[schemars(description = "How often, 1/h.")]
+    /// Rate, 1/s.
+    #[schemars(description = "Rate, 1/h.")]
     #[schemars(rename = "per_hour", range(min = 0, max = 3600), extend("x-field" = "rate_per_s"))]
     pub rate_per_s: f64,
-    /// Standard deviation of the offset, each axis, m.
+    /// Standard deviation of the offset, per axis, m.
     #[schemars(range(min = 0, max = 1000))]
     pub sigma_m: f64,
 }
 
-/// A magnetic compass with the deviation A + B sin h + C cos h + D sin 2h + E cos 2h at the heading h.
+/// A magnetic compass with deviation A + B sin h + C cos h + D sin 2h + E cos 2h at heading h.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Compass {
     /// A to E, rad.
@@ -86,37 +86,37 @@ pub struct Compass {
     #[schemars(rename = "thrust_error_deg", range(min = -90, max = 90))]
     #[schemars(extend("x-field" = "thrust_error_rad", "default" = 0))]
     pub thrust_error_rad: f64,
-    /// Standard deviation of the noise, rad.
-    #[schemars(description = "Standard deviation of the noise, degrees.")]
+    /// Standard deviation of noise, rad.
+    #[schemars(description = "Standard deviation of noise, degrees.")]
     #[schemars(rename = "noise_deg", range(min = 0, max = 45), extend("x-field" = "noise_rad", "default" = 1))]
     pub noise_rad: f64,
     /// Time between readings, s.
     #[schemars(range(min = 0.02, max = 10), extend("default" = 0.1))]
     pub period_s: f64,
-    /// What is left of the declination after correction, rad.
-    #[schemars(description = "What is left of the declination after correction, degrees.")]
+    /// Error of the declination correction, rad.
+    #[schemars(description = "Error of the declination correction, degrees.")]
     #[schemars(rename = "declination_error_deg", range(min = -180, max = 180))]
     #[schemars(extend("x-field" = "declination_error_rad", "default" = 0))]
     pub declination_error_rad: f64,
 }
 
-/// The coefficients of a compass's deviation, by the names that they have in files.
+/// The coefficients of a compass's deviation under their names in files.
 #[derive(JsonSchema)]
 #[expect(dead_code, reason = "the schema of five keys")]
 struct Deviation {
-    /// Misalignment, degrees.
+    /// A: misalignment, degrees.
     #[schemars(range(min = -180, max = 180), extend("x-field" = "deviation_rad.0", "default" = 0))]
     a_deg: f64,
-    /// Hard iron along the boat, degrees.
+    /// B: hard iron along the boat, degrees.
     #[schemars(range(min = -45, max = 45), extend("x-field" = "deviation_rad.1", "default" = 0))]
     b_deg: f64,
-    /// Hard iron across the boat, degrees.
+    /// C: hard iron across the boat, degrees.
     #[schemars(range(min = -45, max = 45), extend("x-field" = "deviation_rad.2", "default" = 0))]
     c_deg: f64,
-    /// Soft iron, degrees.
+    /// D: soft iron, degrees.
     #[schemars(range(min = -45, max = 45), extend("x-field" = "deviation_rad.3", "default" = 0))]
     d_deg: f64,
-    /// Soft iron, degrees.
+    /// E: soft iron, degrees.
     #[schemars(range(min = -45, max = 45), extend("x-field" = "deviation_rad.4", "default" = 0))]
     e_deg: f64,
 }
@@ -124,23 +124,23 @@ struct Deviation {
 /// Gyro and accelerometers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Imu {
-    /// Standard deviation of the gyro's noise, rad/s.
-    #[schemars(description = "Standard deviation of the gyro's noise, degrees a second.")]
+    /// Standard deviation of gyro noise, rad/s.
+    #[schemars(description = "Standard deviation of gyro noise, degrees/s.")]
     #[schemars(rename = "gyro_noise_deg_s", range(min = 0, max = 100))]
     #[schemars(extend("x-field" = "gyro_noise_rad_s", "default" = 0.05))]
     pub gyro_noise_rad_s: f64,
-    /// Standard deviation of its bias, rad/s.
-    #[schemars(description = "Standard deviation of its bias, degrees a second.")]
+    /// Standard deviation of gyro bias, rad/s.
+    #[schemars(description = "Standard deviation of gyro bias, degrees/s.")]
     #[schemars(rename = "gyro_bias_deg_s", range(min = 0, max = 100))]
     #[schemars(extend("x-field" = "gyro_bias_rad_s", "default" = 0.02))]
     pub gyro_bias_rad_s: f64,
     /// Correlation time of the biases, s.
     #[schemars(range(min = 1, max = 86400), extend("default" = 600))]
     pub bias_time_s: f64,
-    /// Standard deviation of the accelerometers' noise, m/s².
+    /// Standard deviation of accelerometer noise, m/s².
     #[schemars(range(min = 0, max = 100), extend("default" = 0.03))]
     pub accelerometer_noise_m_s2: f64,
-    /// Standard deviation of their bias, m/s².
+    /// Standard deviation of accelerometer bias, m/s².
     #[schemars(range(min = 0, max = 100), extend("default" = 0.03))]
     pub accelerometer_bias_m_s2: f64,
 }

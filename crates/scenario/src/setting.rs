@@ -1,5 +1,5 @@
-//! Settings: overrides of single values in scenario files, as in `--set sea.waves.hs_m=0.3` or an
-//! axis of a sweep.
+//! Settings: overrides of single values in scenario files, as in `--set sea.waves.hs_m=0.3` or a
+//! sweep.
 
 use super::kind::Kind;
 use serde::{Deserialize, Serialize};
@@ -9,14 +9,13 @@ use thiserror::Error;
 /// An override of a value in all files of a kind in a game, checked as if it were in the file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Setting {
-    /// The kind of file and the key in it, as in `sea.waves.hs_m`. `link` and `fault` are tables of
-    /// the game file; `strategy` is followed by the name of the team, as in
+    /// The kind of file and the key, as in `sea.waves.hs_m`. `link` and `fault` are tables of the
+    /// game file; `strategy` is followed by the team's name, as in
     /// `strategy.blue.behaviour.pursue.weight`.
     pub key: String,
     /// The value, as TOML.
     pub value: String,
-    /// The file that contains the setting, to which the paths of files are relative; `--set KEY` on
-    /// the command line.
+    /// The file with the setting, to which paths are relative; `--set KEY` on the command line.
     pub path: PathBuf,
     /// Its line, from 1.
     pub line: usize,
@@ -28,10 +27,10 @@ pub struct Setting {
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum SettingError {
     /// The key or the value is missing.
-    #[error("{0:?} is no setting, expected KEY=VALUE as in sea.waves.hs_m=0.3")]
+    #[error("{0:?} is not a setting, expected KEY=VALUE, for example sea.waves.hs_m=0.3")]
     Form(String),
     /// The key does not begin with a kind of file.
-    #[error("the key {0:?} does not begin with a kind of file, expected one of {list} and a key of it, as in sea.waves.hs_m", list = PREFIXES.join(", "))]
+    #[error("the key {0:?} does not begin with a kind of file, expected one of {list}, then a key, for example sea.waves.hs_m", list = PREFIXES.join(", "))]
     Kind(String),
 }
 
@@ -42,7 +41,7 @@ impl Setting {
     /// Parses a setting from the command line. A value that is not TOML is a string.
     ///
     /// # Errors
-    /// [`SettingError`]: it is not of the form `KEY=VALUE`, or the kind of file is unknown.
+    /// [`SettingError`]: not of the form `KEY=VALUE`, or an unknown kind of file.
     pub fn parse(text: &str) -> Result<Setting, SettingError> {
         let (key, value) = text.split_once('=').ok_or_else(|| SettingError::Form(text.to_owned()))?;
         let (key, value) = (key.trim(), value.trim());
@@ -57,7 +56,7 @@ impl Setting {
     /// A setting at a line and column of a file.
     ///
     /// # Errors
-    /// [`SettingError`]: the kind of file is unknown.
+    /// [`SettingError`]: unknown kind of file.
     pub fn new(
         key: &str,
         value: String,
@@ -103,7 +102,7 @@ impl Setting {
         format!("{}{}{key} = {}", "\n".repeat(lines), " ".repeat(columns), self.value)
     }
 
-    /// The same for a command line, quoted for a shell.
+    /// The setting as an argument of a command line, quoted for a shell.
     #[must_use]
     pub fn argument(&self) -> String {
         format!("--set '{}={}'", self.key, self.value.replace('\'', "'\\''"))

@@ -5,7 +5,6 @@ use super::problem::Problem;
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
-/// All files read so far.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sources {
     files: Vec<Source>,
@@ -31,7 +30,6 @@ impl Sources {
         start
     }
 
-    /// Every file, once.
     pub(super) fn texts(&self) -> Vec<(PathBuf, String)> {
         let mut texts: Vec<(PathBuf, String)> = vec![];
         for file in &self.files {

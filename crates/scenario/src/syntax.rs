@@ -1,5 +1,4 @@
-//! Syntax errors of a file: one message for each mistake, without the parser's errors that follow
-//! from it.
+//! Syntax errors of a file: one message per mistake, without the parser's consequential errors.
 
 use toml::de::DeTable;
 
@@ -14,20 +13,20 @@ pub(super) fn mistakes(text: &str) -> Vec<(usize, String)> {
         let errors = DeTable::parse_recoverable(&text).1;
         let Some(first) = errors.iter().min_by_key(|error| error.span().map_or(0, |span| span.start)) else { break };
         let Some(span) = first.span() else {
-            mistakes.push((0, "found a key of very many parts, expected at most 3".to_owned()));
+            mistakes.push((0, "found a key with too many parts, expected at most 3".to_owned()));
             break;
         };
         let (start, end) = line_of(&text, span.start);
         mistakes.push(in_words(&text[start..end], start).unwrap_or_else(|| (span.start, first.message().to_owned())));
-        // Without this line: a remaining error is a separate mistake.
+        // Without this line: any remaining error is a separate mistake.
         text.replace_range(start..end, &" ".repeat(end - start));
     }
     mistakes.sort();
     mistakes
 }
 
-/// The beginning and end of the line that contains `at`; at the end of the text, of the last line
-/// with content.
+/// Start and end of the line that contains `at`; at the end of the text, of the last line with
+/// content.
 fn line_of(text: &str, at: usize) -> (usize, usize) {
     let mut at = at.min(text.len());
     while !text.is_char_boundary(at) {

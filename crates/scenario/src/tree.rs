@@ -13,7 +13,6 @@ pub(super) struct Node {
     pub(super) at: usize,
     /// The offset of its key; for an element of a list, its own.
     pub(super) key_at: usize,
-    /// The value itself.
     pub(super) value: Value,
 }
 
@@ -53,8 +52,8 @@ impl Node {
         }
     }
 
-    /// The value at `path`, for example `team.1.name`, or else the innermost table or list on the
-    /// way to it; and whether it was found.
+    /// The value at `path`, for example `team.1.name`, or else the innermost existing table or
+    /// list; and whether it was found.
     pub(super) fn find(&self, path: &str) -> (&Node, bool) {
         let mut node = self;
         for part in path.split('.').filter(|part| !part.is_empty()) {
@@ -94,7 +93,7 @@ impl Node {
         }
     }
 
-    /// Merges this over `base`: tables merge, anything else here replaces the base's value.
+    /// Merges this over `base`: tables merge, other values replace those of the base.
     pub(super) fn lay_over(&mut self, base: Node) {
         let (Value::Table(over), Value::Table(base)) = (&mut self.value, base.value) else { return };
         for (key, value) in base {
@@ -121,7 +120,7 @@ fn node_from(value: Spanned<DeValue<'_>>, start: usize, key_at: Option<usize>) -
         DeValue::Table(table) => Value::Table(table_from(table, start)),
         DeValue::Array(array) => Value::List(array.into_iter().map(|value| node_from(value, start, None)).collect()),
         DeValue::String(text) => Value::Text(text.into_owned()),
-        // Whole numbers too large for 64 bits are rejected later, as numbers.
+        // Integers too large for 64 bits are rejected later, as numbers.
         DeValue::Integer(whole) => i64::from_str_radix(whole.as_str(), whole.radix())
             .map_or_else(|_| Value::Number(whole.as_str().parse().unwrap_or(f64::NAN)), Value::Whole),
         DeValue::Float(number) => Value::Number(number.as_str().parse().unwrap_or(f64::NAN)),

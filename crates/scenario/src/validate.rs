@@ -1,9 +1,9 @@
 //! Reads a tree by the schema of its kind: reports every mistake, draws distributions, fills in
 //! defaults.
 //!
-//! The result always satisfies the schema. A faulty or missing value is reported and replaced by
-//! its default, or else by the least allowed value or an empty text, so that later checks can
-//! continue and find more; `Document::is_sound` returns whether the value is original.
+//! The result always satisfies the schema. A default, or else the minimum or an empty text,
+//! replaces a faulty or missing value, so that later checks can find more; `Document::is_sound`
+//! returns whether the value is original.
 
 use super::diagnostics::{Diagnostics, NAME_EXPECTED, NAME_PATTERN, is_name};
 use super::draw::{Owner, distribution_kind, draw};
@@ -13,7 +13,7 @@ use super::schema::DRAWN;
 use super::tree::{Node, Table, Value};
 use serde_json::{Map, Value as Json};
 
-/// Reads `tree` by the schema `root`, with its numbers drawn for `owner`; also returns the paths of
+/// Reads `tree` by the schema `root`, with numbers drawn for `owner`; also returns the paths of
 /// faults.
 pub(super) fn validated<'a>(
     diagnostics: &'a mut Diagnostics,
@@ -31,7 +31,7 @@ struct Validator<'a> {
     diagnostics: &'a mut Diagnostics,
     /// Path from the root of the file to the current value, as in `team.1.name`.
     path: String,
-    /// The owner for which current numbers are drawn; none where they may not be drawn.
+    /// The owner for which numbers are drawn; none where distributions are not allowed.
     owner: Option<Owner<'a>>,
     /// The paths of faulty or missing values.
     wrong: Vec<String>,
@@ -42,8 +42,8 @@ impl<'a> Validator<'a> {
     fn value(&mut self, node: &'a Node, schema: &'a Json) -> Option<Json> {
         // The crate `jsonschema` is not suitable: it checks JSON values, which have no places and
         // cannot be NaN. If a table fits none of several kinds, it reports only that. It also
-        // brings regular expressions, host names and big fractions. This file covers the part of
-        // JSON Schema that Squall's types use.
+        // depends on regular expressions, host names and big fractions. This file covers the part
+        // of JSON Schema that Squall's types use.
         if let Some(branches) = schema.get("anyOf").and_then(Json::as_array) {
             return match branches.iter().find(|branch| self.fits(node, branch)) {
                 Some(branch) => self.value(node, branch),
@@ -105,7 +105,7 @@ impl<'a> Validator<'a> {
     fn text(&mut self, node: &Node, text: &str, schema: &Json) -> Option<Json> {
         let choices = choices(schema);
         let is_allowed = match schema.get("pattern") {
-            // The only pattern in use, so that regular expressions are not needed.
+            // The only pattern in use: regular expressions are not needed.
             Some(pattern) => pattern == NAME_PATTERN && is_name(text),
             None if choices.is_empty() => schema.get("minLength").is_none() || !text.is_empty(),
             None => choices.contains(&text),
@@ -120,7 +120,7 @@ impl<'a> Validator<'a> {
     fn list(&mut self, node: &Node, items: &'a [Node], schema: &'a Json) -> Option<Json> {
         let about = &schema["items"];
         if !counts(schema).contains(&items.len()) {
-            // With too many tables, the first surplus one is reported.
+            // With too many tables, report the first surplus one.
             let surplus = items.get(*counts(schema).end()).filter(|item| matches!(item.value, Value::Table(_)));
             let message = format!("{} has {} entries, expected {}", self.key(), items.len(), allowed(schema));
             self.diagnostics.note(surplus.unwrap_or(node).at, message);
@@ -159,7 +159,7 @@ impl<'a> Validator<'a> {
         if let Some(kind) = kinds.iter().find(|kind| text.is_some() && tag_of(kind).map(|(_, name)| name) == text) {
             return Some(self.table(node, table, kind));
         }
-        // Without its kind, at least the common keys are checked.
+        // Without its kind, at least check the common keys.
         for (key, value) in table.iter().filter(|(other, _)| *other != key) {
             let mut abouts = kinds.iter().map(|kind| kind["properties"].get(key));
             if let Some(about) = abouts.clone().next().flatten().filter(|_| abouts.all(|about| about.is_some())) {
@@ -228,7 +228,7 @@ impl<'a> Validator<'a> {
         if schema.get("properties").is_some() {
             return Some(self.table(owner, const { &Table::new() }, schema));
         }
-        // A missing list of tables is the same as an empty list, with the same faults.
+        // A missing list of tables has the same faults as an empty list.
         let is_list_of_tables = || schema["items"]["type"] == "object";
         if schema["type"] == "array" && (counts(schema).contains(&0) || is_list_of_tables()) {
             return self.list(owner, &[], schema);
@@ -286,7 +286,7 @@ impl<'a> Validator<'a> {
                 Value::Text(_) => takes(schema, "string"),
                 Value::Truth(_) => takes(schema, "boolean"),
                 Value::Whole(_) => is_number(schema),
-                // A whole number too large for 64 bits is still a whole number, out of any range.
+                // An integer too large for 64 bits is still an integer, out of range.
                 Value::Number(number) => takes(schema, "number") || takes(schema, "integer") && number.abs() > 9e18,
                 Value::Date(_) => false,
             }
@@ -342,7 +342,7 @@ fn counts(schema: &Json) -> std::ops::RangeInclusive<usize> {
     bound("minItems").unwrap_or(0)..=bound("maxItems").unwrap_or(usize::MAX)
 }
 
-/// The texts that the schema allows, if it lists them.
+/// The texts that the schema lists as allowed.
 fn choices(schema: &Json) -> Vec<&str> {
     let one_of = schema["oneOf"].as_array().into_iter().flatten().filter_map(|choice| choice.get("const"));
     let all = schema["enum"].as_array().into_iter().flatten().chain(schema.get("const")).chain(one_of);
@@ -353,7 +353,6 @@ fn one_of(names: &[&str]) -> String {
     format!("{}{}", if names.len() > 1 { "one of " } else { "" }, names.join(", "))
 }
 
-/// A description of a value found.
 fn found(node: &Node) -> String {
     match &node.value {
         Value::Table(_) => "a table".to_owned(),
@@ -366,7 +365,7 @@ fn found(node: &Node) -> String {
     }
 }
 
-/// A description of the values that the schema allows.
+/// The allowed values, in words.
 fn allowed(schema: &Json) -> String {
     let (from, to) = match &schema["type"] {
         Json::String(kind) if kind == "array" => ("minItems", "maxItems"),
@@ -388,7 +387,7 @@ fn bound(value: &Json) -> String {
     value.as_i64().map_or_else(|| value.as_f64().unwrap_or(f64::NAN).to_string(), |whole| whole.to_string())
 }
 
-/// A description of the type in the schema.
+/// The type in the schema, in words.
 fn kind_of(schema: &Json) -> String {
     if let Some(expected) = schema.get("x-expected").and_then(Json::as_str) {
         return expected.to_owned();

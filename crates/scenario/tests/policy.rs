@@ -66,9 +66,9 @@ fn what_metadata_leave_open_or_contradict_is_refused() {
     let nothing = PartialSpec::default();
     let other = PartialSpec { action: Some(ActionSpace::Continuous), ..nothing };
     for (metadata, said, want) in [
-        (without("squall.observation"), nothing, "no squall.observation, expected it there or observation here"),
-        (without("squall.action"), nothing, "no squall.action, expected it there or action here"),
-        (without("squall.period_s"), nothing, "no squall.period_s, expected it there or period_s here"),
+        (without("squall.observation"), nothing, "no squall.observation, expected it there, or observation here"),
+        (without("squall.action"), nothing, "no squall.action, expected it there, or action here"),
+        (without("squall.period_s"), nothing, "no squall.period_s, expected it there, or period_s here"),
         (
             with("squall.observation", "moos"),
             nothing,
@@ -81,7 +81,7 @@ fn what_metadata_leave_open_or_contradict_is_refused() {
         ),
         (with("squall.action", "moos"), nothing, "squall.action = \"moos\", expected an action space (unknown variant"),
         (with("squall.period_s", "NaN"), nothing, "squall.period_s = \"NaN\", expected 0.01 to 10 s"),
-        (full.clone(), other, "squall.action = \"pyquaticus\", expected \"continuous\", which is said here"),
+        (full.clone(), other, "squall.action = \"pyquaticus\", expected \"continuous\", as stated here"),
     ] {
         let error = read(&metadata, said).expect_err(want);
         assert!(error.contains(want), "{error}\n{want}");
@@ -103,7 +103,7 @@ fn of_several_outputs_the_one_that_fits_makes_the_action() {
     }
 }
 
-/// A policy that Stable-Baselines3 trained on the observations of Pyquaticus, exported by PyTorch:
+/// A policy trained by Stable-Baselines3 on the observations of Pyquaticus and exported by PyTorch:
 /// entirely third-party.
 #[test]
 fn a_model_of_another_trainer_loads() {

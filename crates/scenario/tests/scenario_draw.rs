@@ -102,7 +102,8 @@ fn the_numbers_have_the_distribution_that_was_asked_for() {
     let n = 1000;
     let games: Vec<Scenario> = (0..n).map(|seed| game.of_seed(seed).unwrap()).collect();
     let mean = |f: &dyn Fn(&Scenario) -> f64| games.iter().map(f).sum::<f64>() / n as f64;
-    // Within five standard errors; a normal number cut at three sigma has 0.973 of the variance.
+    // Within five standard errors; a normal number truncated at three sigma has 0.973 of the
+    // variance.
     let mass = mean(&|game| value(game, "blue_one/hull.mass_kg"));
     assert!((mass - 52.3).abs() < 5.0 * 0.2 * 52.3 / 12_f64.sqrt() / (n as f64).sqrt(), "{mass}");
     let speed = mean(&|game| value(game, "sea/current.speed_m_s"));
@@ -143,7 +144,7 @@ fn a_distribution_that_reaches_where_a_number_may_not_is_refused_with_its_place(
         let told = problems.to_string();
         assert!(told.contains(want), "{want}\n{told}");
     }
-    // A value that all boats share cannot be drawn.
+    // A value that all boats share cannot be randomised.
     let path = written(dir.path(), "", "", "duration_s = { uniform = [100, 200] }");
     assert!(scenario::load(&path).unwrap_err().to_string().contains("duration_s is a table, expected a number"));
 }

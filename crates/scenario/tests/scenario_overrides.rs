@@ -113,10 +113,7 @@ fn an_unknown_team_and_a_file_that_is_not_there_are_explained() {
     let game = shipped("games/pav01_vs_pav01.toml");
     let idle = shipped("strategies/idle.toml");
     for (overrides, want) in [
-        (
-            instead(&[("green", idle)]),
-            "there is no team \"green\" to give another strategy to, expected one of blue, red",
-        ),
+        (instead(&[("green", idle)]), "unknown team \"green\", expected one of blue, red"),
         (instead(&[("red", "none.toml".into())]), "none.toml:1:1: cannot be read"),
         (Overrides { sea: Some("none.toml".into()), ..Overrides::default() }, "none.toml:1:1: cannot be read"),
         (instead(&[("red", shipped("seas/gale.toml"))]), "wind is unknown, expected one of"),
@@ -139,7 +136,10 @@ fn teams_that_exchange_their_strategies_follow_each_others() {
     assert_eq!(followed(&exchanged(idle).unwrap()), ["strategy_3", "strategy_3", "idle", "idle"]);
     let person = Overrides { exchange_strategies: true, ..Overrides::default() };
     let refused = load_with(&shipped("games/person_2v2.toml"), &person).unwrap_err().to_string();
-    assert!(refused.contains("strategy is teleop, expected none here: the teams exchange theirs"), "{refused}");
+    assert!(
+        refused.contains("strategy is teleop, expected none here because the teams exchange strategies"),
+        "{refused}"
+    );
 }
 
 /// Overrides of single values.
@@ -210,7 +210,7 @@ fn a_value_of_a_strategy_changes_that_of_its_team_alone() {
             "--set strategy.red.behaviour.pursue.weight:1:27: weight is -1, expected",
         ),
         ("strategy.red.behaviour.pursue.wait=1", "wait is unknown"),
-        ("strategy.green.behaviour.pursue.weight=1", "there is no such team, expected one of blue, red after strategy"),
+        ("strategy.green.behaviour.pursue.weight=1", "unknown team, expected one of blue, red after strategy"),
     ] {
         let said = with(&[text]).unwrap_err();
         assert!(said.contains(want), "{text}: {said}");

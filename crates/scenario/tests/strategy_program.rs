@@ -1,4 +1,4 @@
-//! Strategy files as programs: programs match their files, and possible modes are accepted.
+//! Strategy files as programs: programs match their files, and reachable modes are accepted.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -217,7 +217,7 @@ fn many_numbers_in_many_conditions_are_looked_at_before_long() {
     assert_eq!(before_long(with_modes(&conditions, "{ laps = 1 }")), Ok("x".to_owned()));
 }
 
-/// The name of a strategy with this text, or its problems; a test without a result fails.
+/// The name of a strategy with this text, or its problems; fails without a result in time.
 fn before_long(text: String) -> Result<String, Problems> {
     let (send, receive) = std::sync::mpsc::channel();
     std::thread::spawn(move || send.send(strategy_of(&text, &[]).map(|strategy| strategy.name)));

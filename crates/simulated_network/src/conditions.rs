@@ -5,21 +5,21 @@ use std::time::Duration;
 /// Delays, losses and limits of a working network.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Conditions {
-    /// The minimum delay of a message over a link.
+    /// Minimum delay of a message over a link.
     pub delay: Duration,
-    /// The maximum extra delay. Messages over one link stay in order.
+    /// Maximum extra delay. Messages over one link stay in order.
     pub jitter: Duration,
-    /// The share of published messages that a congested link drops.
+    /// Share of published messages that a congested link drops.
     pub loss: f64,
-    /// The share of published messages that arrive damaged, from 0 to 1, and the kind of damage.
+    /// Share of published messages that arrive damaged, from 0 to 1, and the kind of damage.
     pub damaged: (f64, Damage),
     /// A link closes after hearing nothing from the other side for this long.
     pub lease: Duration,
-    /// The maximum wait of a leaf without a link between two attempts to connect.
+    /// Maximum wait of a leaf without a link between two attempts to connect.
     pub retry: Duration,
-    /// Upper bound of messages that a cut link queues; more are dropped.
+    /// Maximum number of messages that a cut link queues; more are dropped.
     pub queue: usize,
-    /// The maximum pause before some published messages, as if the node or another process were
+    /// Maximum pause before some published messages, as if the node or another process were
     /// computing.
     pub pause: Duration,
 }
@@ -27,7 +27,7 @@ pub struct Conditions {
 /// How messages are damaged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Damage {
-    /// Cut short, which a length check detects.
+    /// Truncated, which a length check detects.
     Truncated,
     /// One bit flipped.
     BitFlip,

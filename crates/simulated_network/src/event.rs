@@ -69,8 +69,8 @@ impl PartialOrd for Queued {
 
 impl Ord for Queued {
     fn cmp(&self, other: &Queued) -> Ordering {
-        // The earliest is the greatest: the queue is a max-heap. The order of insertion breaks
-        // ties: a heap by time alone could take either event, and one seed would give two traces.
+        // The earliest is the greatest: the queue is a max-heap. Insertion order breaks ties: by
+        // time alone, one seed could give two traces.
         (other.at_ns, other.order).cmp(&(self.at_ns, self.order))
     }
 }

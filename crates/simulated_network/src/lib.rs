@@ -3,10 +3,9 @@
 //!
 //! Nodes are threads of this process that block only through `bus`. Exactly one of them runs at a
 //! time; when all wait, virtual time jumps to the next event. One seed determines which ready
-//! thread runs, how long messages take and which are lost: the same seed and the same nodes give
-//! the same trace. Tests start with [`SimulatedNetwork`]. Inside a node, [`bus::Bus`],
-//! [`bus::clock`] and everything that waits run on it, because it replaces the process's
-//! [`bus::Runtime`].
+//! thread runs, how long messages take and which are lost: the same seed and nodes give the same
+//! trace. Tests start with [`SimulatedNetwork`]. Inside a node, [`bus::Bus`], [`bus::clock`] and
+//! everything that waits run on it, because it replaces the process's [`bus::Runtime`].
 
 mod call;
 mod conditions;

@@ -48,14 +48,13 @@ impl State {
         (!self.nodes[node].is_cut && !there.is_cut && !there.is_suspended).then_some(hub)
     }
 
-    /// Sends a packet.
     pub(crate) fn send(&mut self, link: usize, up: bool, packet: Packet) {
         let is_open = if up { self.links[link].leaf_open } else { self.links[link].hub_open };
         let packet = match packet {
             _ if !is_open => return,
             Packet::Publish { key, bytes } => {
-                // Like zenoh's links: published messages never wait, so a cut link takes as many as
-                // its queue holds and loses the rest. Declarations and queries are kept.
+                // Like zenoh's links: published messages never wait; a cut link queues as many as
+                // fit and loses the rest. Declarations and queries are kept.
                 let is_full =
                     self.is_stopped(link, up) && self.links[link].direction(up).queue.len() >= self.conditions.queue;
                 if is_full || (self.conditions.loss > 0.0 && self.stream.unit() < self.conditions.loss) {
@@ -193,7 +192,7 @@ impl State {
                 if !from && to && !is_silent {
                     self.put(link, up, Packet::Close);
                 }
-                // TCP retransmits at growing intervals, so packets queued during a cut arrive some
+                // TCP retransmits at growing intervals: packets queued during a cut arrive some
                 // time after the cable is back.
                 let wait = self.draw(SENT_AGAIN);
                 if !self.is_stopped(link, up) && !self.links[link].direction(up).queue.is_empty() {
@@ -203,7 +202,7 @@ impl State {
         }
     }
 
-    /// Closes one end of a link, and discards the state that it learnt over the link.
+    /// Closes one end of a link, and discards what it learnt over the link.
     pub(crate) fn close_end(&mut self, link: usize, at_hub: bool) -> Vec<Call> {
         let Link { leaf, leaf_open, hub_open, .. } = self.links[link];
         if at_hub {

@@ -85,8 +85,8 @@ pub(crate) fn wait_until(address: usize, deadline: Option<Instant>) -> bool {
     if thread::panicking() {
         return false;
     }
-    // On zenoh, a waiting callback blocks all links. Here it would deadlock, so every test detects
-    // the mistake.
+    // On zenoh, a waiting callback blocks all links. Here it would deadlock: every test detects the
+    // mistake.
     assert!(!is_in_callback(), "callbacks must only hand over");
     let deadline_ns = deadline.map(|deadline| world.ns_at(deadline));
     world.state.lock().block(current.thread, address, deadline_ns);

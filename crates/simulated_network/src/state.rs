@@ -106,8 +106,8 @@ impl State {
 
     /// Adds an event to the trace.
     pub(crate) fn note(&mut self, what: &str, node: usize, key: &str, bytes: &[u8]) {
-        // Includes the bytes: a game that diverges then shows in the first message that differs,
-        // not only at its end.
+        // Includes the bytes: a diverging game then shows in the first different message, not only
+        // at its end.
         (self.now_ns, what, node, key, bytes).hash(&mut self.hash);
         if let Some(lines) = &mut self.lines {
             let at_s = self.now_ns as f64 * 1e-9;
@@ -164,7 +164,6 @@ impl State {
         vec![]
     }
 
-    /// Ends a fault.
     pub(crate) fn end_fault(&mut self, node: usize, what: FaultEnd) -> Vec<Call> {
         let node_state = &mut self.nodes[node];
         match what {

@@ -1,7 +1,7 @@
 //! How a gateway drives a real boat, and when it stops it.
 //!
-//! Everything is SI but for what the boat's own sentences count in: thrust is in per cent of full ahead. These
-//! types also declare the keys of gateway files, as those in [`scenario::boat`] do.
+//! Everything is SI except in the units of the boat's sentences: thrust is in per cent of full
+//! ahead. These types also declare the keys of gateway files, like those in [`scenario::boat`].
 
 mod check;
 
@@ -11,60 +11,61 @@ use scenario::{Diagnostics, Document, ScenarioFile};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How a gateway drives a real boat, and when it stops it. The defaults are for the SeaRobotics Surveyor, and careful.
+/// How a gateway drives a real boat, and when it stops it. The defaults are conservative, for the
+/// SeaRobotics Surveyor.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Gateway {
     /// The file's stem.
     #[schemars(skip)]
     pub name: String,
-    /// What the boat speaks.
+    /// The boat's protocol.
     #[schemars(extend("default" = "surveyor"))]
     pub protocol: BoatProtocol,
     /// Whose heading and speed loops steer.
     #[schemars(extend("default" = "thrust"))]
     pub drive: Drive,
-    /// East of true north, rad. Default by the World Magnetic Model, at the field and today.
+    /// Magnetic declination, rad, positive east. Default: World Magnetic Model at the field, today.
     #[schemars(
-        description = "East of true north, degrees. Default by the World Magnetic Model, at the field and today."
+        description = "Magnetic declination, degrees, positive east. Default: World Magnetic Model at the field, today."
     )]
     #[schemars(rename = "declination_deg", range(min = -180, max = 180), extend("x-field" = "declination_rad"))]
     pub declination_rad: Option<f64>,
-    /// What a Surveyor's headings count from.
+    /// North reference of a Surveyor's headings.
     #[schemars(extend("default" = "magnetic"))]
     pub compass: CompassFrame,
-    /// How often the boat hears from us at least, 1/s.
+    /// Minimum rate of messages to the boat, 1/s.
     #[schemars(range(min = 1, max = 20), extend("default" = 10))]
     pub rate_hz: f64,
-    /// How old an order may grow before the boat is stopped, s.
+    /// Maximum age of an order before the boat stops, s.
     #[schemars(range(min = 0.1, max = 10), extend("default" = 1))]
     pub order_ttl_s: f64,
-    /// How much may be asked of the boat.
+    /// Limits of set-points.
     pub limits: Limits,
-    /// What navigation must be like.
+    /// Requirements on navigation; a violation stops the boat.
     pub nav: NavWatch,
-    /// Where the boat must not be, nor be unable to stop before.
+    /// The area that the boat must not leave.
     pub geofence: Geofence,
-    /// When another real boat is too near: the boat stops until it is clear.
+    /// The box ahead in which another real boat stops this one.
     pub halt: Halt,
-    /// When the battery is low.
+    /// Low battery.
     pub battery: BatteryWatch,
-    /// Currents that are no good: an alarm each, which stops nothing.
+    /// Currents that raise alarms, without stopping the boat.
     pub currents: CurrentWatch,
-    /// What a boat does after a failsafe, by its cause; after one that is not named here, it stops.
+    /// What the boat does after a failsafe, by cause; after any other, it stops.
     pub failsafe: FailsafeActions,
-    /// How we know that the boat listens to us.
+    /// How the gateway verifies that it controls the boat.
     pub control: ControlWatch,
-    /// Whether the boat is armed without a pre-flight check.
+    /// Whether arming requires a pre-flight check.
     pub preflight: PreflightRule,
-    /// Our own heading and speed loops, where `drive` is "thrust".
+    /// The gateway's heading and speed loops, for `drive` "thrust".
     pub loops: Loops,
-    /// What is switched on and off, in this order, each time that the boat's link is up and we have control.
+    /// Switch commands, sent in this order whenever the link is up and the gateway has control.
     #[schemars(length(max = 6))]
     pub startup_words: Vec<SwitchWord>,
-    /// Time between two lines of a mission that is taken up, s.
+    /// Time between two lines of a mission upload, s.
     #[schemars(range(min = 0.005, max = 5), extend("default" = 0.1))]
     pub upload_gap_s: f64,
-    /// For a boat that speaks MAVLink.
+    /// Settings for MAVLink.
     pub mavlink: Mavlink,
 }
 
@@ -78,7 +79,7 @@ impl ScenarioFile for Gateway {
     }
 }
 
-/// The gateway of a file that says nothing.
+/// The gateway of an empty file.
 ///
 /// # Panics
 /// Never: every key has a default.
@@ -87,30 +88,31 @@ pub fn default_gateway() -> Gateway {
     scenario::default_of().expect("every key has a default")
 }
 
-/// What a boat speaks.
+/// A boat's protocol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum BoatProtocol {
-    /// The sentences of a SeaRobotics Surveyor.
+    /// NMEA sentences of a SeaRobotics Surveyor.
     Surveyor,
-    /// MAVLink, as ArduPilot's Rover and boats speak it; headings are true.
+    /// MAVLink, as in ArduPilot Rover; headings are true.
     Mavlink,
 }
 
-/// Who is who on a MAVLink network, and what a thrust difference means there.
+/// Identities on a MAVLink network, and the meaning of a thrust difference.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Mavlink {
-    /// The boat's system, 1 to 255; at 0, the first boat that is heard.
+    /// The boat's system, 1 to 255; 0: the first boat heard.
     #[schemars(range(min = 0, max = 255), extend("default" = 0))]
     pub boat_system: u8,
-    /// Our own system. ArduPilot's failsafe for a lost ground station watches the one that its parameter for that names, 255 by default.
+    /// The gateway's system. ArduPilot's ground station failsafe watches the system in its parameter,
+    /// 255 by default.
     #[schemars(range(min = 1, max = 255), extend("default" = 255))]
     pub system: u8,
-    /// Our own component.
+    /// The gateway's component.
     #[schemars(range(min = 1, max = 255), extend("default" = 190))]
     pub component: u8,
-    /// Rate of turn that a thrust difference of 100 % asks for, rad/s.
-    #[schemars(description = "Rate of turn that a thrust difference of 100 % asks for, degrees a second.")]
+    /// Rate of turn for a thrust difference of 100 %, rad/s.
+    #[schemars(description = "Rate of turn for a thrust difference of 100 %, degrees/s.")]
     #[schemars(rename = "turn_rate_max_deg_s", range(min = 1, max = 360))]
     #[schemars(extend("x-field" = "turn_rate_max_rad_s", "default" = 90))]
     pub turn_rate_max_rad_s: f64,
@@ -120,13 +122,15 @@ pub struct Mavlink {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Drive {
-    /// Ours: the boat is sent thrust and thrust difference, PSEAC mode T (MAVLink: SET_ATTITUDE_TARGET).
+    /// The gateway's: the boat receives thrust and thrust difference, PSEAC mode T (MAVLink:
+    /// SET_ATTITUDE_TARGET).
     Thrust,
-    /// The boat's: it is sent heading and speed, PSEAC mode G (MAVLink: SET_POSITION_TARGET_LOCAL_NED).
+    /// The boat's: it receives heading and speed, PSEAC mode G (MAVLink:
+    /// SET_POSITION_TARGET_LOCAL_NED).
     Speed,
 }
 
-/// A switch of the boat, as the fifth field of PSEAC has it.
+/// A switch command: the fifth field of PSEAC.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "SCREAMING_SNAKE_CASE")]
 pub enum SwitchWord {
@@ -159,7 +163,7 @@ impl SwitchWord {
     }
 }
 
-/// What headings count from.
+/// The north reference of headings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum CompassFrame {
@@ -169,124 +173,126 @@ pub enum CompassFrame {
     True,
 }
 
-/// How much may be asked of the boat.
+/// Limits of set-points.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Limits {
-    /// Highest speed, m/s.
+    /// Maximum speed, m/s.
     #[schemars(range(min = 0.1, max = 20), extend("default" = 3))]
     pub speed_max_m_s: f64,
-    /// Largest thrust, per cent.
+    /// Maximum thrust, %.
     #[schemars(range(min = 1, max = 100), extend("default" = 70))]
     pub thrust_max_pct: f64,
-    /// Largest thrust difference, per cent.
+    /// Maximum thrust difference, %.
     #[schemars(range(min = 1, max = 100), extend("default" = 50))]
     pub difference_max_pct: f64,
-    /// Fastest growth of either, per cent a second. To zero they go at once.
+    /// Maximum increase of either, %/s; decreases are immediate.
     #[schemars(range(min = 1, max = 10000), extend("default" = 100))]
     pub slew_pct_s: f64,
 }
 
-/// The most corners of a polygon of a geofence: all of them travel with every status.
+/// Maximum number of corners of a geofence polygon: every status contains all of them.
 const CORNERS_MAX: usize = 100;
 
-/// What navigation must be like; what is not makes the boat stop.
+/// Requirements on navigation; a violation stops the boat.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct NavWatch {
-    /// Oldest fix and heading, s.
+    /// Maximum age of fix and heading, s.
     #[schemars(range(min = 0.1, max = 10), extend("default" = 1.5))]
     pub age_max_s: f64,
-    /// Lowest fix quality of GGA, from worst to best: 1 GPS, 2 differential or 3 PPS, 5 RTK float, 4 RTK fixed.
+    /// Minimum GGA fix quality, from worst to best: 1 GPS, 2 differential or 3 PPS, 5 RTK float, 4
+    /// RTK fixed.
     #[schemars(with = "u8", range(min = 1, max = 5), extend("default" = 1))]
     pub quality_min: FixQuality,
-    /// Largest horizontal dilution of precision, where it is told.
+    /// Maximum horizontal dilution of precision, if reported.
     #[schemars(range(min = 0.5, max = 50), extend("default" = 5))]
     pub hdop_max: f64,
-    /// A fix farther from the one before than the boat can sail in between, and this, is a jump, m.
+    /// Position jump: excess over the distance that the boat can travel between two fixes, m.
     #[schemars(range(min = 0.5, max = 100), extend("default" = 5))]
     pub jump_m: f64,
-    /// A position that stays the same to the last digit for this long under thrust is frozen, s.
+    /// Frozen position: time with identical digits under thrust, s.
     #[schemars(range(min = 0.5, max = 60), extend("default" = 3))]
     pub frozen_s: f64,
 }
 
-/// The geofence: a boat outside, or unable to stop inside, is stopped.
+/// The geofence stops a boat that is outside, or unable to stop inside.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Geofence {
-    /// Its corners in order, either way round, with no two sides crossing: [latitude, longitude], degrees. Default: the
-    /// field's rectangle, and the margin round it.
+    /// Corners [latitude, longitude] in order, either way round, degrees; sides must not cross.
+    /// Default: the field's rectangle plus `margin_m`.
     #[schemars(length(min = 3, max = CORNERS_MAX), inner(inner(range(min = -180, max = 180))))]
     pub polygon: Option<Vec<[f64; 2]>>,
-    /// Polygons within it where the boat must not be either, nor be unable to stop before; each like `polygon`.
+    /// Polygons inside the geofence that the boat must not enter, nor be unable to stop before.
     #[schemars(length(max = 50))]
     #[schemars(inner(length(min = 3, max = CORNERS_MAX), inner(inner(range(min = -180, max = 180)))))]
     pub keep_out: Vec<Vec<[f64; 2]>>,
-    /// How far outside of the field it lies without a `polygon`, m.
+    /// Margin around the field without a `polygon`, m.
     #[schemars(range(min = 0, max = 10000), extend("default" = 30))]
     pub margin_m: f64,
-    /// How hard the boat slows down with thrust at zero, m/s².
+    /// Deceleration of the boat at zero thrust, m/s².
     #[schemars(range(min = 0.01, max = 10), extend("default" = 0.25))]
     pub deceleration_m_s2: f64,
-    /// Time until it begins to slow down, s.
+    /// Time before deceleration starts, s.
     #[schemars(range(min = 0, max = 10), extend("default" = 1))]
     pub reaction_s: f64,
-    /// It must be so for this long, s.
+    /// Duration of a violation before it counts, s.
     #[schemars(range(min = 0, max = 10), extend("default" = 0.5))]
     pub debounce_s: f64,
 }
 
-/// A box about the bow, as long as the boat is fast, in which no other real boat may be.
+/// A box ahead of the boat, its length proportional to speed, in which no other real boat may be.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Halt {
-    /// Its length at 2 m/s, from midships, m (no such watch at 0).
+    /// Length at 2 m/s, from midships, m; 0: off.
     #[schemars(range(min = 0, max = 100), extend("default" = 7))]
     pub ahead_m: f64,
-    /// Its width, m.
+    /// Width, m.
     #[schemars(range(min = 0.5, max = 100), extend("default" = 3))]
     pub width_m: f64,
-    /// It must be empty for this long before the boat goes on, s.
+    /// Time the box must be empty before the boat continues, s.
     #[schemars(range(min = 0, max = 60), extend("default" = 1))]
     pub clear_s: f64,
 }
 
-/// The battery.
+/// Low battery.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct BatteryWatch {
-    /// Lowest voltage, V (no such watch at 0).
+    /// Minimum voltage, V; 0: off.
     #[schemars(range(min = 0, max = 1000), extend("default" = 22))]
     pub volts_min: f64,
-    /// It must be lower for this long, s.
+    /// Duration below it before it counts, s.
     #[schemars(range(min = 0, max = 600), extend("default" = 5))]
     pub debounce_s: f64,
 }
 
-/// The currents that a boat reports. None of these stops it: how exact they are is not published.
+/// Currents reported by the boat. They raise alarms only, since their accuracy is not published.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CurrentWatch {
-    /// Highest current of a thruster, A (no such watch at 0): a line in the propeller draws more.
+    /// Maximum thruster current, A; 0: off. A fouled propeller draws more.
     #[schemars(range(min = 0, max = 1000), extend("default" = 45))]
     pub thruster_max_a: f64,
-    /// Lowest current of a thruster while it is ordered 20 % or more, and the other one draws more than this, A (no such watch at 0).
+    /// Minimum current of a thruster ordered to 20 % or more while the other draws more than this,
+    /// A; 0: off.
     #[schemars(range(min = 0, max = 1000), extend("default" = 0.5))]
     pub thruster_min_a: f64,
-    /// From this current on a bilge pump runs, A (no such watch at 0): the boat takes in water.
+    /// Current from which a bilge pump counts as running, A; 0: off. It means water in the boat.
     #[schemars(range(min = 0, max = 1000), extend("default" = 0.1))]
     pub bilge_a: f64,
-    /// It must be so for this long, s.
+    /// Duration before it counts, s.
     #[schemars(range(min = 0, max = 600), extend("default" = 3))]
     pub debounce_s: f64,
 }
 
-/// What a boat does after a failsafe, by its cause. Those after which it cannot be told anything, does not know where it is or points, or
-/// is not moved by its thrusters, are not here: it stops.
+/// What the boat does after a failsafe. Other causes always stop it: the boat is unreachable, has
+/// no position or heading, or is not moved by its thrusters.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FailsafeActions {
-    /// No fresh order came.
+    /// No fresh order.
     #[schemars(extend("default" = "standby"))]
     pub order_stale: FailsafeAction,
-    /// It is outside of the geofence, or unable to stop inside.
+    /// Outside the geofence, or unable to stop inside.
     #[schemars(extend("default" = "standby"))]
     pub geofence: FailsafeAction,
-    /// Its battery is low.
+    /// Low battery.
     #[schemars(extend("default" = "standby"))]
     pub battery_low: FailsafeAction,
     /// The gateway hung.
@@ -298,69 +304,70 @@ pub struct FailsafeActions {
     pub rearm_within_s: f64,
 }
 
-/// What a boat does after a failsafe, as far as it can: else it stops.
+/// What a boat does after a failsafe; it stops if unable to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FailsafeAction {
     /// It stops.
     Standby,
-    /// It keeps its station by its own means.
+    /// It keeps station on its own.
     StationKeep,
-    /// It goes to its emergency recovery point by its own means, if the gateway uploaded one inside of the geofence.
+    /// It drives to its emergency recovery point on its own, if the gateway uploaded one inside the
+    /// geofence.
     GoToErp,
 }
 
-/// How we know that the boat listens to us.
+/// How the gateway verifies that it controls the boat.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ControlWatch {
-    /// For boats that never say who is in control: take it that we are.
+    /// Assume control, for boats that never report it.
     #[schemars(extend("default" = false))]
     pub assumed: bool,
-    /// How old the boat's word on it may grow, s.
+    /// Maximum age of the boat's report of who is in control, s.
     #[schemars(range(min = 0.1, max = 30), extend("default" = 2))]
     pub age_max_s: f64,
-    /// A command that the boat does not show after this time is not followed, s.
+    /// Time within which the boat must show a command, s.
     #[schemars(range(min = 0.2, max = 30), extend("default" = 1.5))]
     pub echo_s: f64,
-    /// How far the thrust that the boat shows may be from what it was sent, per cent (no such watch at 200).
+    /// Maximum difference between shown and sent thrust, %; 200: off.
     #[schemars(range(min = 1, max = 200), extend("default" = 2))]
     pub echo_thrust_pct: f64,
 }
 
-/// Whether a boat is armed without a pre-flight check.
+/// Whether arming requires a pre-flight check.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PreflightRule {
-    /// Arming is refused without the report of a passed one.
+    /// Whether arming requires the report of a passed check.
     #[schemars(extend("default" = false))]
     pub required: bool,
-    /// How old the report may grow, h.
+    /// Maximum age of the report, h.
     #[schemars(range(min = 0.1, max = 1000), extend("default" = 24))]
     pub age_max_h: f64,
 }
 
-/// The Surveyor's thrust map, by the West Point missions of 2024: thrust in per cent, speed in m/s.
+/// The Surveyor's thrust map, from the 2024 West Point missions: thrust in per cent, speed in m/s.
 pub const SURVEYOR_THRUST_MAP: [(f64, f64); 7] =
     [(-100.0, -2.0), (0.0, 0.0), (20.0, 1.0), (40.0, 1.5), (60.0, 2.0), (70.0, 2.25), (100.0, 3.0)];
 
-/// Our own heading and speed loops.
+/// The gateway's heading and speed loops.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Loops {
-    /// Pairs of thrust in per cent and the speed in m/s that it gives, both rising.
+    /// Pairs of thrust (%) and resulting speed (m/s), both ascending.
     #[schemars(with = "Vec<ThrustAndSpeed>", extend("default" = SURVEYOR_THRUST_MAP))]
     pub thrust_map: Vec<(f64, f64)>,
-    /// Thrust for a speed error, per cent per m/s.
+    /// Thrust per speed error, % per m/s.
     #[schemars(range(min = 0, max = 1000), extend("default" = 15))]
     pub speed_pct_per_m_s: f64,
     /// Integral time of the speed loop, s.
     #[schemars(range(min = 0.1, max = 1000), extend("default" = 5))]
     pub speed_integral_s: f64,
-    /// Thrust difference for a heading error, per cent per rad.
-    #[schemars(description = "Thrust difference for a heading error, per cent per degree.")]
+    /// Thrust difference per heading error, % per rad.
+    #[schemars(description = "Thrust difference per heading error, % per degree.")]
     #[schemars(rename = "heading_pct_per_deg", range(min = 0, max = 100))]
     #[schemars(extend("x-field" = "heading_pct_per_rad", "default" = 0.9))]
     pub heading_pct_per_rad: f64,
-    /// Thrust difference against a rate of turn, per cent per rad/s.
-    #[schemars(description = "Thrust difference against a rate of turn, per cent per degree a second.")]
+    /// Thrust difference against the rate of turn, % per rad/s.
+    #[schemars(description = "Thrust difference against the rate of turn, % per degree/s.")]
     #[schemars(rename = "turn_pct_per_deg_s", range(min = 0, max = 100))]
     #[schemars(extend("x-field" = "turn_pct_per_rad_s", "default" = 1.4))]
     pub turn_pct_per_rad_s: f64,

@@ -147,7 +147,7 @@ fn every_mistake_is_reported_at_its_place() {
 #[test]
 fn mates_hear_so_many_variables_and_no_more() {
     let shared: String = (0..257).map(|i| format!("v{i} = {{ initial = 0, shared = true }}\n")).collect();
-    let variables = "[variables] #~ 1: variables has 257 shared ones, expected at most 256";
+    let variables = "[variables] #~ 1: variables has 257 shared entries, expected at most 256";
     let text = format!("--- strategies/x.toml\nbase = \"s.toml\"\n{variables}\n{shared}");
     assert_eq!(failure("more than mates hear", &text), None);
 }

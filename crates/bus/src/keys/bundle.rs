@@ -40,8 +40,7 @@ impl Bundle {
     pub fn load(folder: &Path) -> Result<Bundle, BundleError> {
         let path = |name: &str| folder.join(name);
         if !path(CERTIFICATE_FILE).exists() {
-            let problem =
-                format!("no keys are here: a bundle is a folder with {CERTIFICATE_FILE}{}", bundles_in(folder));
+            let problem = format!("no keys found: a bundle is a folder with {CERTIFICATE_FILE}{}", bundles_in(folder));
             return Err(BundleError { file: folder.to_owned(), problem });
         }
         let (chain, key) = (certificates(&path(CERTIFICATE_FILE))?, private_key(&path(KEY_FILE))?);
@@ -53,11 +52,11 @@ impl Bundle {
             .map_err(|e| refused(KEY_FILE, format!("is not the key of {CERTIFICATE_FILE}: {e}")))?;
         let not_understood = |problem: String| refused(CERTIFICATE_FILE, problem);
         let (_, certificate) =
-            X509Certificate::from_der(&chain[0]).map_err(|e| not_understood(format!("is no certificate: {e}")))?;
+            X509Certificate::from_der(&chain[0]).map_err(|e| not_understood(format!("is not a certificate: {e}")))?;
         let name = certificate.subject().iter_common_name().find_map(|name| name.as_str().ok()).unwrap_or_default();
         let identity = name.parse().map_err(|e| not_understood(format!("was not made by `squall keys new`: {e}")))?;
-        // To its owner an expired certificate looks like a network that is down, since the other
-        // side closes the link silently.
+        // To its owner an expired certificate looks like a network failure, since the other side
+        // closes the link silently.
         check_period(&certificate, ASN1Time::now()).map_err(not_understood)?;
         let (validity, hosts) = (certificate.validity(), hosts(&certificate));
         let valid = [validity.not_before, validity.not_after].map(|at| at.to_string());
@@ -93,7 +92,6 @@ impl Bundle {
         [AUTHORITY_FILE, CERTIFICATE_FILE, KEY_FILE].map(|name| self.folder.join(name))
     }
 
-    /// The contents of those files.
     pub(super) fn contents(
         &self,
     ) -> Result<(Vec<CertificateDer<'static>>, Vec<CertificateDer<'static>>, PrivateKeyDer<'static>), BundleError> {
@@ -130,11 +128,11 @@ fn check_period(certificate: &X509Certificate<'_>, now: ASN1Time) -> Result<(), 
     let validity = certificate.validity();
     if now > validity.not_after {
         let at = validity.not_after;
-        return Err(format!("expired at {at}, and it is {now}: make new keys for everybody with `squall keys new`"));
+        return Err(format!("expired at {at}, and it is {now}: make new keys for all nodes with `squall keys new`"));
     }
     if now < validity.not_before {
         let at = validity.not_before;
-        return Err(format!("is valid from {at} on, and it is {now} by this machine's clock: is the clock right?"));
+        return Err(format!("is valid from {at}, but it is {now} by this machine's clock: check the clock"));
     }
     Ok(())
 }
@@ -160,5 +158,5 @@ fn bundles_in(folder: &Path) -> String {
     let mut names: Vec<String> =
         names.filter_map(|entry| entry.file_name().into_string().ok()).filter(is_bundle).collect();
     names.sort();
-    if names.is_empty() { String::new() } else { format!("; in this one are the bundles {}", names.join(", ")) }
+    if names.is_empty() { String::new() } else { format!("; this folder contains the bundles {}", names.join(", ")) }
 }

@@ -1,4 +1,4 @@
-//! Explains why a TLS connection fails: zenoh only reports that it does.
+//! Explains why a TLS connection fails: zenoh only reports the failure.
 
 use super::{Bundle, Identity};
 use crate::BusError;
@@ -30,8 +30,8 @@ pub(crate) fn refusal(endpoint: &str, keys: &Bundle) -> Option<BusError> {
         Ok(tls) => tls,
         Err(problem) => return Some(refused(problem)),
     };
-    // The sim checks our certificate after the handshake has ended on our side, so its alert
-    // arrives when we read.
+    // The sim checks our certificate after the handshake has ended on our side: its alert arrives
+    // when we read.
     let outcome =
         tls.complete_io(&mut stream).and_then(|_| rustls::Stream::new(&mut tls, &mut stream).read(&mut [0; 1]));
     let error = outcome.err()?;
@@ -83,23 +83,23 @@ fn explained(error: &Error, host: &str, identity: &Identity) -> String {
             CertificateError::NotValidForName | CertificateError::NotValidForNameContext { .. },
         ) => {
             format!(
-                "the sim's certificate is not for {host:?}: connect to a name or address that it is for, or make new keys \
+                "the sim's certificate is not for {host:?}: connect to a name or address that it covers, or make new keys \
                  with --host {host} ({error})"
             )
         }
         Error::InvalidCertificate(CertificateError::Expired | CertificateError::ExpiredContext { .. }) => {
-            format!("the sim's certificate has expired: make new keys for everybody with `squall keys new` ({error})")
+            format!("the sim's certificate has expired: make new keys for all nodes with `squall keys new` ({error})")
         }
         Error::InvalidCertificate(CertificateError::UnknownIssuer | CertificateError::BadSignature) => {
-            "the sim's certificate is of another authority: its keys and these were not made by one `squall keys new`"
+            "the sim's certificate is from another authority: its keys and these come from different runs of `squall keys new`"
                 .to_owned()
         }
         Error::InvalidCertificate(_) => format!("the sim's certificate is refused: {error}"),
         Error::AlertReceived(AlertDescription::CertificateExpired) => {
-            format!("the sim says that the certificate of {identity} has expired: are both clocks right?")
+            format!("the sim reports that the certificate of {identity} has expired: check both clocks")
         }
         Error::AlertReceived(alert) => format!(
-            "the sim refuses the certificate of {identity} ({alert:?}): its keys and these were not made by one \
+            "the sim refuses the certificate of {identity} ({alert:?}): its keys and these come from different runs of \
              `squall keys new`"
         ),
         other => other.to_string(),

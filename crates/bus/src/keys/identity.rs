@@ -21,7 +21,7 @@ pub enum Identity {
 
 /// A text that is not an identity.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("{0:?} is none of sim, team-NAME, gateway, gateway-NAME, observer, operator")]
+#[error("unknown identity {0:?}, expected sim, team-NAME, gateway, gateway-NAME, observer, operator")]
 pub struct UnknownIdentity(String);
 
 impl fmt::Display for Identity {

@@ -55,7 +55,7 @@ pub fn make(
         (params.not_before, params.not_after) = (from, until);
         Ok(params)
     };
-    // Each set has an authority with its own name, so that keys of two sets can be told apart.
+    // Each set has an authority with its own name, to distinguish keys of different sets.
     let mut authority = params(format!("Squall {:016x}", crate::random_number()), &[])?;
     // No authorities below this one: its key is discarded when this function returns, and nothing
     // else may sign in its name. Revoking a single certificate would need a list that reaches every

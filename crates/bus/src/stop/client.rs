@@ -23,9 +23,9 @@ use std::time::{Duration, Instant};
 
 /// How often the status is requested on every path.
 const STATUS_AGAIN: Duration = Duration::from_secs(1);
-/// How long to wait for a game that is slow to answer, once all known boats have stopped.
+/// Maximum wait for a game that is slow to answer, once all known boats have stopped.
 const GAME_MAX: Duration = Duration::from_secs(3);
-/// Upper bound of control ports.
+/// Maximum number of control ports.
 const GATEWAYS_MAX: usize = 256;
 
 /// Stops boats. On drop, it closes its own paths.
@@ -103,7 +103,7 @@ impl StopClient {
             let path = DatagramPath::open(at, game, token.cloned().into(), on_news)?;
             self.0.hubs.lock().push(path);
         }
-        // A path that opens during a stop carries it at once, not at the next repeat.
+        // A path that opens during a stop carries it immediately, not at the next repeat.
         self.0.orders.visit(StopOrders::hurry);
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! Stop datagrams: a request as at a control port, and its answer.
 //!
 //! A request is JSON, padded with spaces. Its answer repeats session and number, which a stranger
-//! elsewhere cannot guess. It is never longer than the request, so the port cannot amplify a flood.
+//! elsewhere cannot guess. It is never longer than the request: the port cannot amplify a flood.
 
 use crate::token::{Proof, Token};
 use messages::external::GatewayCommand;
@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::value::{RawValue, to_raw_value};
 use std::collections::BTreeMap;
 
-/// The longest datagram, bytes: it fits into one packet on usual networks.
+/// Maximum length of a datagram, bytes: it fits into one packet on usual networks.
 pub const DATAGRAM_MAX: usize = 1400;
 /// Requests are padded to this length, bytes.
 const FILLED: usize = 1200;
@@ -81,7 +81,7 @@ impl StopRequest {
         }
         let RequestDatagram { body, session, number, game } = serde_json::from_slice(bytes).ok()?;
         let command: GatewayCommand = serde_json::from_str(body.get()).ok()?;
-        // A datagram has no challenge, so a recorded one could be replayed. It is accepted only for
+        // A datagram has no challenge: a recorded one could be replayed. It is accepted only for
         // commands that any node may repeat.
         (!command.needs_token()).then_some(StopRequest { session, number, game, command })
     }

@@ -15,17 +15,16 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// Upper bound of requests awaiting an answer; the oldest are discarded first.
+/// Maximum number of requests awaiting an answer; the oldest are discarded first.
 const AWAITED_MAX: usize = 128;
 /// Timeout of connecting, and the time until the next attempt.
 const CONNECT_MAX: Duration = Duration::from_secs(3);
 const CONNECT_AGAIN: Duration = Duration::from_millis(300);
 /// A connection silent for this long is reopened: the status is requested every second.
 const SILENT_MAX: Duration = Duration::from_secs(4);
-/// Write timeout, so that a blocked peer does not delay a stop on the other paths.
+/// Write timeout: a blocked peer does not delay a stop on the other paths.
 const WRITE_MAX: Duration = Duration::from_millis(20);
 
-/// News from a path.
 pub(super) enum PathNews {
     /// The path is open.
     Connected,

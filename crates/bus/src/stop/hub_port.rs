@@ -13,7 +13,7 @@ use std::net::{ToSocketAddrs, UdpSocket};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Older states are left out of answers.
+/// Maximum age of states in answers.
 const FRESH: Duration = Duration::from_secs(3);
 
 /// The ports of a sim, closed on drop.
@@ -94,7 +94,7 @@ impl Server {
             GatewayCommand::Fleet(FleetCommand::EStop) => publish(&self.control, serde_json::to_vec(&Control::EStop)),
             GatewayCommand::Boat { name, command } if *command != OperatorCommand::Status => {
                 // Published by the sim's session, which needs no rule at the hub. An unknown boat
-                // gets no answer, so nothing can be learnt.
+                // gets no answer: nothing can be learnt.
                 publish(self.stops.get(name)?, serde_json::to_vec(command));
             }
             _ => {}

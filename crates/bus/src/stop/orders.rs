@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::time::{Duration, Instant};
 
 /// When a stop is repeated, ms after the request: a lost one then costs little, and repeats let TCP
-/// detect the loss at once.
+/// detect the loss immediately.
 const SOON_MS: [u64; 6] = [0, 10, 20, 40, 80, 160];
 /// The interval of later repeats.
 const AGAIN: Duration = Duration::from_millis(200);
@@ -28,7 +28,7 @@ const LATE: Duration = Duration::from_secs(2);
 const SILENCE: Duration = Duration::from_secs(3);
 /// The sim's copies count for a boat that has not been heard directly for this long.
 const RELAYED_AFTER: Duration = Duration::from_secs(1);
-/// Upper bound of unread news; the oldest are discarded first.
+/// Maximum number of unread news; the oldest are discarded first.
 const NEWS_MAX: usize = 1024;
 
 /// The known facts about a boat.
@@ -169,7 +169,7 @@ impl StopOrders {
         self.boats.iter()
     }
 
-    /// Whether every stop is done for certain; a stop of all cannot be before a game has named its
+    /// Whether every stop is done for certain; a stop of all is not before a game has named its
     /// boats.
     #[must_use]
     pub fn is_done(&self, now: Instant) -> bool {
@@ -208,7 +208,7 @@ impl StopOrders {
 
     /// Requests a stop; it replaces an earlier one of the same kind and target.
     pub(super) fn ask(&mut self, now: Instant, target: Option<String>, command: StopCommand) -> u64 {
-        // Pressing the button again asks for a new confirmation, not for the earlier one.
+        // Pressing the button again requests a new confirmation, not the earlier one.
         self.stops.retain(|stop| (&stop.target, stop.command) != (&target, command));
         self.count += 1;
         let is_other = |boat: &KnownBoat| boat.state.as_ref().is_some_and(|state| !command.is_shown_by(state));
@@ -398,7 +398,7 @@ impl StopOrders {
             let missing = stop.targets(&self.boats).filter(|name| !stop.shown.contains_key(*name));
             left.extend(missing.map(|name| match self.boats.get(name).and_then(|boat| boat.state.as_ref()) {
                 Some(state) => format!("{name} does not report that it has stopped: {state}"),
-                None => format!("nothing is heard of {name}"),
+                None => format!("no report from {name}"),
             }));
             // Without real boats, the sim answers for those that it simulates.
             if stop.target.is_none() && self.boats.is_empty() {

@@ -6,33 +6,35 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::Path;
 
-/// A number or a file that varies from point to point, given as one of `values`, `range`, `normal` or `log_normal`.
+/// What varies between points. It has one of `values`, `range`, `normal` and `log_normal`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Axis {
-    /// What varies: a kind of file and its key, such as `sea.wind.speed_m_s`, `boat.gps.noise_m`, `rules.tag_radius_m`, `link.delay_s`,
-    /// or `strategy.behaviour.pursue.weight` in the entries' strategies; or, with files as values, `sea`, `boat`, `rules`, `field` or
-    /// `opponent` (a strategy).
+    /// A kind of file and its key, such as `sea.wind.speed_m_s`, `boat.gps.noise_m`,
+    /// `rules.tag_radius_m`, `link.delay_s`, or, for the entries' strategies,
+    /// `strategy.behaviour.pursue.weight`; `sea`, `boat`, `rules` or `field`, with files as values;
+    /// or `opponent`, with strategy files.
     #[schemars(length(min = 1), extend("x-expected" = "a key such as sea.wind.speed_m_s"))]
     pub key: String,
-    /// Its levels: numbers, texts or files, all of one type.
+    /// Levels: numbers, texts or files, all of one type.
     #[schemars(length(max = 1000))]
     pub values: Vec<AxisValue>,
-    /// Lower and upper end; a sampled design draws from it uniformly.
+    /// From and to; uniform in a sampled design.
     #[schemars(inner(range(min = -1e9, max = 1e9)))]
     pub range: Option<[f64; 2]>,
-    /// Whether the range is logarithmic.
+    /// Whether the levels of a range are spaced logarithmically.
     #[schemars(extend("default" = false))]
     pub log: bool,
     /// Mean and standard deviation of a normal distribution, truncated at 3 standard deviations.
     #[schemars(inner(range(min = -1e9, max = 1e9)))]
     pub normal: Option<[f64; 2]>,
-    /// Median and standard deviation of the logarithm of a log-normal distribution, truncated at 3 standard deviations.
+    /// Median, and standard deviation of the logarithm, of a log-normal distribution, truncated at
+    /// 3 standard deviations.
     #[schemars(inner(range(min = 0, max = 1e9)))]
     pub log_normal: Option<[f64; 2]>,
     /// Number of levels in a grid: evenly spaced for a range, equally likely for a distribution.
     #[schemars(range(min = 2, max = 1000), extend("default" = 5))]
     pub count: u32,
-    /// The value while another axis varies alone. Default the middle level.
+    /// Value while another axis varies alone. Default: the middle level.
     pub nominal: Option<AxisValue>,
     /// Line and column of the axis in the sweep file.
     #[serde(default)]

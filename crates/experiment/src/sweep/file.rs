@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// A sweep: strategies play one opponent at many points of a space of scenarios.
+/// Strategies against one opponent at many points of a scenario space.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Sweep {
     /// The sweep file's stem.
@@ -21,47 +21,48 @@ pub struct Sweep {
     #[serde(default)]
     #[schemars(skip)]
     pub path: PathBuf,
-    /// Purpose of the sweep, one line.
+    /// Description, in one line.
     #[schemars(extend("default" = ""))]
     pub about: String,
-    /// The game file; the strategies of its teams are replaced.
+    /// Game file, whose strategies are replaced.
     #[schemars(with = "FilePath")]
     pub game: PathBuf,
-    /// The strategy file that the entries play against.
+    /// Strategy file of the opponent.
     #[schemars(with = "FilePath")]
     pub opponent: PathBuf,
-    /// Games per entry and point, half of them on each side; an odd number is rounded up. All points play the same seeds.
+    /// Games per entry and point, half of them on each side; odd numbers are rounded up. All points
+    /// use the same seeds.
     #[schemars(range(min = 2, max = 1000000), extend("default" = 20))]
     pub games: u32,
-    /// The first seed; it increases by one every two games. It also selects the points of a sampled design.
+    /// First seed, incremented every two games. It also selects the points of a sampled design.
     #[schemars(range(min = 0, max = i64::MAX), extend("default" = 1))]
     pub seed: u64,
-    /// Which points of the space are played.
+    /// How points are selected.
     #[schemars(extend("default" = "grid"))]
     pub design: Design,
     /// Number of points of a sampled design.
     #[schemars(range(min = 1, max = 65536), extend("default" = 64))]
     pub points: u32,
-    /// The compared strategies.
+    /// The strategies compared.
     #[serde(rename = "entry")]
     #[schemars(length(min = 1, max = 100))]
     pub entries: Vec<Entrant>,
-    /// The values that vary from point to point.
+    /// What varies between points.
     #[serde(rename = "axis")]
     #[schemars(length(min = 1, max = 50))]
     pub axes: Vec<Axis>,
 }
 
-/// Which points of a space are played.
+/// How points are selected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Design {
-    /// All combinations of the levels of all axes.
+    /// Every combination of levels.
     Grid,
     /// The nominal point, and each level of each axis with all other axes at their nominal values.
     OneAtATime,
-    /// `points` points: each axis is divided into `points` equally likely intervals with one point each (McKay and others,
-    /// Technometrics 1979).
+    /// `points` points; each axis is divided into as many equally likely intervals, with one point
+    /// in each (McKay and others, Technometrics 1979).
     LatinHypercube,
     /// The first `points` of a scrambled Sobol sequence (Burley, JCGT 2020).
     Sobol,

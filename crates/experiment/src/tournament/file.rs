@@ -11,43 +11,43 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// A tournament: every entry against every other, in one game, over many seeds and from both sides.
+/// Every entry against every other in one game, over many seeds and from both sides.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Tournament {
     /// The tournament file's stem.
     #[schemars(skip)]
     pub name: String,
-    /// The game file; the strategies of its teams are replaced by those of the entries.
+    /// Game file, whose strategies are replaced by the entries'.
     #[schemars(with = "FilePath")]
     pub game: PathBuf,
-    /// The sea file. Default the game's.
+    /// Sea file. Default: the game's.
     #[schemars(with = "Option<FilePath>")]
     pub sea: Option<PathBuf>,
-    /// Games per pairing, half of them on each side; an odd number is rounded up.
+    /// Games per pairing, half of them on each side; odd numbers are rounded up.
     #[schemars(range(min = 2, max = 1000000), extend("default" = 200))]
     pub games: u32,
-    /// The first seed; it increases by one every two games of a pairing.
+    /// First seed, incremented every two games of a pairing.
     #[schemars(range(min = 0, max = i64::MAX), extend("default" = 1))]
     pub seed: u64,
     /// Whether entries also play against themselves.
     #[schemars(extend("default" = false))]
     pub self_play: bool,
-    /// The name of an entry, to play only its pairings. Default every pairing.
+    /// Name of an entry: only its pairings are played. Default: all pairings.
     #[schemars(with = "Option<Name>")]
     pub challenger: Option<String>,
-    /// The entries.
+    /// The strategies compared.
     #[serde(rename = "entry")]
     #[schemars(length(min = 2, max = 100))]
     pub entries: Vec<Entrant>,
 }
 
-/// A strategy that takes part.
+/// An entry.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Entrant {
-    /// Its name in the tables.
+    /// Name in the tables.
     #[schemars(with = "Name")]
     pub name: String,
-    /// The strategy file that all its boats follow.
+    /// Strategy file of all its boats.
     #[schemars(with = "FilePath")]
     pub strategy: PathBuf,
 }

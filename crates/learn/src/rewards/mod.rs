@@ -13,7 +13,7 @@ use scenario::{Diagnostics, Document, ScenarioFile};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The reward of a boat: the sum of all parts below.
+/// The reward of a boat: the sum of all parts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Rewards {
     /// Events of the boat itself.
@@ -24,11 +24,11 @@ pub struct Rewards {
     pub enemy: Worth,
     /// The end of the game, for every boat of a team.
     pub end: End,
-    /// Progress towards a goal; see [`Potential`].
+    /// Potential-based shaping.
     pub potential: Potential,
-    /// Approach to a place; see [`Place`].
+    /// Rewards for positions.
     pub place: Place,
-    /// Reward per second of the game.
+    /// Per second of the game.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub second: f64,
 }
@@ -48,25 +48,25 @@ impl ScenarioFile for Rewards {
     }
 }
 
-/// Rewards for events of a boat.
+/// Events of a boat.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Worth {
-    /// The boat grabs the enemies' flag.
+    /// It grabbed the enemies' flag.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub grab: f64,
-    /// The boat captures that flag by bringing it home.
+    /// It captured the flag.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub capture: f64,
     /// The boat tags an enemy.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub tag: f64,
-    /// The boat tags an enemy that carries a flag; replaces `tag`.
+    /// It tagged a carrier; replaces `tag`.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub tag_carrier: f64,
     /// An enemy tags the boat.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub tagged: f64,
-    /// An enemy tags the boat while it carries a flag; replaces `tagged`.
+    /// It was tagged while carrying a flag; replaces `tagged`.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub tagged_carrying: f64,
     /// The boat is untagged.
@@ -75,57 +75,59 @@ pub struct Worth {
     /// The boat leaves the field.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub left_field: f64,
-    /// The boat comes closer to another boat than the collision distance.
+    /// It came within the collision distance of another boat.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub collided: f64,
 }
 
-/// Rewards for the end of a game.
+/// The end of the game.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct End {
-    /// Reward for a win; its negative for a defeat.
+    /// Win; a loss costs as much.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub win: f64,
-    /// Reward for each point of the lead; negative when behind.
+    /// Per point of lead.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub point: f64,
 }
 
-/// Potential-based shaping (Ng, Harada and Russell, ICML 1999): the discounted gain of a potential that depends only on the state and is
-/// 0 at the end of a game. It does not change which policy is best.
+/// Discounted gain of a potential that depends only on the state, and is 0 at the end of a game
+/// (Ng, Harada and Russell, ICML 1999). It does not change the optimal policy.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Potential {
-    /// Value at the enemies' flag, falling to 0 one field width away. A carrier keeps this value and gains the same again on the way home.
-    /// A tagged boat has none.
+    /// At the enemies' flag; 0 a field's width away. A carrier has this much, and as much again
+    /// after the capture; a tagged boat has none.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub attack: f64,
-    /// Penalty of a tagged boat one field width from where it is untagged, proportional to that distance.
+    /// Negative, for a tagged boat: this much per field's width from its untag place.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub untag: f64,
 }
 
-/// Values of places: in each step a boat receives the gain in value, and loses any loss. If a reward one step later is worth γ, each step
-/// in the place is in effect worth (1 - γ) times its value, with the place as a potential. Unlike [`Potential`], it defines the boat's
-/// task: use it for policies with a single task. A tagged boat receives nothing for places.
+/// Values of positions: each step adds the change in value. With discount γ, it is as if each step
+/// in the position earned (1 - γ) of the value. Unlike `potential`, these change the optimal
+/// policy: use them for policies with a single task. For a tagged boat all are 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Place {
     /// Value at the enemies' flag, or anywhere while carrying it; 0 one field width away.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub flag: f64,
-    /// Value at home, where flags are brought and tagged boats are untagged; 0 one field width away.
+    /// At the capture or untag place; 0 a field's width away.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub home: f64,
-    /// Value at the nearest intruder, an untagged enemy on the boat's side; 0 one field width away or without an intruder.
+    /// At the nearest intruder, an untagged enemy on the own side; 0 a field's width away, and
+    /// without intruders.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub intruder: f64,
-    /// Value an eighth of the field's width from the boat's own flag towards the untagged enemy nearest to the flag, or at that enemy if it is
-    /// nearer; 0 a quarter of the field's width away.
+    /// An eighth of the field's width from the own flag towards its nearest untagged enemy, or at
+    /// that enemy if nearer; 0 a quarter of the width away.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub guard: f64,
-    /// The same for an untagged mate on the enemies' side instead of the flag: the mate with the closest untagged enemy.
+    /// As `guard`, for an untagged mate on the enemies' side instead of the flag: the one nearest
+    /// to an untagged enemy.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub shield: f64,
-    /// Value when every untagged enemy is at least a quarter of the field's width away; 0 at an enemy.
+    /// At least a quarter of the field's width from every untagged enemy; 0 at one.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub clear: f64,
 }

@@ -83,7 +83,7 @@ fn check_opponents(diagnostics: &mut Diagnostics, document: &Document<Training>,
     }
     let names = &document.raw.stage[..i];
     if names.iter().any(|other| other.name == stage.name) {
-        let message = format!("name is {:?} again, expected a different one for each stage", stage.name);
+        let message = format!("name {:?} is used twice, expected a unique name for each stage", stage.name);
         diagnostics.note(document.at(&format!("{at}.name")), message);
     }
 }

@@ -27,36 +27,36 @@ pub struct Training {
     /// The training file's stem.
     #[schemars(skip)]
     pub name: String,
-    /// Purpose, in one line.
+    /// Description, in one line.
     #[schemars(extend("default" = ""))]
     pub about: String,
-    /// The policy's observations.
+    /// What the policy receives.
     pub observation: ObservationSpace,
     /// The policy's actions.
     #[schemars(extend("default" = "pyquaticus"))]
     pub action: ActionSpace,
-    /// Time between two decisions of the policy, s: a multiple of the games' `decision_s`.
+    /// Time between decisions of the policy, s; a multiple of the games' `decision_s`.
     #[schemars(range(min = 0.01, max = 10), extend("default" = 0.5))]
     pub period_s: f64,
-    /// Number of games played in parallel.
+    /// Games played in parallel.
     #[schemars(range(min = 1, max = 65536), extend("default" = 64))]
     pub games: u32,
-    /// Random seed. With the file and the version it determines the weights to the bit.
+    /// Random seed. Together with file and version it determines the weights to the bit.
     #[schemars(range(min = 0, max = i64::MAX), extend("default" = 1))]
     pub seed: u64,
     /// The networks.
     pub network: Layers,
-    /// Proximal policy optimisation, used if the file has no table of another algorithm.
+    /// Proximal policy optimisation, used without the table of another algorithm.
     pub ppo: Ppo,
-    /// TD3 instead, for continuous actions.
+    /// Instead of `ppo`, for continuous actions.
     pub td3: Option<Td3>,
-    /// Double DQN instead, for discrete actions.
+    /// Instead of `ppo`, for discrete actions.
     pub dqn: Option<Dqn>,
-    /// Past policies as opponents, for stages that use them.
+    /// Which past policies are kept as opponents.
     pub league: League,
-    /// How the policy is evaluated; the best one is kept.
+    /// How policies are evaluated; the best is kept.
     pub evaluation: Evaluation,
-    /// The stages, in order.
+    /// Stages, in order.
     #[schemars(length(min = 1, max = 100))]
     pub stage: Vec<Stage>,
 }
@@ -71,42 +71,43 @@ impl ScenarioFile for Training {
     }
 }
 
-/// The critic's input. A critic estimates the value of the rest of a game, in training only.
+/// What a critic receives, which estimates the value of the rest of a game. It is used only in
+/// training.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum CriticInput {
-    /// The policy's observation.
+    /// What the policy receives.
     #[default]
     Observation,
-    /// The observation and the truth about all boats, the flags and the sea, which no policy receives (a central critic: Lowe and others,
-    /// NeurIPS 2017).
+    /// That and the truth about all boats, the flags and the sea, which no policy receives (a
+    /// central critic: Lowe and others, NeurIPS 2017).
     Truth,
 }
 
 /// The networks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Layers {
-    /// Width of each hidden layer.
+    /// Size of each hidden layer.
     #[schemars(length(min = 1, max = 8), inner(range(min = 1, max = 1024)), extend("default" = [128, 128]))]
     pub hidden: Vec<usize>,
-    /// The critic's input.
+    /// What the critic receives.
     #[schemars(extend("default" = "observation"))]
     pub critic: CriticInput,
 }
 
-/// Settings of proximal policy optimisation (Schulman and others, arXiv 1707.06347).
+/// Proximal policy optimisation (Schulman and others, arXiv 1707.06347).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Ppo {
     /// Steps of every game per update.
     #[schemars(range(min = 1, max = 65536), extend("default" = 64))]
     pub steps: usize,
-    /// Initial learning rate of the optimiser.
+    /// Initial step size of the optimiser.
     #[schemars(range(min = 0, max = 1), extend("default" = 0.0003))]
     pub learning_rate: f32,
-    /// Share of the learning rate left at the end of the last stage; it falls linearly.
+    /// Share of it left at the end of the last stage; it falls linearly.
     #[schemars(range(min = 0, max = 1), extend("default" = 0.1))]
     pub learning_rate_end: f32,
-    /// Relative change of an action's probability beyond which there is nothing to gain.
+    /// Limit of the relative change of an action's probability.
     #[schemars(range(min = 0.001, max = 1), extend("default" = 0.2))]
     pub clip: f32,
     /// Passes over the samples.
@@ -115,16 +116,16 @@ pub struct Ppo {
     /// Samples per optimiser step.
     #[schemars(range(min = 1, max = 1_000_000), extend("default" = 2048))]
     pub minibatch: usize,
-    /// Value of one nat of the policy's entropy.
+    /// Weight of the policy's entropy, per nat.
     #[schemars(range(min = 0, max = 10), extend("default" = 0.01))]
     pub entropy: f32,
-    /// An update ends early once the policy has diverged by this much, nats. Default 0.03.
+    /// Divergence of the policy at which an update ends early, nats.
     #[schemars(range(min = 0, max = 100), extend("default" = 0.03))]
     pub divergence_max: f32,
-    /// Value of a reward one step later.
+    /// Discount factor per step.
     #[schemars(range(min = 0, max = 1), extend("default" = 0.995))]
     pub discount: f32,
-    /// The λ of generalised advantage estimation: how far advantages look ahead.
+    /// λ of generalised advantage estimation.
     #[schemars(range(min = 0, max = 1), extend("default" = 0.95))]
     pub lambda: f32,
 }
@@ -149,80 +150,83 @@ impl Default for Ppo {
 /// Past policies as opponents.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct League {
-    /// Samples between two policies that are kept.
+    /// Samples between kept policies.
     #[schemars(range(min = 1000, max = 1_000_000_000), extend("default" = 500_000))]
     pub every_samples: u64,
-    /// Maximum number of policies kept; the oldest are discarded.
+    /// Number of policies kept, the newest.
     #[schemars(range(min = 1, max = 1000), extend("default" = 20))]
     pub most: usize,
-    /// Opponents are drawn by their share of wins to this power; 0 draws all equally (prioritised fictitious self-play, Vinyals and others,
-    /// Nature 2019). Every opponent keeps a small probability.
+    /// Opponents are drawn in proportion to this power of their share of wins; 0: uniformly
+    /// (prioritised fictitious self-play, Vinyals and others, Nature 2019). Every opponent has a
+    /// small minimum.
     #[schemars(range(min = 0, max = 10), extend("default" = 1))]
     pub priority: f64,
 }
 
-/// How policies are evaluated.
+/// How policies are evaluated; the best is kept.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Evaluation {
-    /// Samples between two evaluations.
+    /// Samples between evaluations.
     #[schemars(range(min = 1000, max = 1_000_000_000), extend("default" = 200_000))]
     pub every_samples: u64,
-    /// Games against each opponent, half on each side, with the same seeds every time.
+    /// Games per opponent, half of them on each side, always with the same seeds.
     #[schemars(range(min = 2, max = 100_000), extend("default" = 20))]
     pub games: u32,
-    /// The opponents' strategy files, in the game of the last stage. The best policy wins the largest share of all these games; draws
-    /// count half.
+    /// Strategy files of the opponents, in the game of the last stage. The best policy wins most of
+    /// all games; draws count half.
     #[schemars(with = "Vec<FilePath>", length(min = 1, max = 100))]
     pub opponents: Vec<PathBuf>,
 }
 
-/// A stage of a training.
+/// A stage of training.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Stage {
     /// Its name.
     #[schemars(with = "Name")]
     pub name: String,
-    /// The game file, with two teams of equal size. Its teams' strategies are ignored.
+    /// Game file with two teams of equal size; its strategies are ignored.
     #[schemars(with = "FilePath")]
     pub game: PathBuf,
-    /// The sea file. Default: the game's.
+    /// Sea file. Default: the game's.
     #[schemars(with = "Option<FilePath>")]
     pub sea: Option<PathBuf>,
-    /// The rewards file.
+    /// Rewards file.
     #[schemars(with = "FilePath")]
     pub rewards: PathBuf,
-    /// The strategy file whose helms carry out actions, with a behaviour of kind `policy` in every role. Default none: actions are orders.
+    /// Strategy file whose helms execute actions; every role needs a behaviour of kind `policy`.
+    /// Default: none, actions are orders.
     #[schemars(with = "Option<FilePath>")]
     pub helm: Option<PathBuf>,
-    /// A strategy that plays the policy's boats in this stage. The policy learns to imitate it (behaviour cloning), and the critic learns
-    /// the results. Default none: the policy plays.
+    /// Strategy that plays the policy's boats in this stage; the policy imitates it (behaviour
+    /// cloning), and the critic learns its returns. Default: none.
     pub teacher: Option<Teacher>,
-    /// The mates' strategy file. The policy controls one boat of its team, each in turn, and this strategy the others. Default none: the
-    /// policy controls all boats.
+    /// Strategy file of mates: the policy drives one boat of its team, each in turn. Default: none,
+    /// the policy drives all.
     #[schemars(with = "Option<FilePath>")]
     pub mates: Option<PathBuf>,
-    /// Relative frequency of games against the current policy.
+    /// Relative frequency of the policy itself as the opponent.
     #[schemars(range(min = 0, max = 1_000_000), extend("default" = 0))]
     pub self_play: f64,
-    /// Relative frequency of games against past policies, all together.
+    /// Relative frequency of past policies as the opponent, all together.
     #[schemars(range(min = 0, max = 1_000_000), extend("default" = 0))]
     pub past_selves: f64,
-    /// Relative frequency of games against the `opponent`s, all together.
+    /// Relative frequency of the strategies in `opponent`, all together.
     #[schemars(range(min = 0, max = 1_000_000), extend("default" = 1))]
     pub strategies: f64,
     /// Strategies as opponents.
     #[schemars(length(max = 100))]
     pub opponent: Vec<Opponent>,
-    /// Number of different starts, which repeat; each one's sea and boats are created once. Default: a new start for every game.
+    /// Number of different starts, which repeat: seas and boats are created once. Default: a new
+    /// start every game.
     #[schemars(range(min = 1, max = 1_000_000))]
     pub starts: Option<u32>,
-    /// Time after which an episode is cut off, s. Default: whole games.
+    /// Maximum duration of an episode, s. Default: whole games.
     #[schemars(range(min = 1, max = 86400))]
     pub episode_max_s: Option<f64>,
-    /// Samples after which the stage ends.
+    /// Samples after which it ends.
     #[schemars(range(min = 1, max = 1_000_000_000_000_u64))]
     pub samples: u64,
-    /// Share of games won in an evaluation that ends the stage early; draws count half. Default: never.
+    /// Share of games won in an evaluation that ends it early; draws count half. Default: never.
     #[schemars(range(min = 0, max = 1))]
     pub until_won: Option<f64>,
 }
@@ -230,19 +234,19 @@ pub struct Stage {
 /// A strategy to imitate.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Teacher {
-    /// The strategy file.
+    /// Strategy file.
     #[schemars(with = "FilePath")]
     pub strategy: PathBuf,
-    /// With `action = "options"`: the option of each mode. Other modes take the option with their own name, if any; without one, they are
-    /// not imitated.
+    /// With `action = "options"`: the option of each mode. An omitted mode is the option of the
+    /// same name, or is not learnt from.
     #[schemars(extend("default" = {}))]
     pub options: BTreeMap<String, String>,
 }
 
-/// A strategy as an opponent.
+/// An opponent.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Opponent {
-    /// The strategy file.
+    /// Strategy file.
     #[schemars(with = "FilePath")]
     pub strategy: PathBuf,
 }

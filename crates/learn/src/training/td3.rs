@@ -3,47 +3,50 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Settings of the twin delayed deep deterministic policy gradient (Fujimoto, van Hoof and Meger, ICML 2018), for continuous actions.
+/// Twin delayed deep deterministic policy gradient (Fujimoto, van Hoof and Meger, ICML 2018), for
+/// continuous actions.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Td3 {
     /// Steps of every game per update.
     #[schemars(range(min = 1, max = 65536), extend("default" = 16))]
     pub steps: usize,
-    /// Optimiser steps per update, each with one minibatch.
+    /// Optimiser steps per update, one minibatch each.
     #[schemars(range(min = 1, max = 100_000), extend("default" = 64))]
     pub minibatches: u32,
     /// Transitions per optimiser step, drawn from the replay buffer.
     #[schemars(range(min = 1, max = 1_000_000), extend("default" = 512))]
     pub minibatch: usize,
-    /// Capacity of the replay buffer, transitions. Each takes 8 bytes per value of the observation, plus about 20, in memory and in
-    /// `state.bin`.
+    /// Newest transitions in the replay buffer. Each takes 8 bytes per value of the observation plus
+    /// about 20, in memory and in `state.bin`.
     #[schemars(range(min = 1000, max = 10_000_000), extend("default" = 250_000))]
     pub buffer: usize,
-    /// Learning starts when the replay buffer holds this many transitions; in the first stage actions are uniformly random until then.
+    /// Transitions in the replay buffer before learning starts; until then, actions in the first
+    /// stage are uniformly random.
     #[schemars(range(min = 1, max = 10_000_000), extend("default" = 20_000))]
     pub warm_up: usize,
-    /// Learning rate of the optimisers.
+    /// Step size of the optimisers.
     #[schemars(range(min = 0, max = 1), extend("default" = 0.0003))]
     pub learning_rate: f32,
-    /// Value of a reward one step later.
+    /// Discount factor per step.
     #[schemars(range(min = 0, max = 1), extend("default" = 0.995))]
     pub discount: f32,
-    /// Factor applied to rewards before learning; values should be about 1 to 10.
+    /// Factor on rewards; values should be about 1 to 10.
     #[schemars(range(min = 0.000_001, max = 1_000_000), extend("default" = 1))]
     pub reward_scale: f32,
-    /// Share by which the target networks approach the learnt ones with each step of the policy's optimiser (Polyak averaging).
+    /// Share of the learnt weights that target networks adopt per step of the policy's optimiser
+    /// (Polyak averaging).
     #[schemars(range(min = 0, max = 1), extend("default" = 0.005))]
     pub target_rate: f32,
-    /// Standard deviation of the exploration noise on actions.
+    /// Standard deviation of exploration noise on actions.
     #[schemars(range(min = 0, max = 10), extend("default" = 0.1))]
     pub exploration: f32,
-    /// Standard deviation of the noise on the target policy's actions.
+    /// Standard deviation of noise on the target policy's actions.
     #[schemars(range(min = 0, max = 10), extend("default" = 0.2))]
     pub smoothing: f32,
-    /// Limit of the noise on the target policy's actions.
+    /// Limit of that noise.
     #[schemars(range(min = 0, max = 10), extend("default" = 0.5))]
     pub smoothing_max: f32,
-    /// Critic updates per policy update.
+    /// Steps of the critics' optimisers per step of the policy's.
     #[schemars(range(min = 1, max = 1000), extend("default" = 2))]
     pub delay: u32,
 }

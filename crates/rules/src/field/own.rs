@@ -19,7 +19,7 @@ impl Field {
         flags.filter(move |(_, flag)| flag.team == team).map(|(i, flag)| (FlagId(i as u8), flag.home))
     }
 
-    /// The home of that of `team`'s own flags that is nearest to `at`; none if it has no flag.
+    /// The nearest of `team`'s own flags' homes; none without flags.
     #[must_use]
     pub fn nearest_own_flag(&self, team: TeamId, at: Ned) -> Option<Ned> {
         at.nearest_of(self.own_flags(team).map(|(_, home)| home))

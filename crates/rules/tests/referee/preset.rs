@@ -6,7 +6,7 @@ use rules::Rules;
 use std::path::Path;
 use std::sync::LazyLock;
 
-/// The shipped rule books, modified so that boats may be placed side by side and every look checks
+/// The shipped rule books, modified so that boats may be side by side and every look checks
 /// everything.
 static SHIPPED: LazyLock<[Rules; 4]> = LazyLock::new(|| {
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
@@ -25,12 +25,12 @@ pub(crate) fn all() -> [Rules; 4] {
     SHIPPED.clone()
 }
 
-/// The paper's rules: grab 1, capture 2 at the own flag, tags cool down for 10 s.
+/// The paper's rules: grab 1, capture 2 at the own flag, tag cooldown 10 s.
 pub(crate) fn aquaticus_2023() -> Rules {
     SHIPPED[0].clone()
 }
 
-/// Pyquaticus: captures only, at the scrimmage line; tags cool down for 60 s.
+/// Pyquaticus: captures only, at the scrimmage line; tag cooldown 60 s.
 pub(crate) fn pyquaticus() -> Rules {
     SHIPPED[1].clone()
 }

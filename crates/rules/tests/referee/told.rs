@@ -32,7 +32,6 @@ fn pointer(path: &str) -> String {
     format!("/{}", path.replace('.', "/"))
 }
 
-/// The scene opened by this line.
 fn opened(line: &str) -> Told<Scene> {
     let mut words = line.strip_prefix("rules ").ok_or("expected `rules BOOK`")?.split(' ');
     let book = words.next().and_then(|name| preset::all().into_iter().find(|rules| rules.name == name));

@@ -10,7 +10,7 @@ use proptest::prelude::*;
 use rules::event::{Event, TagCause};
 use rules::{Look, Notes, Referee, Resolution, Rules, SideJudged, Standing};
 
-/// Positions are whole multiples of this, so that the mirror image of a game is exact.
+/// Positions are multiples of this, so that the mirror image of a game is exact.
 const GRAIN_M: f64 = 1.0 / 64.0;
 const LOOKS: usize = 400;
 
@@ -44,7 +44,7 @@ impl Walk {
         Referee::new(self.rules.clone(), field(extra), teams_of(self.boats, 2))
     }
 
-    /// The motion of every boat, look by look. Boats hurry from one interesting place to the next.
+    /// The motion of every boat, look by look, from one interesting place to the next.
     fn fleets(&self) -> Vec<Vec<Leg>> {
         let mut stream = Stream::new(self.seed, "walk");
         let start_position = |_| Ned::from_xy(80.0, 40.0);
@@ -161,7 +161,7 @@ fn assert_lawful(referee: &Referee, before: &Standing, after: &Standing, fleet: 
         Event::Tagged { vehicle, cause: TagCause::Boundary } => assert!(!field.contains(at(vehicle))),
         Event::Grabbed { vehicle, flag } => {
             let boat = &after.vehicles[vehicle.index()];
-            // In turn, a boat may be tagged after it grabbed, and a flag grabbed that the boundary
+            // In turn, a boat may be tagged after its grab, and a flag grabbed that the boundary
             // has just brought home.
             assert!(!before.vehicles[vehicle.index()].tagged && !boat.disabled && (!boat.tagged || in_turn));
             assert!(field.contains(at(vehicle)));

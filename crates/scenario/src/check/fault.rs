@@ -7,7 +7,6 @@ use crate::read::Document;
 use crate::{Vehicle, raw};
 use primitives::id::VehicleId;
 
-/// Checks the faults of a game.
 pub(super) fn faults(
     diagnostics: &mut Diagnostics,
     document: &Document<raw::Game>,
@@ -26,7 +25,7 @@ pub(super) fn faults(
         for (i, boat) in fault.boats.iter().enumerate() {
             if !vehicles.iter().any(|vehicle| vehicle.name == *boat) {
                 let known: Vec<&str> = vehicles.iter().map(|vehicle| vehicle.name.as_str()).collect();
-                let message = format!("boats has {boat:?}, expected names of {}", known.join(", "));
+                let message = format!("boats has {boat:?}, expected any of {}", known.join(", "));
                 diagnostics.note(document.at(&format!("{path}.boats.{i}")), message);
             }
         }
@@ -37,7 +36,7 @@ pub(super) fn faults(
             let Vehicle { name: vehicle, boat, .. } = &vehicles[vehicle.index()];
             if let Some(lacks) = lacks(fault.kind, &boats[*boat]) {
                 let message = format!(
-                    "{name} befalls {vehicle}, whose boat {} has no {lacks}, expected one with it",
+                    "{name} affects {vehicle}, whose boat {} has no {lacks}, which this fault requires",
                     boats[*boat].name
                 );
                 diagnostics.note(document.at(&path), message);
@@ -60,15 +59,15 @@ fn check_keys(diagnostics: &mut Diagnostics, document: &Document<raw::Game>, pat
     ] {
         if is_given != (fault.kind == kind) {
             let message = match is_given {
-                true => format!("{key} is given, expected with another kind of fault only"),
-                false => format!("{key} is missing, expected with this kind of fault"),
+                true => format!("{key} is given, but this kind of fault does not use it"),
+                false => format!("{key} is missing, but this kind of fault requires it"),
             };
             diagnostics.note(document.at(&format!("{path}.{key}")), message);
         }
     }
 }
 
-/// The part that a boat lacks for this kind of fault.
+/// The part required by this kind of fault that the boat lacks.
 fn lacks(kind: FaultKind, boat: &Boat) -> Option<&'static str> {
     match kind {
         FaultKind::AgentLost | FaultKind::LinkLost => None,

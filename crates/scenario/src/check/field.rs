@@ -12,7 +12,6 @@ use rules::field::{Field, Flag, Obstacle};
 /// Maximum distance of a relevant obstacle outside the field, m.
 const NEAR_M: f64 = 50.0;
 
-/// Checks a field.
 pub(crate) fn field(diagnostics: &mut Diagnostics, document: &Document<raw::Field>) -> Option<Field> {
     let raw = &document.raw;
     let mut plan = raw.plan.clone();
@@ -92,7 +91,7 @@ fn obstacle(
             Obstacle::Polygon { corners }
         }
         _ => {
-            diagnostics.note_if_intact(place, "obstacle says neither or both, expected either circle or polygon");
+            diagnostics.note_if_intact(place, "obstacle has neither or both, expected either circle or polygon");
             return None;
         }
     };
@@ -106,10 +105,10 @@ fn obstacle(
         Obstacle::Polygon { corners } => corners.iter().all(is_near),
     };
     if !is_near {
-        diagnostics.note(place, format!("obstacle is off the field, expected at most {NEAR_M} m outside of it"));
+        diagnostics.note(place, format!("obstacle is off the field, expected at most {NEAR_M} m outside it"));
     }
     if field.flags.iter().any(|flag| obstacle.distance(flag.home) <= 0.0) {
-        diagnostics.note(place, "obstacle stands on a flag, expected open water there");
+        diagnostics.note(place, "obstacle covers a flag, expected open water there");
     }
     Some(obstacle)
 }

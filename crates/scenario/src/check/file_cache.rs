@@ -5,16 +5,16 @@ use crate::source::tidied;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Reads and checks the file at a path, with the place of the reference, for an owner who draws its
-/// numbers.
+/// Reads and checks the file at a path, with the place of the reference, for an owner that draws
+/// its numbers.
 type LoadFile<T> = fn(&mut Diagnostics, &Path, Option<usize>, &str) -> Option<T>;
 
-/// Files of one kind that a game refers to. Each is read once, or once per owner: always, or if it
-/// has numbers to draw.
+/// Files of one kind that a game refers to. Each is read once; once per owner if it has numbers to
+/// draw, or always.
 pub(super) struct FileCache<T> {
     pub(super) items: Vec<T>,
     path_of: BTreeMap<String, PathBuf>,
-    /// For files without numbers to draw, by path and owner ("" if owners share them).
+    /// Files without numbers to draw, by path and owner ("" if owners share them).
     index_of: BTreeMap<(PathBuf, String), Option<usize>>,
     is_by_owner: bool,
     load: LoadFile<T>,

@@ -1,4 +1,4 @@
-//! Checks a game file and all the files it refers to.
+//! Checks a game file and the files it refers to.
 
 use super::boat::{FASTEST_PER_TICK, fastest_decay};
 use super::file_cache::FileCache;
@@ -17,24 +17,23 @@ use rules::field::Field;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Maximum number of vehicles of a game.
 const MOST_VEHICLES: usize = 10_000;
 
 /// A vehicle whose start position is not yet known.
 pub(super) struct Entry {
     pub(super) name: String,
-    /// Its place in the files.
+    /// Its offset in the virtual text.
     pub(super) place: usize,
     pub(super) team: TeamId,
     pub(super) boat: usize,
     strategy: usize,
-    /// The start position in its file; `None` is the team's line.
+    /// The start position in its file; `None`: on the team's line.
     pub(super) start_position: Option<StartPosition>,
     pub(super) heading_deg: Option<f64>,
     source: Source,
 }
 
-/// The vehicles known so far, and the files that they refer to.
+/// The vehicles so far, and the files that they refer to.
 struct Fleet<'a> {
     document: &'a Document<raw::Game>,
     field: Option<&'a Field>,
@@ -44,7 +43,6 @@ struct Fleet<'a> {
     entries: Vec<Entry>,
 }
 
-/// Checks a game.
 pub(crate) fn game(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) -> Option<Scenario> {
     let raw = &document.raw;
     let field = diagnostics.referenced::<Field, _>(document, "field", &raw.field.0);
@@ -115,23 +113,22 @@ pub(crate) fn game(diagnostics: &mut Diagnostics, document: &Document<raw::Game>
     document.is_faultless(diagnostics).then_some(scenario)
 }
 
-/// Reports a setting without effect because the game overrides it.
+/// Reports a setting that the game overrides.
 fn check_duration(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) {
     let is_set = |key: &str| diagnostics.overrides.settings.iter().any(|setting| setting.key == key);
     if document.raw.duration_s.is_some() && is_set("rules.time_limit_s") {
-        let message =
-            "duration_s of the game takes the place of rules.time_limit_s, expected game.duration_s to be set";
+        let message = "duration_s of the game overrides rules.time_limit_s; set game.duration_s instead";
         diagnostics.note(document.at("duration_s"), message);
     }
 }
 
-/// Reseeds must be in order of time.
+/// Reseeds must be in ascending order.
 fn check_reseed(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) {
     for (i, pair) in document.raw.reseed.windows(2).enumerate() {
         if pair[1].after_s <= pair[0].after_s {
             let place = document.at(&format!("reseed.{}", i + 1));
             let message =
-                format!("after_s is {}, expected more than {} of the one before", pair[1].after_s, pair[0].after_s);
+                format!("after_s is {}, expected more than {} of the previous entry", pair[1].after_s, pair[0].after_s);
             diagnostics.note(place, message);
         }
     }
@@ -171,7 +168,7 @@ fn check_tick(diagnostics: &mut Diagnostics, document: &Document<raw::Game>, tic
         let (motion, rate_per_s) = fastest_decay(boat);
         if rate_per_s * tick.as_s() > FASTEST_PER_TICK {
             let message = format!(
-                "tick_s is {}, expected at most {:.4}: the {motion} of boat {} dies out at {rate_per_s:.1} 1/s",
+                "tick_s is {}, expected at most {:.4}: the {motion} of boat {} decays at {rate_per_s:.1} 1/s",
                 document.raw.tick_s,
                 FASTEST_PER_TICK / rate_per_s,
                 boat.name
@@ -181,7 +178,7 @@ fn check_tick(diagnostics: &mut Diagnostics, document: &Document<raw::Game>, tic
     }
 }
 
-/// The referee's checks are at whole ticks.
+/// The referee checks only at whole ticks.
 fn check_looks(diagnostics: &mut Diagnostics, document: &Document<raw::Game>, tick: SimTime, rules: Option<&Rules>) {
     let Some(rules) = rules else { return };
     for (key, period) in [("tag_look_period_s", rules.tag_look_period), ("flag_look_period_s", rules.flag_look_period)]
@@ -194,7 +191,7 @@ fn check_looks(diagnostics: &mut Diagnostics, document: &Document<raw::Game>, ti
     }
 }
 
-/// Models are made for a fixed team size, unless they have spare slots.
+/// Models have a fixed team size, unless they have spare slots.
 fn check_models(diagnostics: &mut Diagnostics, entries: &[Entry], strategies: &[Strategy]) {
     for Entry { name, place, team, strategy, .. } in entries {
         let mates = entries.iter().filter(|other| other.team == *team).count() - 1;
@@ -203,7 +200,7 @@ fn check_models(diagnostics: &mut Diagnostics, entries: &[Entry], strategies: &[
             let (takes, size) = (model.input_size(), model.spec.observation.size(mates, enemies));
             if takes != size {
                 let message = format!(
-                    "the model {} takes {takes} numbers, expected {size}: {name} has {mates} mates and {enemies} enemies",
+                    "the model {} has {takes} inputs, expected {size}: {name} has {mates} mates and {enemies} enemies",
                     model.name
                 );
                 diagnostics.note(*place, message);
@@ -217,18 +214,16 @@ fn check_teams(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) {
     for (i, name) in teams.iter().enumerate() {
         if !name.is_empty() && teams[..i].contains(name) {
             let place = document.at(&format!("team.{i}.name"));
-            diagnostics.note(place, format!("name is {name:?} again, expected a different one for each team"));
+            diagnostics.note(place, format!("name {name:?} is used twice, expected a unique name for each team"));
         }
     }
     let is_unknown = |team: &&str| !teams.contains(team);
     let overrides = &diagnostics.overrides;
     let (names, replaced) = (teams.join(", "), overrides.strategies.keys().map(String::as_str).find(is_unknown));
-    let message = replaced
-        .map(|team| format!("there is no team {team:?} to give another strategy to, expected one of {names}"))
-        .or_else(|| {
-            let changed = overrides.settings.iter().find(|setting| setting.team().as_ref().is_some_and(is_unknown))?;
-            Some(format!("{}: there is no such team, expected one of {names} after strategy", changed.key))
-        });
+    let message = replaced.map(|team| format!("unknown team {team:?}, expected one of {names}")).or_else(|| {
+        let changed = overrides.settings.iter().find(|setting| setting.team().as_ref().is_some_and(is_unknown))?;
+        Some(format!("{}: unknown team, expected one of {names} after strategy", changed.key))
+    });
     if let Some(message) = message {
         diagnostics.note_if_intact(document.at(""), message);
     }
@@ -295,7 +290,7 @@ impl Fleet<'_> {
         let name_path = format!("{path}.name");
         let name_place = self.document.at(&name_path);
         if !pattern.contains("{}") {
-            diagnostics.note(name_place, format!("name is {pattern:?}, expected {{}} in it, where the number goes"));
+            diagnostics.note(name_place, format!("name is {pattern:?}, expected {{}} in place of the number"));
             return;
         }
         if !self.document.is_sound(&format!("{path}.count"))
@@ -324,7 +319,7 @@ impl Fleet<'_> {
         }
         let is_new = self.names.insert(name.to_owned());
         if !is_new {
-            diagnostics.note(place, format!("name is {name:?} again, expected a different one for each vehicle"));
+            diagnostics.note(place, format!("name {name:?} is used twice, expected a unique name for each vehicle"));
         }
         is_new
     }
@@ -376,7 +371,7 @@ impl Fleet<'_> {
         };
         let given = given.filter(|_| !is_replaced(diagnostics, team));
         if let (Some(given), true) = (given, diagnostics.overrides.exchange_strategies) {
-            let message = format!("strategy is {}, expected none here: the teams exchange theirs", given.0);
+            let message = format!("strategy is {}, expected none here because the teams exchange strategies", given.0);
             diagnostics.note(self.document.at(&path), message);
             return None;
         }
@@ -415,7 +410,7 @@ impl Fleet<'_> {
         self.strategies.index(diagnostics, &strategy_path(&strategy.as_ref()?.0), place, owner)
     }
 
-    /// Reports a missing key of a vehicle or fleet, which its game or team could also give.
+    /// Reports a key missing from a vehicle or fleet and from its game or team.
     fn missing(&self, diagnostics: &mut Diagnostics, path: &str, expected: &str) {
         if self.document.is_sound(path) {
             let key: Vec<&str> = path.split('.').filter(|part| part.parse::<usize>().is_err()).collect();
@@ -428,12 +423,12 @@ impl Fleet<'_> {
 /// Whether a game may have this many vehicles.
 fn is_room(diagnostics: &mut Diagnostics, place: usize, total: usize) -> bool {
     if total > MOST_VEHICLES {
-        diagnostics.note(place, format!("vehicles are {total} with this one, expected at most {MOST_VEHICLES}"));
+        diagnostics.note(place, format!("there are {total} vehicles up to this one, expected at most {MOST_VEHICLES}"));
     }
     total <= MOST_VEHICLES
 }
 
-/// The path of a strategy given by a path, or by a name in the folder of strategies.
+/// The path of a strategy given by path, or by name in the folder of strategies.
 fn strategy_path(given: &str) -> String {
     let is_name = !given.contains(['/', '\\', '.']);
     if is_name { format!("../{}/{given}.toml", Kind::STRATEGY.folder()) } else { given.to_owned() }

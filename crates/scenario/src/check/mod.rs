@@ -1,8 +1,8 @@
 //! Converts files as typed to checked types: estimates missing values and applies rules that
 //! combine several values.
 //!
-//! The declaration of a value defines its allowed range, which is already checked here. Every check
-//! reports all faults in the [`Diagnostics`] and returns `None` if there were any.
+//! The schema has already checked the range of each value. Every check reports all faults in the
+//! [`Diagnostics`] and returns `None` if there were any.
 
 mod boat;
 mod fault;

@@ -12,7 +12,7 @@ pub fn check_corners(corners: &[Ned]) -> Result<(), (usize, String)> {
     let side = |i: usize| (corners[i], corners[(i + 1) % count]);
     for i in 0..count {
         if corners[i] == side(i).1 {
-            return Err((i, "polygon has two corners in one place, expected different ones".into()));
+            return Err((i, "polygon has two corners at the same position, expected distinct corners".into()));
         }
         // Neighbours share a corner; they must not fold back onto one another.
         let crossing = (i + 1..count).find(|&j| {

@@ -4,12 +4,12 @@ use crate::diagnostics::Diagnostics;
 use crate::read::Document;
 use rules::{CaptureAt, Rules, UntagAt};
 
-/// Checks rules.
 pub(crate) fn rules(diagnostics: &mut Diagnostics, document: &Document<Rules>) -> Option<Rules> {
     let mut rules = document.raw.clone();
     rules.win_score = rules.win_score.filter(|win_score| *win_score > 0);
     rules.sharing.view_rad = rules.sharing.view_rad.filter(|view_rad| *view_rad < f64::to_radians(360.0));
-    // A keep-out circle must leave room at the own flag for the tasks of boats there.
+    // Inside a keep-out circle, boats must still be able to grab, capture and untag at their own
+    // flag.
     let needed = [
         (rules.untag_at == UntagAt::OwnFlag, "untag_radius_m", rules.untag_radius_m),
         (rules.capture_at == CaptureAt::OwnFlag, "capture_radius_m", rules.capture_radius_m),

@@ -15,13 +15,13 @@ use primitives::id::TeamId;
 use primitives::near::Near;
 use rules::field::Field;
 
-/// Free margin of a default rectangle on either side, m.
+/// Margin of a default rectangle on either side, m.
 const MARGIN_M: f64 = 2.0;
-/// Largest share of the rectangle for the boats' gaps as squares. Boats placed one by one jam at
-/// about 0.69; half is easy.
+/// Maximum share of the rectangle for the boats' gaps as squares. Sequential placement jams at
+/// about 0.69.
 const FULLEST: f64 = 0.5;
 
-/// The start position given for the vehicle at `path`; `None` is the team's line.
+/// The start position given for the vehicle at `path`; `None`: on the team's line.
 pub(super) fn stated(
     diagnostics: &mut Diagnostics,
     document: &Document<raw::Game>,
@@ -36,7 +36,7 @@ pub(super) fn stated(
             diagnostics.note(place("at"), "vehicle has at and spawn, expected one of them");
         }
         if raw.heading_deg.is_some() {
-            diagnostics.note(place("heading_deg"), "heading_deg is given with spawn, expected with at only");
+            diagnostics.note(place("heading_deg"), "heading_deg is given with spawn, expected only with at");
         }
         return somewhere(diagnostics, document, &format!("{path}.spawn"), spawn, 1, field);
     }
@@ -70,7 +70,7 @@ pub(super) fn somewhere(
             return None;
         }
         if from_m >= to_m {
-            diagnostics.note(place, format!("{key} is [{from_m}, {to_m}], expected the smaller one first"));
+            diagnostics.note(place, format!("{key} is [{from_m}, {to_m}], expected the smaller value first"));
             return None;
         }
         Some((from_m, to_m))
@@ -91,9 +91,9 @@ pub(super) fn somewhere(
     Some(StartPosition::Somewhere { along_m, across_m, gap_m })
 }
 
-/// The start positions of all entries, in order. Those without a given one are in their team's
-/// line: midway between own flag and scrimmage line, evenly across, from port to starboard, bows to
-/// the opponent.
+/// The start positions of all entries, in order. Those without a given one are on their team's
+/// line: midway between its flag and the scrimmage line, evenly spaced from port to starboard,
+/// facing the opponent.
 pub(super) fn all(entries: &[Entry], field: &Field) -> Vec<StartPosition> {
     let plan = &field.plan;
     let along_m = (plan.flag_inset_m + plan.width_m / 2.0) / 2.0;
@@ -142,11 +142,13 @@ pub(super) fn check_clear(
     for pair in near.pairs(|i| placed[i].1, placed.len(), longest_m) {
         let ((a, _, a_length_m), (b, _, b_length_m)) = (placed[usize::from(pair.a)], placed[usize::from(pair.b)]);
         let (apart_m, least_m) = (pair.distance_squared.sqrt(), a_length_m.max(b_length_m));
-        // Each crowded boat is reported once, and so is a crowded fleet.
+        // Reports each crowded boat once, and each crowded fleet once.
         if apart_m < least_m && b.place != last {
             last = b.place;
-            let message =
-                format!("{} starts {apart_m:.2} m from {}, expected a boat's length, {least_m} m", b.name, a.name);
+            let message = format!(
+                "{} starts {apart_m:.2} m from {}, expected at least a boat's length, {least_m} m",
+                b.name, a.name
+            );
             diagnostics.note(b.place, message);
         }
     }

@@ -1,4 +1,4 @@
-//! Observations: the values that a policy receives of its boat's knowledge. `agent` writes them.
+//! Observations: the values that a policy receives. `agent` writes them.
 
 pub mod pyquaticus;
 pub mod squall;
@@ -6,21 +6,22 @@ pub mod squall;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Which numbers a policy is given.
+/// Which values a policy receives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum ObservationSpace {
-    /// Those of Pyquaticus, in its order: 21 of the own boat and 8 of each other one, each from -1 to 1.
+    /// Those of Pyquaticus, in its order: 21 of the own boat and 8 of each other boat, each from -1
+    /// to 1.
     Pyquaticus,
-    /// Ours: what sensors and radio tell, in a frame that is the same for both teams.
+    /// Those of Squall: what sensors and radio report, in a frame that is the same for both teams.
     Squall {
-        /// How many mates there is room for.
+        /// Number of mates with a slot.
         #[schemars(range(min = 0, max = 255))]
         mates: u8,
-        /// How many enemies, the nearest ones.
+        /// Number of enemies with a slot, nearest first.
         #[schemars(range(min = 0, max = 255))]
         enemies: u8,
-        /// How many decisions of the policy are given together, the newest first.
+        /// Number of successive decisions included, newest first.
         #[schemars(range(min = 1, max = 255), extend("default" = 1))]
         frames: u8,
     },
@@ -47,8 +48,8 @@ impl ObservationSpace {
         }
     }
 
-    /// The names of the values, in order, for a boat with this many mates and enemies. Names of
-    /// older frames begin with their age in policy decisions: `t-1.speed`.
+    /// The names of the values, in order. Names of older frames begin with their age in policy
+    /// decisions: `t-1.speed`.
     #[must_use]
     pub fn names(self, mates: usize, enemies: usize) -> Vec<String> {
         match self {
@@ -62,8 +63,7 @@ impl ObservationSpace {
     }
 }
 
-/// The names of the own boat's values, and then of each other boat's: `mate_1_speed`,
-/// `enemy_2_speed`.
+/// The names of the own boat's values, then of each other boat's: `mate_1_speed`, `enemy_2_speed`.
 pub(super) fn names_of(own: &[&str], other: &[&str], (mates, enemies): (usize, usize)) -> Vec<String> {
     let mates = (1..=mates).map(|i| format!("mate_{i}"));
     let others = mates.chain((1..=enemies).map(|i| format!("enemy_{i}")));

@@ -5,12 +5,10 @@ use super::names_of;
 /// Incremented when the meaning of a value changes: models of another version are rejected.
 pub(super) const VERSION: u32 = 1;
 
-/// Number of values of the own boat.
 const OWN: usize = 21;
 /// Number of values of another boat.
 pub const OTHER: usize = 8;
 
-/// Names of the own boat's values.
 const OWN_NAMES: [&str; OWN] = [
     "enemy_flag_bearing",
     "enemy_flag_distance",
@@ -34,16 +32,13 @@ const OWN_NAMES: [&str; OWN] = [
     "score",
     "enemy_score",
 ];
-/// Names of another boat's values.
 const OTHER_NAMES: [&str; OTHER] =
     ["bearing", "distance", "relative_heading", "speed", "has_flag", "on_own_side", "time_since_tag", "tagged"];
 
-/// The names of all values, in order.
 pub(super) fn names(mates: usize, enemies: usize) -> Vec<String> {
     names_of(&OWN_NAMES, &OTHER_NAMES, (mates, enemies))
 }
 
-/// The number of values with this many other boats.
 pub(super) fn size(others: usize) -> usize {
     OWN + others * OTHER
 }

@@ -10,7 +10,6 @@ const OWN: usize = 44;
 /// Number of values of another boat: presence, position, motion, state.
 pub const OTHER: usize = 16;
 
-/// Names of the values of the own boat, its goals and the game.
 const OWN_NAMES: [&str; OWN] = [
     "position_ahead",
     "position_port",
@@ -57,7 +56,6 @@ const OWN_NAMES: [&str; OWN] = [
     "time_left",
     "rank",
 ];
-/// Names of another boat's values.
 const OTHER_NAMES: [&str; OTHER] = [
     "known",
     "ahead",
@@ -77,12 +75,10 @@ const OTHER_NAMES: [&str; OTHER] = [
     "near_own_flag",
 ];
 
-/// The names of a frame's values, in order.
 pub(super) fn names(mates: usize, enemies: usize) -> Vec<String> {
     names_of(&OWN_NAMES, &OTHER_NAMES, (mates, enemies))
 }
 
-/// The number of values of a frame.
 pub(super) fn size(mates: usize, enemies: usize) -> usize {
     OWN + (mates + enemies) * OTHER
 }

@@ -5,61 +5,62 @@ use crate::sensor::Sensors;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// A kind of boat: hull, thrusters and front seat, in surge, sway and yaw. The origin is midships; x
-/// ahead, y to starboard, yaw clockwise. Any number may be drawn for every game.
+/// A kind of boat. The origin is midships: x ahead, y to
+/// starboard, yaw clockwise.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[schemars(extend("x-drawn" = true))]
 pub struct Boat {
-    /// Length over all, m.
+    /// Length overall, m.
     #[schemars(range(min = 0.1, max = 100))]
     pub(crate) length_m: f64,
-    /// Beam over all, m.
+    /// Beam overall, m.
     #[schemars(range(min = 0.05, max = 50))]
     pub(crate) beam_m: f64,
-    /// Draught, m. Default the hull's crossflow_draught_m, or L / 12.
+    /// Draught, m. Default: `crossflow_draught_m` of the hull, or L / 12.
     #[schemars(range(min = 0.01, max = 20))]
     pub(crate) draught_m: Option<f64>,
     /// Inertia and resistance.
     pub(crate) hull: Hull,
-    /// What the wind gets hold of.
+    /// Wind force.
     pub(crate) windage: Windage,
-    /// The two thrusters. Required, unless the boat is kinematic.
+    /// The two thrusters. Required unless the boat is kinematic.
     pub(crate) thruster: Option<Thruster>,
-    /// The front seat's heading and speed loops. Required, unless the boat is kinematic.
+    /// Heading and speed loops of the front seat. Required unless the boat is kinematic.
     pub(crate) autopilot: Option<Autopilot>,
-    /// Instead of thruster and autopilot: the point boat of MOOS, for parity. Waves and wind do nothing to it.
+    /// Instead of thruster and autopilot: the point boat of MOOS, which ignores waves and wind.
     pub(crate) kinematic: Option<Kinematic>,
-    /// What it does when it holds.
+    /// Behaviour without an order, out of action, or on a hold order.
     #[schemars(extend("default" = "drifts"))]
     pub(crate) hold: Hold,
     #[serde(flatten)]
     pub(crate) sensors: Sensors,
 }
 
-/// Two fixed thrusters, one each side: `propeller` or `table_pct_newton` says what they push.
+/// Two fixed thrusters, one on each side, with either `propeller` or `table_pct_newton`.
 #[derive(Debug, Deserialize, JsonSchema)]
 pub(crate) struct Thruster {
-    /// Distance of each thruster from the centre line, m.
+    /// Distance of each thruster from the centreline, m.
     #[schemars(range(min = 0.01, max = 25))]
     pub(crate) arm_m: f64,
-    /// A propeller with thrust k n |n|.
+    /// Propeller with thrust k n |n|.
     pub(crate) propeller: Option<Propeller>,
-    /// Setting in per cent and thrust of one thruster in newton, from -100 to 100, both rising, with [0, 0].
+    /// Pairs of setting (-100 to 100 %) and thrust of one thruster (N), both ascending, including
+    /// [0, 0].
     pub(crate) table_pct_newton: Option<Vec<SettingAndThrust>>,
-    /// Time constant with which a setting is taken up, s.
+    /// Time constant of the response, s.
     #[schemars(range(min = 0, max = 60), extend("default" = 0.2))]
     pub(crate) lag_s: f64,
-    /// Fastest change of the commanded setting, shares of full ahead a second.
+    /// Maximum rate of change of the commanded setting, shares of full ahead per second.
     #[schemars(range(min = 0.001, max = 1000), extend("default" = 10))]
     pub(crate) slew_per_s: f64,
-    /// Commands smaller than this share of full ahead give nothing.
+    /// Commands below this share of full ahead have no effect.
     #[schemars(range(min = 0, max = 0.9), extend("default" = 0))]
     pub(crate) deadband: f64,
     #[serde(flatten)]
     pub(crate) flaws: Flaws,
 }
 
-/// A setting in per cent, and the thrust in newton that it gives.
+/// A setting in per cent and its thrust in newtons.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[schemars(inline)]
 pub(crate) struct SettingAndThrust(

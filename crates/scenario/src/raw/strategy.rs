@@ -8,37 +8,36 @@ use serde_json::{Value as Json, json};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-/// How the boats of a team play: either roles and how they are dealt, or the program that everybody follows.
+/// How a team's boats play: roles and their assignment, or one program for all.
 #[derive(Debug, Deserialize, JsonSchema)]
 pub struct Strategy {
-    /// What the strategy is, in a line.
+    /// Description, in one line.
     #[schemars(extend("default" = ""))]
     pub(crate) about: String,
-    /// The files of the programs, relative to this file, dealt to the team's boats in turn, again from the start. Without
-    /// it this file is itself a program.
+    /// Program files, assigned to the team's boats in turn. Without it, this file is a program.
     #[schemars(length(min = 1, max = 1000))]
     pub(crate) roles: Option<Vec<FilePath>>,
-    /// How roles are dealt.
+    /// How roles are assigned to boats.
     #[schemars(extend("default" = "fixed"))]
     pub(crate) assignment: Assignment,
-    /// How decisions are made.
+    /// Settings of decisions.
     pub(crate) helm: Helm,
-    /// Lets modes go without op_region or avoid_collision.
+    /// Allows modes without `op_region` or `avoid_collision`.
     #[schemars(extend("default" = false))]
     pub(crate) unsafe_i_know: bool,
-    /// Why they may. Needed with unsafe_i_know.
+    /// The reason; required with `unsafe_i_know`.
     pub(crate) unsafe_because: Option<String>,
-    /// Variables, by name: a number, true or false, or a table.
+    /// Variables by name: an initial number or boolean, or a table.
     #[schemars(extend("default" = {}))]
     pub(crate) variables: BTreeMap<String, Variable>,
-    /// Modes, parents before their parts: of the parts of a mode the first whose condition holds is the one. Default a
-    /// single mode, "active".
+    /// Modes, parents before children. Among siblings, the first whose condition holds is active.
+    /// Default: one mode, "active".
     #[schemars(length(max = 1000))]
     pub(crate) mode: Vec<Mode>,
-    /// What the helm weighs against each other, by name.
+    /// Behaviours by name; the helm weighs them.
     #[schemars(extend("default" = {}, "x-expected" = "tables [behaviour.NAME]"))]
     pub(crate) behaviour: BTreeMap<String, Behaviour>,
-    /// What gives values to variables at every decision, in order.
+    /// Rules that set variables at every decision, in order.
     #[schemars(length(max = 1000))]
     pub(crate) rule: Vec<Rule>,
 }
@@ -52,11 +51,11 @@ pub(crate) type Values = BTreeMap<String, Value>;
 pub(crate) enum Value {
     Number(f64),
     Truth(bool),
-    /// For a text variable one of its values, else an expression.
+    /// For a text variable one of its values, otherwise an expression.
     Text(String),
 }
 
-/// A variable: what it is at first, or all about it.
+/// A variable: its initial value, or all its keys.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
 #[schemars(inline, extend("x-expected" = "a number, true, false, or a table { values = [...], initial = ..., shared = ... }"))]
@@ -66,48 +65,48 @@ pub(crate) enum Variable {
     Table(VariableTable),
 }
 
-/// A variable in full.
+/// A variable with all its keys.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[schemars(rename = "Variable")]
 pub(crate) struct VariableTable {
-    /// The texts that it may have. Needed for a text variable, and for no other.
+    /// Allowed texts; required for a text variable, and only there.
     #[schemars(length(min = 1, max = 100))]
     pub(crate) values: Option<Vec<Name>>,
-    /// What it is at first. Needed, but for texts; default their first value.
+    /// Initial value; required except for texts. Default: the first text.
     pub(crate) initial: Option<Value>,
-    /// Whether the team is told of it.
+    /// Whether it is shared with the team.
     #[schemars(extend("default" = false))]
     pub(crate) shared: bool,
 }
 
-/// A mode: what the boat is at.
+/// A mode of the boat.
 #[derive(Debug, Deserialize, JsonSchema)]
 pub(crate) struct Mode {
-    /// Its name, unique in the program.
+    /// Name, unique in the program.
     pub(crate) name: Name,
-    /// The mode that it is a part of; that one stands before it. Default none.
+    /// Parent mode, which precedes this one. Default: none.
     pub(crate) r#in: Option<String>,
-    /// The condition for it, an expression. Needed, but for the last part of a mode, which has none.
+    /// Required, except for the last of siblings, which has none.
     pub(crate) when: Option<String>,
-    /// Values given to variables when it begins.
+    /// Values of variables, set when the mode begins.
     #[schemars(extend("default" = {}))]
     pub(crate) set: Values,
 }
 
-/// Gives values to variables.
+/// Sets variables.
 #[derive(Debug, Deserialize, JsonSchema)]
 pub(crate) struct Rule {
-    /// Only at this event: who and what, as in "enemy grabs". Needed, or when.
+    /// Event, for example "enemy grabs". Required without `when`.
     pub(crate) on: Option<String>,
-    /// Only where this expression is true. Needed, or on.
+    /// Applies only while this holds. Required without `on`.
     pub(crate) when: Option<String>,
-    /// The values, by the names of the variables.
+    /// New values by variable.
     #[schemars(extend("x-expected" = "values for variables"))]
     pub(crate) set: Values,
 }
 
 /// A behaviour: the keys of [`strategy::Behaviour`], one for each [`Moment`], and those of its
-/// kind, which [`Task`] declares.
+/// [`Task`].
 #[derive(Debug, Deserialize)]
 #[serde(transparent)]
 pub(crate) struct Behaviour(pub(crate) Json);
@@ -124,7 +123,7 @@ impl JsonSchema for Behaviour {
         for moment in Moment::all() {
             let mut values = generator.subschema_for::<Values>().to_value();
             let when = moment.meaning().replacen("It", "it", 1);
-            values["description"] = format!("Values given to variables when {when}").into();
+            values["description"] = format!("Sets variables when {when}").into();
             values["default"] = json!({});
             common["properties"][moment.name()] = values;
         }
@@ -140,7 +139,7 @@ impl JsonSchema for Behaviour {
     }
 }
 
-/// Adds the common keys to those of one kind of behaviour.
+/// Adds the common keys to those of one kind.
 fn complete(definition: &mut Json, kind: &str, common: &Json) {
     let mut properties = common["properties"].clone();
     properties["kind"] = json!({ "type": "string", "description": "What it does.", "const": kind });

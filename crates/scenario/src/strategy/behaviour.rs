@@ -5,38 +5,38 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use strum::{EnumMessage, IntoStaticStr, VariantArray};
 
-/// A behaviour of a strategy. In a file it has a key for each [`Moment`] and for each of its task's as well.
+/// A behaviour. In a file it also has a key for each [`Moment`] and the keys of its task.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Behaviour {
     /// Its name, unique in the program.
     #[schemars(skip)]
     pub name: String,
-    /// The modes in which it may run; a mode means it and all its parts. Default all modes.
+    /// Modes in which it may run, including their children. Default: all.
     #[schemars(rename = "in", with = "Option<Vec<String>>")]
     #[schemars(length(min = 1), extend("x-expected" = "at least one mode"))]
     pub modes: Vec<bool>,
-    /// It runs only while this expression is true. Default always.
+    /// It runs only while this holds. Default: always.
     #[schemars(with = "Option<String>")]
     pub when: Option<Expression>,
-    /// How much it counts against others; no more than the op_region and the avoid_collision on guard have. Those and
-    /// avoid_obstacle have 300 by default.
+    /// Weight, at most that of the modes' op_region and avoid_collision. Safety behaviours default to
+    /// 300.
     #[schemars(range(min = 0, max = 1000), extend("default" = 100))]
     pub weight: Parameter,
-    /// It is complete after running for this long, s. Default never.
+    /// It completes after running this long, s. Default: never.
     #[schemars(range(min = 0, max = 86400))]
     pub duration_s: Option<Parameter>,
-    /// Whether it starts again after it was complete.
+    /// Whether it restarts after completion.
     #[schemars(extend("default" = false))]
     pub perpetual: bool,
-    /// What it posts, and when.
+    /// The values it posts, and when.
     #[schemars(skip)]
     pub posts: Vec<Post>,
-    /// What it does.
+    /// Its task.
     #[schemars(skip)]
     pub task: Task,
 }
 
-/// A value given to a variable at a moment of a behaviour's life.
+/// An assignment to a variable at a moment of a behaviour's life.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Post {
     /// The moment.
@@ -47,7 +47,7 @@ pub struct Post {
     pub value: Expression,
 }
 
-/// A moment of a behaviour's life. It is called by the key for what is posted then, such as `on_run`.
+/// A moment of a behaviour's life, named by the key for assignments then, such as `on_run`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, VariantArray, IntoStaticStr, EnumMessage)]
 #[strum(serialize_all = "snake_case", prefix = "on_")]
 pub enum Moment {
@@ -57,10 +57,10 @@ pub enum Moment {
     Idle,
     /// It begins to influence the helm.
     Active,
-    /// It stops doing so.
+    /// It stops influencing the helm.
     Inactive,
-    /// It reaches one of its points, or its time.
+    /// It reaches a point or its time.
     Reach,
-    /// It is complete.
+    /// It completes.
     Complete,
 }

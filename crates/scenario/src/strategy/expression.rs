@@ -1,4 +1,4 @@
-//! Expressions of strategy files: conditions, weights and numbers that follow the game.
+//! Expressions of strategy files: conditions, weights and numbers that depend on the game.
 //!
 //! Files contain them in CEL. The check converts them to this tree, in which names are indices and
 //! types are correct. All values are `f64`: false and true are 0 and 1, a text is its index among
@@ -37,28 +37,28 @@ pub enum Expression {
 /// How two values are joined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, VariantArray, IntoStaticStr, EnumMessage)]
 pub enum Join {
-    /// Both are true; the second is not looked at if the first is false.
+    /// Both are true; the second is evaluated only if the first is true.
     #[strum(serialize = "&&")]
     And,
-    /// One at least is true; the second is not looked at if the first is true.
+    /// At least one is true; the second is evaluated only if the first is false.
     #[strum(serialize = "||")]
     Or,
-    /// The same.
+    /// Equality.
     #[strum(serialize = "==")]
     Equal,
-    /// Not the same.
+    /// Inequality.
     #[strum(serialize = "!=")]
     Unequal,
-    /// The first is smaller.
+    /// The first is less.
     #[strum(serialize = "<")]
     Less,
-    /// The first is smaller or the same.
+    /// The first is at most the second.
     #[strum(serialize = "<=")]
     AtMost,
     /// The first is greater.
     #[strum(serialize = ">")]
     More,
-    /// The first is greater or the same.
+    /// The first is at least the second.
     #[strum(serialize = ">=")]
     AtLeast,
     /// Sum.
@@ -70,18 +70,18 @@ pub enum Join {
     /// Product.
     #[strum(serialize = "*")]
     Times,
-    /// Quotient; by 0 it is 0.
+    /// Quotient; division by 0 gives 0.
     #[strum(serialize = "/")]
     Over,
-    /// The smaller one.
+    /// Minimum.
     #[strum(serialize = "min")]
     Least,
-    /// The greater one.
+    /// Maximum.
     #[strum(serialize = "max")]
     Greatest,
 }
 
-/// The values that expressions are evaluated with. The default of all is 0.
+/// The values for evaluating expressions. All default to 0.
 pub trait Values {
     /// The value of a fact.
     fn fact(&self, _fact: Fact) -> f64 {
@@ -128,7 +128,7 @@ impl Expression {
             Expression::Not(inner) => truth(!inner.is_true(values)),
             Expression::Minus(inner) => -inner.value(values),
             Expression::Join(join, sides) => match (join, sides.0.value(values)) {
-                // One side alone may determine the value.
+                // One side may determine the value.
                 (Join::And, 0.0) => 0.0,
                 (Join::Or, left) if left != 0.0 => 1.0,
                 (_, left) => join.of(left, sides.1.value(values)),
@@ -155,7 +155,7 @@ impl Expression {
         (!asks).then(|| self.value(&()))
     }
 
-    /// Whether it directly refers to the game or to a variable.
+    /// Whether it refers directly to the game or to a variable.
     #[must_use]
     pub fn asks(&self) -> bool {
         use Expression::{Between, Fact, Mates, Measure, Variable};

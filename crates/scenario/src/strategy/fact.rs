@@ -1,4 +1,4 @@
-//! Facts and measures: the game's values available to expressions.
+//! Facts and measures: the values of the game that expressions can use.
 
 use serde::{Deserialize, Serialize};
 use strum::{EnumMessage, IntoStaticStr, VariantArray};
@@ -32,82 +32,81 @@ impl Kind {
     }
 }
 
-/// Something that is known of the game, as the own boat knows it.
+/// A value of the game, as the own boat knows it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, VariantArray, IntoStaticStr, EnumMessage)]
 #[strum(serialize_all = "snake_case")]
 pub enum Fact {
-    /// The own boat is tagged.
+    /// The boat is tagged.
     Tagged,
-    /// The own boat carries a flag.
+    /// The boat carries a flag.
     HasFlag,
-    /// The own boat is on its own team's side of the field.
+    /// The boat is on its own side of the field.
     OwnSide,
-    /// The own boat is outside of the field.
+    /// The boat is outside the field.
     Outside,
-    /// The own boat is out of action by power play.
+    /// The boat is out of action by power play.
     Disabled,
-    /// The own boat could tag now: it plays, and its last tag is long enough ago.
+    /// The boat may tag now: it is in play, and its cooldown is over.
     CanTag,
-    /// An enemy carries a flag of the own team.
+    /// An enemy carries an own flag.
     FlagTaken,
-    /// A boat of the own team, this one included, carries a flag.
+    /// The boat or a mate carries a flag.
     EnemyFlagTaken,
-    /// Another boat of the own team carries a flag.
+    /// A mate carries a flag.
     MateHasFlag,
-    /// An enemy that is not tagged is on the own team's side of the field.
+    /// An untagged enemy is on the own side.
     EnemyInZone,
-    /// How many such enemies there are.
+    /// Number of such enemies.
     EnemiesInZone,
-    /// How many enemies are known.
+    /// Number of known enemies.
     Enemies,
-    /// How many enemies are tagged.
+    /// Number of tagged enemies.
     EnemiesTagged,
-    /// How many other boats the own team has.
+    /// Number of mates.
     Mates,
-    /// How many of them are tagged.
+    /// Number of tagged mates.
     MatesTagged,
-    /// The own boat's place in its team, from 0, in the order of the game file.
+    /// Index in the team, from 0, in the order of the game file.
     Rank,
-    /// The own team's points.
+    /// Points of the own team.
     Score,
-    /// The enemy's points.
+    /// Points of the enemy.
     EnemyScore,
-    /// Time since the start of the game, s.
+    /// Time since the start, s.
     TimeS,
-    /// Time until the end of the game, s.
+    /// Time to the end, s.
     TimeLeftS,
-    /// Time since the present mode began, s.
+    /// Time since the mode began, s.
     ModeS,
-    /// Time since the decision before, s: to count up times.
+    /// Time since the last decision, s; for summing up times.
     StepS,
-    /// The own boat's speed over the ground, m/s.
+    /// Speed over the ground, m/s.
     #[strum(serialize = "speed_m_s")]
     SpeedMS,
 }
 
-/// What can be asked about a place or a boat.
+/// A property of a place or a boat.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, VariantArray, IntoStaticStr, EnumMessage)]
 #[strum(serialize_all = "snake_case")]
 pub enum Measure {
-    /// How far it is from the own boat, or the first from the second, m; 1e9 if there is no such thing.
+    /// Distance from the own boat, or between two places, m; 1e9 if unknown.
     Distance,
-    /// How fast that distance shrinks, m/s; negative while it grows; 0 if there is no such thing.
+    /// Rate at which that distance shrinks, m/s; 0 if unknown.
     Closing,
-    /// How fast it goes over the ground, m/s; 0 if there is no such thing.
+    /// Speed over the ground, m/s; 0 if unknown.
     Speed,
-    /// Whether there is such a thing now.
+    /// Whether it exists now.
     Known,
-    /// Whether it is on the own team's side of the field.
+    /// Whether it is on the own side.
     OnOwnSide,
-    /// Whether it is a boat that is tagged.
+    /// Whether it is a tagged boat.
     IsTagged,
-    /// How many other boats of the own team are nearer to it than the own boat; those that are tagged or carry a flag do not
-    /// count.
+    /// Number of mates nearer to it than the own boat, except tagged ones and carriers.
     MatesNearer,
 }
 
 impl Fact {
-    /// Whether it is true or false rather than a number.
+    /// Whether it is a truth rather than a number.
     #[must_use]
     pub fn is_truth(self) -> bool {
         use Fact::{
@@ -117,7 +116,7 @@ impl Fact {
         is_own || matches!(self, FlagTaken | EnemyFlagTaken | MateHasFlag | EnemyInZone)
     }
 
-    /// Whether it is a count, and so a whole number.
+    /// Whether it is a count.
     #[must_use]
     pub fn is_whole(self) -> bool {
         !self.is_truth() && !matches!(self, Fact::TimeS | Fact::TimeLeftS | Fact::ModeS | Fact::StepS | Fact::SpeedMS)
@@ -125,13 +124,13 @@ impl Fact {
 }
 
 impl Measure {
-    /// Whether it is true or false rather than a number.
+    /// Whether it is a truth rather than a number.
     #[must_use]
     pub fn is_truth(self) -> bool {
         matches!(self, Measure::Known | Measure::OnOwnSide | Measure::IsTagged)
     }
 
-    /// Whether it is a count, and so a whole number.
+    /// Whether it is a count.
     #[must_use]
     pub fn is_whole(self) -> bool {
         self == Measure::MatesNearer

@@ -1,6 +1,6 @@
 //! Strategies: the play of a team's boats, as data.
 //!
-//! A [`Strategy`] deals [`Program`]s to the boats of a team. One boat's helm follows a program:
+//! A [`Strategy`] assigns [`Program`]s to the boats of a team. One boat's helm follows a program:
 //! variables, a tree of modes, behaviours, and rules that assign values to variables.
 
 mod behaviour;
@@ -30,7 +30,7 @@ use strum::{EnumMessage, IntoStaticStr, VariantArray};
 
 /// Maximum number of contacts or obstacles that one behaviour responds to at a time: the nearest.
 pub const NEAREST_MAX: usize = 16;
-/// Maximum number of functions from all behaviours of a mode, each contact or obstacle counted.
+/// Maximum number of objective functions of a mode, one per contact or obstacle.
 pub const FUNCTIONS_MAX: usize = 256;
 /// Maximum number of shared variables of a program.
 pub const SHARED_MAX: usize = 256;
@@ -42,27 +42,26 @@ pub struct Strategy {
     pub name: String,
     /// The file's description of the strategy.
     pub about: String,
-    /// The programs, dealt to the team's boats of this strategy in order, again from the first when
-    /// they run out.
+    /// The programs, assigned to the team's boats in order, starting over when they run out.
     pub roles: Vec<Program>,
-    /// How the roles are dealt.
+    /// How the roles are assigned.
     pub assignment: Assignment,
 }
 
-/// How roles are dealt to a team's boats.
+/// How roles are assigned to a team's boats.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Assignment {
-    /// In the order of the scenario's vehicles.
+    /// In the order of the game's vehicles.
     Fixed,
-    /// In an order drawn from the team's own stream.
+    /// In an order drawn from the team's random stream.
     Seeded,
 }
 
 /// The program of one boat's helm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Program {
-    /// The stem of its file.
+    /// Its file's stem.
     pub name: String,
     /// The file's description of the program.
     pub about: String,
@@ -76,27 +75,28 @@ pub struct Program {
     pub behaviours: Vec<Behaviour>,
     /// The rules that assign values to variables, in order.
     pub rules: Vec<Rule>,
-    /// The reason why a mode may lack `op_region` or `avoid_collision`, if one does.
+    /// The reason why modes may lack `op_region` or `avoid_collision`.
     pub unsafe_because: Option<String>,
 }
 
-/// How decisions are made.
+/// Settings of decisions.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Helm {
-    /// How many courses are weighed against each other.
+    /// Number of courses compared.
     #[schemars(range(min = 8, max = 3600), extend("default" = 360))]
     pub courses: usize,
-    /// How many speeds, from 0 to the highest.
+    /// Number of speeds compared, from 0 to the maximum.
     #[schemars(range(min = 2, max = 1000), extend("default" = 36))]
     pub speeds: usize,
-    /// The highest speed, m/s, but never more than the boat's own. Default the boat's own.
+    /// Maximum speed, m/s, at most the boat's. Default: the boat's.
     #[schemars(range(min = 0.1, max = 60))]
     pub speed_max_m_s: Option<f64>,
-    /// What is near the last decision (30 degrees, 0.75 m/s) is worth this share of all weights more: more would outweigh safety.
+    /// Bonus for decisions near the last one (30 degrees, 0.75 m/s), as a share of all weights;
+    /// more would outweigh safety.
     #[schemars(range(min = 0, max = 0.1), extend("default" = 0))]
     pub hysteresis: f64,
-    /// Whether it makes up for the drift and for the lasting error of the heading, as it sees them. Without, course and
-    /// speed over the ground differ from those that behaviours ask for.
+    /// Whether to correct for estimated drift and heading error, so that course and speed over the
+    /// ground match those requested.
     #[schemars(rename = "compensate_drift", extend("x-field" = "compensates_drift", "default" = true))]
     pub compensates_drift: bool,
 }
@@ -119,10 +119,9 @@ pub struct Variable {
 pub struct Mode {
     /// Its name, unique in the program.
     pub name: String,
-    /// Index of the mode that it is a part of; parents precede their children.
+    /// Index of the parent mode; parents precede their children.
     pub parent: Option<usize>,
-    /// The condition of a part: the first part whose condition holds is active; the last one has
-    /// none.
+    /// The first sibling whose condition holds is active; the last sibling has none.
     pub when: Option<Expression>,
     /// Assignments when the mode begins.
     pub enter: Vec<(u16, Expression)>,
@@ -139,7 +138,7 @@ pub struct Rule {
     pub set: Vec<(u16, Expression)>,
 }
 
-/// The trigger event of a rule.
+/// The event that triggers a rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Trigger {
     /// The affected boat.
@@ -148,19 +147,19 @@ pub struct Trigger {
     pub what: What,
 }
 
-/// To whom something happens.
+/// The boat that an event affects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, VariantArray, IntoStaticStr, EnumMessage)]
 #[strum(serialize_all = "snake_case")]
 pub enum Who {
     /// The own boat.
     I,
-    /// Another boat of the own team.
+    /// A mate.
     Mate,
     /// An enemy.
     Enemy,
 }
 
-/// What happens.
+/// The kind of event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, VariantArray, IntoStaticStr, EnumMessage)]
 #[strum(serialize_all = "snake_case")]
 #[expect(missing_docs, reason = "each says it itself")]
@@ -225,13 +224,13 @@ impl Program {
         }
     }
 
-    /// Whether a mode has no parts.
+    /// Whether a mode has no children.
     #[must_use]
     pub fn is_leaf(&self, mode: usize) -> bool {
         self.modes.iter().all(|other| other.parent != Some(mode))
     }
 
-    /// The modes without parts, by index, in order.
+    /// The modes without children, by index, in order.
     pub fn leaves(&self) -> impl Iterator<Item = usize> {
         (0..self.modes.len()).filter(|mode| self.is_leaf(*mode))
     }
@@ -246,7 +245,7 @@ impl Program {
     /// The active leaf according to the conditions.
     ///
     /// # Panics
-    /// If the last part of a mode has a condition, which no checked program has.
+    /// If the last of siblings has a condition, which no checked program has.
     #[must_use]
     pub fn leaf(&self, values: &impl Values) -> usize {
         let mut within = None;
@@ -262,8 +261,8 @@ impl Program {
     }
 }
 
-/// Enums whose variants have names in strategy files, in snake case. The doc comment is shown to
-/// users.
+/// Enums whose variants have names in strategy files, in snake case. Their doc comments are shown
+/// to users.
 pub trait Named: Copy + Into<&'static str> + VariantArray + EnumMessage {
     /// All variants, in the order of the documentation.
     fn all() -> &'static [Self] {
@@ -275,7 +274,7 @@ pub trait Named: Copy + Into<&'static str> + VariantArray + EnumMessage {
         self.into()
     }
 
-    /// Its meaning.
+    /// Its doc comment.
     fn meaning(self) -> &'static str {
         self.get_documentation().unwrap_or_default()
     }

@@ -5,8 +5,8 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
-/// A number of a behaviour, which may be an expression. The helm evaluates it at every decision, so
-/// that behaviours follow the game while they run. Angles are compass degrees, as in files.
+/// A number of a behaviour, which may be an expression. The helm evaluates it at every decision.
+/// Angles are compass degrees, as in files.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Parameter {
     /// Its value.

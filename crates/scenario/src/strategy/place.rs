@@ -1,4 +1,4 @@
-//! Places and boats with names in strategies: fixed ones, and those that move with the game.
+//! Named places and boats in strategies: fixed ones, and those that depend on the game.
 
 use super::Named;
 use primitives::frame::Ned;
@@ -16,48 +16,48 @@ pub enum Place {
     At(Ned),
     /// A named point of the own team, such as `CFX`.
     Point(String),
-    /// Something that follows the game.
+    /// A place that depends on the game.
     Mark(Mark),
     /// The position of a boat.
     Boat(Boat),
 }
 
-/// A place that follows the game, but is no boat.
+/// A place that depends on the game, other than a boat.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, VariantArray, IntoStaticStr, EnumMessage)]
 #[strum(serialize_all = "snake_case")]
 pub enum Mark {
-    /// The home of the own team's flag; of several the nearest.
+    /// Home of the own flag.
     OwnFlag,
-    /// The home of the enemy's flag; of several the nearest that is there.
+    /// Home of the enemy's flag, if the flag is there.
     EnemyFlag,
-    /// Where the rules want a flag brought; of several the nearest.
+    /// Where a flag must be brought.
     CapturePlace,
-    /// Where a tagged boat must come to play again, of several the nearest; while it must leave that place first, the enemy's flag.
+    /// Where a tagged boat is untagged; the enemy's flag while it must leave that place first.
     UntagPlace,
 }
 
-/// A boat, by what it is just now.
+/// A boat by its present role.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, VariantArray, IntoStaticStr, EnumMessage)]
 #[strum(serialize_all = "snake_case")]
 pub enum Boat {
-    /// The nearest enemy that is not tagged.
+    /// Nearest untagged enemy.
     NearestEnemy,
-    /// Of the enemies on the own side that are not tagged, the nearest to the own boat.
+    /// Nearest untagged enemy on the own side.
     NearestIntruder,
-    /// Of the enemies that are not tagged, wherever they are, the nearest to an own flag.
+    /// Untagged enemy nearest to an own flag.
     NearestAttacker,
-    /// Of the enemies, tagged ones too, the nearest to the enemy's flag.
+    /// Enemy, tagged or not, nearest to the enemy's flag.
     NearestDefender,
-    /// Of the enemies on the own side that are not tagged, the one that this boat is to meet: each is assigned to the boat of the
-    /// own team that meets it soonest, one boat to one enemy, those nearest to an own flag first.
+    /// Untagged enemy on the own side assigned to this boat. Starting with the enemy nearest to an
+    /// own flag, each goes to the boat of the team that meets it soonest, one boat per enemy.
     AssignedIntruder,
-    /// The enemy that carries a flag of the own team; of several the nearest.
+    /// Enemy that carries an own flag.
     FlagCarrier,
-    /// The enemy assigned to this boat: the one of the same rank, counted round where there are fewer enemies.
+    /// Enemy of the same rank; ranks repeat if there are fewer enemies.
     Opponent,
-    /// The nearest other boat of the own team.
+    /// Nearest mate.
     NearestMate,
-    /// The other boat of the own team that carries a flag; of several the nearest.
+    /// Mate that carries a flag.
     MateCarrier,
 }
 
@@ -76,7 +76,7 @@ impl Place {
         fixed.chain(Field::point_names()).collect()
     }
 
-    /// The same as text, abbreviated.
+    /// The names, abbreviated.
     #[must_use]
     pub fn names_in_short() -> String {
         let (marks, boats) = (Mark::names().join(", "), Boat::names().join(", "));

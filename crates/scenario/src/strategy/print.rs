@@ -69,7 +69,7 @@ impl Program {
             Expression::Not(inner) => {
                 (format!("!{}", self.text(inner, &Kind::Truth, Precedence::Sign)), Precedence::Sign)
             }
-            // Two signs in a row cancel each other, and a sign before a digit belongs to it.
+            // Two signs in a row cancel out, and a sign before a digit belongs to it.
             Expression::Minus(inner) => (format!("-({})", self.number_text(inner)), Precedence::Sign),
             Expression::Join(join, sides) => self.joined(*join, &sides.0, &sides.1),
             Expression::Choose(parts) => {

@@ -231,7 +231,7 @@ fn events_come_with_frames_and_missed_ones_are_asked_for() {
     sim.show(3, &[]);
     let news = client.until("events", |events| events["events"].as_array().is_some_and(|all| !all.is_empty()));
     let last = news["events"].as_array().and_then(|all| all.last()).expect("an event");
-    assert_eq!((&last["tick"], &last["text"]), (&json!(4), &json!("blue_one is home and plays again")));
+    assert_eq!((&last["tick"], &last["text"]), (&json!(4), &json!("blue_one is untagged and back in play")));
     sim.close();
 }
 

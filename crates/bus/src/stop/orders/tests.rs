@@ -100,7 +100,7 @@ fn a_boat_that_says_nothing_is_told_and_stopped_until_something_else_is_asked_of
     assert!(!later[0].to_everybody && later[0].boats == ["red_one"], "{later:?}");
     let late = StopNews::Late { vehicle: "red_one".to_owned(), command: StopCommand::EStop };
     assert!(orders.take_news().contains(&late));
-    assert_eq!(orders.unfinished(), ["nothing is heard of red_one"]);
+    assert_eq!(orders.unfinished(), ["no report from red_one"]);
     orders.cancel(Some("red_one"));
     assert!(orders.due(start + MS(9000)).is_empty());
     assert_eq!(orders.unfinished().len(), 1, "it was not done");

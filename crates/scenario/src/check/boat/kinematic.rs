@@ -1,33 +1,32 @@
-//! The kinematic boat.
+//! Checks kinematic boats and thrust maps.
 
 use crate::boat::Kinematic;
 use crate::diagnostics::Diagnostics;
 use crate::raw;
 use crate::read::Document;
 
-/// Checks a kinematic boat.
 pub(super) fn check_kinematic(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, kinematic: &Kinematic) {
     let needs_pid = kinematic.speed_factor == 0.0 && !document.has("kinematic.speed_pid");
     if needs_pid && document.is_sound("kinematic.speed_pid") {
-        let message = "kinematic.speed_pid is missing, expected it or speed_factor";
+        let message = "kinematic.speed_pid is missing, expected speed_pid or speed_factor";
         diagnostics.note_if_intact(document.at("kinematic"), message);
     }
     check_thrust_map(diagnostics, document, "kinematic.thrust_map", &kinematic.thrust_map);
 }
 
-/// Checks a map of thrust in per cent and speed in m/s, given at `path`.
+/// Checks the map of thrust in per cent and speed in m/s at `path`.
 pub fn check_thrust_map<T>(diagnostics: &mut Diagnostics, document: &Document<T>, path: &str, points: &[(f64, f64)]) {
     if !document.is_sound(path) {
         return;
     }
     for (i, [last, (thrust_pct, speed_m_s)]) in points.array_windows().enumerate() {
         if *thrust_pct <= last.0 || *speed_m_s < last.1 {
-            let message = format!("thrust_map has [{thrust_pct}, {speed_m_s}] here, expected both to rise");
+            let message = format!("thrust_map has [{thrust_pct}, {speed_m_s}] here, expected both to increase");
             diagnostics.note(document.at(&format!("{path}.{}", i + 1)), message);
         }
     }
     if points.len() < 2 || !points.contains(&(0.0, 0.0)) {
-        let message = "thrust_map has no [0, 0] or nothing beside it, expected it: no thrust, no speed";
+        let message = "thrust_map lacks [0, 0] or a second pair, expected both";
         diagnostics.note(document.at(path), message);
     }
 }

@@ -12,8 +12,8 @@ use crate::read::Document;
 use crate::sensor::Gps;
 use kinematic::check_kinematic;
 
-/// The physics takes explicit steps of the game's tick: a decay rate beyond this many per tick
-/// would grow instead. (The limit of fourth-order Runge-Kutta is 2.78; the rest is margin.)
+/// Physics steps are explicit: a decay rate above this many per tick would grow instead. (The limit
+/// of fourth-order Runge-Kutta is 2.78; the rest is margin.)
 pub(super) const FASTEST_PER_TICK: f64 = 2.0;
 /// The tick for checking a boat file without a game, s.
 const USUAL_TICK_S: f64 = 0.05;
@@ -22,7 +22,6 @@ const RHO_KG_M3: f64 = 1000.0;
 /// Maximum latency of fixes, in fix periods.
 const MOST_PERIODS_LATE: f64 = 12.0;
 
-/// Checks a boat.
 pub(crate) fn boat(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>) -> Option<Boat> {
     let raw = &document.raw;
     let hull = &raw.hull;
@@ -61,7 +60,7 @@ fn drive(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>) -> Optio
     let raw = &document.raw;
     if let Some(kinematic) = &raw.kinematic {
         if document.has("thruster") || document.has("autopilot") {
-            let message = "kinematic beside thruster or autopilot, expected the one or the other";
+            let message = "kinematic is given with thruster or autopilot, expected either";
             diagnostics.note(document.at("kinematic"), message);
         }
         check_kinematic(diagnostics, document, kinematic);
@@ -69,7 +68,7 @@ fn drive(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>) -> Optio
     }
     for key in ["thruster", "autopilot"] {
         if !document.has(key) && !document.has("kinematic") {
-            let message = format!("{key} is missing, expected it, or kinematic in place of thruster and autopilot");
+            let message = format!("{key} is missing, expected thruster and autopilot, or kinematic");
             diagnostics.note_if_intact(document.at(""), message);
         }
     }
@@ -77,7 +76,6 @@ fn drive(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>) -> Optio
     Some(Drive::Thrusters { thruster, autopilot: raw.autopilot.clone()? })
 }
 
-/// Checks the latency of fixes, which is limited to a number of periods.
 fn check_gps(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, gps: &Gps) {
     let (latency_s, most_s) = (gps.latency_s, MOST_PERIODS_LATE * gps.period_s);
     if latency_s > most_s {
@@ -94,7 +92,7 @@ pub(super) fn estimate(number: &mut f64, estimated: impl FnOnce() -> f64) {
     }
 }
 
-/// Estimates the values that the file omits, by the recipes in the keys' descriptions.
+/// Estimates the values that the file omits, by the formulas in the keys' descriptions.
 fn estimate_rest(boat: &mut Boat) {
     let (thrust_max_newton, speed_max_m_s) = match &boat.drive {
         Drive::Thrusters { thruster, autopilot } => (2.0 * full_ahead_newton(&thruster.curve), autopilot.speed_max_m_s),
@@ -126,7 +124,7 @@ fn estimate_rest(boat: &mut Boat) {
     estimate(&mut hull.crossflow_length_m, || length_m);
 }
 
-/// A mass matrix that is singular in a direction would give unbounded acceleration.
+/// A singular mass matrix would give unbounded acceleration.
 fn check_inertia(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, boat: &Boat) {
     let hull = &boat.hull;
     let (m, x_g, i_z) = (hull.mass_kg, hull.x_g_m, hull.yaw_inertia_kg_m2);
@@ -141,7 +139,7 @@ fn check_inertia(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, 
     let coupling = m * x_g + hull.added_sway_yaw_kg_m;
     if (m + hull.added_sway_kg) * (i_z + hull.added_yaw_kg_m2) <= coupling * coupling {
         let message = format!(
-            "added_sway_yaw_kg_m is {}, expected a mass matrix that is positive definite: \
+            "added_sway_yaw_kg_m is {}, expected a positive definite mass matrix: \
              (m + A22)(I + A66) more than (m x_g + A26)²",
             hull.added_sway_yaw_kg_m
         );
@@ -155,8 +153,8 @@ fn check_decay(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, bo
     let allowed_per_s = FASTEST_PER_TICK / USUAL_TICK_S;
     if rate_per_s > allowed_per_s {
         let message = format!(
-            "hull: {motion} dies out at {rate_per_s:.1} 1/s, expected at most {allowed_per_s} 1/s \
-             ({FASTEST_PER_TICK} a tick of {USUAL_TICK_S} s); its resistance is too large for its inertia"
+            "hull: {motion} decays at {rate_per_s:.1} 1/s, expected at most {allowed_per_s} 1/s \
+             ({FASTEST_PER_TICK} per tick of {USUAL_TICK_S} s); its resistance is too large for its inertia"
         );
         let culprit = match motion {
             "surge" => "hull.surge_linear_kg_s",

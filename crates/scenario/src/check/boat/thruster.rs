@@ -6,7 +6,6 @@ use crate::diagnostics::Diagnostics;
 use crate::raw;
 use crate::read::Document;
 
-/// Checks thrusters.
 pub(super) fn thruster(
     diagnostics: &mut Diagnostics,
     document: &Document<raw::Boat>,
@@ -27,7 +26,7 @@ pub(super) fn thruster(
         }
         (None, None) => {
             if document.is_sound("thruster.propeller") && document.is_sound("thruster.table_pct_newton") {
-                let message = "thruster.propeller is missing, expected it or table_pct_newton";
+                let message = "thruster.propeller is missing, expected propeller or table_pct_newton";
                 diagnostics.note_if_intact(document.at("thruster"), message);
             }
             return None;
@@ -43,7 +42,7 @@ fn table(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, rows: &[
     if document.is_sound(path) {
         for (i, row) in rows.iter().enumerate().skip(1) {
             if points[i].0 <= points[i - 1].0 || points[i].1 <= points[i - 1].1 {
-                let message = format!("table_pct_newton has [{}, {}] here, expected both to rise", row.0, row.1);
+                let message = format!("table_pct_newton has [{}, {}] here, expected both to increase", row.0, row.1);
                 diagnostics.note(document.at(&format!("{path}.{i}")), message);
             }
         }
@@ -53,7 +52,7 @@ fn table(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, rows: &[
             diagnostics.note(document.at(path), message);
         }
         if !points.contains(&(0.0, 0.0)) {
-            let message = "table_pct_newton has no [0, 0], expected it: no setting, no thrust";
+            let message = "table_pct_newton has no [0, 0], expected no thrust at setting 0";
             diagnostics.note(document.at(path), message);
         }
     }

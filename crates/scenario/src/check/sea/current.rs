@@ -6,13 +6,12 @@ use crate::read::Document;
 use crate::sea::{Current, Shear, Tide, Wander};
 use primitives::frame::Ned;
 
-/// Checks a current.
 pub(super) fn current(diagnostics: &mut Diagnostics, document: &Document<raw::Sea>, raw: &raw::Current) -> Current {
     let toward = Ned::toward_deg(raw.toward_deg);
     let mut rising = |key: &str, (from, to): (f64, f64)| {
         if from > to {
             let name = key.rsplit('.').next().unwrap_or(key);
-            let message = format!("{name} goes from {from} to {to}, expected the smaller one first");
+            let message = format!("{name} is [{from}, {to}], expected the smaller value first");
             diagnostics.note(document.at(key), message);
         }
     };

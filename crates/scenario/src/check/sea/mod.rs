@@ -8,7 +8,6 @@ use crate::raw;
 use crate::read::Document;
 use crate::sea::{Gusts, Sea, Wind};
 
-/// Checks a sea.
 pub(crate) fn sea(diagnostics: &mut Diagnostics, document: &Document<raw::Sea>) -> Option<Sea> {
     let raw = &document.raw;
     let sea = Sea {
@@ -22,7 +21,6 @@ pub(crate) fn sea(diagnostics: &mut Diagnostics, document: &Document<raw::Sea>) 
     document.is_faultless(diagnostics).then_some(sea)
 }
 
-/// The wind of a sea.
 fn wind(raw: &raw::Wind) -> Wind {
     let raw::Wind { intensity, across_ratio, length_m, .. } = *raw;
     let gusts = match raw.gusts {

@@ -1,4 +1,4 @@
-//! Checks waves, given by height and period or by the wind that raises them.
+//! Checks waves, given by height and period or by the wind that raised them.
 
 use crate::diagnostics::Diagnostics;
 use crate::raw;
@@ -11,12 +11,11 @@ const STEEPEST: f64 = 0.08;
 /// Maximum height as a share of the depth; higher waves break.
 const HIGHEST: f64 = 0.6;
 
-/// Checks waves.
 pub(super) fn waves(diagnostics: &mut Diagnostics, document: &Document<raw::Sea>, raw: &raw::Waves) -> Option<Waves> {
     let (depth_m, wind) = (document.raw.depth_m, document.raw.wind.as_ref());
     let is_jonswap = raw.spectrum == raw::Spectrum::Jonswap;
     if !is_jonswap && document.has("waves.gamma") {
-        let message = format!("gamma is {}, expected none: it belongs to \"jonswap\"", raw.gamma);
+        let message = format!("gamma is {}, expected none: it applies only to \"jonswap\"", raw.gamma);
         diagnostics.note(document.at("waves.gamma"), message);
     }
     if raw.spreading != raw::Spreading::Cosine2s && document.has("waves.spread_s") {
@@ -37,7 +36,7 @@ pub(super) fn waves(diagnostics: &mut Diagnostics, document: &Document<raw::Sea>
         diagnostics.note(place, message);
     } else if steepness > STEEPEST {
         let message = format!(
-            "waves of hs_m {hs_m:.3} and tp_s {tp_s:.3} are {steepness:.3} of their length high, expected at most {STEEPEST}"
+            "waves of hs_m {hs_m:.3} and tp_s {tp_s:.3} have a steepness of {steepness:.3}, expected at most {STEEPEST}"
         );
         diagnostics.note(place, message);
     }
@@ -65,16 +64,16 @@ fn height_and_period(
     let wind = document.raw.wind.as_ref();
     let is_fully_grown = raw.spectrum == raw::Spectrum::PiersonMoskowitz;
     if document.has("waves.hs_m") && document.has("waves.fetch_km") {
-        let message = "fetch_km beside hs_m, expected either height and period, or the fetch";
+        let message = "fetch_km is given with hs_m, expected either height and period, or the fetch";
         diagnostics.note(document.at("waves.fetch_km"), message);
         return None;
     }
     if is_fully_grown && document.has("waves.tp_s") {
-        let message = "tp_s is given, expected none: that of \"pierson_moskowitz\" follows from the height";
+        let message = "tp_s is given, expected none: the period of \"pierson_moskowitz\" follows from the height";
         diagnostics.note(document.at("waves.tp_s"), message);
         return None;
     }
-    // A sea without wind has no waves; 0.5 m/s is the least allowed value here.
+    // Without wind there are no waves; 0.5 m/s is the minimum here.
     let wind_m_s = raw.wind_m_s.or(wind.map(|wind| wind.speed_m_s.clamp(0.5, 50.0)));
     match (raw.hs_m, raw.tp_s, raw.fetch_km, wind_m_s) {
         (Some(hs_m), ..) if is_fully_grown => Some(fully_grown_with(hs_m)),
@@ -85,7 +84,7 @@ fn height_and_period(
         (Some(hs_m), Some(tp_s), ..) => Some((hs_m, tp_s)),
         (_, _, Some(x_km), Some(u)) if !is_fully_grown => {
             // Carter, D. J. T. (1982). Prediction of wave height and period for a constant wind
-            // velocity. The sea is fully grown, with Hs = 0.02481 U², after 2.317 U² km.
+            // velocity. The sea is fully developed, with Hs = 0.02481 U², after 2.317 U² km.
             let x_km = x_km.min(2.317 * u * u);
             Some((0.0163 * x_km.sqrt() * u, 0.566 * math::exp(0.3 * libm::log(x_km) + 0.4 * libm::log(u))))
         }
@@ -95,7 +94,7 @@ fn height_and_period(
                 false => "hs_m and tp_s, or fetch_km with wind_m_s or a wind",
             };
             if document.is_sound("waves") {
-                let message = format!("waves' size is missing, expected {expected}");
+                let message = format!("the size of the waves is missing, expected {expected}");
                 diagnostics.note_if_intact(document.at("waves"), message);
             }
             None
@@ -103,7 +102,7 @@ fn height_and_period(
     }
 }
 
-/// Height and period of a fully grown sea with this height.
+/// Height and period of a fully developed sea with this height.
 ///
 /// Pierson and Moskowitz (1964): S = 8.1e-3 g² ω^-5 exp(-0.74 (g / (U ω))^4), with U 19.5 m above
 /// the water. Hence Hs = 0.2092 U² / g, and the peak is at 0.8772 g / U.
@@ -112,7 +111,7 @@ fn fully_grown_with(hs_m: f64) -> (f64, f64) {
     (hs_m, std::f64::consts::TAU * u_m_s / (0.877_2 * GRAVITY_M_S2))
 }
 
-/// The length of waves of this period, m.
+/// The wavelength at this period, m.
 fn peak_length_m(tp_s: f64, depth_m: Option<f64>) -> f64 {
     let omega = std::f64::consts::TAU / tp_s;
     let deep = omega * omega / GRAVITY_M_S2;

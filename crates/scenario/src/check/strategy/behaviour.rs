@@ -28,7 +28,7 @@ const IN_ORDER: [(&str, &str); 3] =
 pub(super) fn behaviours(scope: &mut Scope<'_>, modes: Option<&[Mode]>) -> Vec<Behaviour> {
     let given = &scope.document.raw.behaviour;
     if given.is_empty() && scope.document.is_sound("behaviour") {
-        scope.note_missing("roles", "it, or at least one [behaviour.NAME]");
+        scope.note_missing("roles", "roles or at least one [behaviour.NAME]");
     }
     if given.len() > MOST {
         scope.note("behaviour", &format!("has {} entries, expected at most {MOST}", given.len()));
@@ -127,7 +127,7 @@ fn shape(scope: &mut Scope<'_>, path: &str, keys: &mut Map<String, Json>) -> Opt
         [false, true] => keys.remove("ellipse").map(|ellipse| json!({ "Ellipse": ellipse })),
         [true, true] => scope.refuse(&ellipse, "is given with polygon, expected one of them"),
         [false, false] => {
-            scope.note_missing(&ellipse, "it or polygon");
+            scope.note_missing(&ellipse, "ellipse or polygon");
             None
         }
     }
@@ -156,7 +156,8 @@ fn sets(scope: &mut Scope<'_>, path: &str, keys: &mut Map<String, Json>) -> Opti
 fn misfit(scope: &Scope<'_>, model: &PolicyModel, sets: Option<u16>) -> Option<String> {
     let has_options = model.spec.action == ActionSpace::Options;
     let Some(variable) = sets.map(|index| &scope.variables[usize::from(index)]) else {
-        return has_options.then(|| "it chooses among options, and nothing is said that it sets (`sets`)".to_owned());
+        return has_options
+            .then(|| "it chooses among options, expected `sets` with the variable that receives them".to_owned());
     };
     let VariableKind::Text(texts) = &variable.kind else { return None };
     if !has_options {
@@ -189,7 +190,7 @@ fn model(
     let Some(file) = file.as_ref().and_then(Json::as_str) else {
         let of_models = ["observation", "action", "period_s"].into_iter().find(|key| given(key));
         return match of_models {
-            Some(key) => scope.refuse(&format!("{path}.{key}"), "is given without model, expected with it only"),
+            Some(key) => scope.refuse(&format!("{path}.{key}"), "is given without model, expected only with it"),
             None => Some(None),
         };
     };

@@ -14,7 +14,7 @@ pub(super) const DEEPEST: usize = 30;
 pub(super) struct Parsed {
     pub(super) root: IdedExpr,
     places: Option<Arc<SourceInfo>>,
-    /// For every byte of the expression, and its end, the offset in the virtual text.
+    /// The offset in the virtual text of every byte of the expression, and of its end.
     offsets: Vec<usize>,
 }
 
@@ -54,8 +54,7 @@ pub(super) fn parse(diagnostics: &mut Diagnostics, key: &str, at: usize, text: &
     }
 }
 
-/// The byte offset in `text` of a line and column, which count characters from 1; 0 and 0 is the
-/// start.
+/// The byte offset in `text` of a line and column, in characters from 1; 0 and 0 is the start.
 fn byte_at(text: &str, (line, column): (isize, isize)) -> usize {
     let lines = (line - 1).max(0) as usize;
     let start: usize = text.split_inclusive('\n').take(lines).map(str::len).sum();
@@ -64,10 +63,10 @@ fn byte_at(text: &str, (line, column): (isize, isize)) -> usize {
     start + rest.char_indices().nth(columns).map_or(rest.len(), |(byte, _)| byte)
 }
 
-/// The parser's error in the terms of these files; `rest` is the expression from there on.
+/// The parser's error in the terms of these files; `rest` is the expression from the error on.
 fn complaint(message: &str, rest: &str) -> String {
     if message.contains("recursion limit") {
-        return format!("is nested too deeply, expected at most {DEEPEST} brackets in each other");
+        return format!("is nested too deeply, expected at most {DEEPEST} levels of brackets");
     }
     if rest.trim().is_empty() {
         let wanted = if message.starts_with("expected") { message } else { "expected a value there" };
@@ -119,7 +118,7 @@ fn offsets(source: &str, start: usize, value: &str) -> Vec<usize> {
     let mut offsets = vec![];
     for c in value.chars() {
         let mut rest = source.get(at..).unwrap_or_default();
-        // A backslash at the end of a line and the white space after it are omitted from the value.
+        // A backslash at the end of a line and the following white space are not part of the value.
         let continued = |escape: &&str| has_escapes && escape.starts_with(char::is_whitespace);
         while let Some(escape) = rest.strip_prefix('\\').filter(continued) {
             rest = escape.trim_start();

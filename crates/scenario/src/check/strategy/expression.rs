@@ -9,10 +9,11 @@ use ::cel::common::ast::{CallExpr, Expr, IdedExpr, LiteralValue, operators};
 /// Reserved words of CEL.
 const RESERVED: &str = "as break const continue else false for function if import in let loop package namespace null return true \
                         var void while";
-/// Names of calls that are not measures.
+/// Names of functions other than measures.
 pub(super) const CALLS: [&str; 3] = ["min", "max", "mates"];
 
-/// A part of an expression, and its kind. A constant text has itself as its only value.
+/// A part of an expression, and its kind. The kind of a constant text has that text as its only
+/// value.
 type Read = (Expression, Kind);
 
 /// The expression parsed for `key`, which must be of the kind `wanted`; reports faults.
@@ -24,7 +25,7 @@ struct Reader<'a, 'b> {
     scope: &'a mut Scope<'b>,
     key: &'a str,
     parsed: &'a Parsed,
-    /// Within `mates(...)`, where only shared variables are available.
+    /// Inside `mates(...)`, where only shared variables are available.
     among_mates: bool,
     depth: usize,
 }
@@ -118,7 +119,7 @@ impl Reader<'_, '_> {
     }
 
     fn refuse_to_mates<T>(&mut self, part: &IdedExpr, name: &str, what: &str) -> Option<T> {
-        self.refuse(part, &format!("asks mates for {name}, which is {what}, expected a shared variable"))
+        self.refuse(part, &format!("uses {name} in mates(), which is {what}, expected a shared variable"))
     }
 
     fn call(&mut self, part: &IdedExpr, call: &CallExpr) -> Option<Read> {
@@ -158,7 +159,7 @@ impl Reader<'_, '_> {
 
     /// A measure; reports other calls.
     fn measure(&mut self, part: &IdedExpr, name: &str, arguments: &[IdedExpr]) -> Option<Read> {
-        let given = format!("gives {} things to {name}(), expected", arguments.len());
+        let given = format!("passes {} arguments to {name}(), expected", arguments.len());
         match (Measure::by_name(name), arguments) {
             (Some(_), _) if self.among_mates => self.refuse_to_mates(part, &format!("{name}()"), "a measure"),
             (Some(measure), [place]) => {
@@ -187,14 +188,15 @@ impl Reader<'_, '_> {
             Expr::Ident(name) => name.as_str(),
             Expr::Literal(LiteralValue::String(name)) => name.inner(),
             _ => {
-                return self.refuse(part, &format!("has a value in {measure}(), expected the name of a place or boat"));
+                return self
+                    .refuse(part, &format!("passes a value to {measure}(), expected the name of a place or boat"));
             }
         };
         Place::by_name(name).or_else(|| {
             let known = Place::names();
             let guess = did_you_mean(name, &known.iter().map(String::as_str).collect::<Vec<_>>());
             let expected = Place::names_in_short();
-            self.refuse(part, &format!("asks for the {measure} of {name:?}, expected {expected}{guess}"))
+            self.refuse(part, &format!("uses the {measure} of {name:?}, expected {expected}{guess}"))
         })
     }
 
@@ -215,7 +217,8 @@ impl Reader<'_, '_> {
             _ if left_kind == right_kind => (left, right),
             _ => {
                 let (left, right) = (in_words(&left, &left_kind), in_words(&right, &right_kind));
-                return self.refuse(part, &format!("compares {left} with {right}, expected two of one kind"));
+                return self
+                    .refuse(part, &format!("compares {left} with {right}, expected two values of the same kind"));
             }
         };
         Some((Expression::Join(join, Box::new(sides)), Kind::Truth))

@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Reads and checks the strategy file at `path`, with the place of the reference, for a team with
-/// its own values in it, or for all teams ("").
+/// its own values, or for all teams ("").
 pub(crate) fn strategy_file(
     diagnostics: &mut Diagnostics,
     path: &Path,
@@ -46,7 +46,7 @@ pub(crate) fn strategy(diagnostics: &mut Diagnostics, document: &Document<raw::S
         }
         None => {
             if document.has("assignment") {
-                let message = "assignment is given without roles, expected with them only";
+                let message = "assignment is given without roles, expected only with them";
                 diagnostics.note(document.at("assignment"), message);
             }
             vec![program::program(diagnostics, document)?]
@@ -84,17 +84,17 @@ impl StrategyFiles {
     }
 }
 
-/// Reports keys of a program in a file with roles.
+/// Reports program keys in a file with roles.
 fn refuse_program(diagnostics: &mut Diagnostics, document: &Document<raw::Strategy>) {
     let keys = ["helm", "unsafe_i_know", "unsafe_because", "variables", "mode", "rule"].map(str::to_owned);
     let behaviours = document.raw.behaviour.keys().map(|name| format!("behaviour.{name}"));
     for key in keys.into_iter().chain(behaviours).filter(|key| document.has(key)) {
-        let message = format!("{key} is given with roles, expected in the files that roles names");
+        let message = format!("{key} is given with roles, expected in the files listed in roles");
         diagnostics.note(document.at(&key), message);
     }
 }
 
-/// The programs of the roles in a file; a file with two references is read once.
+/// The programs of a file's roles. A file that is referenced twice is read once.
 fn roles(diagnostics: &mut Diagnostics, document: &Document<raw::Strategy>, given: &[raw::FilePath]) -> Vec<Program> {
     let mut read: BTreeMap<PathBuf, Option<Program>> = BTreeMap::new();
     let mut roles = vec![];
@@ -110,7 +110,7 @@ fn roles(diagnostics: &mut Diagnostics, document: &Document<raw::Strategy>, give
 fn one_role(diagnostics: &mut Diagnostics, at: usize, role: &str, path: &Path) -> Option<Program> {
     let document = read::document::<raw::Strategy>(diagnostics, Kind::STRATEGY, path, Some(at))?;
     if document.raw.roles.is_some() {
-        let message = format!("roles names {role:?}, which deals roles itself, expected the file of one program");
+        let message = format!("roles has {role:?}, which has roles itself, expected a program file");
         diagnostics.note(at, message);
         return None;
     }

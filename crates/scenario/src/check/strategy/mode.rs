@@ -1,4 +1,4 @@
-//! Checks the modes of a strategy: a tree, in which every part but the last has a condition.
+//! Checks the modes of a strategy: a tree in which every sibling but the last has a condition.
 
 use super::scope::Scope;
 use super::variable::set;
@@ -8,7 +8,7 @@ use crate::strategy::Mode;
 /// Maximum nesting depth of modes.
 const DEEPEST: usize = 20;
 
-/// Checks the modes. Returns none if they do not form a tree.
+/// Checks the modes; none if they do not form a tree.
 pub(super) fn modes(scope: &mut Scope<'_>) -> Option<Vec<Mode>> {
     let given = &scope.document.raw.mode;
     if given.is_empty() {
@@ -19,7 +19,7 @@ pub(super) fn modes(scope: &mut Scope<'_>) -> Option<Vec<Mode>> {
     for (i, mode) in given.iter().enumerate() {
         let name = mode.name.0.clone();
         if !name.is_empty() && modes.iter().any(|other| other.name == name) {
-            let message = format!("is {name:?} again, expected a different one for each mode");
+            let message = format!("{name:?} is used twice, expected a unique name for each mode");
             scope.note(&format!("mode.{i}.name"), &message);
         }
         let parent = mode.r#in.as_ref().and_then(|parent| self::parent(scope, &modes, i, parent));
@@ -39,25 +39,25 @@ fn parent(scope: &mut Scope<'_>, before: &[Mode], mode: usize, parent: &str) -> 
     let Some(found) = before.iter().position(|mode| mode.name == parent) else {
         let names: Vec<&str> = before.iter().map(|mode| mode.name.as_str()).collect();
         let message = if scope.document.raw.mode.iter().any(|mode| mode.name.0 == parent) {
-            format!("is {parent:?}, which does not stand before this mode, expected one that does")
+            format!("is {parent:?}, which comes later, expected an earlier mode")
         } else {
-            let known = if names.is_empty() { "of which there are none".to_owned() } else { names.join(", ") };
-            format!("is {parent:?}, expected one of the modes before, {known}{}", did_you_mean(parent, &names))
+            let known = if names.is_empty() { "but there is none".to_owned() } else { names.join(", ") };
+            format!("is {parent:?}, expected an earlier mode, {known}{}", did_you_mean(parent, &names))
         };
         scope.note(&path, &message);
         return None;
     };
     let depth = std::iter::successors(Some(found), |mode| before[*mode].parent).count();
     if depth >= DEEPEST {
-        scope.note(&path, &format!("makes {} modes in each other, expected at most {DEEPEST}", depth + 1));
+        scope.note(&path, &format!("has {} nested modes, expected at most {DEEPEST}", depth + 1));
     }
     Some(found)
 }
 
-/// Every part but the last needs a condition; the last must not have one.
+/// Every sibling but the last needs a condition; the last must not have one.
 fn check_conditions(scope: &mut Scope<'_>, modes: &[Mode]) {
     let given = &scope.document.raw.mode;
-    // With an unknown parent this is undecided.
+    // Undecidable with an unknown parent.
     let is_known = |mode: usize| given[mode].r#in.is_some() == modes[mode].parent.is_some();
     for (i, mode) in modes.iter().enumerate().filter(|(i, _)| is_known(*i)) {
         let next = (i + 1..modes.len()).find(|other| modes[*other].parent == mode.parent && is_known(*other));
@@ -65,12 +65,12 @@ fn check_conditions(scope: &mut Scope<'_>, modes: &[Mode]) {
         match (&given[i].when, next) {
             (None, Some(next)) => {
                 let next = &modes[next].name;
-                scope.note_missing(&path, &format!("a condition: without one for {name} it is never {next}"));
+                scope.note_missing(&path, &format!("a condition: without one for {name}, {next} is never active"));
             }
             (Some(_), None) => {
                 let part_of = |parent: usize| format!("part of {}", modes[parent].name);
                 let of = mode.parent.map_or_else(|| "mode".to_owned(), part_of);
-                scope.note(&path, &format!("is given for {name}, the last {of}, expected none: it is what remains"));
+                scope.note(&path, &format!("is given for {name}, the last {of}, expected none: it is the fallback"));
             }
             _ => {}
         }

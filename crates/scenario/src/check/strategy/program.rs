@@ -11,7 +11,6 @@ use crate::raw;
 use crate::read::Document;
 use crate::strategy::{Behaviour, FUNCTIONS_MAX, NEAREST_MAX, Named, Program, Rule, Task, Trigger, What, Who};
 
-/// Checks a program.
 pub(super) fn program(diagnostics: &mut Diagnostics, document: &Document<raw::Strategy>) -> Option<Program> {
     let raw = &document.raw;
     let faults = diagnostics.faults();
@@ -21,7 +20,7 @@ pub(super) fn program(diagnostics: &mut Diagnostics, document: &Document<raw::St
     let behaviours = behaviours(&mut scope, modes.as_deref());
     let rules = raw.rule.iter().enumerate().map(|(i, given)| rule(&mut scope, i, given)).collect();
     safety::check_reason(&mut scope);
-    // Faults of a part may be the cause of faults of the whole.
+    // Faults of a part may cause faults of the whole.
     if scope.diagnostics.faults() > faults || !document.is_sound("") {
         return None;
     }
@@ -63,7 +62,7 @@ fn check_functions(scope: &mut Scope<'_>, program: &Program) {
 fn rule(scope: &mut Scope<'_>, rule: usize, given: &raw::Rule) -> Rule {
     let path = |key: &str| format!("rule.{rule}.{key}");
     if given.on.is_none() && given.when.is_none() {
-        scope.note_missing(&path("on"), "it, or when, or both");
+        scope.note_missing(&path("on"), "on, when or both");
     }
     if given.set.is_empty() && scope.document.is_sound(&path("set")) {
         scope.note(&path("set"), "is empty, expected values for variables");

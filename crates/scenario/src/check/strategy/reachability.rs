@@ -1,23 +1,22 @@
-//! Detects unreachable modes, by enumerating all cases that their conditions distinguish.
+//! Detects unreachable modes by enumerating all cases that their conditions distinguish.
 //!
 //! A term is a fact, a variable, a measure or a count of mates. A number compared with constants
-//! gets one value for each of them and for each gap between them. Other conditions, such as a
-//! comparison of two numbers, are terms of their own that may hold or not. This overestimates the
-//! cases, never underestimates them.
+//! gets one value for each constant and for each gap between constants. Other conditions, such as a
+//! comparison of two numbers, are terms that may be true or false. This overestimates the cases,
+//! never underestimates them.
 
 use super::scope::Scope;
 use crate::strategy::{Expression, Fact, Join, Kind, Measure, Program, Task};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Maximum number of cases per mode; beyond it the mode counts as possible.
+/// Maximum number of cases per mode; beyond it the mode counts as reachable.
 const MOST_CASES: usize = 200_000;
-/// Maximum number of steps per program; beyond it the remaining modes count as possible.
+/// Maximum number of steps per program; beyond it the remaining modes count as reachable.
 const MOST_STEPS: usize = 50_000_000;
-/// Maximum number of terms per program; beyond it all modes count as possible.
+/// Maximum number of terms per program; beyond it all modes count as reachable.
 const MOST_TERMS: usize = u16::MAX as usize;
 
-/// Reports every mode that its conditions can never choose. The parts of such a mode are not
-/// reported again.
+/// Reports every unreachable mode, but not its children.
 pub(super) fn check(scope: &mut Scope<'_>, program: &Program) {
     let mut terms = Terms { program, index: BTreeMap::new(), values: vec![] };
     let conditions: Vec<Option<Expression>> =
@@ -43,11 +42,11 @@ pub(super) fn check(scope: &mut Scope<'_>, program: &Program) {
         let why = if conditions[i].as_ref().is_some_and(|when| !search.is_possible(&[(when, true)])) {
             format!("its when never holds{}", only_ever(program, i))
         } else if before.is_empty() {
-            "its when never holds in the modes that it is in".to_owned()
+            "its when never holds in its parent modes".to_owned()
         } else {
-            format!("whenever it could be, one before it is: {}", before.join(", "))
+            format!("an earlier mode always applies: {}", before.join(", "))
         };
-        scope.note_mode(program, i, &format!("can never be ({why}), expected one that can"));
+        scope.note_mode(program, i, &format!("can never be active ({why})"));
     }
 }
 
@@ -67,7 +66,7 @@ fn only_ever(program: &Program, mode: usize) -> String {
     words
 }
 
-/// The parts of the same mode with priority over this one.
+/// The siblings with priority over this one.
 fn before(program: &Program, mode: usize) -> impl Iterator<Item = usize> {
     (0..mode).filter(move |other| program.modes[*other].parent == program.modes[mode].parent)
 }
@@ -162,7 +161,7 @@ impl Terms<'_> {
         Some(variable)
     }
 
-    /// The possible values of a term. For a number: the least value, and whether it is whole.
+    /// The possible values of a term. For a number: the minimum, and whether it is an integer.
     fn values_of(&self, term: &Expression) -> (Vec<f64>, Option<bool>) {
         let number = |least, is_whole| (vec![least], Some(is_whole));
         match term {
@@ -210,9 +209,9 @@ fn given_to(program: &Program, variable: u16) -> Option<Vec<f64>> {
 /// A search through the distinguishable cases.
 struct Search<'a> {
     laws: &'a [Expression],
-    /// By term, its possible values.
+    /// The possible values of each term.
     values: Vec<Vec<f64>>,
-    /// By term, the value being tried.
+    /// The value being tried for each term.
     tried: Vec<Option<f64>>,
     cases: usize,
     steps: usize,
@@ -251,7 +250,7 @@ impl Search<'_> {
         false
     }
 
-    /// The value of a formula, if the tried values determine it, or else a term to try. Counts
+    /// The value of a formula if the tried values determine it, otherwise a term to try. Counts
     /// steps.
     fn value(&mut self, formula: &Expression) -> Result<f64, usize> {
         self.steps += 1;
@@ -262,7 +261,7 @@ impl Search<'_> {
             Expression::Join(join, sides) => {
                 let (a, b) = (self.value(&sides.0), self.value(&sides.1));
                 match join {
-                    // One side alone may determine the value.
+                    // One side may determine the value.
                     Join::And if [a, b].contains(&Ok(0.0)) => Ok(0.0),
                     Join::Or if [a, b].contains(&Ok(1.0)) => Ok(1.0),
                     _ => Ok(join.of(a?, b?)),

@@ -1,10 +1,10 @@
-//! Mandatory safety: every mode keeps boats on the field and off other boats, or the file gives a
-//! reason why not.
+//! Mandatory safety: in every mode, behaviours keep boats on the field and away from other boats,
+//! or the file gives a reason why not.
 
 use super::scope::Scope;
 use crate::strategy::{Behaviour, Contacts, Program, Task};
 
-/// Checks that a file gives a reason if it opts out of safety, and only then.
+/// Checks that a file gives a reason if, and only if, it opts out of safety.
 pub(super) fn check_reason(scope: &mut Scope<'_>) {
     let raw = &scope.document.raw;
     match (raw.unsafe_i_know, &raw.unsafe_because) {
@@ -36,10 +36,10 @@ pub(super) fn check(scope: &mut Scope<'_>, program: &mut Program) {
                 continue;
             }
             is_lacking = true;
-            let other = of_kind().find_map(|b| Some(format!(" ({} is none: {})", b.name, b.no_guard_since()?)));
+            let other = of_kind().find_map(|b| Some(format!(" ({} is not: {})", b.name, b.no_guard_since()?)));
             let message = format!(
-                "has no {kind} on guard{}, expected a behaviour of this kind{all}, without when and duration_s, with a \
-                 weight that is a number above 0; or unsafe_i_know = true and unsafe_because",
+                "has no reliable {kind}{}, expected one{all} without when or duration_s, with a \
+                 constant weight above 0; or set unsafe_i_know = true and unsafe_because",
                 other.unwrap_or_default()
             );
             if !is_unsafe {
@@ -49,7 +49,7 @@ pub(super) fn check(scope: &mut Scope<'_>, program: &mut Program) {
     }
     match (is_unsafe, is_lacking) {
         (true, false) => {
-            let message = "is not needed: every mode has op_region and avoid_collision, expected none";
+            let message = "is unnecessary: every mode has op_region and avoid_collision; remove it";
             scope.note("unsafe_because", message);
         }
         (false, false) => hold_below_guards(scope, program),
@@ -61,8 +61,8 @@ pub(super) fn check(scope: &mut Scope<'_>, program: &mut Program) {
 fn hold_below_guards(scope: &mut Scope<'_>, program: &mut Program) {
     for leaf in program.leaves().collect::<Vec<_>>() {
         // A number can disable a guard: a weight below a goal's, a range of zero, a region wider
-        // than the field, or an expression with such a value. So guards have constants within
-        // limits, and nothing outweighs them. The error appears when the file is loaded.
+        // than the field, or an expression with such a value. Guards therefore have constants
+        // within limits, and nothing outweighs them.
         let weight = |kind: &str| {
             let guards = program.behaviours.iter().filter(|b| b.task.kind() == kind && b.modes[leaf] && b.is_guard());
             guards.filter_map(|b| b.weight.constant()).fold(0.0, f64::max)
@@ -73,7 +73,7 @@ fn hold_below_guards(scope: &mut Scope<'_>, program: &mut Program) {
             match behaviour.weight.constant() {
                 Some(weight) if weight > most => {
                     let message = format!(
-                        "is {weight} in mode {path}, expected at most {most}, which op_region or avoid_collision has there"
+                        "is {weight} in mode {path}, expected at most {most}, the weight of op_region or avoid_collision there"
                     );
                     scope.note(&format!("behaviour.{}.weight", behaviour.name), &message);
                 }
@@ -85,9 +85,8 @@ fn hold_below_guards(scope: &mut Scope<'_>, program: &mut Program) {
 }
 
 impl Behaviour {
-    /// Whether this is a safety behaviour that is effective wherever it is in force: on the field
-    /// or off all other boats, without a condition, without an end, with a weight, and with
-    /// effective numbers.
+    /// Whether this is a safety behaviour that always works: for the whole field or all other
+    /// boats, without condition or end, with a weight and effective numbers.
     #[must_use]
     pub fn is_guard(&self) -> bool {
         matches!(self.task, Task::OpRegion(_) | Task::AvoidCollision(_)) && self.no_guard_since().is_none()
@@ -126,7 +125,7 @@ impl Behaviour {
         }
         let weight = [("weight", &self.weight, (0.0, f64::INFINITY))];
         weight.into_iter().chain(numbers).find_map(|(key, number, (least, most))| match number.constant() {
-            None => Some(format!("{key} is no number")),
+            None => Some(format!("{key} is not constant")),
             Some(value) if value < least => Some(format!("{key} is {value}, less than {least}")),
             Some(value) if value > most => Some(format!("{key} is {value}, more than {most}")),
             Some(_) => None,

@@ -33,7 +33,7 @@ impl<'a> Scope<'a> {
         None
     }
 
-    /// Reports a missing value at `path`, unless a value of another type was there.
+    /// Reports a missing value at `path`, unless a value of another type is there.
     pub(super) fn note_missing(&mut self, path: &str, expected: &str) {
         if self.document.is_sound(path) {
             let parts: Vec<&str> = path.split('.').filter(|part| part.parse::<usize>().is_err()).collect();
@@ -55,7 +55,7 @@ impl<'a> Scope<'a> {
 
     /// The expression at `path`, if it is valid and of the kind `wanted`.
     pub(super) fn expression(&mut self, path: &str, text: &str, wanted: &Kind) -> Option<Expression> {
-        // A stand-in replaces a faulty value; it is not the user's text.
+        // A stand-in for a faulty value is not the user's text.
         let given = self.document.is_sound(path).then_some(text)?;
         let parsed = cel::parse(self.diagnostics, key_of(path), self.document.at(path), given)?;
         expression::read(self, key_of(path), &parsed, wanted)

@@ -22,7 +22,7 @@ pub(super) fn variables(diagnostics: &mut Diagnostics, document: &Document<raw::
     let variables: Vec<Variable> = given.iter().filter_map(|(name, given)| one(&mut scope, name, given)).collect();
     let shared = variables.iter().filter(|variable| variable.shared).count();
     if shared > SHARED_MAX {
-        scope.note("variables", &format!("has {shared} shared ones, expected at most {SHARED_MAX}"));
+        scope.note("variables", &format!("has {shared} shared entries, expected at most {SHARED_MAX}"));
     }
     variables
 }
@@ -51,10 +51,10 @@ fn is_free(scope: &mut Scope<'_>, path: &str, name: &str) -> bool {
     }
     let taken = [
         (name.starts_with(|c: char| c.is_ascii_digit()), "begins with a digit"),
-        (is_reserved(name), "is a word that CEL reserves"),
+        (is_reserved(name), "is a reserved word in CEL"),
         (Fact::by_name(name).is_some(), "is a fact"),
         (Place::by_name(name).is_some(), "is a place or a boat"),
-        (CALLS.contains(&name) || Measure::by_name(name).is_some(), "is a call"),
+        (CALLS.contains(&name) || Measure::by_name(name).is_some(), "is a function"),
     ];
     let taken = taken.into_iter().find(|(is_so, _)| *is_so);
     if let Some((_, taken)) = taken {
@@ -68,14 +68,14 @@ fn kind_of(scope: &mut Scope<'_>, path: &str, table: &raw::VariableTable) -> Opt
     let initial_path = format!("{path}.initial");
     let texts: Vec<String> = table.values.iter().flatten().map(|value| value.0.clone()).collect();
     for (i, text) in texts.iter().enumerate().filter(|(i, text)| !text.is_empty() && texts[..*i].contains(text)) {
-        scope.note(&format!("{path}.values.{i}"), &format!("has {text:?} again, expected different ones"));
+        scope.note(&format!("{path}.values.{i}"), &format!("has {text:?} twice, expected unique values"));
     }
     let has_values = table.values.is_some();
     match &table.initial {
         None if has_values => Some((Kind::Text(texts), 0.0)),
         None => {
             if scope.document.is_sound(&initial_path) {
-                let expected = "the texts it may have, or initial, a number or a truth";
+                let expected = "the allowed texts, or initial with a number or boolean";
                 scope.note_missing(&format!("{path}.values"), expected);
             }
             None
@@ -86,9 +86,10 @@ fn kind_of(scope: &mut Scope<'_>, path: &str, table: &raw::VariableTable) -> Opt
             let initial = text_at(scope, &initial_path, &texts, text)?.constant()?;
             Some((Kind::Text(texts), initial))
         }
-        Some(raw::Value::Text(text)) => {
-            scope.refuse(&initial_path, &format!("is the string {text:?}, expected its values as well: values = [...]"))
-        }
+        Some(raw::Value::Text(text)) => scope.refuse(
+            &initial_path,
+            &format!("is the string {text:?}, expected the allowed texts as well: values = [...]"),
+        ),
         Some(other) => {
             scope.refuse(&initial_path, &format!("is {}, expected one of {}", in_words(other), texts.join(", ")))
         }
@@ -109,7 +110,6 @@ fn in_words(given: &raw::Value) -> String {
     }
 }
 
-/// Checks the assignments at `path`.
 pub(super) fn set(scope: &mut Scope<'_>, path: &str, given: &raw::Values) -> Vec<(u16, Expression)> {
     given.iter().filter_map(|(name, value)| assigned(scope, &format!("{path}.{name}"), name, value)).collect()
 }
@@ -118,7 +118,7 @@ fn assigned(scope: &mut Scope<'_>, path: &str, name: &str, given: &raw::Value) -
     let Some((index, variable)) = scope.variable(name) else {
         let known: Vec<&str> = scope.variables.iter().map(|variable| variable.name.as_str()).collect();
         let expected = match known.as_slice() {
-            [] => "a name from [variables], which has none".to_owned(),
+            [] => "a variable, but [variables] has none".to_owned(),
             _ => format!("one of the variables {}{}", known.join(", "), did_you_mean(name, &known)),
         };
         return scope.refuse(path, &format!("is unknown, expected {expected}"));
