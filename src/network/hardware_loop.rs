@@ -9,7 +9,7 @@ use crate::output_file;
 use anyhow::{Context, Result, anyhow, bail};
 use bus::keys::Identity;
 use gateway::config::{BoatProtocol, Gateway};
-use recording::NewFile;
+use recording::{LentFile, NewFile};
 use scenario::Scenario;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
@@ -37,6 +37,8 @@ pub(crate) struct HardwareLoop {
     /// Gateways, then emulators: the order of shutdown.
     ends: Vec<ChildProcess>,
     water: ChildProcess,
+    /// The gateways write them; an empty one is removed.
+    _recordings: Vec<LentFile>,
 }
 
 impl LoopArgs {
@@ -62,11 +64,13 @@ impl LoopArgs {
             Some(path) => scenario::load_file::<gateway::config::Gateway>(path)
                 .with_context(|| format!("cannot drive by {}", path.display()))?,
         };
+        let mut recordings = Vec::new();
         if let Some(folder) = &self.record_gateways {
             output_file::make_folder(folder)?;
-            // Check first: a gateway that refuses to record would leave its boat out of the game.
-            for file in names.iter().map(|name| folder.join(format!("{name}.mcap"))) {
-                drop(NewFile::create(&file).with_context(|| format!("cannot record into {}", file.display()))?);
+            // First: a gateway that refuses to record would leave its boat out of the game.
+            for path in names.iter().map(|name| folder.join(format!("{name}.mcap"))) {
+                let file = NewFile::create(&path).with_context(|| format!("cannot record into {}", path.display()))?;
+                recordings.push(file.lend());
             }
         }
         let port = free_port(false)?;
@@ -83,7 +87,7 @@ impl LoopArgs {
             gateways.push(self.start_gateway(vehicle, &link, game, keys)?);
         }
         gateways.extend(emulators);
-        Ok(Some(HardwareLoop { ends: gateways, water }))
+        Ok(Some(HardwareLoop { ends: gateways, water, _recordings: recordings }))
     }
 
     fn start_gateway(

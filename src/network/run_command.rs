@@ -13,6 +13,7 @@ use anyhow::{Result, bail};
 use bus::Token;
 use bus::keys::{Bundle, Identity};
 use clap::{ArgGroup, Args as _, FromArgMatches};
+use recording::{LentFile, NewFile};
 use scenario::{Scenario, Vehicle};
 use sim::node::{Pace, ProgressMessage, Report};
 use std::path::{Path, PathBuf};
@@ -91,7 +92,7 @@ impl Player for Processes<'_> {
         &mut self,
         play: &GameArgs,
         scenario: &Scenario,
-        file: Option<&Path>,
+        file: Option<NewFile>,
         (stop, screen): Shell,
     ) -> Result<Option<Report>> {
         let args = self.args;
@@ -99,7 +100,9 @@ impl Player for Processes<'_> {
         let game = unique_game_name(&scenario.name)?.as_str().to_owned();
         let endpoint = format!("tcp/127.0.0.1:{port}");
         let place = (game.as_str(), endpoint.as_str());
-        let mut sim = start_sim((args, play), place, file)?;
+        // The sim writes it; this process removes it if it stays empty.
+        let file = file.map(NewFile::lend);
+        let mut sim = start_sim((args, play), place, file.as_ref().map(LentFile::path))?;
         let messages = sim.lines(|line| serde_json::from_str(line).ok())?;
         self.page = if args.view { Some(start_page(args, &game, &endpoint)?) } else { None };
         let agents = start_agents(args, scenario, &game, &endpoint)?;

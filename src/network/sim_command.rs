@@ -10,6 +10,7 @@ use anyhow::{Context, Result, bail};
 use bus::Token;
 use command_line::printer::Printer;
 use messages::topic::GameName;
+use recording::NewFile;
 use sim::node::{GameRecorder, ProgressMessage, Settings};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -68,8 +69,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         token: token.as_ref().map(Token::hex),
     };
     let record = |path: &PathBuf| {
-        GameRecorder::on_network(path.clone(), game.as_str(), &args.pace.pace.to_string(), env!("SQUALL_COMMIT"))
-            .with_context(|| format!("cannot record into {}", path.display()))
+        let file = if args.for_parent { NewFile::of_child(path) } else { NewFile::create(path) };
+        let file = file.with_context(|| format!("cannot record into {}", path.display()))?;
+        anyhow::Ok(GameRecorder::on_network(file, game.as_str(), &args.pace.pace.to_string(), env!("SQUALL_COMMIT")))
     };
     let mut recorder = args.record.as_ref().map(record).transpose()?;
     let settings = Settings {

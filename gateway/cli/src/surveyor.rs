@@ -13,7 +13,7 @@ use gateway::link::LinkAddress;
 use gateway::node::{NodeEvent, Outside, Settings, on_enter};
 use gateway::payload::PayloadPort;
 use messages::external::{GatewayCommand, OperatorCommand};
-use recording::utc;
+use recording::{NewFile, utc};
 use std::io::IsTerminal;
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
@@ -100,7 +100,6 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
         dry_run: args.dry_run,
         preflight,
         at_game_pace: args.at_game_pace,
-        record,
         commit,
         wait: args.wait_s.map_or(Duration::MAX, Duration::from_secs_f64),
         stop: stop.clone(),
@@ -137,7 +136,7 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
         NodeEvent::Status(status) => log.status(status),
         NodeEvent::Ended(status) => last = format!("\n{}", full(status)),
     };
-    let served = gateway::node::serve(&settings, &outside, &mut notify);
+    let served = gateway::node::serve(&settings, record, &outside, &mut notify);
     drop(registration);
     log.end(last);
     served.with_context(|| format!("the gateway of {}", args.vehicle))?;
@@ -174,15 +173,21 @@ fn preflight(args: &Args, link: &LinkAddress, gateway: &Gateway) -> Result<Prefl
     })
 }
 
-/// The path of the recording.
-fn recording(args: &Args) -> Result<Option<PathBuf>> {
+/// The new file of the recording, if requested.
+fn recording(args: &Args) -> Result<Option<NewFile>> {
     if args.no_record {
         return Ok(None);
     }
-    if let Some(path) = &args.record {
-        return Ok(Some(path.clone()));
-    }
     let folder = Path::new("runs");
-    std::fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
-    Ok(Some(folder.join(format!("gateway-{}-{}.mcap", args.vehicle, utc::file_stamp(utc::now_ns())))))
+    let file = match &args.record {
+        Some(path) if args.for_parent => NewFile::of_child(path),
+        Some(path) => NewFile::create(path),
+        None => {
+            std::fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
+            let stem = format!("gateway-{}-{}", args.vehicle, utc::file_stamp(utc::now_ns()));
+            NewFile::create_numbered(folder, &stem)
+        }
+    };
+    let place = args.record.as_deref().unwrap_or(folder);
+    Ok(Some(file.with_context(|| format!("cannot record into {}", place.display()))?))
 }
