@@ -85,6 +85,7 @@ impl Player for Processes<'_> {
             scenario.has_no_real_boats()?;
         }
         check_keys(self.args, scenario)?;
+        child_process::check_token()?;
         if self.args.view { self.args.page.check() } else { Ok(()) }
     }
 
