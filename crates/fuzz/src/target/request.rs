@@ -118,7 +118,7 @@ fn check(bytes: &[u8]) {
     // Not comparable for equality: a report contains errors.
     drop(serde_json::from_slice::<ProgressMessage>(bytes));
     // Its numbers are trusted: a node that joins a game trusts its sim.
-    if let Some(Err(error)) = read::<GameInfo>(bytes).map(|info| info.scenario.check_references()) {
+    if let Some(Err(error)) = read::<GameInfo>(bytes).map(|info| info.scenario.check_received()) {
         check_shown(&error);
     }
 }
