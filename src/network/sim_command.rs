@@ -67,6 +67,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         endpoint: net.local_endpoint().unwrap_or_default(),
         pid: std::process::id(),
         token: token.as_ref().map(Token::hex),
+        is_water: !args.afloat.is_empty(),
     };
     let record = |path: &PathBuf| {
         let file = if args.for_parent { NewFile::of_child(path) } else { NewFile::create(path) };
@@ -84,7 +85,10 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     };
     // Register before the sim answers: a node that finds the game also finds its token. If
     // registration fails, users must pass the game's address; nothing else is lost.
-    let registration = bus::register(&entry).ok();
+    let registration = bus::register(&entry);
+    if let Err(error) = &registration {
+        screen::remark(&format!("the game is found by its address only: {error}"));
+    }
     let tell = &mut |message| printer.print(message);
     let mut report = sim::node::serve(&scenario, seed, &settings, recorder.as_mut(), tell)?;
     drop(registration);

@@ -122,7 +122,10 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
                 drop(registration.update(&entry));
                 return;
             }
-            registration = bus::register_gateway(&entry).ok();
+            match bus::register_gateway(&entry) {
+                Ok(registered) => registration = Some(registered),
+                Err(error) => log.remark(format!("operators on this machine need the address: {error}")),
+            }
             log.remark(format!("operators reach this gateway at {control}, with or without a game"));
             if !args.for_parent && std::io::stdin().is_terminal() {
                 log.remark("Enter, in this terminal, is an E-stop of this boat".to_owned());
