@@ -30,6 +30,8 @@ pub(crate) struct LoopArgs {
     record_gateways: Option<PathBuf>,
 }
 
+/// Upper bound of emulated boats: each has two processes.
+const BOATS_MAX: usize = 32;
 /// Timeout for an emulator to report its address.
 const WINDOW: Duration = Duration::from_secs(20);
 /// The processes of the loop.
@@ -58,6 +60,9 @@ impl LoopArgs {
         }
         if names.is_empty() {
             bail!("no boat of this game is real: --emulate has nothing to stand in for");
+        }
+        if names.len() > BOATS_MAX {
+            bail!("{} boats of this game are real, expected at most {BOATS_MAX} with --emulate", names.len());
         }
         let gateway = match &self.gateway {
             None => gateway::config::default_gateway(),

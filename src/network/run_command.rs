@@ -173,6 +173,13 @@ fn start_sim(
     ChildProcess::start("the sim", command, Stdio::piped())
 }
 
+/// The number of boats for one agent process: as many as asked for, or more if there are so many
+/// boats that the processes would overload the machine. The game is the same.
+fn crew_size(asked: u16, vehicles: usize) -> usize {
+    const PROCESSES_MAX: usize = 64;
+    usize::from(asked).max(vehicles.div_ceil(PROCESSES_MAX))
+}
+
 /// Starts the agent processes. With keys, each one serves a single team.
 fn start_agents(args: &Args, scenario: &Scenario, game: &str, endpoint: &str) -> Result<Vec<ChildProcess>> {
     let mut vehicles: Vec<&Vehicle> = scenario.vehicles.iter().collect();
@@ -180,7 +187,8 @@ fn start_agents(args: &Args, scenario: &Scenario, game: &str, endpoint: &str) ->
     if args.keys.is_some() {
         vehicles.sort_by_key(|vehicle| vehicle.team);
     }
-    let crews = vehicles.chunk_by(is_together).flat_map(|crew| crew.chunks(usize::from(args.agents_per_process)));
+    let size = crew_size(args.agents_per_process, vehicles.len());
+    let crews = vehicles.chunk_by(is_together).flat_map(|crew| crew.chunks(size));
     let start = |crew: &[&Vehicle]| {
         let names: Vec<&str> = crew.iter().map(|vehicle| vehicle.name.as_str()).collect();
         let mut command = child_process::squall(&["agent", "--game", game, "--connect", endpoint])?;
@@ -226,6 +234,18 @@ fn follow(
             if asked > 30 {
                 return Ok(None);
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::crew_size;
+
+    #[test]
+    fn thousands_of_boats_do_not_start_thousands_of_agents() {
+        for (asked, vehicles, want) in [(1, 4, 1), (1, 64, 1), (1, 65, 2), (1, 10_000, 157), (500, 10_000, 500)] {
+            assert_eq!(crew_size(asked, vehicles), want, "{vehicles} boats");
         }
     }
 }
