@@ -1,11 +1,11 @@
 //! Plays a whole game in this process and optionally records it.
 
 use crate::clock;
-use anyhow::{Context, Result};
+use anyhow::Result;
+use recording::NewFile;
 use rules::event::EventCursor;
 use scenario::Scenario;
 use sim::{Contest, GameRecorder, Report, Run};
-use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -13,21 +13,17 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// is set. Calls `look` before every decision and at the end.
 ///
 /// # Errors
-/// If the game cannot start or the recording in `file` cannot be created.
+/// If the game cannot start.
 pub(crate) fn play(
     scenario: &Scenario,
     seed: u64,
-    file: Option<&Path>,
+    file: Option<NewFile>,
     stop: &AtomicBool,
     mut look: impl FnMut(&Contest),
 ) -> Result<Report> {
     let scenario = scenario.of_seed(seed)?;
     let start = clock::now();
-    let record = |path: &Path| {
-        GameRecorder::in_process(path.to_owned(), &scenario.name, env!("SQUALL_COMMIT"))
-            .with_context(|| format!("cannot record to {}", path.display()))
-    };
-    let mut recorder = file.map(record).transpose()?;
+    let mut recorder = file.map(|file| GameRecorder::in_process(file, &scenario.name, env!("SQUALL_COMMIT")));
     let mut written = EventCursor::default();
     let watch = |contest: &mut Contest| {
         if let Some(recorder) = &mut recorder {

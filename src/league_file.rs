@@ -3,14 +3,13 @@
 use crate::output_file;
 use anyhow::{Context, Result, bail};
 use experiment::tournament::{League, Plan, Record};
+use primitives::input_file::TABLE_BYTES_MAX;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// The results, one line per game.
 const RESULTS: &str = "results.jsonl";
-/// Size limit of the results, bytes: some four million games.
-const BYTES_MAX: u64 = 2 << 30;
 
 /// A league in its folder, locked against other writers.
 pub(crate) struct LeagueFile {
@@ -40,8 +39,8 @@ impl LeagueFile {
             bail!("{} is not a file", path.display());
         }
         let bytes = metadata.len();
-        if bytes > BYTES_MAX {
-            bail!("{} has {bytes} bytes, expected at most {BYTES_MAX}", path.display());
+        if bytes > TABLE_BYTES_MAX {
+            bail!("{} has {bytes} bytes, expected at most {TABLE_BYTES_MAX}", path.display());
         }
         let mut text = String::new();
         file.read_to_string(&mut text).with_context(what)?;

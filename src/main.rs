@@ -32,6 +32,7 @@ mod trial_command;
 mod watch_files;
 mod water_args;
 
+use anyhow::Result;
 use clap::{ColorChoice, FromArgMatches, Parser, Subcommand};
 use command_line::program::{self, Program};
 use command_line::{clock, explain, output_file, recording_file, scenario_files, stop, style};
@@ -127,8 +128,18 @@ fn main() -> ExitCode {
     scenario_files::install(kinds::KINDS);
     let cli = Cli::from_arg_matches(&cli::matches::<Cli>()).unwrap_or_else(|error| error.exit());
     screen::set_colour(cli.color);
-    let Some(command) = cli.command else { return cli::first::<Cli>() };
-    let done = match command {
+    let done = cli.command.map_or_else(|| Ok(cli::first::<Cli>()), run);
+    match done.and_then(|code| screen::check_output().map(|()| code)) {
+        Ok(code) => code,
+        Err(error) => {
+            screen::complain(&explain::error(&error));
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(command: Command) -> Result<ExitCode> {
+    match command {
         #[cfg(feature = "network")]
         Command::Network(command) => network::run(&command),
         #[cfg(not(feature = "network"))]
@@ -156,12 +167,5 @@ fn main() -> ExitCode {
         Command::New(args) => new_command::new(&args),
         Command::Completions(args) => Ok(cli::completions::<Cli>(&args)),
         Command::Man(args) => cli::man::<Cli>(&args),
-    };
-    match done {
-        Ok(code) => code,
-        Err(error) => {
-            screen::complain(&explain::error(&error));
-            ExitCode::FAILURE
-        }
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::output_file;
 use anyhow::{Context, Result};
+use recording::NewFile;
 use scenario::Scenario;
 use std::path::PathBuf;
 
@@ -16,15 +17,13 @@ pub(crate) struct RecordArgs {
 }
 
 impl RecordArgs {
-    /// A free file name for a game of this scenario, in a folder that exists.
-    pub(crate) fn file(&self, scenario: &Scenario, seed: u64) -> Result<Option<PathBuf>> {
+    /// A new file for a game of this scenario, in a folder that exists.
+    pub(crate) fn file(&self, scenario: &Scenario, seed: u64) -> Result<Option<NewFile>> {
         if self.no_record {
             return Ok(None);
         }
         output_file::make_folder(&self.record).context("cannot record")?;
-        // The recorder creates the file. Whether it can be created is checked before the game.
-        let file = recording::free_path(&self.record, &scenario.name, seed);
-        output_file::check(&file, "the recording")?;
-        Ok(Some(file))
+        let file = NewFile::create_numbered(&self.record, &recording::stem(&scenario.name, seed));
+        Ok(Some(file.with_context(|| format!("cannot record to {}", self.record.display()))?))
     }
 }

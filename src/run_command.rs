@@ -8,6 +8,7 @@ use crate::style::Names;
 use crate::watch_files::WatchedFiles;
 use crate::{clock, explain, in_process, stop};
 use anyhow::{Result, bail};
+use recording::NewFile;
 use scenario::Scenario;
 use sim::{ProgressMessage, Report, Reporter};
 use std::path::{Path, PathBuf};
@@ -48,7 +49,7 @@ pub(crate) trait Player {
         &mut self,
         args: &GameArgs,
         scenario: &Scenario,
-        file: Option<&Path>,
+        file: Option<NewFile>,
         shell: Shell,
     ) -> Result<Option<Report>>;
     /// Cleans up after a game, which is recorded in this file and had these problems.
@@ -112,8 +113,9 @@ fn play(
     (stop, screen): Shell,
 ) -> Result<(Option<PathBuf>, Option<Report>)> {
     let file = args.record.file(scenario, args.play.seed(scenario))?;
-    let report = player.play(&args.play, scenario, file.as_deref(), (stop, &mut *screen))?;
-    let file = file.filter(|file| file.exists());
+    let path = file.as_ref().map(|file| file.path().to_owned());
+    let report = player.play(&args.play, scenario, file, (stop, &mut *screen))?;
+    let file = path.filter(|path| path.exists());
     if let Some(file) = &file {
         let is_whole = report.as_ref().is_some_and(|report| report.run.recording_problem.is_none());
         let recorded = if is_whole { "recorded" } else { "recorded in part" };
@@ -149,7 +151,7 @@ impl Player for InProcess {
         &mut self,
         args: &GameArgs,
         scenario: &Scenario,
-        file: Option<&Path>,
+        file: Option<NewFile>,
         (stop, screen): Shell,
     ) -> Result<Option<Report>> {
         const SHOW_EVERY: Duration = Duration::from_millis(100);

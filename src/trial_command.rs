@@ -9,7 +9,6 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use primitives::{SimTime, angle};
 use scenario::boat::{Boat, Drive};
 use sim::hull::Planar;
-use std::fs::File;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -209,6 +208,6 @@ pub(crate) fn read_sheet(path: &Path) -> Result<Sheet> {
 
 fn write_track(path: &Path, samples: &[Sample], with_orders: bool) -> Result<()> {
     let trying = || format!("cannot write the track to {}", path.display());
-    let file = File::create(path).with_context(trying)?;
+    let file = primitives::output_file::create(path).with_context(trying)?;
     trial::write_csv(samples, with_orders, BufWriter::new(file)).with_context(trying)
 }

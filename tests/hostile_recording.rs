@@ -11,15 +11,27 @@ use messages::{EventRecord, Frame, GameInfo, Message, Order, Picture, Stamp, Veh
 use primitives::{SimTime, VehicleId};
 use proptest::prelude::*;
 use recording::{Decision, Ending, Entry, Header, Recording, Writer};
+use rules::event::EventCursor;
+use scenario::Scenario;
+use serde_json::Value;
 use shore::page::replay::Recorded;
+use sim::Contest;
 use std::io::Cursor;
 use std::path::Path;
 use std::sync::Arc;
 
+/// A shipped game.
+fn shipped(game: &str) -> Scenario {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/games").join(game);
+    scenario::load(&file).unwrap_or_else(|e| panic!("{e}"))
+}
+
 /// A recording of these decisions, followed by a line from a link and a gateway's status.
 fn bytes_of(decisions: Vec<Decision>) -> Vec<u8> {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/games/pav01_vs_pav01.toml");
-    let scenario = scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
+    bytes_of_game(shipped("pav01_vs_pav01.toml"), decisions)
+}
+
+fn bytes_of_game(scenario: Scenario, decisions: Vec<Decision>) -> Vec<u8> {
     let header = Header {
         commit: "c0ffee".to_owned(),
         game: "pav01-1".to_owned(),
@@ -148,4 +160,62 @@ proptest! {
             look_at_all_of(recording);
         }
     }
+
+    /// As a power cut may leave a file: its length is written, and some blocks are not.
+    #[test]
+    fn files_with_zeros_never_panic(
+        decisions in proptest::collection::vec(odd_decision(), 0..5),
+        ends in proptest::array::uniform2(0.0..1.0_f64),
+        is_to_the_end in any::<bool>(),
+    ) {
+        let mut bytes = bytes_of(decisions);
+        let [one, other] = ends.map(|end| (end * bytes.len() as f64) as usize);
+        let last = if is_to_the_end { bytes.len() } else { one.max(other) };
+        bytes[one.min(other)..last].fill(0);
+        if let Ok(recording) = Recording::of(bytes) {
+            look_at_all_of(recording);
+        }
+    }
+}
+
+/// The JSON pointers of all numbers below a value.
+fn numbers(value: &Value, at: &str, found: &mut Vec<String>) {
+    match value {
+        Value::Number(_) => found.push(at.to_owned()),
+        Value::Array(items) => {
+            items.iter().take(3).enumerate().for_each(|(i, item)| numbers(item, &format!("{at}/{i}"), found));
+        }
+        Value::Object(items) => items.iter().for_each(|(key, item)| numbers(item, &format!("{at}/{key}"), found)),
+        _ => {}
+    }
+}
+
+#[test]
+fn a_game_with_impossible_numbers_is_refused_or_played_again() {
+    let sound = serde_json::to_value(shipped("surveyor_2v2.toml").of_seed(1).expect("it is drawn")).expect("JSON");
+    let mut places = vec![];
+    numbers(&sound, "", &mut places);
+    assert!(places.len() > 300, "{}", places.len());
+    let mut panicked = vec![];
+    for place in places {
+        for number in [serde_json::json!(0), serde_json::json!(65_535), serde_json::json!(-1e300)] {
+            let mut value = sound.clone();
+            *value.pointer_mut(&place).expect("it is there") = number.clone();
+            let Ok(scenario) = serde_json::from_value::<Scenario>(value) else { continue };
+            let bytes = bytes_of_game(scenario, vec![]);
+            let done = std::panic::catch_unwind(|| {
+                let Ok(recording) = Recording::of(bytes) else { return };
+                let scenario = recording.scenario().clone();
+                look_at_all_of(recording);
+                // As `replay --check` does.
+                let Ok(mut contest) = Contest::new(&scenario, scenario.seed) else { return };
+                (0..3).for_each(|_| contest.give(Input::Played));
+                contest.frame(&mut EventCursor::default());
+            });
+            if done.is_err() {
+                panicked.push(format!("{place} = {number}"));
+            }
+        }
+    }
+    assert!(panicked.is_empty(), "{panicked:#?}");
 }

@@ -5,7 +5,7 @@ use crate::report::Report;
 use messages::input::Input;
 use messages::run_state::RecordingState;
 use messages::{Frame, GameInfo};
-use recording::{Decision, Ending, Entry, Header, NewFile, RecordError, Recorder, utc};
+use recording::{Decision, Ending, Entry, Header, NewFile, Recorder, utc};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -29,24 +29,20 @@ pub struct GameRecorder {
 }
 
 impl GameRecorder {
-    /// A recorder to a new file, for a networked game with this name and pace, played by a program
-    /// of this commit.
-    ///
-    /// # Errors
-    /// [`RecordError`] if the file cannot be created.
-    pub fn on_network(path: PathBuf, game: &str, pace: &str, commit: &str) -> Result<GameRecorder, RecordError> {
-        let stage = Stage::Waiting(NewFile::create(&path)?);
+    /// A recorder to a new file, for a networked game with this name and pace, played by a
+    /// program of this commit.
+    #[must_use]
+    pub fn on_network(file: NewFile, game: &str, pace: &str, commit: &str) -> GameRecorder {
+        let path = file.path().to_owned();
         let [game, pace, commit] = [game, pace, commit].map(str::to_owned);
-        Ok(GameRecorder { path, game, pace, commit, stage, pictures_are_sent: true })
+        GameRecorder { path, game, pace, commit, stage: Stage::Waiting(file), pictures_are_sent: true }
     }
 
     /// A recorder to a new file, for a game in this process.
-    ///
-    /// # Errors
-    /// [`RecordError`] if the file cannot be created.
-    pub fn in_process(path: PathBuf, game: &str, commit: &str) -> Result<GameRecorder, RecordError> {
-        let recorder = GameRecorder::on_network(path, game, "in process", commit)?;
-        Ok(GameRecorder { pictures_are_sent: false, ..recorder })
+    #[must_use]
+    pub fn in_process(file: NewFile, game: &str, commit: &str) -> GameRecorder {
+        let recorder = GameRecorder::on_network(file, game, "in process", commit);
+        GameRecorder { pictures_are_sent: false, ..recorder }
     }
 
     /// Records a decision: its frame, and the contest's inputs since the previous one.

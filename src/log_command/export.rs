@@ -19,7 +19,7 @@ pub(super) fn csv(source: Source<'_>, topic: &str, file: Option<&Path>) -> Resul
     table::check(source.0, topic)?;
     let trying = |path: &Path| format!("cannot write {}", path.display());
     let sink: Box<dyn Write> = match file {
-        Some(path) => Box::new(std::fs::File::create(path).with_context(|| trying(path))?),
+        Some(path) => Box::new(primitives::output_file::create(path).with_context(|| trying(path))?),
         None => Box::new(std::io::stdout().lock()),
     };
     let is_shown = file.is_none() && std::io::stdout().is_terminal();
@@ -63,7 +63,7 @@ pub(super) fn alog(recording: &Recording, path: &Path) -> Result<(usize, Damaged
         if !is_alone {
             last = path.join(format!("{name}.alog"));
         }
-        Ok(Box::new(std::fs::File::create(&last)?))
+        Ok(Box::new(primitives::output_file::create(&last)?))
     });
     written.with_context(|| format!("cannot write the log to {}", last.display()))
 }

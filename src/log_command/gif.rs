@@ -69,8 +69,8 @@ pub(super) fn write(path: &Path, recording: &Recording, args: &FilmArgs) -> Resu
     let step = moments.len().div_ceil(SAMPLES);
     let samples = moments.iter().step_by(step).chain([last]).map(colours).collect::<Result<Vec<_>>>()?;
     let mut palette = Palette::of(&samples);
-    let file =
-        std::fs::File::create(path).with_context(|| format!("cannot write the animation to {}", path.display()))?;
+    let file = primitives::output_file::create(path)
+        .with_context(|| format!("cannot write the animation to {}", path.display()))?;
     let mut writer = std::io::BufWriter::new(file);
     let what = || format!("cannot write the animation to {}", path.display());
     let mut encoder = Encoder::new(&mut writer, size.0 as u16, size.1 as u16, &palette.bytes()).with_context(what)?;

@@ -33,6 +33,11 @@ pub(crate) fn squall_with(runtime: &str, args: &[&str]) -> Result<Command> {
     Ok(command)
 }
 
+/// Checks the given token, if there is one.
+pub(crate) fn check_token() -> Result<()> {
+    std::env::var(TOKEN_VARIABLE).map_or(Ok(()), |text| text.parse::<Token>().map(drop).context(TOKEN_VARIABLE))
+}
+
 /// The token of the games that this process's children serve and join: new, unless one is given.
 pub(crate) fn token() -> &'static Token {
     static TOKEN: LazyLock<Token> = LazyLock::new(|| {

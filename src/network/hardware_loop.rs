@@ -9,7 +9,7 @@ use crate::output_file;
 use anyhow::{Context, Result, anyhow, bail};
 use bus::keys::Identity;
 use gateway::config::{BoatProtocol, Gateway};
-use recording::NewFile;
+use recording::{LentFile, NewFile};
 use scenario::Scenario;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
@@ -29,6 +29,8 @@ pub(crate) struct LoopArgs {
     record_gateways: Option<PathBuf>,
 }
 
+/// Upper bound of emulated boats: each has two processes.
+const BOATS_MAX: usize = 32;
 /// Timeout for an emulator to report its address.
 const WINDOW: Duration = Duration::from_secs(20);
 /// The processes of the loop.
@@ -36,6 +38,8 @@ pub(crate) struct HardwareLoop {
     /// Gateways, then emulators: the order of shutdown.
     ends: Vec<ChildProcess>,
     water: ChildProcess,
+    /// The gateways write them; an empty one is removed.
+    _recordings: Vec<LentFile>,
 }
 
 impl LoopArgs {
@@ -56,16 +60,21 @@ impl LoopArgs {
         if names.is_empty() {
             bail!("--emulate requires a game with at least one external boat");
         }
+        if names.len() > BOATS_MAX {
+            bail!("{} boats of this game are real, expected at most {BOATS_MAX} with --emulate", names.len());
+        }
         let gateway = match &self.gateway {
             None => gateway::config::default_gateway(),
             Some(path) => scenario::load_file::<gateway::config::Gateway>(path)
                 .with_context(|| format!("cannot use the gateway file {}", path.display()))?,
         };
+        let mut recordings = Vec::new();
         if let Some(folder) = &self.record_gateways {
             output_file::make_folder(folder)?;
             // Check first: a gateway that refuses to record would leave its boat out of the game.
-            for file in names.iter().map(|name| folder.join(format!("{name}.mcap"))) {
-                drop(NewFile::create(&file).with_context(|| format!("cannot record to {}", file.display()))?);
+            for path in names.iter().map(|name| folder.join(format!("{name}.mcap"))) {
+                let file = NewFile::create(&path).with_context(|| format!("cannot record to {}", path.display()))?;
+                recordings.push(file.lend());
             }
         }
         let port = free_port(false)?;
@@ -82,7 +91,7 @@ impl LoopArgs {
             gateways.push(self.start_gateway(vehicle, &link, game, keys)?);
         }
         gateways.extend(emulators);
-        Ok(Some(HardwareLoop { ends: gateways, water }))
+        Ok(Some(HardwareLoop { ends: gateways, water, _recordings: recordings }))
     }
 
     fn start_gateway(

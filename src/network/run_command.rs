@@ -14,6 +14,7 @@ use bus::Token;
 use bus::keys::{Bundle, Identity};
 use clap::{ArgGroup, Args as _, FromArgMatches};
 use command_line::number::whole;
+use recording::{LentFile, NewFile};
 use scenario::{Scenario, Vehicle};
 use sim::node::{Pace, ProgressMessage, Report};
 use std::path::{Path, PathBuf};
@@ -83,6 +84,7 @@ impl Player for Processes<'_> {
             scenario.has_no_real_boats()?;
         }
         check_keys(self.args, scenario)?;
+        child_process::check_token()?;
         if self.args.view { self.args.page.check() } else { Ok(()) }
     }
 
@@ -90,7 +92,7 @@ impl Player for Processes<'_> {
         &mut self,
         play: &GameArgs,
         scenario: &Scenario,
-        file: Option<&Path>,
+        file: Option<NewFile>,
         (stop, screen): Shell,
     ) -> Result<Option<Report>> {
         let args = self.args;
@@ -98,7 +100,9 @@ impl Player for Processes<'_> {
         let game = unique_game_name(&scenario.name)?.as_str().to_owned();
         let endpoint = format!("tcp/127.0.0.1:{port}");
         let place = (game.as_str(), endpoint.as_str());
-        let mut sim = start_sim((args, play), place, file)?;
+        // The sim writes it; this process removes it if it stays empty.
+        let file = file.map(NewFile::lend);
+        let mut sim = start_sim((args, play), place, file.as_ref().map(LentFile::path))?;
         let messages = sim.lines(|line| serde_json::from_str(line).ok())?;
         self.page = if args.view { Some(start_page(args, &game, &endpoint)?) } else { None };
         let agents = start_agents(args, scenario, &game, &endpoint)?;
@@ -168,6 +172,13 @@ fn start_sim(
     ChildProcess::start("the sim", command, Stdio::piped())
 }
 
+/// The number of boats for one agent process: as many as asked for, or more if there are so many
+/// boats that the processes would overload the machine. The game is the same.
+fn crew_size(asked: u16, vehicles: usize) -> usize {
+    const PROCESSES_MAX: usize = 64;
+    usize::from(asked).max(vehicles.div_ceil(PROCESSES_MAX))
+}
+
 /// Starts the agent processes. With keys, each one serves a single team.
 fn start_agents(args: &Args, scenario: &Scenario, game: &str, endpoint: &str) -> Result<Vec<ChildProcess>> {
     let mut vehicles: Vec<&Vehicle> = scenario.vehicles.iter().collect();
@@ -175,7 +186,8 @@ fn start_agents(args: &Args, scenario: &Scenario, game: &str, endpoint: &str) ->
     if args.keys.is_some() {
         vehicles.sort_by_key(|vehicle| vehicle.team);
     }
-    let crews = vehicles.chunk_by(is_together).flat_map(|crew| crew.chunks(usize::from(args.agents_per_process)));
+    let size = crew_size(args.agents_per_process, vehicles.len());
+    let crews = vehicles.chunk_by(is_together).flat_map(|crew| crew.chunks(size));
     let start = |crew: &[&Vehicle]| {
         let names: Vec<&str> = crew.iter().map(|vehicle| vehicle.name.as_str()).collect();
         let mut command = child_process::squall(&["agent", "--game", game, "--connect", endpoint])?;
@@ -221,6 +233,18 @@ fn follow(
             if asked > 30 {
                 return Ok(None);
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::crew_size;
+
+    #[test]
+    fn thousands_of_boats_do_not_start_thousands_of_agents() {
+        for (asked, vehicles, want) in [(1, 4, 1), (1, 64, 1), (1, 65, 2), (1, 10_000, 157), (500, 10_000, 500)] {
+            assert_eq!(crew_size(asked, vehicles), want, "{vehicles} boats");
         }
     }
 }

@@ -10,6 +10,7 @@ use anyhow::{Context, Result, bail};
 use bus::Token;
 use command_line::printer::Printer;
 use messages::topic::GameName;
+use recording::NewFile;
 use sim::node::{GameRecorder, ProgressMessage, Settings};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -65,10 +66,12 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         endpoint: net.local_endpoint().unwrap_or_default(),
         pid: std::process::id(),
         token: token.as_ref().map(Token::hex),
+        is_water: !args.afloat.is_empty(),
     };
     let record = |path: &PathBuf| {
-        GameRecorder::on_network(path.clone(), game.as_str(), &args.pace.pace.to_string(), env!("SQUALL_COMMIT"))
-            .with_context(|| format!("cannot record to {}", path.display()))
+        let file = if args.for_parent { NewFile::of_child(path) } else { NewFile::create(path) };
+        let file = file.with_context(|| format!("cannot record to {}", path.display()))?;
+        anyhow::Ok(GameRecorder::on_network(file, game.as_str(), &args.pace.pace.to_string(), env!("SQUALL_COMMIT")))
     };
     let mut recorder = args.record.as_ref().map(record).transpose()?;
     let settings = Settings {
@@ -81,7 +84,10 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     };
     // Register before the sim answers: a node that finds the game also finds its token. If
     // registration fails, users must pass the game's address; nothing else is lost.
-    let registration = bus::register(&entry).ok();
+    let registration = bus::register(&entry);
+    if let Err(error) = &registration {
+        screen::remark(&format!("the game is found by its address only: {error}"));
+    }
     let tell = &mut |message| printer.print(message);
     let mut report = sim::node::serve(&scenario, seed, &settings, recorder.as_mut(), tell)?;
     drop(registration);

@@ -4,7 +4,8 @@ use crate::output_file;
 use anyhow::{Context, Result};
 use learn::environment::{Finished, recording_name};
 use learn::train::{Progress, Trainer};
-use primitives::{input_file, printable};
+use primitives::input_file::{self, TABLE_BYTES_MAX};
+use primitives::printable;
 use scenario::{built_in, tidied_path};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -192,9 +193,9 @@ fn base_for(strategy: &Path) -> Option<PathBuf> {
     std::fs::canonicalize(strategy).ok().or_else(inside)
 }
 
-/// Reads a text file of the folder, without a size limit.
+/// Reads a text file of the folder.
 fn read(path: &Path) -> Result<String> {
-    input_file::read_text(path, u64::MAX).with_context(|| format!("cannot read {}", path.display()))
+    input_file::read_text(path, TABLE_BYTES_MAX).with_context(|| format!("cannot read {}", path.display()))
 }
 
 fn first_number(line: &str) -> Option<u64> {

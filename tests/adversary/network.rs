@@ -137,3 +137,16 @@ fn that_there_is_a_game_is_open_to_all_and_who_watches_hears_it() {
     assert_eq!(games, [sim.name()], "{keys:?}");
     sim.stop();
 }
+
+/// An answer has the priority of its query, and most queues of zenoh have room for 128 kB.
+#[test]
+fn a_query_at_the_default_priority_gets_the_whole_scenario_of_a_learned_strategy() {
+    let sim = Sim::start("patient", &["--blue", "learned", "--join-s", "600"]);
+    let asker = Intruder::at(&sim);
+    for _ in 0..5 {
+        let answers = asker.ask("scenario", "");
+        assert_eq!(answers.len(), 1, "it is not answered");
+        assert!(answers[0].len() > 150_000, "{} bytes", answers[0].len());
+    }
+    sim.stop();
+}

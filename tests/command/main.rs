@@ -1,6 +1,7 @@
 //! Tests the program's commands from outside: output, files and error messages.
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
+mod full_disk;
 mod log;
 mod memory;
 mod policy;

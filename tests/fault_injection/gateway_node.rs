@@ -42,7 +42,6 @@ pub(crate) fn connect(wire: &Arc<Wire>, vehicle: &str, stop: &Arc<AtomicBool>) {
         dry_run: false,
         preflight: Preflight::NotRequired,
         at_game_pace: false,
-        record: None,
         commit: "",
         wait: WAIT,
         stop: Arc::clone(stop),

@@ -2,9 +2,11 @@
 
 use crate::support::{
     FOUR, Process, Sim, agent, assert_a_game_each, free_endpoint, game_itself, own, refusal_of, result_of, run, squall,
-    stdout, wait_until,
+    stderr, stdout, temporary, wait_until,
 };
-use serde_json::Value;
+use serde_json::{Value, json};
+use std::net::TcpListener;
+use std::os::unix::fs::DirBuilderExt;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
@@ -149,4 +151,43 @@ fn broken_scenarios_are_explained_where_they_are_broken() {
     }
     let said = refusal_of(&["run", &own("broken"), "--no-record"]);
     assert!(said.contains("broken.toml:1:1: "), "{said}");
+}
+
+#[test]
+fn a_game_is_not_registered_in_a_folder_that_another_user_could_have_linked() {
+    let dir = temporary();
+    let elsewhere = dir.path().join("elsewhere");
+    std::fs::DirBuilder::new().mode(0o700).create(&elsewhere).expect("a folder");
+    std::os::unix::fs::symlink(&elsewhere, dir.path().join("squall")).expect("a link");
+    let mut sim = squall(&["sim", "scenarios/games/attack_1v1.toml", "--join-s", "0"]);
+    let said = stderr(&sim.env("XDG_RUNTIME_DIR", dir.path()).output().expect("the program starts"));
+    assert!(said.contains("found by its address only") && said.contains("squall is a link"), "{said}");
+    assert_eq!(std::fs::read_dir(&elsewhere).expect("it is there").count(), 0);
+}
+
+#[test]
+fn a_release_of_all_boats_while_two_games_run_is_refused_and_reaches_no_boat() {
+    let dir = temporary();
+    let registry = dir.path().join("squall");
+    std::fs::DirBuilder::new().mode(0o700).create(&registry).expect("a folder");
+    let port = TcpListener::bind("127.0.0.1:0").expect("a port");
+    port.set_nonblocking(true).expect("a socket");
+    let control = port.local_addr().expect("it is bound");
+    for (boat, game) in [("blue_one", "morning"), ("red_one", "evening")] {
+        let entry = json!({ "vehicle": boat, "game": game, "control": control, "pid": std::process::id() });
+        std::fs::write(registry.join(format!("{boat}.gateway")), entry.to_string()).expect("it is written");
+    }
+    let mut tell = squall(&["gateway", "tell", "all", "release"]);
+    let output = tell.env("XDG_RUNTIME_DIR", dir.path()).output().expect("the program starts");
+    let said = stderr(&output);
+    assert!(!output.status.success() && said.contains("select one with --game: evening, morning"), "{said}");
+    assert!(port.accept().is_err(), "a gateway was told");
+}
+
+#[test]
+fn a_token_that_is_none_is_refused_before_the_game() {
+    let mut run = squall(&["run", "scenarios/games/attack_1v1.toml", "--no-record"]);
+    let output = run.env(bus::token::TOKEN_VARIABLE, "abc").output().expect("the program starts");
+    let said = stderr(&output);
+    assert!(!output.status.success() && said.contains("SQUALL_TOKEN: a game's token is 64"), "{said}");
 }

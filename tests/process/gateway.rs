@@ -231,7 +231,7 @@ fn a_gateway_that_cannot_record_ends_at_once_with_the_reason_and_leaves_the_boat
         let args =
             ["gateway", "surveyor", "--vehicle", "blue_one", "--game", "nobody", "--link", &link, "--record", &file];
         let said = refusal_within(LIMIT / 4, squall_on_a_disk_of(blocks, &args));
-        assert!(said.contains(&format!("cannot record into {file}")) && said.contains(reason), "{said}");
+        assert!(said.contains(&format!("cannot record to {file}")) && said.contains(reason), "{said}");
         assert!(!said.contains("recording to") && !said.contains("operators reach"), "{said}");
         assert!(boat.accept().is_err(), "{reason}: the boat is connected to");
     }
@@ -262,7 +262,7 @@ fn gateways_that_could_not_record_begin_no_game() {
     let records = dir.path().display().to_string();
     let args = ["run", "scenarios/games/mixed_2v2.toml", "--emulate", "--pace", "10x", "--no-record"];
     let said = refusal_of(&[&args[..], &["--gateway", gateways, "--record-gateways", &records]].concat());
-    assert!(said.contains(&format!("cannot record into {file}")) && said.contains("File exists"), "{said}");
+    assert!(said.contains(&format!("cannot record to {file}")) && said.contains("File exists"), "{said}");
 }
 
 #[test]

@@ -7,6 +7,7 @@
 
 mod boat_alone;
 mod console;
+mod ending;
 mod external;
 mod fake_payload;
 mod faults;

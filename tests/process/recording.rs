@@ -60,6 +60,24 @@ fn a_game_recorded_replayed_and_played_again_is_one_game() {
 }
 
 #[test]
+fn games_that_begin_together_have_a_recording_each() {
+    let dir = temporary();
+    let folder = dir.path().display().to_string();
+    let args = ["run", "scenarios/games/attack_1v1.toml", "--set", "game.duration_s=5", "--record", &folder];
+    let start = |_| {
+        let mut command = squall(&args);
+        command.stdout(Stdio::null()).stderr(Stdio::piped());
+        Process::start(command)
+    };
+    let games: Vec<Process> = (0..4).map(start).collect();
+    for mut game in games {
+        assert!(game.wait().success(), "{}", game.errors());
+    }
+    let files = std::fs::read_dir(dir.path()).expect("the folder is there").map(|file| file.expect("a file").path());
+    assert_eq!(files.filter(|path| opened(path).ending().is_some()).count(), 4);
+}
+
+#[test]
 fn a_killed_sim_leaves_a_recording_up_to_the_last_second() {
     let dir = temporary();
     let path = dir.path().join("killed.mcap");
@@ -171,8 +189,8 @@ fn what_cannot_be_written_or_shown_is_refused_before_the_game() {
         (&["run", game, "--no-record", "--json", "/nope/x"][..], "cannot write the result to /nope/x"),
         (&["run", game, "--in-process", "--no-record", "--json", "/nope/x"], "cannot write the result to /nope/x"),
         (&["sim", game, "--json", "/nope/x"], "cannot write the result to /nope/x"),
-        (&["run", game, "--record", "/proc"], "cannot write the recording to /proc/"),
-        (&["run", game, "--in-process", "--record", "/proc"], "cannot write the recording to /proc/"),
+        (&["run", game, "--record", "/proc"], "cannot record to /proc"),
+        (&["run", game, "--in-process", "--record", "/proc"], "cannot record to /proc"),
         (&["run", game, "--no-record", "--view", "--listen", &taken], "the page cannot listen on"),
     ] {
         let said = refusal_of(args);

@@ -165,6 +165,11 @@ impl Process {
     /// Waits for it to fail; returns its piped standard error.
     pub(crate) fn refusal(&mut self) -> String {
         assert!(!self.wait().success());
+        self.errors()
+    }
+
+    /// Its piped standard error, when it has ended.
+    pub(crate) fn errors(&mut self) -> String {
         let mut said = String::new();
         self.0.stderr.take().expect("piped").read_to_string(&mut said).expect("text");
         said

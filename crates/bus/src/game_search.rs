@@ -110,7 +110,7 @@ fn only_game(bus: &Bus) -> Result<GameName, Missing> {
         [game] => Ok(game.clone()),
         [] => Err(Missing::Yet("no sim is on the network".to_owned())),
         several => {
-            let message = format!("choose with --game among {}", listed(several));
+            let message = format!("select one with --game: {}", listed(several));
             Err(Missing::Forever(Refusal::Refused(message)))
         }
     }
@@ -148,7 +148,7 @@ fn understood(answer: &[u8]) -> Result<GameInfo, Refusal> {
     let info: GameInfo = serde_json::from_slice(answer).map_err(|e| not_understood(e.to_string()))?;
     // The rest of the program indexes teams and boats by the scenario's references, and this
     // scenario comes from the network.
-    info.scenario.check_references().map_err(not_understood)?;
+    info.scenario.check_received().map_err(not_understood)?;
     Ok(info)
 }
 

@@ -5,6 +5,7 @@
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use std::ffi::OsString;
 use std::fs;
 use std::io::Write;
 use std::net::SocketAddr;
@@ -22,6 +23,9 @@ pub struct Entry {
     pub pid: u32,
     /// The game's token, for processes of the same user, which may read the file.
     pub token: Option<String>,
+    /// Whether it is only the water of emulated boats, which no one means without naming it.
+    #[serde(default)]
+    pub is_water: bool,
 }
 
 /// Where a gateway on this machine accepts operator commands.
@@ -47,8 +51,14 @@ const GATEWAYS: &str = "gateway";
 pub struct Registration(PathBuf);
 
 fn folder() -> PathBuf {
-    match std::env::var_os("XDG_RUNTIME_DIR") {
-        Some(dir) => Path::new(&dir).join("squall"),
+    folder_in(std::env::var_os("XDG_RUNTIME_DIR"))
+}
+
+fn folder_in(runtime_dir: Option<OsString>) -> PathBuf {
+    // A relative path would mean another folder in each working directory, and is invalid by the
+    // XDG Base Directory Specification.
+    match runtime_dir.map(PathBuf::from).filter(|dir| dir.is_absolute()) {
+        Some(dir) => dir.join("squall"),
         None => std::env::temp_dir().join(format!("squall-{}", rustix::process::geteuid().as_raw())),
     }
 }
@@ -89,9 +99,8 @@ pub(crate) fn private_folder() -> std::io::Result<PathBuf> {
 fn make_private(folder: &Path) -> std::io::Result<()> {
     fs::DirBuilder::new().recursive(true).mode(0o700).create(folder)?;
     if !is_private(folder) {
-        let problem =
-            format!("{} is accessible to other users, expected mode 700 and this user as its owner", folder.display());
-        return Err(std::io::Error::other(problem));
+        let problem = "is a link or accessible to other users, expected a folder of mode 700 that this user owns";
+        return Err(std::io::Error::other(format!("{} {problem}", folder.display())));
     }
     Ok(())
 }
@@ -189,6 +198,7 @@ mod tests {
             endpoint: "tcp/127.0.0.1:7447".to_owned(),
             pid: std::process::id(),
             token: Some("secret".to_owned()),
+            is_water: false,
         };
         let registration = register_in(&dir, "a.json", &entry).expect("a folder");
         let gateway = GatewayEntry {
@@ -214,5 +224,19 @@ mod tests {
         assert!(register_in(&dir, "a.json", &entry).is_err(), "anybody could read it");
         drop((registration, gateways));
         fs::remove_dir(&dir).expect("it is empty");
+    }
+
+    #[test]
+    fn a_link_to_a_folder_is_not_followed_and_a_relative_folder_not_used() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let link = dir.path().join("squall");
+        std::os::unix::fs::symlink(dir.path(), &link).expect("a link");
+        assert!(is_private(dir.path()) && !is_private(&link));
+        let refused = make_private(&link).expect_err("it is refused").to_string();
+        assert!(refused.contains("squall is a link, or belongs or is open to others"), "{refused}");
+        assert_eq!(folder_in(Some("/run/user/7".into())), Path::new("/run/user/7/squall"));
+        for given in [Some("".into()), Some("run".into()), None] {
+            assert!(folder_in(given).starts_with(std::env::temp_dir()));
+        }
     }
 }

@@ -30,10 +30,17 @@ const LINKS: [(&str, &str); 5] = [
     ("transport/link/rx/max_message_size", "16777216"),
 ];
 
-/// Messages from other nodes are dropped if they would have to wait for their outgoing link. An
-/// answer follows the setting of its query.
-const NEVER_WAIT: &str =
-    r#"[{messages: ["put", "delete", "query"], flows: ["ingress"], overwrite: {congestion_control: "drop"}}]"#;
+/// How a hub treats messages from other nodes. All are dropped if they would have to wait for
+/// their outgoing link. An answer has the settings of its query, and only the queue of this
+/// priority has room for the longest answers: a scenario with a network has 216 kB.
+fn qos(game: &GameName) -> String {
+    let long = [topic::scenario(game), topic::events(game), topic::water(game)];
+    json!([
+        { "messages": ["put", "delete", "query"], "flows": ["ingress"], "overwrite": { "congestion_control": "drop" } },
+        { "messages": ["query"], "flows": ["ingress"], "key_exprs": long, "overwrite": { "priority": "data_low" } },
+    ])
+    .to_string()
+}
 
 /// What a hub accepts from others: a helm report fits into a message of 2 MB, a join request into a
 /// query of 64 kB, the orders for a thousand boats into 256 kB. A connecting node has this long to
@@ -99,7 +106,7 @@ impl Net {
         set(&mut config, "timestamping/enabled", "false")?;
         // Whatever a node requests, its messages through the hub never wait; all others would wait
         // with them.
-        set(&mut config, "qos/network", NEVER_WAIT)?;
+        set(&mut config, "qos/network", &qos(game))?;
         limit_strangers(&mut config, game, nodes)?;
         Ok(config)
     }

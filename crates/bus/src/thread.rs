@@ -4,6 +4,7 @@ use crate::Watched;
 use crate::runtime::runtime;
 use std::sync::Arc;
 use std::thread::JoinHandle;
+use std::time::Duration;
 
 /// Starts a detached thread.
 ///
@@ -13,7 +14,10 @@ pub fn start_thread(name: &str, body: impl FnOnce() + Send + 'static) -> std::io
     runtime().spawn(name, Box::new(body)).map(drop)
 }
 
-/// A thread that is joined on drop. Its work must end by then.
+/// How long a node waits for a thread that should end: the network may block it for 10 s.
+const END_MAX: Duration = Duration::from_millis(1200);
+
+/// A thread that is joined on drop, unless it does not end soon. Its work must be over by then.
 pub struct NodeThread {
     is_done: Arc<Watched<bool>>,
     handle: Option<JoinHandle<()>>,
@@ -48,8 +52,9 @@ impl NodeThread {
 impl Drop for NodeThread {
     fn drop(&mut self) {
         // Before `join`: not every runtime returns a handle.
-        self.is_done.wait(std::time::Duration::MAX, |is_done| *is_done);
-        // A panicked thread has no result.
-        self.handle.take().map(JoinHandle::join).into_iter().for_each(drop);
+        if self.is_done.wait(END_MAX, |is_done| *is_done) {
+            // A panicked thread has no result.
+            self.handle.take().map(JoinHandle::join).into_iter().for_each(drop);
+        }
     }
 }

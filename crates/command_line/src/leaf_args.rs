@@ -1,12 +1,13 @@
 //! Command line arguments for how a process reaches a game: where it is, its name, keys and token.
 
 use crate::number::endpoint;
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, anyhow, ensure};
 use bus::keys::Bundle;
 use bus::token::TOKEN_VARIABLE;
 use bus::{Net, Place, Token};
 use messages::topic::GameName;
 use primitives::input_file;
+use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -112,6 +113,20 @@ impl LeafArgs {
         bus::local_gateways().into_iter().filter(is_meant).collect()
     }
 
+    /// Checks that a command for all boats of a game, sent to these gateways, means only one game.
+    /// Stops need no check: they go to as many boats as can be reached.
+    ///
+    /// # Errors
+    /// The names of the games.
+    pub fn check_one_game(&self, gateways: &[bus::GatewayEntry]) -> Result<()> {
+        let mut names: BTreeSet<String> = gateways.iter().filter_map(|entry| entry.game.clone()).collect();
+        if self.connect.is_empty() && !self.lan {
+            names.extend(bus::local_registry().into_iter().filter(|entry| !entry.is_water).map(|entry| entry.game));
+        }
+        ensure!(self.game.is_some() || names.len() < 2, several_games(names.iter().map(String::as_str)));
+        Ok(())
+    }
+
     /// Where to connect: the given endpoints, or those in this machine's local registry.
     pub fn net(&self) -> Result<Net> {
         self.net_of(None, self.keys()?)
@@ -140,13 +155,16 @@ impl LeafArgs {
 }
 
 /// The endpoint of the game on this machine.
-fn local_endpoint(games: &[bus::Entry]) -> Result<String> {
-    match games {
+fn local_endpoint(known: &[bus::Entry]) -> Result<String> {
+    let (water, games): (Vec<_>, Vec<_>) = known.iter().partition(|entry| entry.is_water);
+    match if games.is_empty() { water } else { games }.as_slice() {
         [] => Ok(format!("tcp/127.0.0.1:{}", bus::DEFAULT_PORT)),
         [entry] => Ok(entry.endpoint.clone()),
-        several => {
-            let names: Vec<&str> = several.iter().map(|entry| entry.game.as_str()).collect();
-            bail!("several games run on this machine; select one with --game: {}", names.join(", "))
-        }
+        several => Err(several_games(several.iter().map(|entry| entry.game.as_str()))),
     }
+}
+
+fn several_games<'a>(names: impl Iterator<Item = &'a str>) -> anyhow::Error {
+    let names: Vec<&str> = names.collect();
+    anyhow!("several games run on this machine; select one with --game: {}", names.join(", "))
 }

@@ -7,7 +7,7 @@ use std::path::Path;
 
 /// Writes a file; errors call it `what`.
 pub fn write(path: &Path, what: &str, bytes: impl AsRef<[u8]>) -> Result<()> {
-    std::fs::write(path, bytes).with_context(|| format!("cannot write {what} to {}", path.display()))
+    primitives::output_file::write(path, bytes).with_context(|| format!("cannot write {what} to {}", path.display()))
 }
 
 /// Checks that a file is writable, before hours of games; leaves it unchanged.

@@ -1,6 +1,6 @@
 //! The request to stop: Ctrl-C, SIGTERM, or the end of the parent process.
 
-use crate::clock;
+use crate::{clock, terminal};
 use anyhow::Context;
 use std::io::BufRead;
 use std::process::ExitCode;
@@ -25,6 +25,21 @@ pub fn on_ctrl_c() -> anyhow::Result<Arc<AtomicBool>> {
     };
     ctrlc::set_handler(pressed).context("cannot handle Ctrl-C")?;
     Ok(stop)
+}
+
+/// Ends the process soon after the flag is set, even if it is still busy or waits for the network:
+/// for commands that leave complete files whenever they end. Prints `remark` then, if there is one.
+pub fn exit_when_late(stop: &Arc<AtomicBool>, remark: &'static str) {
+    const LATE: Duration = Duration::from_millis(1400);
+    let flag = Arc::clone(stop);
+    std::thread::spawn(move || {
+        wait(&flag);
+        clock::rest(LATE);
+        if !remark.is_empty() {
+            terminal::remark(remark);
+        }
+        std::process::exit(130);
+    });
 }
 
 /// The same flag; in a child process, the end of standard input sets it too.

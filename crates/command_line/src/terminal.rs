@@ -4,10 +4,24 @@
 use crate::program;
 use crate::style;
 use anstream::AutoStream;
+use anyhow::{Result, bail};
 use primitives::printable;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
+use std::sync::OnceLock;
 
-/// Prints text. Ignores a closed output, which must not stop a game.
+/// The first error of standard output, except that its reader has closed it.
+static OUTPUT_ERROR: OnceLock<std::io::Error> = OnceLock::new();
+
+/// Checks that everything printed so far was written. `main` calls it last, so that a full disk
+/// stops no game, and is reported.
+pub fn check_output() -> Result<()> {
+    match OUTPUT_ERROR.get() {
+        Some(error) => bail!("cannot write to standard output: {error}"),
+        None => Ok(()),
+    }
+}
+
+/// Prints text. [`check_output`] reports errors, which must not stop a game.
 pub fn print(text: &str) {
     is_read(text);
 }
@@ -47,9 +61,17 @@ pub fn set_colour(choice: clap::ColorChoice) {
 /// Writes control sequences and a text, without its colours where they cannot be shown.
 fn is_written(control: &str, text: &str) -> bool {
     let mut out = std::io::stdout().lock();
-    let is_steered = out.write_all(control.as_bytes()).is_ok();
+    let steered = out.write_all(control.as_bytes());
     let mut out = AutoStream::auto(out);
-    is_steered && out.write_all(text.as_bytes()).and_then(|()| out.flush()).is_ok()
+    let written = steered.and_then(|()| out.write_all(text.as_bytes())).and_then(|()| out.flush());
+    let is_written = written.is_ok();
+    // A reader that closes a pipe early has read enough.
+    if let Err(error) = written
+        && error.kind() != ErrorKind::BrokenPipe
+    {
+        drop(OUTPUT_ERROR.set(error));
+    }
+    is_written
 }
 
 /// Prints an error, which may contain colours.

@@ -1,9 +1,20 @@
-//! The number of threads that play games.
+//! The number of games of an experiment, and of the threads that play them.
 
+use scenario::Problem;
 use std::num::NonZeroUsize;
+use std::path::Path;
 
 /// Upper bound of threads per core: more only take turns.
 const PER_CORE_MAX: usize = 4;
+
+/// Upper bound of the games of an experiment, whose results are kept in memory.
+const GAMES_MAX: usize = 4_000_000;
+
+/// The problem with an experiment whose file requests too many games.
+pub(crate) fn too_many_games(games: usize, file: &Path) -> Option<Problem> {
+    let message = || format!("there are {games} games in all, expected at most {GAMES_MAX}; reduce games or entries");
+    (games > GAMES_MAX).then(|| Problem::of_file(file.to_owned(), message()))
+}
 
 /// The number of threads for this many games: as requested or one per core, but at most four per
 /// core and one per game.

@@ -206,6 +206,13 @@ fn a_named_pipe_in_place_of_a_table_is_refused_and_not_waited_for() {
         assert!(why.contains(name) && why.contains("it is not a file"), "{why}");
         std::fs::remove_dir_all(&folder).unwrap();
     }
+    for name in ["report.html", "report.json", "games.parquet"] {
+        let study = Study::begin(&folder, &plan).unwrap();
+        assert!(std::process::Command::new("mkfifo").arg(folder.join(name)).status().unwrap().success());
+        let why = study.report(&plan).expect_err(name).to_string();
+        assert!(why.contains(name) && why.contains("it is a pipe that nobody reads"), "{why}");
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
 }
 
 #[test]

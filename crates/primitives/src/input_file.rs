@@ -6,6 +6,9 @@ use std::io::{Error, ErrorKind, Read};
 use std::os::unix::fs::OpenOptionsExt;
 use std::path::Path;
 
+/// Size limit of a table that this program appends to, bytes: some millions of games.
+pub const TABLE_BYTES_MAX: u64 = 2 << 30;
+
 /// Opens a file for reading.
 ///
 /// # Errors

@@ -13,6 +13,7 @@ pub mod math;
 pub mod near;
 mod normal;
 pub mod omitted;
+pub mod output_file;
 pub mod printable;
 pub mod reseed;
 pub mod stamp;

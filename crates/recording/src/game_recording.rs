@@ -80,7 +80,7 @@ impl Header {
     fn of(bag: &Bag) -> Result<Header, RecordingError> {
         let scenario: Scenario =
             serde_json::from_str(bag.fact("scenario")).map_err(|e| RecordingError::not_understood("scenario", e))?;
-        scenario.check_references().map_err(|e| RecordingError::not_understood("scenario", e))?;
+        scenario.check_received().map_err(|e| RecordingError::not_understood("scenario", e))?;
         Ok(Header {
             commit: bag.fact("commit").to_owned(),
             game: bag.fact("game").to_owned(),

@@ -31,10 +31,10 @@
 
 mod bag;
 mod damaged;
-mod file_name;
 mod game_recording;
 mod index;
 mod json_string;
+mod new_file;
 mod recorder;
 mod records;
 mod source;
@@ -43,9 +43,9 @@ mod writer;
 
 pub use bag::{Bag, RecordedMessage, RecordingError};
 pub use damaged::Damaged;
-pub use file_name::free_path;
 pub use game_recording::{Ending, FRAME, Header, INPUTS, Recording, picture};
-pub use recorder::{BulkRecorder, NewFile, Recorder};
+pub use new_file::{LentFile, NewFile, stem};
+pub use recorder::{BulkRecorder, Recorder};
 pub use writer::{Decision, Entry, Opening, Writer};
 
 use std::collections::BTreeMap;

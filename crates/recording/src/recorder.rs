@@ -1,9 +1,8 @@
 //! The thread that writes a recording. The game never waits for it.
 
 use crate::writer::{Entry, Opening, Writer};
-use crate::{Facts, RecordError, utc};
+use crate::{Facts, NewFile, RecordError, utc};
 use messages::run_state::RecordingState;
-use std::fs::File;
 use std::io::{BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
@@ -63,39 +62,6 @@ struct Shared {
     failed: OnceLock<String>,
 }
 
-/// A new file for a recording. Dropping it unused removes the file.
-#[derive(Debug)]
-pub struct NewFile {
-    path: PathBuf,
-    /// None after use.
-    file: Option<File>,
-}
-
-impl NewFile {
-    /// Creates the file; never overwrites an existing one.
-    ///
-    /// # Errors
-    /// [`RecordError`] if it cannot be created, or the disk is full.
-    pub fn create(path: &Path) -> Result<NewFile, RecordError> {
-        let mut file = File::create_new(path)?;
-        // If a later step fails, dropping `new` removes the file.
-        let new = NewFile { path: path.to_owned(), file: Some(file.try_clone()?) };
-        file.write_all(&[0; BUFFER])?;
-        file.rewind()?;
-        file.set_len(0)?;
-        Ok(new)
-    }
-}
-
-impl Drop for NewFile {
-    fn drop(&mut self) {
-        if self.file.is_some() {
-            // If removal fails, an empty file remains.
-            drop(std::fs::remove_file(&self.path));
-        }
-    }
-}
-
 impl Recorder {
     /// Starts recording.
     ///
@@ -106,7 +72,8 @@ impl Recorder {
     /// Never: a new file is used once.
     pub fn begin(mut file: NewFile, opening: &Opening) -> Result<Recorder, RecordError> {
         let open = file.file.as_ref().expect("a new file is there until it is used").try_clone()?;
-        let begun = Recorder::over(BufWriter::with_capacity(BUFFER, open), file.path.clone(), opening, WAITING_BYTES)?;
+        let begun =
+            Recorder::over(BufWriter::with_capacity(BUFFER, open), file.path().to_owned(), opening, WAITING_BYTES)?;
         file.file = None;
         Ok(begun)
     }

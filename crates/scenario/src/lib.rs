@@ -36,6 +36,7 @@ mod schema;
 pub mod sea;
 pub mod sensor;
 mod setting;
+mod size;
 mod source;
 pub mod strategy;
 mod syntax;
@@ -140,12 +141,12 @@ impl Scenario {
         })
     }
 
-    /// Checks that all references and names are valid. Scenarios from files satisfy this; those
-    /// from other sources may not.
+    /// Checks that all references are valid, all names are well-formed and all sizes are bounded.
+    /// Scenarios loaded from files satisfy this; those from other sources may not.
     ///
     /// # Errors
     /// The first violation, as text.
-    pub fn check_references(&self) -> Result<(), String> {
+    pub fn check_received(&self) -> Result<(), String> {
         let within = |what: &str, index: usize, count: usize| {
             if index < count { Ok(()) } else { Err(format!("{what} is {index}, expected less than {count}")) }
         };
@@ -160,7 +161,9 @@ impl Scenario {
             within(&format!("the strategy of {name}"), *strategy, self.strategies.len())?;
         }
         let mut flags = self.field.flags.iter().enumerate();
-        flags.try_for_each(|(i, flag)| within(&format!("the team of flag {i}"), flag.team.index(), self.teams.len()))
+        flags
+            .try_for_each(|(i, flag)| within(&format!("the team of flag {i}"), flag.team.index(), self.teams.len()))?;
+        self.check_sizes()
     }
 
     /// Whether everything that an event refers to exists in the game: the sender may be wrong.

@@ -166,6 +166,7 @@ impl Console {
             return match words.command {
                 CommandArg::Status => self.obey("status"),
                 CommandArg::Release => {
+                    self.leaf.check_one_game(&self.leaf.local_gateways(true))?;
                     self.release_all();
                     Ok(())
                 }

@@ -13,7 +13,7 @@ use gateway::link::LinkAddress;
 use gateway::node::{NodeEvent, Outside, Settings, on_enter};
 use gateway::payload::PayloadPort;
 use messages::external::{GatewayCommand, OperatorCommand};
-use recording::utc;
+use recording::{NewFile, utc};
 use std::io::IsTerminal;
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
@@ -101,7 +101,6 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
         dry_run: args.dry_run,
         preflight,
         at_game_pace: args.at_game_pace,
-        record,
         commit,
         wait: args.wait_s.map_or(Duration::MAX, Duration::from_secs_f64),
         stop: stop.clone(),
@@ -124,7 +123,10 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
                 drop(registration.update(&entry));
                 return;
             }
-            registration = bus::register_gateway(&entry).ok();
+            match bus::register_gateway(&entry) {
+                Ok(registered) => registration = Some(registered),
+                Err(error) => log.remark(format!("operators on this machine need the address: {error}")),
+            }
             log.remark(format!("operators reach this gateway at {control}, with or without a game"));
             if !args.for_parent && std::io::stdin().is_terminal() {
                 log.remark("press Enter in this terminal for an E-stop of this boat".to_owned());
@@ -138,7 +140,7 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
         NodeEvent::Status(status) => log.status(status),
         NodeEvent::Ended(status) => last = format!("\n{}", full(status)),
     };
-    let served = gateway::node::serve(&settings, &outside, &mut notify);
+    let served = gateway::node::serve(&settings, record, &outside, &mut notify);
     drop(registration);
     log.end(last);
     served.with_context(|| format!("the gateway of {}", args.vehicle))?;
@@ -173,14 +175,22 @@ fn preflight(args: &Args, link: &LinkAddress, gateway: &Gateway) -> Result<Prefl
     })
 }
 
-fn recording(args: &Args) -> Result<Option<PathBuf>> {
+/// The new file of the recording, if requested.
+fn recording(args: &Args) -> Result<Option<NewFile>> {
     if args.no_record {
         return Ok(None);
     }
-    if let Some(path) = &args.record {
-        return Ok(Some(path.clone()));
-    }
     let folder = Path::new("runs");
-    std::fs::create_dir_all(folder).with_context(|| format!("cannot create the folder {}", folder.display()))?;
-    Ok(Some(folder.join(format!("gateway-{}-{}.mcap", args.vehicle, utc::file_stamp(utc::now_ns())))))
+    let file = match &args.record {
+        Some(path) if args.for_parent => NewFile::of_child(path),
+        Some(path) => NewFile::create(path),
+        None => {
+            std::fs::create_dir_all(folder)
+                .with_context(|| format!("cannot create the folder {}", folder.display()))?;
+            let stem = format!("gateway-{}-{}", args.vehicle, utc::file_stamp(utc::now_ns()));
+            NewFile::create_numbered(folder, &stem)
+        }
+    };
+    let place = args.record.as_deref().unwrap_or(folder);
+    Ok(Some(file.with_context(|| format!("cannot record to {}", place.display()))?))
 }

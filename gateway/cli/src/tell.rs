@@ -326,6 +326,9 @@ fn tell_all(args: &Args) -> Result<ExitCode> {
         CommandArg::Release => (Some(Control::Release), Some(FleetCommand::Release)),
         _ => bail!("the name all accepts only estop, disarm, release and status; address each boat by name"),
     };
+    if control.is_some() {
+        args.leaf.check_one_game(&args.leaf.local_gateways(false))?;
+    }
     let ports = ports(args)?;
     let known: Vec<String> = ports.iter().filter_map(|port| port.vehicle.clone()).collect();
     let (sender, outcomes) = channel();

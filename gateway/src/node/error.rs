@@ -5,10 +5,8 @@ use crate::geofence::GeofenceError;
 use crate::link::LinkError;
 use bus::game_search::NotFound;
 use bus::{BusError, LinkLockError};
-use recording::RecordError;
 use scenario::UnknownVehicle;
 use std::net::SocketAddr;
-use std::path::PathBuf;
 use std::time::Duration;
 use thiserror::Error;
 
@@ -35,14 +33,6 @@ pub enum NodeError {
     /// Another gateway has the link.
     #[error(transparent)]
     Locked(#[from] LinkLockError),
-    /// The recording cannot be written.
-    #[error("cannot record into {path}")]
-    Record {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: RecordError,
-    },
     /// The declination is not known.
     #[error("{0}; set declination_deg in the gateway's file")]
     Declination(#[from] DeclinationError),

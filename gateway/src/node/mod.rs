@@ -88,9 +88,13 @@ pub type OnLinkEvent = Box<dyn Fn(LinkEvent) + Send + Sync>;
 /// # Errors
 /// [`NodeError`] if another gateway on this machine has the link, if the game refuses, or if the network, the link or the
 /// recording cannot work. A boat or a sim that goes away is none: the gateway waits for it.
-pub fn serve(settings: &Settings, outside: &Outside, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Result<(), NodeError> {
-    // Before anything that others notice.
-    let file = recording_file(settings, notify)?;
+pub fn serve(
+    settings: &Settings,
+    file: Option<NewFile>,
+    outside: &Outside,
+    notify: &mut dyn FnMut(NodeEvent<'_>),
+) -> Result<(), NodeError> {
+    file.iter().for_each(|file| notify(NodeEvent::Recording(file.path())));
     let _lock = match LinkLock::take(&outside.link.to_string()) {
         Ok(lock) => Some(lock),
         Err(held @ LinkLockError::Held { .. }) => return Err(held.into()),
@@ -142,8 +146,7 @@ pub fn serve_over(
     open: impl FnOnce(OnLinkEvent) -> Result<Box<dyn BoatLink>, LinkError>,
     notify: &mut dyn FnMut(NodeEvent<'_>),
 ) -> Result<(), NodeError> {
-    let file = recording_file(settings, notify)?;
-    connect(settings, loop_input(), file, (None, None, &[]), open, notify)
+    connect(settings, loop_input(), None, (None, None, &[]), open, notify)
 }
 
 /// Opens the link, runs the loop, and finds the game meanwhile.
@@ -166,13 +169,14 @@ fn connect(
         dry_run: settings.dry_run,
         preflight: settings.preflight.clone(),
     };
+    let path = file.as_ref().map(|file| file.path().to_owned());
     let recorder = file.and_then(|file| recorder(file, settings, &plan, notify));
     let calls = input.calls.clone();
     let link = open(Box::new(move |event| calls.put(Call::Link(event))))?;
     // From here on time is the core's: a recording begins at zero, and replays with the same
     // numbers.
     let clock = Clock::start();
-    let record = recorder.as_ref().map(Recorder::bulk).zip(settings.record.clone());
+    let record = recorder.as_ref().map(Recorder::bulk).zip(path);
     let shell = payload::Shell { record, space_min_mib: SPACE_MIN_MIB, clock, calls: input.calls.clone() };
     // After the link: a payload that takes its time must not keep standby from the boat.
     let payloads = Payloads::open(payloads, &shell, notify);
@@ -214,14 +218,6 @@ fn connect(
     notify(NodeEvent::Ended(&status));
     in_game.into_iter().for_each(InGame::leave);
     result
-}
-
-/// The file of the recording, if there is to be one.
-fn recording_file(settings: &Settings, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Result<Option<NewFile>, NodeError> {
-    let Some(path) = &settings.record else { return Ok(None) };
-    let file = NewFile::create(path).map_err(|source| NodeError::Record { path: path.clone(), source })?;
-    notify(NodeEvent::Recording(path));
-    Ok(Some(file))
 }
 
 /// The recording. A boat is not left alone since it cannot begin.

@@ -4,7 +4,6 @@ use crate::bridge::Preflight;
 use crate::config::Gateway;
 use bus::Place;
 use messages::topic::GameName;
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -27,8 +26,6 @@ pub struct Settings {
     pub preflight: Preflight,
     /// Whether its clock runs as fast as the game's: for emulated boats.
     pub at_game_pace: bool,
-    /// The file of the recording, if any.
-    pub record: Option<PathBuf>,
     /// The commit that the program was built from.
     pub commit: &'static str,
     /// How long to look for the game.

@@ -4,6 +4,7 @@
 use crate::in_process;
 use crate::network::replay_command;
 use anyhow::{Context, Result, bail};
+use recording::NewFile;
 use scenario::Scenario;
 use shore::page::{PreparingView, Showing, Shown};
 use std::collections::VecDeque;
@@ -143,7 +144,8 @@ fn prepare(
         Source::Played { scenario, seed, digest } => (scenario, *seed, digest),
     };
     let end_s = scenario.rules.time_limit.as_s();
-    let report = in_process::play(scenario, seed, Some(file), stop, |contest| {
+    let new = NewFile::create(file).with_context(|| format!("cannot record to {}", file.display()))?;
+    let report = in_process::play(scenario, seed, Some(new), stop, |contest| {
         if contest.decision().is_multiple_of(TELL_EVERY) {
             let share = 100.0 * (contest.now().as_s() / end_s).clamp(0.0, 1.0);
             preparing.tell(&format!("{}: playing, {share:.0} %", game.about));

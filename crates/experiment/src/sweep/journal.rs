@@ -7,6 +7,7 @@ use super::play::play_jobs;
 use super::study::{StudyError, io, text_if_any};
 use super::table::{cell_of, number_of, record};
 use crate::checksum::checksum;
+use primitives::output_file;
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
 use std::io::Write;
@@ -40,7 +41,7 @@ impl Journal {
         if games > 0 {
             return Err(StudyError::Exists { folder: folder.to_owned(), games });
         }
-        std::fs::write(&path, plan.digest() + "\n").map_err(io("write", &path))?;
+        output_file::write(&path, plan.digest() + "\n").map_err(io("write", &path))?;
         Journal::open(path, BTreeMap::new())
     }
 

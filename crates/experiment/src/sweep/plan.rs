@@ -1,6 +1,7 @@
 //! The games of a sweep.
 
 use super::{Axis, AxisValue, Design, Sweep};
+use crate::jobs::too_many_games;
 use crate::tournament::Entrant;
 use crate::{Packed, UnpackError};
 use primitives::stream::Stream;
@@ -69,6 +70,7 @@ impl Plan {
                 problems.extend(found);
             }
         }
+        problems.extend(too_many_games(plan.games(), &sweep.path));
         problems.sort();
         problems.dedup();
         plan.files_needed = plan.files.list().len();

@@ -156,7 +156,9 @@ impl Report {
 
 /// The mean of both sides, by point, entry and seed.
 fn observations(plan: &Plan, rows: &[Row]) -> Observations {
-    let (entries, seeds) = (plan.sweep().entries.len(), plan.seeds() as usize);
+    let entries = plan.sweep().entries.len();
+    // A stopped sweep may have played few of a million seeds.
+    let seeds = (plan.seeds() as usize).min(rows.len().div_ceil(2 * entries));
     let of_seed = |point: usize, seed: usize| -> Option<Vec<Metrics>> {
         let first = point * plan.games_per_point() + seed * 2 * entries;
         let games = rows.get(first..first + 2 * entries)?;

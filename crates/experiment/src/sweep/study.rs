@@ -11,7 +11,8 @@ use super::play::{BoatRow, Played};
 use super::report::Report;
 use super::table::{self, Row};
 use crate::checksum::checksum;
-use primitives::input_file;
+use primitives::input_file::TABLE_BYTES_MAX;
+use primitives::{input_file, output_file};
 use std::fs::{File, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -225,7 +226,7 @@ impl Study {
         let path = self.folder.join("games.parquet");
         let table = table::parquet(plan, &rows);
         let table = table.map_err(|error| StudyError::Table { what: "games.parquet", why: error.to_string() })?;
-        std::fs::write(&path, table).map_err(io("write", &path))?;
+        output_file::write(&path, table).map_err(io("write", &path))?;
         Ok(report)
     }
 }
@@ -302,13 +303,12 @@ pub(super) fn text_if_any(path: &Path) -> Result<String, StudyError> {
 }
 
 fn text(path: &Path) -> Result<String, StudyError> {
-    // Without a size limit: the whole file is needed.
-    let bytes = input_file::read(path, u64::MAX).map_err(io("read", path))?;
+    let bytes = input_file::read(path, TABLE_BYTES_MAX).map_err(io("read", path))?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
 fn write(path: &Path, text: &str) -> Result<(), StudyError> {
-    std::fs::write(path, text).map_err(io("write", path))
+    output_file::write(path, text).map_err(io("write", path))
 }
 
 pub(crate) fn io(doing: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> StudyError {

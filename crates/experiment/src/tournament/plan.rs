@@ -1,6 +1,7 @@
 //! The games of a tournament.
 
 use super::{Entrant, Tournament};
+use crate::jobs::too_many_games;
 use crate::{Packed, UnpackError};
 use scenario::{Files, Problem, Problems, Scenario, digest_of};
 use serde::{Deserialize, Serialize};
@@ -62,7 +63,11 @@ impl Plan {
             }
         }
         let seeds = u64::from(tournament.games).div_ceil(2);
-        Ok(Plan { tournament: tournament.clone(), teams, seeds, rounds, files })
+        let plan = Plan { tournament: tournament.clone(), teams, seeds, rounds, files };
+        match too_many_games(plan.games(), &tournament.game) {
+            Some(problem) => Err(Problems(vec![problem])),
+            None => Ok(plan),
+        }
     }
 
     /// The tournament.

@@ -63,7 +63,7 @@ fn seeds() -> Vec<Vec<u8>> {
     seeds.extend([bytes_of(&Water { waves }), bytes_of(&game.ending.outcome), bytes_of(&game.ending.outcome.events)]);
     seeds.push(bytes_of(&HelmQuestion::default()));
     let (endpoint, control) = ("tcp/127.0.0.1:7447".to_owned(), "127.0.0.1:7001".parse().expect("an address"));
-    seeds.push(bytes_of(&Entry { game: "pav01".to_owned(), endpoint, pid: 1, token: Some(TOKEN.hex()) }));
+    seeds.push(bytes_of(&Entry { game: "pav01".to_owned(), endpoint, pid: 1, token: Some(TOKEN.hex()), is_water: false }));
     seeds.push(bytes_of(&GatewayEntry { vehicle: "blue_one".to_owned(), game: None, control, pid: 1, token: None }));
     seeds.push(br#"{"kind":"waiting","agents":["blue_one"],"gateways":[]}"#.to_vec());
     seeds.push(bytes_of(&game.info()));
@@ -118,7 +118,7 @@ fn check(bytes: &[u8]) {
     // No comparison for equality: a report contains errors.
     drop(serde_json::from_slice::<ProgressMessage>(bytes));
     // The numbers are trusted, because a node that joins a game trusts its sim.
-    if let Some(Err(error)) = read::<GameInfo>(bytes).map(|info| info.scenario.check_references()) {
+    if let Some(Err(error)) = read::<GameInfo>(bytes).map(|info| info.scenario.check_received()) {
         check_shown(&error);
     }
 }

@@ -143,7 +143,7 @@ fn accepted(kind: Kind, path: &Path) {
 fn playable(scenario: &Scenario) {
     let json = serde_json::to_string(scenario).expect("JSON");
     assert_eq!(serde_json::from_str::<Scenario>(&json).expect("JSON"), *scenario, "the game changes in transit");
-    assert_eq!(scenario.check_references(), Ok(()));
+    assert_eq!(scenario.check_received(), Ok(()));
     if scenario.vehicles.len() > 40 {
         return;
     }

@@ -2,16 +2,13 @@
 
 use super::watch::{Moment, Watch, Watches};
 use messages::Frame;
-use recording::{RecordError, utc};
+use recording::{NewFile, RecordError, utc};
 use rules::event::EventCursor;
 use scenario::Scenario;
 use sim::{Contest, GameRecorder, Report, Run};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
-
-/// Maximum number of file names tried: other processes may record to the same folder.
-const NAMES_MAX: u32 = 100;
 
 /// The results of recordings until they are read.
 #[derive(Default)]
@@ -94,22 +91,18 @@ impl Recordings {
 
     /// Creates the file of a game.
     fn begin(&self, game: &Scenario, number: u64) -> Result<(GameRecorder, PathBuf), RecordError> {
-        let mut tried = 0;
-        loop {
-            let path = match self.names {
-                RecordingNames::ByTime => recording::free_path(&self.folder, &game.name, game.seed),
-                RecordingNames::ByNumber => self.folder.join(recording_name(game.seed, number)),
-            };
-            tried += 1;
-            match GameRecorder::in_process(path.clone(), &game.name, &self.commit) {
-                Err(RecordError::File(error)) if error.kind() == ErrorKind::AlreadyExists && tried < NAMES_MAX => {
-                    if self.names == RecordingNames::ByNumber {
-                        std::fs::remove_file(&path).map_err(RecordError::File)?;
-                    }
+        let file = match self.names {
+            RecordingNames::ByTime => NewFile::create_numbered(&self.folder, &recording::stem(&game.name, game.seed))?,
+            RecordingNames::ByNumber => {
+                let path = self.folder.join(recording_name(game.seed, number));
+                match std::fs::remove_file(&path) {
+                    Err(error) if error.kind() != ErrorKind::NotFound => return Err(error.into()),
+                    _ => NewFile::create(&path)?,
                 }
-                begun => return begun.map(|recorder| (recorder, path)),
             }
-        }
+        };
+        let path = file.path().to_owned();
+        Ok((GameRecorder::in_process(file, &game.name, &self.commit), path))
     }
 }
 

@@ -5,9 +5,11 @@ use super::file_cache::FileCache;
 use super::start_position;
 use crate::boat::Boat;
 use crate::diagnostics::{Diagnostics, is_name};
+use crate::link::Link;
 use crate::raw;
 use crate::read::{self, Document};
 use crate::sea::Sea;
+use crate::size::VEHICLES_MAX;
 use crate::strategy::Strategy;
 use crate::{Kind, Scenario, Source, StartPosition, Team, Vehicle};
 use primitives::id::TeamId;
@@ -16,8 +18,6 @@ use rules::Rules;
 use rules::field::Field;
 use std::collections::BTreeSet;
 use std::path::Path;
-
-const MOST_VEHICLES: usize = 10_000;
 
 /// A vehicle whose start position is not yet known.
 pub(super) struct Entry {
@@ -85,11 +85,7 @@ pub(crate) fn game(diagnostics: &mut Diagnostics, document: &Document<raw::Game>
     });
     let vehicles: Vec<Vehicle> = vehicles.collect();
     let faults = super::fault::faults(diagnostics, document, &vehicles, &boats.items);
-    let mut link = raw.link.clone();
-    if !document.has("link.station") {
-        let middle = field.seen_from(TeamId(0), 0.5 * field.plan.width_m, 0.5 * field.plan.depth_m);
-        link.iter_mut().for_each(|link| link.station = middle);
-    }
+    let link = link(document, &field);
     let scenario = Scenario {
         name: document.name.clone(),
         seed: raw.seed,
@@ -110,7 +106,20 @@ pub(crate) fn game(diagnostics: &mut Diagnostics, document: &Document<raw::Game>
         drawn: vec![],
         recipe: None,
     };
+    if let Err(problem) = scenario.check_sizes() {
+        diagnostics.note(document.at("team"), problem);
+    }
     document.is_faultless(diagnostics).then_some(scenario)
+}
+
+/// The radio links; the station stands in the middle of the field if the file names no other place.
+fn link(document: &Document<raw::Game>, field: &Field) -> Option<Link> {
+    let mut link = document.raw.link.clone();
+    if !document.has("link.station") {
+        let middle = field.seen_from(TeamId(0), 0.5 * field.plan.width_m, 0.5 * field.plan.depth_m);
+        link.iter_mut().for_each(|link| link.station = middle);
+    }
+    link
 }
 
 /// Reports a setting that the game overrides.
@@ -422,10 +431,10 @@ impl Fleet<'_> {
 
 /// Whether a game may have this many vehicles.
 fn is_room(diagnostics: &mut Diagnostics, place: usize, total: usize) -> bool {
-    if total > MOST_VEHICLES {
-        diagnostics.note(place, format!("there are {total} vehicles up to this one, expected at most {MOST_VEHICLES}"));
+    if total > VEHICLES_MAX {
+        diagnostics.note(place, format!("there are {total} vehicles up to this one, expected at most {VEHICLES_MAX}"));
     }
-    total <= MOST_VEHICLES
+    total <= VEHICLES_MAX
 }
 
 /// The path of a strategy given by path, or by name in the folder of strategies.
