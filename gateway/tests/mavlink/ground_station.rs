@@ -124,7 +124,7 @@ const RESULTS: [(u16, [f32; 2], u8); 12] = [
 ];
 
 #[test]
-fn every_command_is_acknowledged_also_one_that_the_dialect_does_not_know() {
+fn every_command_is_acknowledged_even_if_the_dialect_lacks_it() {
     for (command, params, result) in RESULTS {
         for is_long in [true, false] {
             let mut station = Station::new();
@@ -165,6 +165,22 @@ fn a_mission_item_that_the_boat_would_not_carry_out_is_refused() {
             heard.iter().any(|reply| matches!(reply, MavMessage::MISSION_ACK(ack) if ack.mavtype == result)),
             "{heard:?}"
         );
+    }
+}
+
+#[test]
+fn a_mission_begins_at_the_item_that_was_set_and_continues_after_an_interruption() {
+    let mut station = Station::new();
+    station.upload(4, MavMissionType::MAV_MISSION_TYPE_MISSION);
+    station.command(true, MavCmd::MAV_CMD_DO_SET_HOME as u16, [1.0, 0.0]);
+    assert_eq!(station.command(true, MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT as u16, [2.0, 0.0]), Some(0));
+    for mode in [10.0, 5.0, 10.0] {
+        assert_eq!(station.command(true, MavCmd::MAV_CMD_DO_SET_MODE as u16, [1.0, mode]), Some(0));
+        let heard = station.run(2.0);
+        let current = |message: &MavMessage| {
+            if let MavMessage::MISSION_CURRENT(current) = message { Some((current.seq, current.total)) } else { None }
+        };
+        assert_eq!(heard.iter().find_map(current), Some((2, 3)), "mode {mode}");
     }
 }
 

@@ -69,7 +69,7 @@ fn after(mut station: Station, message: &MavMessage, seconds: u32) -> Station {
 }
 
 #[test]
-fn positions_in_every_frame_that_rover_takes_are_sailed_to_and_kept() {
+fn positions_in_every_frame_that_rover_takes_are_reached_and_kept() {
     let mut messages: Vec<MavMessage> = [
         (MavFrame::MAV_FRAME_LOCAL_NED, [2.0, 1.0]),
         (MavFrame::MAV_FRAME_LOCAL_OFFSET_NED, [2.0, 1.0]),
@@ -137,7 +137,7 @@ fn velocities_headings_and_rates_of_turn_are_followed_in_every_frame_that_rover_
 }
 
 #[test]
-fn what_rover_ignores_is_said_and_moves_nothing() {
+fn a_set_point_that_rover_ignores_is_reported_and_moves_nothing() {
     let north = [1.0, 0.0];
     for (frame, mask, words) in [
         (MavFrame::MAV_FRAME_BODY_FRD, VELOCITY, "its frame"),

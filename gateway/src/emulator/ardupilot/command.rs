@@ -150,16 +150,15 @@ impl ArduPilot {
         if command.param1 > 0.0 && !self.change_speed(f64::from(command.param1)) {
             return FAILED;
         }
-        result_of(self.set_points.go_to(place).is_some())
+        result_of(self.set_points.go_to(place))
     }
 
     /// A heading, from north or from the one before, and a speed.
     fn command_yaw_speed(&mut self, now: SimTime, command: &COMMAND_INT_DATA) -> MavResult {
         let Some(own) = self.sensed.own.filter(|_| self.mode == RoverMode::Guided) else { return FAILED };
-        let before_rad = (command.param3 > 0.0).then_some(own.nav.psi_rad);
-        let heading_rad = f64::from(command.param1).to_radians();
-        self.set_points.take_heading(now, heading_rad, before_rad, f64::from(command.param2));
-        DONE
+        let own_rad = (command.param3 > 0.0).then_some(own.nav.psi_rad);
+        let (heading_rad, speed_m_s) = (f64::from(command.param1).to_radians(), f64::from(command.param2));
+        result_of(self.set_points.take_heading(now, heading_rad, own_rad, speed_m_s).is_ok())
     }
 
     /// Goes on with an item of the mission; whether there is one.

@@ -56,7 +56,7 @@ pub struct ArduPilot {
     began_us: u64,
     battery: Battery,
     remarks: VecDeque<String>,
-    /// When it last said that it does not support a message, by its number.
+    /// When it last reported that it does not support a message, by message number.
     complaints: BTreeMap<u32, SimTime>,
     /// Frames that are to be sent, as soon as that can be.
     outbox: Vec<u8>,
@@ -114,7 +114,12 @@ impl ArduPilot {
             self.mode = mode;
             self.set_points.forget();
             if let Some(own) = &self.sensed.own {
+                let next = self.autopilot.next();
                 self.autopilot.begin(own.nav.at());
+                // A mission that was interrupted continues, as with MIS_RESTART at its default.
+                if usize::from(next) <= self.mission.waypoints() {
+                    self.autopilot.set_next(next);
+                }
             }
             self.note(format!("mode {mode:?}"));
         }
@@ -279,10 +284,7 @@ impl ArduPilot {
         let (Some(own), Some(origin), RoverMode::Guided) = (self.sensed.own, self.origin, self.mode) else { return };
         let speed_max_m_s = self.speed_max_m_s();
         let taken = match message {
-            MavMessage::SET_ATTITUDE_TARGET(target) => {
-                self.set_points.take_attitude(now, target, speed_max_m_s);
-                Ok(())
-            }
+            MavMessage::SET_ATTITUDE_TARGET(target) => self.set_points.take_attitude(now, target, speed_max_m_s),
             MavMessage::SET_POSITION_TARGET_LOCAL_NED(target) => {
                 self.set_points.take_local(now, target, (own.nav.pose(), origin), speed_max_m_s)
             }
@@ -297,12 +299,11 @@ impl ArduPilot {
         }
     }
 
-    /// A position in the form of a mission item, which older programs send in mode GUIDED; a change of height is none for a boat.
+    /// A position as a mission item, which older programs send in mode GUIDED. A change of altitude has no effect on a boat.
     fn take_guided(&mut self, from: (u8, u8), item: &MISSION_ITEM_INT_DATA) {
         let place = self.place((item.x, item.y)).filter(|_| set_point::is_global(item.frame));
         let is_waypoint = item.command == MavCmd::MAV_CMD_NAV_WAYPOINT && self.mode == RoverMode::Guided;
-        let is_taken =
-            item.current == 3 || is_waypoint && place.and_then(|place| self.set_points.go_to(place)).is_some();
+        let is_taken = item.current == 3 || is_waypoint && place.is_some_and(|place| self.set_points.go_to(place));
         let result =
             if is_taken { MavMissionResult::MAV_MISSION_ACCEPTED } else { MavMissionResult::MAV_MISSION_ERROR };
         self.send(&mission::ack(from, result));

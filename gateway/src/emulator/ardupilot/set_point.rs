@@ -104,19 +104,27 @@ impl SetPoints {
     }
 
     /// A heading or a rate of turn with a share of the highest speed, m/s.
-    pub(super) fn take_attitude(&mut self, now: SimTime, target: &SET_ATTITUDE_TARGET_DATA, speed_max_m_s: f64) {
+    ///
+    /// # Errors
+    /// What Rover ignores, with the reason.
+    pub(super) fn take_attitude(
+        &mut self,
+        now: SimTime,
+        target: &SET_ATTITUDE_TARGET_DATA,
+        speed_max_m_s: f64,
+    ) -> Result<(), &'static str> {
         let mask = target.type_mask;
         // Rover drops the whole message when it carries no throttle.
         if mask.contains(AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_THROTTLE_IGNORE) {
-            return;
+            return Err("set-point ignored: it has no throttle");
         }
         let speed_m_s = f64::from(target.thrust).clamp(-1.0, 1.0) * speed_max_m_s;
         if mask.contains(AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_BODY_YAW_RATE_IGNORE) {
             let [w, x, y, z] = target.q.map(f64::from);
             let heading_rad = math::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z));
-            self.set(now, Course::Heading(heading_rad), speed_m_s);
+            self.set(now, Course::Heading(heading_rad), speed_m_s)
         } else {
-            self.set(now, Course::Turn(f64::from(target.body_yaw_rate)), speed_m_s);
+            self.set(now, Course::Turn(f64::from(target.body_yaw_rate)), speed_m_s)
         }
     }
 
@@ -178,7 +186,7 @@ impl SetPoints {
             return Err("set-point ignored: set ACC_IGNORE in mask");
         }
         if let Some(place) = target.place {
-            return self.go_to(place).ok_or("set-point ignored: its position");
+            return if self.go_to(place) { Ok(()) } else { Err("set-point ignored: its position") };
         }
         let (x_m_s, y_m_s) = target.velocity.unwrap_or((0.0, 0.0));
         let course = match (target.yaw_rad, target.yaw_rate_rad_s) {
@@ -195,24 +203,33 @@ impl SetPoints {
         // sent with a velocity again.
         let has_yaw = target.yaw_rad.is_some() || target.yaw_rate_rad_s.is_some();
         let sign = if has_yaw && x_m_s < 0.0 { -1.0 } else { 1.0 };
-        self.set(now, course, sign * math::length(x_m_s, y_m_s).min(speed_max_m_s));
-        Ok(())
+        self.set(now, course, sign * math::length(x_m_s, y_m_s).min(speed_max_m_s))
     }
 
-    /// A heading, rad, from north or from the heading before, and a speed: MAV_CMD_NAV_SET_YAW_SPEED.
-    pub(super) fn take_heading(&mut self, now: SimTime, heading_rad: f64, before_rad: Option<f64>, speed_m_s: f64) {
-        let ordered = |own_rad: f64| match self.guided {
+    /// A heading, rad, from north or, where the boat's own is given, from the one before, and a speed, m/s.
+    ///
+    /// # Errors
+    /// Non-finite numbers.
+    pub(super) fn take_heading(
+        &mut self,
+        now: SimTime,
+        heading_rad: f64,
+        own_rad: Option<f64>,
+        speed_m_s: f64,
+    ) -> Result<(), &'static str> {
+        let before = |own_rad: f64| match self.guided {
             Some((_, Course::Heading(ordered_rad), _)) => ordered_rad,
             _ => own_rad,
         };
-        let heading_rad = wrap_pi(heading_rad + before_rad.map_or(0.0, ordered));
-        self.set(now, Course::Heading(heading_rad), speed_m_s);
+        self.set(now, Course::Heading(heading_rad + own_rad.map_or(0.0, before)), speed_m_s)
     }
 
     /// Goes to a position, if it is one.
-    pub(super) fn go_to(&mut self, place: Ned) -> Option<()> {
-        (self.guided, self.destination) = (None, Some(place).filter(|place| place.length().is_finite()));
-        self.destination.map(drop)
+    pub(super) fn go_to(&mut self, place: Ned) -> bool {
+        if place.is_finite() {
+            (self.guided, self.destination) = (None, Some(place));
+        }
+        place.is_finite()
     }
 
     /// The speed on the way to a position, m/s; whether it goes to one.
@@ -244,12 +261,13 @@ impl SetPoints {
         }
     }
 
-    /// What is not finite is not followed.
-    fn set(&mut self, now: SimTime, course: Course, speed_m_s: f64) {
+    fn set(&mut self, now: SimTime, course: Course, speed_m_s: f64) -> Result<(), &'static str> {
         let (Course::Heading(steered) | Course::Turn(steered)) = course;
-        if steered.is_finite() && speed_m_s.is_finite() {
-            (self.guided, self.destination) = (Some((now, course, speed_m_s)), None);
+        if !steered.is_finite() || !speed_m_s.is_finite() {
+            return Err("set-point ignored: it is not finite");
         }
+        (self.guided, self.destination) = (Some((now, course, speed_m_s)), None);
+        Ok(())
     }
 
     /// Steering is the axis y, throttle the axis z, from 0 to 1000 with rest at 500, or x where that is set.
