@@ -117,10 +117,10 @@ def drive_emulated_boat(link):
     link.target_system, link.target_component = 1, 1
     link.mav.param_request_list_send(1, 1)
     names = set()
-    while len(names) < 10:
+    while len(names) < 11:
         value = wait_for(link, "a parameter", "PARAM_VALUE")
         names.add(value.param_id)
-    check({"SYSID_MYGCS", "FS_GCS_ENABLE", "CRUISE_SPEED"} <= names, "parameters by their real names")
+    check({"SYSID_MYGCS", "FS_GCS_TIMEOUT", "WP_SPEED"} <= names, "parameters by their real names")
     for message in (mav.MAVLINK_MSG_ID_GLOBAL_POSITION_INT, mav.MAVLINK_MSG_ID_ATTITUDE):
         command(link, f"the interval of {message}", mav.MAV_CMD_SET_MESSAGE_INTERVAL, message, 100_000)
     command(link, "a command that it does not have", mav.MAV_CMD_NAV_TAKEOFF, result=mav.MAV_RESULT_UNSUPPORTED)
@@ -154,8 +154,8 @@ def drive_emulated_boat(link):
     attitude = wait_for(link, "its rate of turn", "ATTITUDE")
     check(attitude.yawspeed > 0.05, f"it turns to starboard, {attitude.yawspeed:.2f} rad/s")
     drive(link, 1.0, to_the_south)
-    # It forgets the set-point after three seconds, and glides.
-    idle = wait_for(link, "without set-points it stops", "GLOBAL_POSITION_INT", lambda at: math.hypot(at.vx, at.vy) < 25, limit_s=20.0)
+    # It forgets the set-point after three seconds, and then keeps its station as Rover's boats do: it has to turn back for that.
+    idle = wait_for(link, "without set-points it stops", "GLOBAL_POSITION_INT", lambda at: math.hypot(at.vx, at.vy) < 20, limit_s=60.0)
     upload_mission(link, idle)
     command(link, "HOLD", mav.MAV_CMD_DO_SET_MODE, 1, HOLD)
     command(link, "disarming", mav.MAV_CMD_COMPONENT_ARM_DISARM, 0)

@@ -92,6 +92,25 @@ impl Autopilot {
         (self.speed_m_s, self.next) = (speed_m_s, 1);
     }
 
+    /// The speed of the mission from here on, m/s.
+    pub(super) fn set_speed(&mut self, speed_m_s: f64) {
+        self.speed_m_s = Some(speed_m_s);
+    }
+
+    /// The waypoint that is next, from 1 on.
+    pub(super) fn next(&self) -> u16 {
+        self.next
+    }
+
+    pub(super) fn set_next(&mut self, waypoint: u16) {
+        self.next = waypoint;
+    }
+
+    /// Where it stays when it has nowhere to go.
+    pub(super) fn station(&self) -> Option<Ned> {
+        self.station
+    }
+
     /// An upload begins: the mission before is deleted.
     pub(super) fn begin_download(&mut self, announced: f64) {
         self.places.clear();
@@ -133,6 +152,12 @@ impl Autopilot {
     pub(super) fn keep(&mut self, pose: Pose) -> Order {
         let station = *self.station.get_or_insert(pose.at);
         go(pose, station, KEEP_M_S).unwrap_or(Order::Hold)
+    }
+
+    /// Goes to a position at this speed, m/s, and keeps its station there.
+    pub(super) fn go_to(&mut self, pose: Pose, place: Ned, speed_m_s: f64) -> Order {
+        self.station = Some(place);
+        go(pose, place, speed_m_s).unwrap_or(Order::Hold)
     }
 
     /// Goes to the recovery point, and stays there; without one it stays where it is.

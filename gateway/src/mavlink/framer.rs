@@ -27,6 +27,37 @@ pub struct Received {
     pub message: MavMessage,
 }
 
+/// A message with a right checksum that the dialect cannot express, since one of its values is not known.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Unreadable {
+    /// The system that sent it.
+    pub system: u8,
+    /// The component of it.
+    pub component: u8,
+    /// Its number.
+    pub id: u32,
+    /// Its payload, without the zeros at the end that version 2 omits.
+    pub payload: Vec<u8>,
+}
+
+impl Unreadable {
+    /// A byte of the payload.
+    #[must_use]
+    pub fn byte(&self, at: usize) -> u8 {
+        self.payload.get(at).copied().unwrap_or(0)
+    }
+}
+
+/// A whole frame of a known message.
+#[derive(Clone, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "a frame is handled at once and never stored")]
+pub enum Frame {
+    /// Its message could be read.
+    Read(Received),
+    /// It could not.
+    Unreadable(Unreadable),
+}
+
 /// What came through a [`Framer`].
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
@@ -118,6 +149,15 @@ impl Framer {
 
     /// Takes bytes as they come (any split, any garbage); calls `take` with each message with a right checksum, in order.
     pub fn push(&mut self, bytes: &[u8], take: &mut dyn FnMut(Received)) {
+        self.push_frames(bytes, &mut |frame| {
+            if let Frame::Read(received) = frame {
+                take(received);
+            }
+        });
+    }
+
+    /// As [`Framer::push`], with the frames that cannot be read as well.
+    pub fn push_frames(&mut self, bytes: &[u8], take: &mut dyn FnMut(Frame)) {
         self.buffer.extend_from_slice(bytes);
         let buffer = std::mem::take(&mut self.buffer);
         let mut at = 0;
@@ -170,7 +210,7 @@ impl Framer {
     }
 
     /// Reads a whole frame; returns how many bytes of it are done with.
-    fn read(&mut self, layout: &Layout, frame: &[u8], take: &mut dyn FnMut(Received)) -> usize {
+    fn read(&mut self, layout: &Layout, frame: &[u8], take: &mut dyn FnMut(Frame)) -> usize {
         let Layout { version, id, system, component, payload: (start, end), len } = *layout;
         if !layout.has_right_checksum(frame) {
             self.counts.bad_checksum += 1;
@@ -182,9 +222,13 @@ impl Framer {
         match MavMessage::parse(version, id, &frame[start..end]) {
             Ok(message) => {
                 self.counts.messages += 1;
-                take(Received { system, component, message });
+                take(Frame::Read(Received { system, component, message }));
             }
-            Err(_) => self.counts.unreadable += 1,
+            Err(_) => {
+                self.counts.unreadable += 1;
+                let payload = frame[start..end].to_vec();
+                take(Frame::Unreadable(Unreadable { system, component, id, payload }));
+            }
         }
         len
     }

@@ -8,11 +8,11 @@ mod rover_mode;
 mod text;
 
 pub use ::mavlink::dialects::common as dialect;
-pub use framer::{Counts, FRAME_MAX, Framer, Received};
+pub use framer::{Counts, FRAME_MAX, Frame, Framer, Received, Unreadable};
 pub use rover_mode::RoverMode;
 pub use text::message_text;
 
-use ::mavlink::{MAVLinkV2MessageRaw, MavHeader};
+use ::mavlink::{MAV_STX_V2, MAVLinkV2MessageRaw, MavHeader, calculate_crc};
 use dialect::MavMessage;
 
 /// The component of an autopilot.
@@ -31,6 +31,25 @@ impl Writer {
     #[must_use]
     pub fn new(system: u8, component: u8) -> Writer {
         Writer { system, component, sequence: 0 }
+    }
+
+    /// The next messages come from this system.
+    pub fn set_system(&mut self, system: u8) {
+        self.system = system;
+    }
+
+    /// Appends a message that the dialect cannot express, by its number, the byte of its definition that goes into the checksum, and
+    /// its payload.
+    pub fn write_raw(&mut self, id: u32, extra_crc: u8, payload: &[u8], out: &mut Vec<u8>) {
+        // Version 2 omits zeros at the end, but for the first byte.
+        let len = payload.iter().rposition(|byte| *byte != 0).map_or(1, |last| last + 1);
+        let [a, b, c, _] = id.to_le_bytes();
+        let mut frame = vec![MAV_STX_V2, len as u8, 0, 0, self.sequence, self.system, self.component, a, b, c];
+        frame.extend(&payload[..len]);
+        let checksum = calculate_crc(&frame[1..], extra_crc);
+        out.extend(frame);
+        out.extend(checksum.to_le_bytes());
+        self.sequence = self.sequence.wrapping_add(1);
     }
 
     /// Appends a message.

@@ -119,7 +119,8 @@ impl Upload {
 
     /// The boat takes the mission, or does not.
     pub(super) fn take_ack(&mut self, result: MavMissionResult, now: SimTime) {
-        if self.phase == Phase::Items {
+        // ArduPilot answers so to an item that comes twice, since it was slow to come once, and goes on.
+        if self.phase == Phase::Items && result != MavMissionResult::MAV_MISSION_INVALID_SEQUENCE {
             let is_taken = result == MavMissionResult::MAV_MISSION_ACCEPTED;
             self.phase = if is_taken { Phase::Done } else { Phase::Refused(format!("the boat answers {result:?}")) };
             self.due = now;

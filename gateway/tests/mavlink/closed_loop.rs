@@ -6,7 +6,8 @@ use gateway::config::Drive;
 use gateway::emulator::ArduPilot;
 use gateway::geodesy::LocalFrame;
 use gateway::mavlink::dialect::{
-    COMMAND_LONG_DATA, MavCmd, MavFrame, MavMessage, PositionTargetTypemask, SET_POSITION_TARGET_LOCAL_NED_DATA,
+    COMMAND_LONG_DATA, MISSION_ACK_DATA, MavCmd, MavFrame, MavMessage, MavMissionResult, PositionTargetTypemask,
+    SET_POSITION_TARGET_LOCAL_NED_DATA,
 };
 use gateway::mavlink::{Framer, RoverMode};
 use messages::Order;
@@ -344,6 +345,23 @@ fn a_mission_that_the_boat_does_not_take_is_given_up_with_the_reason() {
     rig.run(8.0);
     let told = |event: &Event| matches!(event, Event::Warning(text) if text.contains("the mission is not uploaded: the boat does not show"));
     assert!(rig.events.iter().any(told), "{:?}", rig.events);
+}
+
+#[test]
+fn an_item_that_the_boat_got_twice_does_not_end_the_upload() {
+    let mut rig = Rig::under_way();
+    // The boat hears nothing of the items until it has refused one.
+    rig.alter = |message| (!matches!(message, MavMessage::MISSION_COUNT(_))).then_some(message);
+    rig.operator(OperatorCommand::Mission(mission()));
+    rig.run(1.5);
+    let (ours, mavtype) = (plan().gateway.mavlink, MavMissionResult::MAV_MISSION_INVALID_SEQUENCE);
+    let (target_system, target_component) = (ours.system, ours.component);
+    let ack = MISSION_ACK_DATA { target_system, target_component, mavtype, ..Default::default() };
+    let mut bytes = vec![];
+    gateway::mavlink::Writer::new(1, 1).write(&MavMessage::MISSION_ACK(ack), &mut bytes);
+    rig.give(&Input::Bytes(bytes));
+    rig.alter = Some;
+    rig.run_until(5.0, |rig| rig.state() == "delegated: mission");
 }
 
 #[test]

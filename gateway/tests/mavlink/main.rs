@@ -7,5 +7,8 @@ mod boat;
 mod closed_loop;
 mod foreign_order;
 mod framing;
+mod ground_station;
+mod guided;
 mod preflight;
 mod rig;
+mod station;

@@ -1,35 +1,83 @@
 //! The commands that an emulated ArduPilot boat takes, and its acknowledgements.
 
+#![expect(deprecated, reason = "ground stations send the older commands, too, and ArduPilot takes them")]
+
 use super::ArduPilot;
+use super::set_point::is_global;
 use crate::mavlink::RoverMode;
 use crate::mavlink::dialect::{
-    COMMAND_ACK_DATA, COMMAND_INT_DATA, COMMAND_LONG_DATA, MavCmd, MavMessage, MavResult, MavSeverity, STATUSTEXT_DATA,
+    AUTOPILOT_VERSION_DATA, COMMAND_ACK_DATA, COMMAND_INT_DATA, COMMAND_LONG_DATA, HOME_POSITION_DATA, MavCmd,
+    MavFrame, MavResult, MavSeverity,
 };
+use ::mavlink::MessageData;
+use primitives::SimTime;
 
 const DONE: MavResult = MavResult::MAV_RESULT_ACCEPTED;
+const DENIED: MavResult = MavResult::MAV_RESULT_DENIED;
 const FAILED: MavResult = MavResult::MAV_RESULT_FAILED;
+/// MAV_CMD_DO_SEND_BANNER, which is not of the common dialect.
+const DO_SEND_BANNER: u16 = 42_428;
+/// The only flag of MAV_CMD_DO_REPOSITION: the boat may change to GUIDED.
+const CHANGE_MODE: i32 = 1;
+
+fn result_of(is_done: bool) -> MavResult {
+    if is_done { DONE } else { FAILED }
+}
 
 impl ArduPilot {
-    pub(super) fn take_command_long(&mut self, command: &COMMAND_LONG_DATA) {
-        let COMMAND_LONG_DATA { param1, param2, param5, param6, .. } = *command;
-        let at_e7 = ((1e7 * f64::from(param5)).round() as i32, (1e7 * f64::from(param6)).round() as i32);
-        self.take_command(command.command, [param1, param2], at_e7);
+    /// As ArduPilot does, it is carried out as the COMMAND_INT that it would be.
+    pub(super) fn take_command_long(&mut self, now: SimTime, from: (u8, u8), long: &COMMAND_LONG_DATA) {
+        let has_position = matches!(long.command, MavCmd::MAV_CMD_DO_SET_HOME | MavCmd::MAV_CMD_DO_REPOSITION);
+        let whole = |param: f32| (if has_position { 1e7 } else { 1.0 } * f64::from(param)).round() as i32;
+        let COMMAND_LONG_DATA { param1, param2, param3, param4, command, .. } = *long;
+        let (x, y, frame) = (whole(long.param5), whole(long.param6), MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT);
+        let int = COMMAND_INT_DATA { param1, param2, param3, param4, x, y, command, frame, ..Default::default() };
+        self.take_command_int(now, from, &int);
     }
 
-    pub(super) fn take_command_int(&mut self, command: &COMMAND_INT_DATA) {
-        self.take_command(command.command, [command.param1, command.param2], (command.x, command.y));
-    }
-
-    fn take_command(&mut self, command: MavCmd, [param1, param2]: [f32; 2], at_e7: (i32, i32)) {
-        let result = match command {
+    pub(super) fn take_command_int(&mut self, now: SimTime, from: (u8, u8), command: &COMMAND_INT_DATA) {
+        let COMMAND_INT_DATA { param1, param2, x, y, .. } = *command;
+        let result = match command.command {
             MavCmd::MAV_CMD_DO_SET_MODE => self.command_mode(param2 as u32),
             MavCmd::MAV_CMD_COMPONENT_ARM_DISARM => self.command_arming(param1 == 1.0),
+            MavCmd::MAV_CMD_RUN_PREARM_CHECKS if self.is_armed => MavResult::MAV_RESULT_TEMPORARILY_REJECTED,
+            MavCmd::MAV_CMD_RUN_PREARM_CHECKS => DONE,
             MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL => self.streams.set_interval(param1 as u32, f64::from(param2)),
-            MavCmd::MAV_CMD_REQUEST_MESSAGE => self.streams.request(param1 as u32),
-            MavCmd::MAV_CMD_DO_SET_HOME => self.command_home(param1 == 1.0, at_e7),
+            MavCmd::MAV_CMD_GET_MESSAGE_INTERVAL => self.show_interval(param1 as u32),
+            MavCmd::MAV_CMD_REQUEST_MESSAGE => result_of(self.send_message(now, param1 as u32)),
+            MavCmd::MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES => {
+                result_of(param1 == 1.0 && self.send_message(now, AUTOPILOT_VERSION_DATA::ID))
+            }
+            MavCmd::MAV_CMD_GET_HOME_POSITION => result_of(self.send_message(now, HOME_POSITION_DATA::ID)),
+            MavCmd::MAV_CMD_DO_SET_HOME => self.command_home(param1 == 1.0, (x, y)),
+            MavCmd::MAV_CMD_DO_CHANGE_SPEED if !matches!(param1 as i32, 0 | 1) => DENIED,
+            MavCmd::MAV_CMD_DO_CHANGE_SPEED => result_of(self.change_speed(f64::from(param2))),
+            MavCmd::MAV_CMD_DO_REPOSITION => self.command_reposition(command),
+            MavCmd::MAV_CMD_NAV_SET_YAW_SPEED => self.command_yaw_speed(now, command),
+            MavCmd::MAV_CMD_NAV_RETURN_TO_LAUNCH => self.command_mode(RoverMode::Rtl.number()),
+            // A part of the mission only: Rover does not do that either.
+            MavCmd::MAV_CMD_MISSION_START if param1 != 0.0 || param2 != 0.0 => DENIED,
+            MavCmd::MAV_CMD_MISSION_START => self.command_mode(RoverMode::Auto.number()),
+            MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT => result_of(self.set_current(param1 as u16)),
             _ => MavResult::MAV_RESULT_UNSUPPORTED,
         };
-        self.outbox.push(MavMessage::COMMAND_ACK(COMMAND_ACK_DATA { command, result, ..COMMAND_ACK_DATA::default() }));
+        self.acknowledge(from, command.command as u16, result);
+    }
+
+    /// A command that the dialect does not know.
+    pub(super) fn take_unknown_command(&mut self, from: (u8, u8), command: u16) {
+        let is_banner = command == DO_SEND_BANNER;
+        if is_banner {
+            self.say(MavSeverity::MAV_SEVERITY_INFO, "ArduRover V4.5.7, emulated by Squall");
+        }
+        self.acknowledge(from, command, if is_banner { DONE } else { MavResult::MAV_RESULT_UNSUPPORTED });
+    }
+
+    /// By its number, since commands are acknowledged that the dialect does not know.
+    pub(super) fn acknowledge(&mut self, from: (u8, u8), command: u16, result: MavResult) {
+        let [low, high] = command.to_le_bytes();
+        let payload = [low, high, result as u8, 0, 0, 0, 0, 0, from.0, from.1];
+        self.writer.write_raw(COMMAND_ACK_DATA::ID, COMMAND_ACK_DATA::EXTRA_CRC, &payload, &mut self.outbox);
     }
 
     pub(super) fn command_mode(&mut self, number: u32) -> MavResult {
@@ -43,26 +91,23 @@ impl ArduPilot {
             _ => false,
         };
         if !can {
-            self.say("Flight mode change failed");
-            return FAILED;
+            return self.refuse("Flight mode change failed");
         }
         self.set_mode(mode);
         DONE
     }
 
     fn command_arming(&mut self, arm: bool) -> MavResult {
-        let Some(own) = self.sensed.own.filter(|_| arm) else {
+        if !arm {
             self.is_armed = false;
-            return if arm { self.refuse("PreArm: GPS 1: Bad fix") } else { DONE };
-        };
+            return DONE;
+        }
+        let Some(here) = self.lat_lon_e7() else { return self.refuse("PreArm: GPS 1: Bad fix") };
         if !self.is_armed {
             if !self.mode.allows_arming() {
                 return self.refuse("Arm: Mode not armable");
             }
             self.is_armed = true;
-            // Where it is armed is its home, unless that was set.
-            let at = self.frame.lat_lon(own.nav.at());
-            let here = ((1e7 * at.lat_deg).round() as i32, (1e7 * at.lon_deg).round() as i32);
             // As ArduPilot does: the home is where the boat is first armed, unless a ground
             // station has set it.
             if self.home.is_none() {
@@ -73,29 +118,58 @@ impl ArduPilot {
     }
 
     fn command_home(&mut self, is_here: bool, at_e7: (i32, i32)) -> MavResult {
-        let here = || {
-            let at = self.frame.lat_lon(self.sensed.own?.nav.at());
-            Some(((1e7 * at.lat_deg).round() as i32, (1e7 * at.lon_deg).round() as i32))
-        };
-        let Some(home) = (if is_here { here() } else { Some(at_e7) }) else { return FAILED };
-        self.set_home(home);
-        DONE
+        let home = if is_here { self.lat_lon_e7() } else { self.place(at_e7).map(|_| at_e7) };
+        home.into_iter().for_each(|home| self.set_home(home));
+        result_of(home.is_some())
     }
 
     fn set_home(&mut self, home: (i32, i32)) {
         self.home = Some(home);
-        self.autopilot.set_home(self.place(home));
+        self.place(home).into_iter().for_each(|place| self.autopilot.set_home(place));
+    }
+
+    /// In the modes that go to positions; whether it is one.
+    fn change_speed(&mut self, speed_m_s: f64) -> bool {
+        match self.mode {
+            RoverMode::Guided => self.set_points.set_speed(speed_m_s),
+            RoverMode::Auto | RoverMode::Rtl if speed_m_s >= 0.0 => {
+                self.autopilot.set_speed(speed_m_s);
+                true
+            }
+            _ => false,
+        }
+    }
+
+    /// Goes to a position, at a speed where one is given: as Rover, which takes that only on its way to another.
+    fn command_reposition(&mut self, command: &COMMAND_INT_DATA) -> MavResult {
+        let may_change_mode = command.param2 as i32 & CHANGE_MODE != 0;
+        let at_e7 = (command.x, command.y);
+        let place = self.place(at_e7).filter(|_| is_global(command.frame) && at_e7 != (0, 0));
+        let (Some(place), true) = (place, self.mode == RoverMode::Guided || may_change_mode) else { return DENIED };
+        self.set_mode(RoverMode::Guided);
+        if command.param1 > 0.0 && !self.change_speed(f64::from(command.param1)) {
+            return FAILED;
+        }
+        result_of(self.set_points.go_to(place))
+    }
+
+    /// A heading, from north or from the one before, and a speed.
+    fn command_yaw_speed(&mut self, now: SimTime, command: &COMMAND_INT_DATA) -> MavResult {
+        let Some(own) = self.sensed.own.filter(|_| self.mode == RoverMode::Guided) else { return FAILED };
+        let own_rad = (command.param3 > 0.0).then_some(own.nav.psi_rad);
+        let (heading_rad, speed_m_s) = (f64::from(command.param1).to_radians(), f64::from(command.param2));
+        result_of(self.set_points.take_heading(now, heading_rad, own_rad, speed_m_s).is_ok())
+    }
+
+    /// Goes on with an item of the mission; whether there is one.
+    pub(super) fn set_current(&mut self, seq: u16) -> bool {
+        let waypoint = self.mission.waypoint_of(seq);
+        waypoint.into_iter().for_each(|waypoint| self.autopilot.set_next(waypoint));
+        waypoint.is_some()
     }
 
     fn refuse(&mut self, text: &str) -> MavResult {
-        self.say(text);
+        self.say(MavSeverity::MAV_SEVERITY_CRITICAL, text);
         FAILED
-    }
-
-    /// Tells operators something.
-    pub(super) fn say(&mut self, text: &str) {
-        let severity = MavSeverity::MAV_SEVERITY_CRITICAL;
-        let status = STATUSTEXT_DATA { severity, text: text.into(), ..STATUSTEXT_DATA::default() };
-        self.outbox.push(MavMessage::STATUSTEXT(status));
     }
 }

@@ -1,13 +1,21 @@
 //! The mission of an emulated ArduPilot boat: it asks for item after item, and shows them to whoever asks.
 
+#![expect(deprecated, reason = "ground stations send the older messages, and are answered as ArduPilot does")]
+
+use super::set_point::is_global;
 use crate::mavlink::dialect::{
-    MISSION_ACK_DATA, MISSION_COUNT_DATA, MISSION_ITEM_INT_DATA, MISSION_REQUEST_INT_DATA, MavCmd, MavMessage,
-    MavMissionResult,
+    MISSION_ACK_DATA, MISSION_COUNT_DATA, MISSION_CURRENT_DATA, MISSION_ITEM_DATA, MISSION_ITEM_INT_DATA,
+    MISSION_REQUEST_DATA, MavCmd, MavFrame, MavMessage, MavMissionResult, MavMissionType,
 };
-use primitives::LatLon;
+use primitives::{LatLon, SimTime};
 
 /// The most items that it takes.
+// About what a board that runs ArduPilot has room for.
 const ITEMS_MAX: u16 = 700;
+/// An item that does not come is asked for again after this time, s.
+const AGAIN_S: f64 = 1.0;
+/// An upload without an item for this long is given up, s.
+const UPLOAD_AGE_MAX_S: f64 = 8.0;
 
 /// The mission that it has, and the one that is being uploaded.
 #[derive(Clone, Debug, Default)]
@@ -22,20 +30,51 @@ struct Upload {
     from: (u8, u8),
     count: u16,
     items: Vec<MISSION_ITEM_INT_DATA>,
+    /// When the last item came, and when one was last asked for.
+    came_at: SimTime,
+    asked_at: SimTime,
+}
+
+impl Upload {
+    fn request(&mut self, now: SimTime) -> MavMessage {
+        self.asked_at = now;
+        let (target_system, target_component) = self.from;
+        let seq = self.items.len() as u16;
+        // ArduPilot asks by this message, and dronekit knows no other.
+        MavMessage::MISSION_REQUEST(MISSION_REQUEST_DATA { seq, target_system, target_component, ..Default::default() })
+    }
+}
+
+fn is_waypoint(item: &MISSION_ITEM_INT_DATA) -> bool {
+    item.command == MavCmd::MAV_CMD_NAV_WAYPOINT
 }
 
 impl MissionStore {
     /// How many waypoints the mission has; the first item is the home.
     pub(super) fn waypoints(&self) -> usize {
         // Item 0 is the home in ArduPilot's missions, whoever uploads them.
-        self.items.iter().skip(1).filter(|item| item.command == MavCmd::MAV_CMD_NAV_WAYPOINT).count()
+        self.items.iter().skip(1).filter(|item| is_waypoint(item)).count()
+    }
+
+    /// The number of the waypoint, from 1 on, that an item leads to.
+    pub(super) fn waypoint_of(&self, seq: u16) -> Option<u16> {
+        let before = self.items.get(1..usize::from(seq.max(1)))?;
+        (usize::from(seq) < self.items.len()).then(|| before.iter().filter(|item| is_waypoint(item)).count() as u16 + 1)
+    }
+
+    /// The item that is under way to a waypoint.
+    pub(super) fn current(&self, waypoint: u16) -> MavMessage {
+        let waypoints = self.items.iter().enumerate().skip(1).filter(|(_, item)| is_waypoint(item));
+        let seq = waypoints.map(|(seq, _)| seq).take(usize::from(waypoint.max(1))).last().unwrap_or(0) as u16;
+        let total = self.items.len().saturating_sub(1) as u16;
+        MavMessage::MISSION_CURRENT(MISSION_CURRENT_DATA { seq, total, ..Default::default() })
     }
 
     /// A mission that was just taken: its waypoints, and the speed that it names, m/s.
     pub(super) fn take_new(&mut self) -> Option<(Vec<LatLon>, Option<f64>)> {
         std::mem::take(&mut self.is_new).then(|| {
             let items = self.items.iter().skip(1);
-            let waypoints = items.clone().filter(|item| item.command == MavCmd::MAV_CMD_NAV_WAYPOINT);
+            let waypoints = items.clone().filter(|item| is_waypoint(item));
             let speeds = items.filter(|item| item.command == MavCmd::MAV_CMD_DO_CHANGE_SPEED);
             let place = |item: &MISSION_ITEM_INT_DATA| LatLon {
                 lat_deg: 1e-7 * f64::from(item.x),
@@ -46,26 +85,44 @@ impl MissionStore {
         })
     }
 
-    /// Takes a message of the mission protocol from a system and component; the answer to it.
-    #[expect(
-        deprecated,
-        reason = "a ground station may ask by MISSION_REQUEST, and is answered as the specification says"
-    )]
-    pub(super) fn answer(&mut self, from: (u8, u8), message: &MavMessage) -> Option<MavMessage> {
-        match message {
-            // About what a board that runs ArduPilot has room for.
-            MavMessage::MISSION_COUNT(count) if count.count > ITEMS_MAX => {
-                Some(ack(from, MavMissionResult::MAV_MISSION_NO_SPACE))
-            }
+    /// What an upload that has come to a halt asks for; in the end it is given up.
+    pub(super) fn overdue(&mut self, now: SimTime) -> Option<MavMessage> {
+        let upload = self.upload.as_mut()?;
+        if (now - upload.came_at).as_s() > UPLOAD_AGE_MAX_S {
+            let from = upload.from;
+            self.upload = None;
+            return Some(ack(from, MavMissionResult::MAV_MISSION_OPERATION_CANCELLED));
+        }
+        ((now - upload.asked_at).as_s() > AGAIN_S).then(|| upload.request(now))
+    }
+
+    /// Ends an upload for want of what an item asks for; the answer to its sender.
+    pub(super) fn refuse(&mut self, from: (u8, u8), reason: MavMissionResult) -> MavMessage {
+        self.upload = self.upload.take().filter(|upload| upload.from != from);
+        ack(from, reason)
+    }
+
+    /// Takes a message of the mission protocol from a system and component; the answer to it, where one is due. The outer `None` is
+    /// another message. Item 0 is the home, 1e-7 degrees.
+    pub(super) fn answer(
+        &mut self,
+        now: SimTime,
+        from: (u8, u8),
+        home: Option<(i32, i32)>,
+        message: &MavMessage,
+    ) -> Option<Option<MavMessage>> {
+        if let Some(mission_type) = type_of(message).filter(|kind| *kind != MavMissionType::MAV_MISSION_TYPE_MISSION) {
+            // A board without fences and rally points answers so.
+            return Some(Some(typed_ack(from, MavMissionResult::MAV_MISSION_UNSUPPORTED, mission_type)));
+        }
+        Some(match message {
             MavMessage::MISSION_COUNT(MISSION_COUNT_DATA { count: 0, .. }) | MavMessage::MISSION_CLEAR_ALL(_) => {
                 (self.items, self.upload, self.is_new) = (vec![], None, true);
                 Some(ack(from, MavMissionResult::MAV_MISSION_ACCEPTED))
             }
-            MavMessage::MISSION_COUNT(count) => {
-                self.upload = Some(Upload { from, count: count.count, items: vec![] });
-                Some(request(from, 0))
-            }
-            MavMessage::MISSION_ITEM_INT(item) => self.take_item(from, item),
+            MavMessage::MISSION_COUNT(count) => Some(self.begin(now, from, count.count)),
+            MavMessage::MISSION_ITEM_INT(item) => Some(self.take_item(now, from, item)),
+            MavMessage::MISSION_ITEM(item) => Some(self.take_item(now, from, &int_from_float(item))),
             MavMessage::MISSION_ACK(_) => {
                 self.upload = self.upload.take().filter(|upload| upload.from != from);
                 None
@@ -76,41 +133,126 @@ impl MissionStore {
                 target_component: from.1,
                 ..MISSION_COUNT_DATA::default()
             })),
-            MavMessage::MISSION_REQUEST_INT(request) => self.item(from, request.seq),
-            MavMessage::MISSION_REQUEST(request) => self.item(from, request.seq),
-            _ => None,
-        }
+            MavMessage::MISSION_REQUEST_INT(request) => Some(match self.item(from, home, request.seq) {
+                Some(item) => MavMessage::MISSION_ITEM_INT(item),
+                None => ack(from, MavMissionResult::MAV_MISSION_ERROR),
+            }),
+            MavMessage::MISSION_REQUEST(request) => Some(match self.item(from, home, request.seq) {
+                Some(item) => MavMessage::MISSION_ITEM(float_from_int(&item)),
+                None => ack(from, MavMissionResult::MAV_MISSION_ERROR),
+            }),
+            MavMessage::MISSION_REQUEST_PARTIAL_LIST(_) | MavMessage::MISSION_WRITE_PARTIAL_LIST(_) => {
+                Some(ack(from, MavMissionResult::MAV_MISSION_UNSUPPORTED))
+            }
+            _ => return None,
+        })
     }
 
-    fn take_item(&mut self, from: (u8, u8), item: &MISSION_ITEM_INT_DATA) -> Option<MavMessage> {
-        let upload = self.upload.as_mut().filter(|upload| upload.from == from)?;
-        let next = upload.items.len() as u16;
-        // Another number than the one asked for is answered by asking again, as the protocol
-        // says: that is how it survives lost packets.
-        if item.seq == next {
-            upload.items.push(item.clone());
+    fn begin(&mut self, now: SimTime, from: (u8, u8), count: u16) -> MavMessage {
+        if count > ITEMS_MAX {
+            return ack(from, MavMissionResult::MAV_MISSION_NO_SPACE);
         }
-        let next = upload.items.len() as u16;
-        if next < upload.count {
-            return Some(request(from, next));
+        if self.upload.as_ref().is_some_and(|upload| upload.from != from) {
+            return ack(from, MavMissionResult::MAV_MISSION_DENIED);
+        }
+        self.upload.insert(Upload { from, count, items: vec![], came_at: now, asked_at: now }).request(now)
+    }
+
+    fn take_item(&mut self, now: SimTime, from: (u8, u8), item: &MISSION_ITEM_INT_DATA) -> MavMessage {
+        let Some(upload) = self.upload.as_mut().filter(|upload| upload.from == from) else {
+            return ack(from, MavMissionResult::MAV_MISSION_ERROR);
+        };
+        // The upload goes on: what was asked for is asked for again in time.
+        if usize::from(item.seq) != upload.items.len() {
+            return ack(from, MavMissionResult::MAV_MISSION_INVALID_SEQUENCE);
+        }
+        if let Some(reason) = fault_of(item) {
+            return self.refuse(from, reason);
+        }
+        upload.items.push(item.clone());
+        upload.came_at = now;
+        if upload.items.len() < usize::from(upload.count) {
+            return upload.request(now);
         }
         self.items = std::mem::take(&mut upload.items);
         (self.upload, self.is_new) = (None, true);
-        Some(ack(from, MavMissionResult::MAV_MISSION_ACCEPTED))
+        ack(from, MavMissionResult::MAV_MISSION_ACCEPTED)
     }
 
-    fn item(&self, (target_system, target_component): (u8, u8), seq: u16) -> Option<MavMessage> {
-        let item = self.items.get(usize::from(seq))?.clone();
-        Some(MavMessage::MISSION_ITEM_INT(MISSION_ITEM_INT_DATA { target_system, target_component, ..item }))
+    /// An item; the home is always there to be read.
+    fn item(&self, from: (u8, u8), home: Option<(i32, i32)>, seq: u16) -> Option<MISSION_ITEM_INT_DATA> {
+        let (target_system, target_component) = from;
+        let stored = self.items.get(usize::from(seq)).cloned();
+        let item = if seq == 0 {
+            let (x, y) = home.unwrap_or_else(|| stored.map_or((0, 0), |item| (item.x, item.y)));
+            let command = MavCmd::MAV_CMD_NAV_WAYPOINT;
+            MISSION_ITEM_INT_DATA { x, y, command, frame: MavFrame::MAV_FRAME_GLOBAL, ..Default::default() }
+        } else {
+            stored?
+        };
+        Some(MISSION_ITEM_INT_DATA { target_system, target_component, ..item })
     }
 }
 
-fn request((target_system, target_component): (u8, u8), seq: u16) -> MavMessage {
-    let default = MISSION_REQUEST_INT_DATA::default();
-    MavMessage::MISSION_REQUEST_INT(MISSION_REQUEST_INT_DATA { seq, target_system, target_component, ..default })
+/// Why an item is not taken: the boat would not carry it out.
+fn fault_of(item: &MISSION_ITEM_INT_DATA) -> Option<MavMissionResult> {
+    match item.command {
+        MavCmd::MAV_CMD_DO_CHANGE_SPEED => None,
+        MavCmd::MAV_CMD_NAV_WAYPOINT if !is_global(item.frame) => Some(MavMissionResult::MAV_MISSION_UNSUPPORTED_FRAME),
+        MavCmd::MAV_CMD_NAV_WAYPOINT if item.x.unsigned_abs() > 900_000_000 => {
+            Some(MavMissionResult::MAV_MISSION_INVALID_PARAM5_X)
+        }
+        MavCmd::MAV_CMD_NAV_WAYPOINT if item.y.unsigned_abs() > 1_800_000_000 => {
+            Some(MavMissionResult::MAV_MISSION_INVALID_PARAM6_Y)
+        }
+        MavCmd::MAV_CMD_NAV_WAYPOINT => None,
+        _ => Some(MavMissionResult::MAV_MISSION_UNSUPPORTED),
+    }
 }
 
-fn ack((target_system, target_component): (u8, u8), mavtype: MavMissionResult) -> MavMessage {
-    let ack = MISSION_ACK_DATA { target_system, target_component, mavtype, ..MISSION_ACK_DATA::default() };
+/// What a message of the protocol is about: missions, fences or rally points. Acknowledgements need no answer.
+fn type_of(message: &MavMessage) -> Option<MavMissionType> {
+    Some(match message {
+        // Of everything, the mission is what there is.
+        MavMessage::MISSION_CLEAR_ALL(all) if all.mission_type == MavMissionType::MAV_MISSION_TYPE_ALL => return None,
+        MavMessage::MISSION_CLEAR_ALL(clear) => clear.mission_type,
+        MavMessage::MISSION_COUNT(count) => count.mission_type,
+        MavMessage::MISSION_ITEM(item) => item.mission_type,
+        MavMessage::MISSION_ITEM_INT(item) => item.mission_type,
+        MavMessage::MISSION_REQUEST_LIST(list) => list.mission_type,
+        MavMessage::MISSION_REQUEST(request) => request.mission_type,
+        MavMessage::MISSION_REQUEST_INT(request) => request.mission_type,
+        MavMessage::MISSION_REQUEST_PARTIAL_LIST(list) => list.mission_type,
+        MavMessage::MISSION_WRITE_PARTIAL_LIST(list) => list.mission_type,
+        _ => return None,
+    })
+}
+
+/// An item of the older message, whose positions are in degrees.
+pub(super) fn int_from_float(item: &MISSION_ITEM_DATA) -> MISSION_ITEM_INT_DATA {
+    let MISSION_ITEM_DATA { param1, param2, param3, param4, z, seq, command, frame, current, autocontinue, .. } = *item;
+    let e7 = |deg: f32| (1e7 * f64::from(deg)).round() as i32;
+    let (x, y, mission_type) = (e7(item.x), e7(item.y), item.mission_type);
+    let item = MISSION_ITEM_INT_DATA { param1, param2, param3, param4, x, y, z, seq, ..Default::default() };
+    MISSION_ITEM_INT_DATA { command, frame, current, autocontinue, mission_type, ..item }
+}
+
+fn float_from_int(item: &MISSION_ITEM_INT_DATA) -> MISSION_ITEM_DATA {
+    let MISSION_ITEM_INT_DATA { param1, param2, param3, param4, z, seq, command, frame, .. } = *item;
+    let MISSION_ITEM_INT_DATA { target_system, target_component, current, autocontinue, mission_type, .. } = *item;
+    let deg = |e7: i32| (1e-7 * f64::from(e7)) as f32;
+    let (x, y) = (deg(item.x), deg(item.y));
+    let item = MISSION_ITEM_DATA { param1, param2, param3, param4, x, y, z, seq, command, frame, ..Default::default() };
+    MISSION_ITEM_DATA { target_system, target_component, current, autocontinue, mission_type, ..item }
+}
+
+/// The result of an upload or of a single item.
+pub(super) fn ack(from: (u8, u8), mavtype: MavMissionResult) -> MavMessage {
+    typed_ack(from, mavtype, MavMissionType::MAV_MISSION_TYPE_MISSION)
+}
+
+fn typed_ack(from: (u8, u8), mavtype: MavMissionResult, mission_type: MavMissionType) -> MavMessage {
+    let (target_system, target_component) = from;
+    let ack = MISSION_ACK_DATA { target_system, target_component, mavtype, mission_type, ..Default::default() };
     MavMessage::MISSION_ACK(ack)
 }

@@ -4,8 +4,10 @@
 //! seconds, takes messages for its own system and for all, and acknowledges commands.
 
 mod command;
+mod failsafe;
 mod mission;
 mod parameter;
+mod reply;
 mod set_point;
 mod telemetry;
 
@@ -13,20 +15,21 @@ use super::autopilot::Autopilot;
 use super::battery::{Battery, Pack};
 use super::sensed::Sensed;
 use crate::geodesy::LocalFrame;
-use crate::mavlink::dialect::MavMessage;
-use crate::mavlink::{AUTOPILOT, Framer, Received, RoverMode, Writer};
+use crate::mavlink::dialect::{MISSION_ITEM_INT_DATA, MavCmd, MavMessage, MavMissionResult, MavSeverity};
+use crate::mavlink::{AUTOPILOT, Frame, Framer, Received, RoverMode, Writer};
 use ::mavlink::Message;
+use failsafe::StationWatch;
 use messages::Order;
 use messages::picture::OwnBoat;
 use mission::MissionStore;
 use parameter::Parameters;
 use primitives::SimTime;
 use primitives::frame::{LatLon, Ned};
-use set_point::SetPoints;
-use std::collections::VecDeque;
+use set_point::{FORGOTTEN, SetPoints};
+use std::collections::{BTreeMap, VecDeque};
 use telemetry::Streams;
 
-/// The system that it is.
+/// The system that it is, until SYSID_THISMAV is set.
 pub const SYSTEM: u8 = 1;
 /// How many log messages wait to be read.
 const REMARKS_MAX: usize = 64;
@@ -45,15 +48,18 @@ pub struct ArduPilot {
     home: Option<(i32, i32)>,
     parameters: Parameters,
     streams: Streams,
-    /// When the ground station whose failure matters was last heard.
-    station_at: Option<SimTime>,
+    station: StationWatch,
     sensed: Sensed,
+    /// Where its first fix was: the origin of positions in the frame LOCAL_NED.
+    origin: Option<Ned>,
     /// UTC at time zero, µs since 1970.
     began_us: u64,
     battery: Battery,
     remarks: VecDeque<String>,
-    /// What is to be sent, as soon as that can be.
-    outbox: Vec<MavMessage>,
+    /// When it last reported that it does not support a message, by message number.
+    complaints: BTreeMap<u32, SimTime>,
+    /// Frames that are to be sent, as soon as that can be.
+    outbox: Vec<u8>,
 }
 
 impl ArduPilot {
@@ -74,11 +80,13 @@ impl ArduPilot {
             home: None,
             parameters: Parameters::new(),
             streams: Streams::new(),
-            station_at: None,
+            station: StationWatch::default(),
             sensed: Sensed::default(),
+            origin: None,
             began_us: 0,
             battery: Battery::new(Pack::BLUEBOAT, charge),
             remarks: VecDeque::new(),
+            complaints: BTreeMap::new(),
             outbox: vec![],
         }
     }
@@ -93,7 +101,10 @@ impl ArduPilot {
     pub fn receive(&mut self, now: SimTime, bytes: &[u8]) {
         // Taken out while it runs, since the callback needs the whole boat.
         let mut framer = std::mem::take(&mut self.framer);
-        framer.push(bytes, &mut |received| self.apply(now, &received));
+        framer.push_frames(bytes, &mut |frame| match frame {
+            Frame::Read(received) => self.apply(now, &received),
+            Frame::Unreadable(message) => self.answer_unreadable(now, &message),
+        });
         self.framer = framer;
     }
 
@@ -103,7 +114,12 @@ impl ArduPilot {
             self.mode = mode;
             self.set_points.forget();
             if let Some(own) = &self.sensed.own {
+                let next = self.autopilot.next();
                 self.autopilot.begin(own.nav.at());
+                // A mission that was interrupted continues, as with MIS_RESTART at its default.
+                if usize::from(next) <= self.mission.waypoints() {
+                    self.autopilot.set_next(next);
+                }
             }
             self.note(format!("mode {mode:?}"));
         }
@@ -135,6 +151,7 @@ impl ArduPilot {
     /// Takes what its sensors measure.
     pub fn observe(&mut self, now: SimTime, own: &OwnBoat) {
         self.sensed.observe(now, own);
+        self.origin.get_or_insert(own.nav.at());
     }
 
     /// The boat's order to its thrusters now.
@@ -146,12 +163,22 @@ impl ArduPilot {
 
     /// What its mode and set-point ask of the thrusters.
     fn commanded(&mut self, now: SimTime) -> Order {
-        let Some(own) = self.sensed.own.filter(|_| self.is_armed) else { return Order::Hold };
+        let Some(own) = self.sensed.own else { return Order::Hold };
         let pose = own.nav.pose();
+        if self.mode == RoverMode::Guided && self.set_points.expires(now) {
+            // A boat keeps its station then, where a car stops.
+            self.autopilot.begin(pose.at);
+            self.say(MavSeverity::MAV_SEVERITY_WARNING, FORGOTTEN);
+        }
         match self.mode {
+            _ if !self.is_armed => Order::Hold,
             RoverMode::Manual => self.set_points.manual(now),
-            RoverMode::Guided if self.set_points.destination().is_some() => self.autopilot.keep(pose),
-            RoverMode::Guided => self.set_points.guided(now, self.parameters.value("CRUISE_SPEED"), pose.psi_rad),
+            RoverMode::Guided => match self.set_points.destination() {
+                Some((place, speed_m_s)) => {
+                    self.autopilot.go_to(pose, place, speed_m_s.unwrap_or(self.speed_max_m_s()))
+                }
+                None => self.set_points.guided(pose.psi_rad).unwrap_or_else(|| self.autopilot.keep(pose)),
+            },
             RoverMode::Loiter => self.autopilot.keep(pose),
             RoverMode::Rtl | RoverMode::SmartRtl => self.autopilot.go_to_erp(pose),
             RoverMode::Auto => self.autopilot.sail(pose),
@@ -159,91 +186,140 @@ impl ArduPilot {
         }
     }
 
+    /// The highest speed of set-points, m/s.
+    fn speed_max_m_s(&self) -> f64 {
+        self.parameters.value("WP_SPEED")
+    }
+
+    /// The system that it is.
+    fn system(&self) -> u8 {
+        self.parameters.value("SYSID_THISMAV") as u8
+    }
+
     /// Appends what is to be sent at once.
     pub fn answers(&mut self, out: &mut Vec<u8>) {
-        for message in std::mem::take(&mut self.outbox) {
-            self.writer.write(&message, out);
-        }
+        out.append(&mut self.outbox);
+        // Here and not before: the reply to a new number comes from the old one.
+        self.writer.set_system(self.system());
     }
 
     /// Appends the telemetry that is due.
     pub fn telemetry(&mut self, now: SimTime, out: &mut Vec<u8>) {
+        let overdue = self.mission.overdue(now);
+        overdue.iter().for_each(|message| self.send(message));
         self.answers(out);
         for id in self.streams.due(now) {
-            if let Some(message) = self.message(now, id) {
-                self.writer.write(&message, out);
-            }
+            self.send_message(now, id);
         }
+        self.answers(out);
     }
 
     #[expect(deprecated, reason = "ground stations send SET_MODE and REQUEST_DATA_STREAM all the same")]
     fn apply(&mut self, now: SimTime, received: &Received) {
         let Received { system, component, message } = received;
-        let is_for_us = message.target_system_id().is_none_or(|target| target == 0 || target == SYSTEM)
+        let from = (*system, *component);
+        let is_for_us = message.target_system_id().is_none_or(|target| target == 0 || target == self.system())
             && message.target_component_id().is_none_or(|target| target == 0 || target == AUTOPILOT);
-        if !is_for_us || *system == SYSTEM && *component == AUTOPILOT {
+        if !is_for_us || from == (self.system(), AUTOPILOT) {
             return;
         }
         // Rover obeys commands of anybody, but its failsafe and its manual control listen to
         // one ground station alone.
         let is_station = f64::from(*system) == self.parameters.value("SYSID_MYGCS");
         match message {
-            MavMessage::HEARTBEAT(_) if is_station => self.station_at = Some(now),
-            MavMessage::SET_MODE(set) => drop(self.command_mode(set.custom_mode)),
-            MavMessage::COMMAND_LONG(command) => self.take_command_long(command),
-            MavMessage::COMMAND_INT(command) => self.take_command_int(command),
-            MavMessage::SET_ATTITUDE_TARGET(target) if self.mode == RoverMode::Guided => {
-                self.set_points.take_attitude(now, target);
+            MavMessage::HEARTBEAT(_) if is_station => self.station.heard_at = Some(now),
+            MavMessage::SET_MODE(set) => {
+                let result = self.command_mode(set.custom_mode);
+                // There is no command with the number of this message, but ArduPilot does so.
+                self.acknowledge(from, message.message_id() as u16, result);
             }
-            MavMessage::SET_POSITION_TARGET_LOCAL_NED(target) if self.mode == RoverMode::Guided => {
-                let psi_rad = self.sensed.own.map_or(0.0, |own| own.nav.psi_rad);
-                self.set_points.take_velocity(now, target, psi_rad);
-            }
-            MavMessage::SET_POSITION_TARGET_GLOBAL_INT(target) if self.mode == RoverMode::Guided => {
-                self.set_points.take_destination(target);
-                if let Some(e7) = self.set_points.destination() {
-                    self.autopilot.begin(self.place(e7));
-                }
-            }
-            MavMessage::MANUAL_CONTROL(control) if is_station && control.target == SYSTEM => {
+            MavMessage::COMMAND_LONG(command) => self.take_command_long(now, from, command),
+            MavMessage::COMMAND_INT(command) => self.take_command_int(now, from, command),
+            MavMessage::MANUAL_CONTROL(control) if is_station && control.target == self.system() => {
+                self.station.heard_at = Some(now);
                 self.set_points.take_manual(now, control);
             }
-            MavMessage::RC_CHANNELS_OVERRIDE(channels) if is_station => self.set_points.take_channels(now, channels),
-            MavMessage::REQUEST_DATA_STREAM(request) => self.streams.take_request(request),
-            other => {
-                self.outbox.extend(self.parameters.answer(other));
-                self.take_mission((*system, *component), other);
+            MavMessage::RC_CHANNELS_OVERRIDE(channels) if is_station => {
+                self.station.heard_at = Some(now);
+                self.set_points.take_channels(now, channels);
             }
+            // Of others: ignored, as by Rover.
+            MavMessage::HEARTBEAT(_) | MavMessage::MANUAL_CONTROL(_) | MavMessage::RC_CHANNELS_OVERRIDE(_) => {}
+            MavMessage::SET_ATTITUDE_TARGET(_)
+            | MavMessage::SET_POSITION_TARGET_LOCAL_NED(_)
+            | MavMessage::SET_POSITION_TARGET_GLOBAL_INT(_) => self.take_set_point(now, message),
+            MavMessage::REQUEST_DATA_STREAM(request) => self.streams.take_request(request),
+            MavMessage::MISSION_ITEM(item) if item.current > 1 => {
+                self.take_guided(from, &mission::int_from_float(item))
+            }
+            MavMessage::MISSION_ITEM_INT(item) if item.current > 1 => self.take_guided(from, item),
+            MavMessage::MISSION_SET_CURRENT(set) => {
+                self.set_current(set.seq);
+                self.send(&self.mission.current(self.autopilot.next()));
+            }
+            other => self.answer(now, from, other),
         }
     }
 
-    fn take_mission(&mut self, from: (u8, u8), message: &MavMessage) {
-        let answer = self.mission.answer(from, message);
-        self.outbox.extend(answer);
-        if let Some((waypoints, speed_m_s)) = self.mission.take_new() {
-            let places: Vec<_> = waypoints.iter().map(|at| self.frame.ned(*at)).collect();
-            self.note(format!("a mission of {} waypoints is accepted", places.len()));
-            self.autopilot.set_mission(places, speed_m_s);
+    fn answer(&mut self, now: SimTime, from: (u8, u8), message: &MavMessage) {
+        if let Some(replies) = self.parameters.answer(from, message) {
+            replies.iter().for_each(|reply| self.send(reply));
+        } else if let Some(reply) = self.mission.answer(now, from, self.home, message) {
+            reply.iter().for_each(|reply| self.send(reply));
+            self.begin_mission();
+        } else {
+            self.answer_other(now, from, message);
         }
     }
 
-    /// The failsafe for a lost ground station, where its parameters ask for one.
-    fn check_failsafe(&mut self, now: SimTime) {
-        let limit_s = self.parameters.value("FS_TIMEOUT");
-        let is_lost = self.station_at.is_some_and(|at| (now - at).as_s() > limit_s);
-        if self.parameters.value("FS_GCS_ENABLE") != 1.0 || !is_lost || !self.is_armed {
-            return;
-        }
-        // Once is enough: the failsafe fires again after the next heartbeat only, so that an
-        // operator who takes over is not overruled.
-        self.station_at = None;
-        self.set_mode(if self.parameters.value("FS_ACTION") == 1.0 { RoverMode::Rtl } else { RoverMode::Hold });
-        self.say("GCS failsafe");
+    fn begin_mission(&mut self) {
+        let Some((waypoints, speed_m_s)) = self.mission.take_new() else { return };
+        let places: Vec<_> = waypoints.iter().map(|at| self.frame.ned(*at)).collect();
+        self.note(format!("a mission of {} waypoints is accepted", places.len()));
+        self.autopilot.set_mission(places, speed_m_s);
     }
 
-    /// Where this latitude and longitude, 1e-7 degrees, are on the field.
-    fn place(&self, (lat_e7, lon_e7): (i32, i32)) -> Ned {
-        self.frame.ned(LatLon { lat_deg: 1e-7 * f64::from(lat_e7), lon_deg: 1e-7 * f64::from(lon_e7) })
+    /// A set-point, which counts in mode GUIDED only.
+    fn take_set_point(&mut self, now: SimTime, message: &MavMessage) {
+        let (Some(own), Some(origin), RoverMode::Guided) = (self.sensed.own, self.origin, self.mode) else { return };
+        let speed_max_m_s = self.speed_max_m_s();
+        let taken = match message {
+            MavMessage::SET_ATTITUDE_TARGET(target) => self.set_points.take_attitude(now, target, speed_max_m_s),
+            MavMessage::SET_POSITION_TARGET_LOCAL_NED(target) => {
+                self.set_points.take_local(now, target, (own.nav.pose(), origin), speed_max_m_s)
+            }
+            MavMessage::SET_POSITION_TARGET_GLOBAL_INT(target) => {
+                let place = self.place((target.lat_int, target.lon_int));
+                self.set_points.take_global(now, target, place, speed_max_m_s)
+            }
+            _ => Ok(()),
+        };
+        if let Err(reason) = taken {
+            self.complain(now, message.message_id(), reason);
+        }
+    }
+
+    /// A position as a mission item, which older programs send in mode GUIDED. A change of altitude has no effect on a boat.
+    fn take_guided(&mut self, from: (u8, u8), item: &MISSION_ITEM_INT_DATA) {
+        let place = self.place((item.x, item.y)).filter(|_| set_point::is_global(item.frame));
+        let is_waypoint = item.command == MavCmd::MAV_CMD_NAV_WAYPOINT && self.mode == RoverMode::Guided;
+        let is_taken = item.current == 3 || is_waypoint && place.is_some_and(|place| self.set_points.go_to(place));
+        let result =
+            if is_taken { MavMissionResult::MAV_MISSION_ACCEPTED } else { MavMissionResult::MAV_MISSION_ERROR };
+        self.send(&mission::ack(from, result));
+    }
+
+    /// Where this latitude and longitude, 1e-7 degrees, are on the field, if they are on the globe.
+    fn place(&self, (lat_e7, lon_e7): (i32, i32)) -> Option<Ned> {
+        let is_on_globe = lat_e7.unsigned_abs() <= 900_000_000 && lon_e7.unsigned_abs() <= 1_800_000_000;
+        let at = LatLon { lat_deg: 1e-7 * f64::from(lat_e7), lon_deg: 1e-7 * f64::from(lon_e7) };
+        is_on_globe.then(|| self.frame.ned(at))
+    }
+
+    /// The latitude and longitude of a place on the field, 1e-7 degrees.
+    fn e7(&self, place: Ned) -> (i32, i32) {
+        let at = self.frame.lat_lon(place);
+        ((1e7 * at.lat_deg).round() as i32, (1e7 * at.lon_deg).round() as i32)
     }
 
     /// UTC by its receiver, µs since 1970.

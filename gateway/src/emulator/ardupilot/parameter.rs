@@ -1,9 +1,10 @@
 //! The parameters of an emulated ArduPilot boat: a few of the real ones, by the names that versions up to 4.6 have.
 
-use crate::mavlink::dialect::{MavMessage, MavParamType, PARAM_VALUE_DATA};
+use crate::mavlink::dialect::{MavMessage, MavParamError, MavParamType, PARAM_ERROR_DATA, PARAM_VALUE_DATA};
+use ::mavlink::types::CharArray;
 
 /// Name and value at the beginning.
-const BEGINNING: [(&str, f32); 10] = [
+const BEGINNING: [(&str, f32); 11] = [
     ("SYSID_THISMAV", super::SYSTEM as f32),
     ("SYSID_MYGCS", 255.0),
     ("INITIAL_MODE", 4.0),
@@ -11,6 +12,7 @@ const BEGINNING: [(&str, f32); 10] = [
     ("CRUISE_SPEED", 2.0),
     ("WP_SPEED", 2.0),
     ("FS_GCS_ENABLE", 0.0),
+    ("FS_GCS_TIMEOUT", 5.0),
     ("FS_TIMEOUT", 1.5),
     ("FS_ACTION", 2.0),
     ("RC_OVERRIDE_TIME", 3.0),
@@ -32,24 +34,35 @@ impl Parameters {
         index_of(name).map_or(0.0, |index| f64::from(self.values[index]))
     }
 
-    /// Takes a message of the parameter protocol; the answers to it.
-    pub(super) fn answer(&mut self, message: &MavMessage) -> Vec<MavMessage> {
-        let indices: Vec<usize> = match message {
-            MavMessage::PARAM_REQUEST_LIST(_) => (0..BEGINNING.len()).collect(),
+    /// Takes a message of the parameter protocol; the answers to it, or nothing if it is another message.
+    pub(super) fn answer(&mut self, from: (u8, u8), message: &MavMessage) -> Option<Vec<MavMessage>> {
+        let one = match message {
+            MavMessage::PARAM_REQUEST_LIST(_) => {
+                return Some((0..BEGINNING.len()).map(|index| self.message(index)).collect());
+            }
             MavMessage::PARAM_REQUEST_READ(read) => {
                 let by_index = usize::try_from(read.param_index).ok().filter(|index| *index < BEGINNING.len());
-                by_index.or_else(|| index_of(read.param_id.to_str().ok()?)).into_iter().collect()
+                let index = by_index.or_else(|| index_of(read.param_id.to_str().ok()?));
+                let missing =
+                    || error(from, read.param_id, read.param_index, MavParamError::MAV_PARAM_ERROR_DOES_NOT_EXIST);
+                index.map_or_else(missing, |index| self.message(index))
             }
             MavMessage::PARAM_SET(set) => {
-                let index = set.param_id.to_str().ok().and_then(index_of);
-                if let Some(index) = index.filter(|_| set.param_value.is_finite()) {
-                    self.values[index] = set.param_value;
+                let refuse = |reason| error(from, set.param_id, -1, reason);
+                match set.param_id.to_str().ok().and_then(index_of) {
+                    None => refuse(MavParamError::MAV_PARAM_ERROR_DOES_NOT_EXIST),
+                    Some(index) if !is_allowed(BEGINNING[index].0, set.param_value) => {
+                        refuse(MavParamError::MAV_PARAM_ERROR_VALUE_OUT_OF_RANGE)
+                    }
+                    Some(index) => {
+                        self.values[index] = set.param_value;
+                        self.message(index)
+                    }
                 }
-                index.into_iter().collect()
             }
-            _ => vec![],
+            _ => return None,
         };
-        indices.into_iter().map(|index| self.message(index)).collect()
+        Some(vec![one])
     }
 
     fn message(&self, index: usize) -> MavMessage {
@@ -65,4 +78,14 @@ impl Parameters {
 
 fn index_of(name: &str) -> Option<usize> {
     BEGINNING.iter().position(|(known, _)| *known == name)
+}
+
+/// Whether a parameter can have a value; the number of a system must be one.
+fn is_allowed(name: &str, value: f32) -> bool {
+    value.is_finite() && (!name.starts_with("SYSID_") || (1.0..=255.0).contains(&value) && value.fract() == 0.0)
+}
+
+fn error(from: (u8, u8), param_id: CharArray<16>, param_index: i16, error: MavParamError) -> MavMessage {
+    let (target_system, target_component) = from;
+    MavMessage::PARAM_ERROR(PARAM_ERROR_DATA { param_index, target_system, target_component, param_id, error })
 }

@@ -7,11 +7,14 @@ use crate::mavlink::dialect::{
 };
 use messages::Order;
 use primitives::angle::wrap_pi;
+use primitives::frame::{Ned, Pose, Rotation};
 use primitives::{SimTime, math};
 use std::f64::consts::PI;
 
 /// A set-point of mode GUIDED is forgotten after this time, s, as is one of a remote control by MAVLink.
 const HELD_S: f64 = 3.0;
+/// What Rover says when it forgets a set-point of mode GUIDED.
+pub(super) const FORGOTTEN: &str = "target not received last 3.0 secs, stopping";
 /// A boat turns by the rate of turn as if it were to point where that leads in this time, s.
 const TURN_LEAD_S: f64 = 1.0;
 /// No boat is asked for more, m/s.
@@ -26,19 +29,61 @@ enum Course {
     Turn(f64),
 }
 
-/// A speed, m/s, or as a share of the cruise speed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Speed {
-    MetresPerSecond(f64),
-    Share(f64),
+/// What a message asks for, with what it ignores left out.
+struct Target {
+    place: Option<Ned>,
+    /// Along the axes of its frame, m/s.
+    velocity: Option<(f64, f64)>,
+    /// In its frame, rad.
+    yaw_rad: Option<f64>,
+    yaw_rate_rad_s: Option<f64>,
+    has_acceleration: bool,
+    /// The true heading of its frame's first axis, rad.
+    frame_rad: f64,
+}
+
+impl Target {
+    fn new(mask: PositionTargetTypemask, frame_rad: f64, place: Ned, velocity: [f32; 2], yaw: [f32; 2]) -> Target {
+        use PositionTargetTypemask as Mask;
+        let has = |one: Mask, other: Mask| !mask.intersects(one | other);
+        let [x_m_s, y_m_s] = velocity.map(f64::from);
+        let [yaw_rad, yaw_rate_rad_s] = yaw.map(f64::from);
+        let has_place = has(Mask::POSITION_TARGET_TYPEMASK_X_IGNORE, Mask::POSITION_TARGET_TYPEMASK_Y_IGNORE);
+        let has_velocity = has(Mask::POSITION_TARGET_TYPEMASK_VX_IGNORE, Mask::POSITION_TARGET_TYPEMASK_VY_IGNORE);
+        Target {
+            place: has_place.then_some(place),
+            velocity: has_velocity.then_some((x_m_s, y_m_s)),
+            yaw_rad: (!mask.contains(Mask::POSITION_TARGET_TYPEMASK_YAW_IGNORE)).then_some(yaw_rad),
+            yaw_rate_rad_s: (!mask.contains(Mask::POSITION_TARGET_TYPEMASK_YAW_RATE_IGNORE)).then_some(yaw_rate_rad_s),
+            has_acceleration: has(Mask::POSITION_TARGET_TYPEMASK_AX_IGNORE, Mask::POSITION_TARGET_TYPEMASK_AY_IGNORE),
+            frame_rad,
+        }
+    }
+}
+
+/// Whether positions of a frame are latitude and longitude.
+#[expect(deprecated, reason = "ground stations send the older frames, too")]
+pub(super) fn is_global(frame: MavFrame) -> bool {
+    matches!(
+        frame,
+        MavFrame::MAV_FRAME_GLOBAL
+            | MavFrame::MAV_FRAME_GLOBAL_INT
+            | MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT
+            | MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT_INT
+            | MavFrame::MAV_FRAME_GLOBAL_TERRAIN_ALT
+            | MavFrame::MAV_FRAME_GLOBAL_TERRAIN_ALT_INT
+    )
 }
 
 /// The set-points in force.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SetPoints {
-    guided: Option<(SimTime, Course, Speed)>,
-    /// The position to which it goes instead: latitude and longitude, 1e-7 degrees.
-    destination: Option<(i32, i32)>,
+    /// When it came, what is to be steered, and the speed, m/s.
+    guided: Option<(SimTime, Course, f64)>,
+    /// The position to which it goes instead.
+    destination: Option<Ned>,
+    /// The speed at which it goes there, where one was commanded, m/s.
+    speed_m_s: Option<f64>,
     /// Throttle and steering, -1 to 1.
     manual: Option<(SimTime, f64, f64)>,
 }
@@ -48,70 +93,160 @@ impl SetPoints {
         *self = SetPoints::default();
     }
 
-    pub(super) fn take_attitude(&mut self, now: SimTime, target: &SET_ATTITUDE_TARGET_DATA) {
+    /// Forgets what a remote control by MAVLink sent.
+    pub(super) fn release_manual(&mut self) {
+        self.manual = None;
+    }
+
+    /// Whether a set-point of mode GUIDED has just been forgotten.
+    pub(super) fn expires(&mut self, now: SimTime) -> bool {
+        self.guided.take_if(|(at, ..)| (now - *at).as_s() > HELD_S).is_some()
+    }
+
+    /// A heading or a rate of turn with a share of the highest speed, m/s.
+    ///
+    /// # Errors
+    /// What Rover ignores, with the reason.
+    pub(super) fn take_attitude(
+        &mut self,
+        now: SimTime,
+        target: &SET_ATTITUDE_TARGET_DATA,
+        speed_max_m_s: f64,
+    ) -> Result<(), &'static str> {
         let mask = target.type_mask;
         // Rover drops the whole message when it carries no throttle.
         if mask.contains(AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_THROTTLE_IGNORE) {
-            return;
+            return Err("set-point ignored: it has no throttle");
         }
-        let speed = Speed::Share(f64::from(target.thrust).clamp(-1.0, 1.0));
+        let speed_m_s = f64::from(target.thrust).clamp(-1.0, 1.0) * speed_max_m_s;
         if mask.contains(AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_BODY_YAW_RATE_IGNORE) {
             let [w, x, y, z] = target.q.map(f64::from);
             let heading_rad = math::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z));
-            self.set(now, Course::Heading(heading_rad), speed);
+            self.set(now, Course::Heading(heading_rad), speed_m_s)
         } else {
-            self.set(now, Course::Turn(f64::from(target.body_yaw_rate)), speed);
+            self.set(now, Course::Turn(f64::from(target.body_yaw_rate)), speed_m_s)
         }
     }
 
-    /// Velocity with a heading, a rate of turn, or neither: then the boat turns to where the velocity points. The boat's own heading
-    /// counts in frames that turn with it. As Rover's `handle_set_position_target_local_ned`, with its sign of the speed.
+    /// A position from the origin or from the boat, or a velocity. The boat's own heading counts in frames that turn with it.
+    ///
+    /// # Errors
+    /// What Rover ignores, with the reason.
     #[expect(deprecated, reason = "ground stations send the frames of the boat, and Rover takes them")]
-    pub(super) fn take_velocity(&mut self, now: SimTime, target: &SET_POSITION_TARGET_LOCAL_NED_DATA, psi_rad: f64) {
-        let ignores = |flag: PositionTargetTypemask| target.type_mask.intersects(flag);
-        let velocity = PositionTargetTypemask::POSITION_TARGET_TYPEMASK_VX_IGNORE
-            | PositionTargetTypemask::POSITION_TARGET_TYPEMASK_VY_IGNORE;
-        let position = PositionTargetTypemask::POSITION_TARGET_TYPEMASK_X_IGNORE
-            | PositionTargetTypemask::POSITION_TARGET_TYPEMASK_Y_IGNORE;
-        let turned_rad = match target.coordinate_frame {
-            MavFrame::MAV_FRAME_LOCAL_NED | MavFrame::MAV_FRAME_LOCAL_OFFSET_NED => 0.0,
-            MavFrame::MAV_FRAME_BODY_NED | MavFrame::MAV_FRAME_BODY_OFFSET_NED => psi_rad,
-            _ => return,
+    pub(super) fn take_local(
+        &mut self,
+        now: SimTime,
+        target: &SET_POSITION_TARGET_LOCAL_NED_DATA,
+        (pose, origin): (Pose, Ned),
+        speed_max_m_s: f64,
+    ) -> Result<(), &'static str> {
+        let offset = Ned { north: f64::from(target.x), east: f64::from(target.y) };
+        let (frame_rad, place) = match target.coordinate_frame {
+            MavFrame::MAV_FRAME_LOCAL_NED => (0.0, origin + offset),
+            MavFrame::MAV_FRAME_LOCAL_OFFSET_NED => (0.0, pose.at + offset),
+            MavFrame::MAV_FRAME_BODY_NED | MavFrame::MAV_FRAME_BODY_OFFSET_NED => {
+                let ahead = Rotation::from_heading(pose.psi_rad);
+                let turned = ahead.ahead().scaled(offset.north) + ahead.starboard().scaled(offset.east);
+                (pose.psi_rad, pose.at + turned)
+            }
+            _ => return Err("set-point ignored: its frame"),
         };
-        // Positions on the field are for others.
-        if ignores(velocity) || !ignores(position) {
-            return;
+        let velocity = [target.vx, target.vy];
+        self.follow(
+            now,
+            &Target::new(target.type_mask, frame_rad, place, velocity, [target.yaw, target.yaw_rate]),
+            speed_max_m_s,
+        )
+    }
+
+    /// A position on the globe, `place`, or a velocity.
+    ///
+    /// # Errors
+    /// What Rover ignores, with the reason.
+    pub(super) fn take_global(
+        &mut self,
+        now: SimTime,
+        target: &SET_POSITION_TARGET_GLOBAL_INT_DATA,
+        place: Option<Ned>,
+        speed_max_m_s: f64,
+    ) -> Result<(), &'static str> {
+        if !is_global(target.coordinate_frame) {
+            return Err("set-point ignored: its frame");
         }
-        let has_yaw = !ignores(PositionTargetTypemask::POSITION_TARGET_TYPEMASK_YAW_IGNORE);
-        let has_rate = !ignores(PositionTargetTypemask::POSITION_TARGET_TYPEMASK_YAW_RATE_IGNORE);
-        let (x_m_s, y_m_s) = (f64::from(target.vx), f64::from(target.vy));
-        let course = match (has_yaw, has_rate) {
+        let (velocity, yaw) = ([target.vx, target.vy], [target.yaw, target.yaw_rate]);
+        let asked =
+            Target::new(target.type_mask, 0.0, place.unwrap_or(Ned { north: f64::NAN, east: f64::NAN }), velocity, yaw);
+        self.follow(now, &asked, speed_max_m_s)
+    }
+
+    /// A position alone, or a speed with the heading of the velocity, another heading, or a rate of turn; as Rover's
+    /// `handle_set_position_target_local_ned`, with its sign of the speed.
+    fn follow(&mut self, now: SimTime, target: &Target, speed_max_m_s: f64) -> Result<(), &'static str> {
+        if target.has_acceleration {
+            return Err("set-point ignored: set ACC_IGNORE in mask");
+        }
+        if let Some(place) = target.place {
+            return if self.go_to(place) { Ok(()) } else { Err("set-point ignored: its position") };
+        }
+        let (x_m_s, y_m_s) = target.velocity.unwrap_or((0.0, 0.0));
+        let course = match (target.yaw_rad, target.yaw_rate_rad_s) {
             // Rover takes one or the other, and nothing when both are given.
-            (true, true) => return,
-            (true, false) => Course::Heading(f64::from(target.yaw) + turned_rad),
-            (false, true) => Course::Turn(f64::from(target.yaw_rate)),
-            (false, false) => Course::Heading(math::atan2(y_m_s, x_m_s) + turned_rad),
+            (Some(_), Some(_)) => return Err("set-point ignored: yaw and yaw rate"),
+            (Some(yaw_rad), None) => Course::Heading(yaw_rad + target.frame_rad),
+            (None, Some(rate_rad_s)) => Course::Turn(rate_rad_s),
+            (None, None) if target.velocity.is_none() => return Err("set-point ignored: its mask"),
+            (None, None) => Course::Heading(math::atan2(y_m_s, x_m_s) + target.frame_rad),
         };
         // The sign of x is that of the speed, in frames where x is to the north too.
         // This is the mistake in Rover/GCS_MAVLink_Rover.cpp that sent boats astern on
         // southward headings. It is imitated so that our closed loops show it if a yaw is ever
         // sent with a velocity again.
-        let sign = if (has_yaw || has_rate) && x_m_s < 0.0 { -1.0 } else { 1.0 };
-        self.set(now, course, Speed::MetresPerSecond(sign * math::length(x_m_s, y_m_s)));
+        let has_yaw = target.yaw_rad.is_some() || target.yaw_rate_rad_s.is_some();
+        let sign = if has_yaw && x_m_s < 0.0 { -1.0 } else { 1.0 };
+        self.set(now, course, sign * math::length(x_m_s, y_m_s).min(speed_max_m_s))
     }
 
-    /// A position to go to; velocities and headings that come with it are for others.
-    pub(super) fn take_destination(&mut self, target: &SET_POSITION_TARGET_GLOBAL_INT_DATA) {
-        let position = PositionTargetTypemask::POSITION_TARGET_TYPEMASK_X_IGNORE
-            | PositionTargetTypemask::POSITION_TARGET_TYPEMASK_Y_IGNORE;
-        if !target.type_mask.intersects(position) {
-            (self.guided, self.destination) = (None, Some((target.lat_int, target.lon_int)));
+    /// A heading, rad, from north or, where the boat's own is given, from the one before, and a speed, m/s.
+    ///
+    /// # Errors
+    /// Non-finite numbers.
+    pub(super) fn take_heading(
+        &mut self,
+        now: SimTime,
+        heading_rad: f64,
+        own_rad: Option<f64>,
+        speed_m_s: f64,
+    ) -> Result<(), &'static str> {
+        let before = |own_rad: f64| match self.guided {
+            Some((_, Course::Heading(ordered_rad), _)) => ordered_rad,
+            _ => own_rad,
+        };
+        self.set(now, Course::Heading(heading_rad + own_rad.map_or(0.0, before)), speed_m_s)
+    }
+
+    /// Goes to a position, if it is one.
+    pub(super) fn go_to(&mut self, place: Ned) -> bool {
+        if place.is_finite() {
+            (self.guided, self.destination) = (None, Some(place));
         }
+        place.is_finite()
     }
 
-    /// The position to which it goes in mode GUIDED, if it goes to one.
-    pub(super) fn destination(&self) -> Option<(i32, i32)> {
-        self.destination
+    /// The speed on the way to a position, m/s; whether it goes to one.
+    pub(super) fn set_speed(&mut self, speed_m_s: f64) -> bool {
+        let is_taken = self.destination.is_some() && speed_m_s >= 0.0;
+        self.speed_m_s = if is_taken { Some(speed_m_s) } else { self.speed_m_s };
+        is_taken
+    }
+
+    /// The position to which it goes in mode GUIDED, if it goes to one, and the speed that was commanded, m/s.
+    pub(super) fn destination(&self) -> Option<(Ned, Option<f64>)> {
+        self.destination.map(|place| (place, self.speed_m_s))
+    }
+
+    /// Whether it follows a heading or a rate of turn in mode GUIDED.
+    pub(super) fn has_course(&self) -> bool {
+        self.guided.is_some()
     }
 
     /// The heading that is ordered in mode GUIDED, whole degrees, as version 4.7 shows it (earlier ones show 0); 0 without one.
@@ -126,13 +261,13 @@ impl SetPoints {
         }
     }
 
-    /// What is not finite is not followed.
-    fn set(&mut self, now: SimTime, course: Course, speed: Speed) {
+    fn set(&mut self, now: SimTime, course: Course, speed_m_s: f64) -> Result<(), &'static str> {
         let (Course::Heading(steered) | Course::Turn(steered)) = course;
-        let (Speed::MetresPerSecond(driven) | Speed::Share(driven)) = speed;
-        if steered.is_finite() && driven.is_finite() {
-            (self.guided, self.destination) = (Some((now, course, speed)), None);
+        if !steered.is_finite() || !speed_m_s.is_finite() {
+            return Err("set-point ignored: it is not finite");
         }
+        (self.guided, self.destination) = (Some((now, course, speed_m_s)), None);
+        Ok(())
     }
 
     /// Steering is the axis y, throttle the axis z, from 0 to 1000 with rest at 500, or x where that is set.
@@ -157,15 +292,10 @@ impl SetPoints {
         }
     }
 
-    pub(super) fn guided(&self, now: SimTime, cruise_m_s: f64, psi_rad: f64) -> Order {
-        let Some((_, course, speed)) = self.guided.filter(|(at, ..)| (now - *at).as_s() <= HELD_S) else {
-            return Order::Hold;
-        };
-        let speed_m_s = match speed {
-            Speed::MetresPerSecond(speed_m_s) => speed_m_s,
-            Speed::Share(share) => share * cruise_m_s,
-        };
-        match course {
+    /// The order of the set-point in mode GUIDED, if there is one.
+    pub(super) fn guided(&self, psi_rad: f64) -> Option<Order> {
+        let (_, course, speed_m_s) = self.guided?;
+        Some(match course {
             Course::Heading(heading_rad) if speed_m_s < 0.0 => {
                 autopilot::astern(speed_m_s, wrap_pi(heading_rad - psi_rad))
             }
@@ -178,6 +308,6 @@ impl SetPoints {
                 let by_rad = (rate_rad_s * TURN_LEAD_S).clamp(-PI, PI);
                 Order::Turn { by_rad, speed_m_s: speed_m_s.min(SPEED_MAX_M_S) }
             }
-        }
+        })
     }
 }

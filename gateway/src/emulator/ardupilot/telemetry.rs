@@ -5,13 +5,15 @@
 use super::ArduPilot;
 use crate::mavlink::RoverMode;
 use crate::mavlink::dialect::{
-    ATTITUDE_DATA, AUTOPILOT_VERSION_DATA, BATTERY_STATUS_DATA, GLOBAL_POSITION_INT_DATA, GPS_RAW_INT_DATA, GpsFixType,
-    HEARTBEAT_DATA, HOME_POSITION_DATA, MavAutopilot, MavDataStream, MavMessage, MavModeFlag, MavProtocolCapability,
-    MavResult, MavState, MavSysStatusSensor, MavType, NAV_CONTROLLER_OUTPUT_DATA, POSITION_TARGET_GLOBAL_INT_DATA,
+    ATTITUDE_DATA, AUTOPILOT_VERSION_DATA, BATTERY_STATUS_DATA, GLOBAL_POSITION_INT_DATA, GPS_GLOBAL_ORIGIN_DATA,
+    GPS_RAW_INT_DATA, GpsFixType, HEARTBEAT_DATA, HOME_POSITION_DATA, LOCAL_POSITION_NED_DATA, MESSAGE_INTERVAL_DATA,
+    MISSION_CURRENT_DATA, MavAutopilot, MavDataStream, MavMessage, MavModeFlag, MavProtocolCapability, MavResult,
+    MavState, MavSysStatusSensor, MavType, NAV_CONTROLLER_OUTPUT_DATA, POSITION_TARGET_GLOBAL_INT_DATA,
     REQUEST_DATA_STREAM_DATA, SYS_STATUS_DATA, SYSTEM_TIME_DATA, VFR_HUD_DATA,
 };
 use ::mavlink::MessageData;
 use primitives::angle::compass_deg_from_rad;
+use primitives::frame::Ned;
 use primitives::{SimTime, math};
 use std::collections::BTreeMap;
 
@@ -20,19 +22,30 @@ const INTERVAL_MIN_S: f64 = 0.02;
 /// The version 4.5.7, as ArduPilot counts it.
 const VERSION: u32 = 0x0405_07FF;
 
+/// EKF_STATUS_REPORT of ArduPilot's own dialect: its number, the byte of its definition in the checksum, and its flags when all is well
+/// and without a fix.
+const EKF_STATUS_REPORT: u32 = 193;
+const EKF_EXTRA_CRC: u8 = 71;
+const EKF_WELL: u16 = 831;
+const EKF_WITHOUT_FIX: u16 = 165;
+
 /// Every message that it can send: its number, the stream that it is of, and how often it comes unasked, s, if it does.
-const MESSAGES: [(u32, MavDataStream, Option<f64>); 12] = [
+const MESSAGES: [(u32, MavDataStream, Option<f64>); 16] = [
     (HEARTBEAT_DATA::ID, MavDataStream::MAV_DATA_STREAM_ALL, Some(1.0)),
     (SYS_STATUS_DATA::ID, MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS, Some(1.0)),
     (GPS_RAW_INT_DATA::ID, MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS, Some(1.0)),
     (NAV_CONTROLLER_OUTPUT_DATA::ID, MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS, Some(1.0)),
     (POSITION_TARGET_GLOBAL_INT_DATA::ID, MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS, Some(1.0)),
+    (MISSION_CURRENT_DATA::ID, MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS, Some(1.0)),
     (GLOBAL_POSITION_INT_DATA::ID, MavDataStream::MAV_DATA_STREAM_POSITION, Some(1.0)),
+    (LOCAL_POSITION_NED_DATA::ID, MavDataStream::MAV_DATA_STREAM_POSITION, Some(1.0)),
     (ATTITUDE_DATA::ID, MavDataStream::MAV_DATA_STREAM_EXTRA1, Some(1.0)),
     (VFR_HUD_DATA::ID, MavDataStream::MAV_DATA_STREAM_EXTRA2, Some(1.0)),
     (SYSTEM_TIME_DATA::ID, MavDataStream::MAV_DATA_STREAM_EXTRA3, Some(1.0)),
     (BATTERY_STATUS_DATA::ID, MavDataStream::MAV_DATA_STREAM_EXTRA3, Some(1.0)),
+    (EKF_STATUS_REPORT, MavDataStream::MAV_DATA_STREAM_EXTRA3, Some(1.0)),
     (HOME_POSITION_DATA::ID, MavDataStream::MAV_DATA_STREAM_ALL, None),
+    (GPS_GLOBAL_ORIGIN_DATA::ID, MavDataStream::MAV_DATA_STREAM_ALL, None),
     (AUTOPILOT_VERSION_DATA::ID, MavDataStream::MAV_DATA_STREAM_ALL, None),
 ];
 
@@ -40,18 +53,17 @@ const MESSAGES: [(u32, MavDataStream, Option<f64>); 12] = [
 #[derive(Clone, Debug)]
 pub(super) struct Streams {
     regular: BTreeMap<u32, (f64, SimTime)>,
-    once: Vec<u32>,
 }
 
 impl Streams {
     pub(super) fn new() -> Streams {
         let regular = MESSAGES.iter().filter_map(|(id, _, every_s)| Some((*id, ((*every_s)?, SimTime::ZERO))));
-        Streams { regular: regular.collect(), once: vec![] }
+        Streams { regular: regular.collect() }
     }
 
     /// The messages that are due now.
     pub(super) fn due(&mut self, now: SimTime) -> Vec<u32> {
-        let mut due = std::mem::take(&mut self.once);
+        let mut due = vec![];
         for (id, (every_s, at)) in &mut self.regular {
             if now >= *at {
                 // In step with what asks, which comes in steps of its own.
@@ -75,15 +87,11 @@ impl Streams {
         MavResult::MAV_RESULT_ACCEPTED
     }
 
-    /// A message is sent once.
-    pub(super) fn request(&mut self, id: u32) -> MavResult {
-        if !MESSAGES.iter().any(|(known, ..)| *known == id) {
-            return MavResult::MAV_RESULT_FAILED;
-        }
-        if !self.once.contains(&id) {
-            self.once.push(id);
-        }
-        MavResult::MAV_RESULT_ACCEPTED
+    /// The interval of a message, µs: -1 is never, 0 is a message that it does not have.
+    fn interval_us(&self, id: u32) -> i32 {
+        let is_known = MESSAGES.iter().any(|(known, ..)| *known == id);
+        let never = if is_known { -1 } else { 0 };
+        self.regular.get(&id).map_or(never, |(every_s, _)| (1e6 * every_s) as i32)
     }
 
     /// The rate of a stream, or of all.
@@ -111,8 +119,29 @@ impl Streams {
 }
 
 impl ArduPilot {
-    /// A message as it is now, if there is anything to tell.
-    pub(super) fn message(&self, now: SimTime, id: u32) -> Option<MavMessage> {
+    /// Shows how often a message is sent.
+    pub(super) fn show_interval(&mut self, id: u32) -> MavResult {
+        let interval_us = self.streams.interval_us(id);
+        let shown = MESSAGE_INTERVAL_DATA { interval_us, message_id: id as u16 };
+        self.send(&MavMessage::MESSAGE_INTERVAL(shown));
+        if interval_us == 0 { MavResult::MAV_RESULT_FAILED } else { MavResult::MAV_RESULT_ACCEPTED }
+    }
+
+    /// Sends a message as it is now; whether there is anything to tell.
+    pub(super) fn send_message(&mut self, now: SimTime, id: u32) -> bool {
+        if id == EKF_STATUS_REPORT {
+            let flags = if self.sensed.has_fix(now) { EKF_WELL } else { EKF_WITHOUT_FIX };
+            // Five variances that are 0, then the flags.
+            let payload = [&[0; 20][..], &flags.to_le_bytes()].concat();
+            self.writer.write_raw(id, EKF_EXTRA_CRC, &payload, &mut self.outbox);
+            return true;
+        }
+        let message = self.message(now, id);
+        message.iter().for_each(|message| self.send(message));
+        message.is_some()
+    }
+
+    fn message(&self, now: SimTime, id: u32) -> Option<MavMessage> {
         Some(match id {
             HEARTBEAT_DATA::ID => MavMessage::HEARTBEAT(self.heartbeat()),
             SYS_STATUS_DATA::ID => MavMessage::SYS_STATUS(self.sys_status()),
@@ -125,11 +154,14 @@ impl ArduPilot {
             }
             // Of velocities there is none.
             POSITION_TARGET_GLOBAL_INT_DATA::ID if self.mode == RoverMode::Guided => {
-                let (lat_int, lon_int) = self.set_points.destination()?;
+                let (lat_int, lon_int) = self.e7(self.position_target()?);
                 let time_boot_ms = boot_ms(now);
                 let data = POSITION_TARGET_GLOBAL_INT_DATA { time_boot_ms, lat_int, lon_int, ..Default::default() };
                 MavMessage::POSITION_TARGET_GLOBAL_INT(data)
             }
+            MISSION_CURRENT_DATA::ID => self.mission.current(self.autopilot.next()),
+            LOCAL_POSITION_NED_DATA::ID => MavMessage::LOCAL_POSITION_NED(self.local_position(now)?),
+            GPS_GLOBAL_ORIGIN_DATA::ID if self.origin.is_some() => self.origin_message(),
             VFR_HUD_DATA::ID => MavMessage::VFR_HUD(self.vfr_hud()?),
             SYSTEM_TIME_DATA::ID => MavMessage::SYSTEM_TIME(SYSTEM_TIME_DATA {
                 time_unix_usec: self.utc_us(now),
@@ -236,9 +268,33 @@ impl ArduPilot {
         })
     }
 
-    fn lat_lon_e7(&self) -> Option<(i32, i32)> {
-        let at = self.frame.lat_lon(self.sensed.own?.nav.at());
-        Some(((1e7 * at.lat_deg).round() as i32, (1e7 * at.lon_deg).round() as i32))
+    pub(super) fn lat_lon_e7(&self) -> Option<(i32, i32)> {
+        Some(self.e7(self.sensed.own?.nav.at()))
+    }
+
+    /// The position to which it goes in GUIDED, or where it keeps its station for want of a set-point.
+    fn position_target(&self) -> Option<Ned> {
+        let destination = self.set_points.destination().map(|(place, _)| place);
+        destination.or_else(|| self.autopilot.station().filter(|_| !self.set_points.has_course()))
+    }
+
+    /// The origin of positions in the frame LOCAL_NED.
+    pub(super) fn origin_message(&self) -> MavMessage {
+        let (latitude, longitude) = self.e7(self.origin.unwrap_or_default());
+        MavMessage::GPS_GLOBAL_ORIGIN(GPS_GLOBAL_ORIGIN_DATA { latitude, longitude, ..Default::default() })
+    }
+
+    fn local_position(&self, now: SimTime) -> Option<LOCAL_POSITION_NED_DATA> {
+        let (nav, origin) = (self.sensed.own?.nav, self.origin?);
+        let (at, velocity) = (nav.at(), nav.velocity_m_s());
+        Some(LOCAL_POSITION_NED_DATA {
+            time_boot_ms: boot_ms(now),
+            x: (at.north - origin.north) as f32,
+            y: (at.east - origin.east) as f32,
+            vx: velocity.north as f32,
+            vy: velocity.east as f32,
+            ..LOCAL_POSITION_NED_DATA::default()
+        })
     }
 
     fn position(&self, now: SimTime) -> Option<GLOBAL_POSITION_INT_DATA> {
