@@ -5,6 +5,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+/// Maximum latency of fixes, in fix periods.
+pub(crate) const MOST_PERIODS_LATE: f64 = 12.0;
+
 /// What a boat knows of itself. What is `None` is known perfectly and at once.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Sensors {
