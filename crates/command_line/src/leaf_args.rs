@@ -113,6 +113,16 @@ impl LeafArgs {
         bus::local_gateways().into_iter().filter(is_meant).collect()
     }
 
+    /// The same arguments for an emulated boat, which without a name means the only water here.
+    #[must_use]
+    pub fn in_water(mut self) -> LeafArgs {
+        let water: Vec<bus::Entry> = bus::local_registry().into_iter().filter(|entry| entry.is_water).collect();
+        if let ([water], true, false) = (water.as_slice(), self.connect.is_empty(), self.lan) {
+            self.game = self.game.or_else(|| GameName::new(&water.game).ok());
+        }
+        self
+    }
+
     /// Checks that a command for all boats of a game, sent to these gateways, means only one game.
     /// Stops need no check: they go to as many boats as can be reached.
     ///

@@ -5,6 +5,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+/// Maximum latency of fixes, in fix periods.
+pub(crate) const MOST_PERIODS_LATE: f64 = 12.0;
+
 /// Sensors of a boat's own state. `None` measures perfectly and without delay.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Sensors {

@@ -1,6 +1,9 @@
-//! Limits of numbers and of their products that determine how much memory a game needs.
+//! Limits of the numbers, and of their products, that determine how much memory a game needs, or
+//! that its calculation relies on.
 
 use crate::Scenario;
+use crate::boat::Drive;
+use crate::sensor::MOST_PERIODS_LATE;
 use std::ops::RangeInclusive;
 
 /// Maximum number of vehicles of a game.
@@ -12,7 +15,7 @@ const CANDIDATES_MAX: usize = 1 << 27;
 const OBSERVED_MAX: usize = 1 << 26;
 
 impl Scenario {
-    /// Checks all numbers and products that determine the memory of a game.
+    /// Checks these numbers and products.
     ///
     /// # Errors
     /// The first number beyond its limits, as text.
@@ -25,6 +28,15 @@ impl Scenario {
         }
         if let Some(eddies) = &self.sea.current.random_eddies {
             within("the number of random eddies", eddies.count, 0..=100)?;
+        }
+        for boat in &self.boats {
+            if let Some(gps) = &boat.sensors.gps {
+                let latency_max_s = MOST_PERIODS_LATE * gps.period_s;
+                within(&format!("gps.latency_s of {}", boat.name), gps.latency_s, 0.0..=latency_max_s)?;
+            }
+            if let Drive::Thrusters { thruster, .. } = &boat.drive {
+                within(&format!("thruster.slew_per_s of {}", boat.name), thruster.slew_per_s, 0.0..=1e9)?;
+            }
         }
         for program in self.strategies.iter().flat_map(|strategy| &strategy.roles) {
             within(&format!("helm.courses of {}", program.name), program.helm.courses, 8..=3600)?;
@@ -63,7 +75,10 @@ mod tests {
         let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/surveyor_2v2.toml");
         let sound = crate::load(&file).unwrap_or_else(|e| panic!("{e}"));
         assert_eq!(sound.check_received(), Ok(()));
-        let cases: [Case; 7] = [
+        let cases: [Case; 8] = [
+            ("gps.latency_s of", |game| {
+                game.boats[0].sensors.gps.as_mut().expect("it has a receiver").latency_s = 65_535.0;
+            }),
             ("helm.courses of", |game| game.strategies[0].roles[0].helm.courses = 65_536),
             ("helm.speeds of", |game| game.strategies[0].roles[0].helm.speeds = 0),
             ("times helm.speeds, summed over all boats, is 14", |game| {

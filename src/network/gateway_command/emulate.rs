@@ -114,9 +114,10 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         ExtraArg::Hdg => Extra::Hdg,
         ExtraArg::Zda => Extra::Zda,
     };
+    let leaf = args.leaf.clone().in_water();
     let settings = EmulatorSettings {
-        game: args.leaf.game.clone(),
-        place: args.leaf.place()?,
+        place: leaf.place()?,
+        game: leaf.game,
         vehicle: args.vehicle.clone(),
         protocol: args.protocol.protocol(),
         listen,

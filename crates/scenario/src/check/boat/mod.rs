@@ -9,7 +9,7 @@ use crate::boat::{Boat, Drive, Propeller, ThrustCurve};
 use crate::diagnostics::Diagnostics;
 use crate::raw;
 use crate::read::Document;
-use crate::sensor::Gps;
+use crate::sensor::{Gps, MOST_PERIODS_LATE};
 use kinematic::check_kinematic;
 
 /// Physics steps are explicit: a decay rate above this many per tick would grow instead. (The limit
@@ -19,8 +19,6 @@ pub(super) const FASTEST_PER_TICK: f64 = 2.0;
 const USUAL_TICK_S: f64 = 0.05;
 /// Water density for the estimates, kg/m³.
 const RHO_KG_M3: f64 = 1000.0;
-/// Maximum latency of fixes, in fix periods.
-const MOST_PERIODS_LATE: f64 = 12.0;
 
 pub(crate) fn boat(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>) -> Option<Boat> {
     let raw = &document.raw;
