@@ -3,6 +3,8 @@
 #![allow(clippy::disallowed_methods, reason = "processes are waited for by the clock, with a limit")]
 
 use gateway::link::{Link, LinkAddress, LinkEvent, LinkSettings};
+use gateway::nmea::{Gga, Sentence, date_and_time};
+use primitives::LatLon;
 use std::process::{Child, Command, Output, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -74,6 +76,11 @@ struct Boat {
 
 impl Boat {
     fn new() -> Boat {
+        Boat::sending(|| b"$PSEAG,N*22\r\n".to_vec())
+    }
+
+    /// One that sends these bytes ten times a second.
+    fn sending(bytes: impl Fn() -> Vec<u8> + Send + 'static) -> Boat {
         let (sender, received) = channel();
         let take = move |event| {
             if let LinkEvent::Bytes { bytes, .. } = event {
@@ -87,7 +94,7 @@ impl Boat {
         let ended = Arc::clone(&is_gone);
         std::thread::spawn(move || {
             while !ended.load(Ordering::Relaxed) {
-                reporter.send(b"$PSEAG,N*22\r\n".to_vec(), 0);
+                reporter.send(bytes(), 0);
                 std::thread::sleep(Duration::from_millis(100));
             }
         });
@@ -139,6 +146,35 @@ fn a_boat_is_checked_by_a_gateway_file_inside_of_the_program() {
     let mut line = String::new();
     std::io::BufRead::read_line(&mut said, &mut line).expect("it says something");
     assert!(line.contains("listening for 60 s, sending nothing"), "{line}");
+}
+
+/// A GGA of this moment.
+fn gga() -> Vec<u8> {
+    let Sentence::Gga(blank) = Sentence::parse("GPGGA,,,,,,").expect("it is blank") else { panic!("no GGA") };
+    let at = Some(LatLon { lat_deg: 41.3, lon_deg: -74.0 });
+    let time = Some(date_and_time(recording::utc::now_ns()).1);
+    let mut bytes = vec![];
+    Sentence::Gga(Gga { time, at, quality: 1, ..blank }).write(&mut bytes);
+    bytes
+}
+
+#[test]
+fn the_search_for_a_game_is_no_error_of_the_boats_clock() {
+    let (folder, boat) = (Folder::new(), Boat::sending(gga));
+    let link = boat.link.reach();
+    let nobody = std::net::TcpListener::bind("127.0.0.1:0").and_then(|port| port.local_addr()).expect("a port");
+    let connect = format!("tcp/{nobody}");
+    let check = ["check", "--link", &link, "--for-s", "2", "--vehicle", "blue_one", "--game", "nosuch"];
+    // The search ends after five seconds.
+    let (_, said) = folder.run(&[check.as_slice(), &["--connect", &connect]].concat());
+    assert!(said.contains("passed  clock") && said.contains("without a game"), "{said}");
+}
+
+#[test]
+fn a_check_of_a_link_without_sentences_shows_a_line_and_what_is_wrong_with_it() {
+    let (folder, boat) = (Folder::new(), Boat::sending(|| b"$PSEAG,N\r\n".to_vec()));
+    let (output, said) = folder.run(&["check", "--link", &boat.link.reach(), "--for-s", "2"]);
+    assert!(!output.status.success() && said.contains("none a sentence: $PSEAG,N has no checksum"), "{said}");
 }
 
 #[test]
