@@ -223,16 +223,26 @@ pub struct Geofence {
     /// How far outside of the field it lies without a `polygon`, m.
     #[schemars(range(min = 0, max = 10000), extend("default" = 30))]
     pub margin_m: f64,
-    /// How hard the boat slows down with thrust at zero, m/s².
+    /// Measured distances to rest at zero thrust: pairs of speed through the water in m/s and distance in m. With them,
+    /// `deceleration_m_s2` does not count.
+    #[schemars(with = "Vec<SpeedAndDistance>", length(max = 50), extend("default" = Vec::<f64>::new()))]
+    pub coast_m: Vec<(f64, f64)>,
+    /// How hard the boat slows down with thrust at zero, m/s². The boat file's resistance counts where it stops it later.
     #[schemars(range(min = 0.01, max = 10), extend("default" = 0.25))]
     pub deceleration_m_s2: f64,
-    /// Time until it begins to slow down, s.
+    /// Time until it begins to slow down, s; at least `debounce_s` and half a second.
     #[schemars(range(min = 0, max = 10), extend("default" = 1))]
     pub reaction_s: f64,
     /// It must be so for this long, s.
     #[schemars(range(min = 0, max = 10), extend("default" = 0.5))]
     pub debounce_s: f64,
 }
+
+/// A speed, m/s, and the distance in which the boat comes to rest from it, m.
+#[derive(JsonSchema)]
+#[schemars(inline)]
+#[expect(dead_code, reason = "the schema of a pair")]
+struct SpeedAndDistance(#[schemars(range(min = 0.1, max = 60))] f64, #[schemars(range(min = 0.1, max = 10000))] f64);
 
 /// A box about the bow, as long as the boat is fast, in which no other real boat may be.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
