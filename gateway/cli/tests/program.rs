@@ -148,6 +148,39 @@ fn a_boat_is_checked_by_a_gateway_file_inside_of_the_program() {
     assert!(line.contains("listening for 60 s, sending nothing"), "{line}");
 }
 
+#[test]
+fn a_disk_that_fills_up_is_reported_at_once_and_in_the_end() {
+    let mut state = 1_u64;
+    let noise = move || {
+        // Without compression of the recording: numbers that do not repeat.
+        let mut next = || {
+            state ^= state << 13;
+            state ^= state >> 7;
+            state ^= state << 17;
+            state
+        };
+        (0..1000).map(|_| format!("{:x}", next())).collect::<String>().into_bytes()
+    };
+    let noise = std::sync::Mutex::new(noise);
+    let boat = Boat::sending(move || (noise.lock().expect("one sender"))());
+    let (folder, link) = (Folder::new(), boat.link.reach());
+    let gateway = folder.command(&["surveyor", "--vehicle", "blue_one", "--game", "nowhere", "--link", &link]);
+    // A file of 200 kB is this process's full disk.
+    let limited = "trap '' XFSZ; ulimit -f 400; exec \"$@\"";
+    let mut shell = Command::new("sh");
+    shell.current_dir(folder.0.path()).env("XDG_RUNTIME_DIR", folder.0.path()).args(["-c", limited, "sh"]);
+    shell.arg(gateway.get_program()).args(gateway.get_args()).args(["--record", "run.mcap", "--for-parent"]);
+    let shell = shell.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped());
+    let mut running = Running(shell.spawn().expect("it starts"));
+    folder.run_until(&["tell", "blue_one", "status", "--game", "nowhere"], "nothing is recorded any more");
+    drop(running.0.stdin.take());
+    let code = running.0.wait().expect("it ends").code();
+    let mut said = String::new();
+    let mut stderr = running.0.stderr.take().expect("piped");
+    std::io::Read::read_to_string(&mut stderr, &mut said).expect("it says something");
+    assert!(code == Some(1) && said.contains("WARNING: nothing is recorded any more in run.mcap"), "{code:?}: {said}");
+}
+
 /// A GGA of this moment.
 fn gga() -> Vec<u8> {
     let Sentence::Gga(blank) = Sentence::parse("GPGGA,,,,,,").expect("it is blank") else { panic!("no GGA") };

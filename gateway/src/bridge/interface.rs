@@ -130,6 +130,8 @@ pub struct Output {
     pub refused: Option<String>,
     /// Whether the bytes carry an order for the first time.
     pub carries_order: bool,
+    /// Whether the bytes stop the boat.
+    pub stops: bool,
 }
 
 /// Navigation data for the sim.

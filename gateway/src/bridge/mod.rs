@@ -237,6 +237,7 @@ impl Bridge {
                 let command = self.last_sent.map(|(_, command)| command);
                 self.alarms.take_power(now, &power, command, &mut out.events);
             }
+            Report::Tilt(tilt_deg) => self.alarms.take_tilt(now, tilt_deg, &mut out.events),
             Report::Error(error) => self.alarms.take_error(error, &mut out.events),
             Report::Notice(text) => self.alarms.take_notice(text, &mut out.events),
             Report::Clock(time) => {
@@ -395,6 +396,7 @@ impl Bridge {
             self.protocol.write(now, Command::Zero, &mut out.bytes);
         }
         self.under_way |= action == Action::Follow;
+        out.stops = matches!(action, Action::Standby | Action::Zero);
         self.protocol.write(now, command, &mut out.bytes);
         out.carries_order = action == Action::Follow && self.order_is_new;
         if out.carries_order {

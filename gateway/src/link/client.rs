@@ -14,8 +14,9 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// The longest attempt to connect.
-const CONNECT: Duration = Duration::from_secs(2);
+/// The longest attempt to connect: no longer than the wait between attempts, which counts from the beginning of each, so
+/// that a boat that can be reached again is so within a second.
+const CONNECT: Duration = Duration::from_secs(1);
 
 /// How often an attempt is polled.
 // Polled, since a blocking connect cannot be interrupted: a gateway that is asked to end would
@@ -33,6 +34,7 @@ pub(super) fn run(threads: &Arc<Threads>, address: &LinkAddress) {
     let mut backoff = Backoff::new(threads.settings.retry_first, threads.settings.retry_max);
     let mut seen = threads.reconnects();
     loop {
+        let begun_at = clock::now();
         let connection = connect(threads, address).and_then(|(port, name)| Connection::open(threads, port, name));
         let mut wait = match connection {
             Ok(connection) => {
@@ -41,7 +43,7 @@ pub(super) fn run(threads: &Arc<Threads>, address: &LinkAddress) {
             }
             Err(_) if threads.is_stopped() => return,
             Err(e) => {
-                let retry_in = backoff.wait();
+                let retry_in = backoff.wait().saturating_sub(clock::since(begun_at));
                 threads.emit(LinkEvent::Failed { reason: format!("{address}: {e}"), retry_in });
                 retry_in
             }

@@ -156,6 +156,12 @@ pub trait BoatLink {
     /// Queues bytes; never blocks. What was queued before and has not been begun is displaced.
     fn send(&self, bytes: Vec<u8>, tag: u64);
 
+    /// As [`BoatLink::send`], for a command that stops the boat: earlier commands that still wait in a line that has stalled
+    /// are discarded as far as possible.
+    fn send_stop(&self, bytes: Vec<u8>, tag: u64) {
+        self.send(bytes, tag);
+    }
+
     /// How many were displaced so far.
     fn displaced(&self) -> u64;
 
@@ -219,6 +225,11 @@ impl Link {
         drop(self.threads.enqueue(bytes, Some(tag), Priority::Normal));
     }
 
+    /// As [`Link::send`], for a command that stops the boat: what a serial line still holds of earlier ones is discarded.
+    pub fn send_stop(&self, bytes: Vec<u8>, tag: u64) {
+        drop(self.threads.enqueue(bytes, Some(tag), Priority::Stop));
+    }
+
     /// How many were displaced so far, summed over the peers.
     #[must_use]
     pub fn displaced(&self) -> u64 {
@@ -241,6 +252,10 @@ impl Link {
 impl BoatLink for Link {
     fn send(&self, bytes: Vec<u8>, tag: u64) {
         Link::send(self, bytes, tag);
+    }
+
+    fn send_stop(&self, bytes: Vec<u8>, tag: u64) {
+        Link::send_stop(self, bytes, tag);
     }
 
     fn displaced(&self) -> u64 {

@@ -9,6 +9,8 @@ use std::time::Duration;
 pub(super) enum Priority {
     /// Displaced by the next.
     Normal,
+    /// As normal; what the system still holds of earlier requests is discarded first.
+    Stop,
     /// Not displaced by normal requests: a stop must not lose a race against a set-point.
     Shutdown,
 }
@@ -79,6 +81,10 @@ impl WriteRequest {
         &self.bytes
     }
 
+    pub(super) fn priority(&self) -> Priority {
+        self.priority
+    }
+
     /// Notes that the peer took it; returns the tag once all did.
     pub(super) fn settle(mut self) -> Option<u64> {
         self.taken = true;
@@ -105,7 +111,7 @@ impl Outbox {
         if state.shut {
             return false;
         }
-        if request.priority == Priority::Normal
+        if request.priority != Priority::Shutdown
             && state.queued.as_ref().is_some_and(|queued| queued.priority == Priority::Shutdown)
         {
             // Nothing may displace the last words to a boat.

@@ -162,6 +162,14 @@ impl Port {
         }
     }
 
+    /// Discards what a serial line has taken and not sent.
+    pub(super) fn discard_unsent(&self) {
+        if let Port::Serial { line, .. } = self {
+            // If it cannot be discarded, it is sent as before.
+            drop(line.discard_output_buffer());
+        }
+    }
+
     /// How long so many bytes take to the peer, where that is long. The driver of a serial
     /// line takes 4 KiB at once, which are 8 s of old commands at 4800 baud.
     pub(super) fn transit(&self, count: usize) -> Duration {

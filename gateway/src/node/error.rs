@@ -43,6 +43,9 @@ pub enum NodeError {
         /// Why.
         source: RecordError,
     },
+    /// The recording is not complete.
+    #[error("{0}")]
+    Recording(String),
     /// The declination is not known.
     #[error("{0}; set declination_deg in the gateway's file")]
     Declination(#[from] DeclinationError),

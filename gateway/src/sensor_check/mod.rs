@@ -439,7 +439,7 @@ impl SensorCheck {
             Report::Power(power) => self.power = Power { volts: power.volts.or(self.power.volts), ..power },
             Report::Error(error) => self.error = error,
             Report::Notice(text) => self.error = Some(text),
-            Report::Fix(_) | Report::Home(_) | Report::ForeignOrder | Report::Station(_) => {}
+            Report::Fix(_) | Report::Tilt(_) | Report::Home(_) | Report::ForeignOrder | Report::Station(_) => {}
         }
     }
 }
