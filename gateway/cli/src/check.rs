@@ -197,7 +197,8 @@ fn report(check: &SensorCheck, host: HostTime) -> String {
     }
     lines.push(format!("\n{}", counted(check)));
     lines.extend(check.findings(host));
-    let missing = check.missing();
+    let mut missing = check.missing();
+    missing.extend(check.clock_fault(host).map(|fault| format!("a correct clock: {fault}")));
     if missing.is_empty() {
         lines.push("\nnothing is missing".to_owned());
     } else {

@@ -182,6 +182,7 @@ mod tests {
         echo.observe(at(1), thrust(20.0));
         echo.note_sent(at(2), thrust(60.0));
         for (i, pct) in shows.iter().enumerate() {
+            echo.note_sent(at(3 + i), thrust(60.0));
             echo.observe(at(3 + i), thrust(*pct));
         }
         let now = at(3 + shows.len());
