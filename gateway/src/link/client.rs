@@ -43,7 +43,9 @@ pub(super) fn run(threads: &Arc<Threads>, address: &LinkAddress) {
             }
             Err(_) if threads.is_stopped() => return,
             Err(e) => {
-                let retry_in = backoff.wait().saturating_sub(clock::since(begun_at));
+                let (wait, took) = (backoff.wait(), clock::since(begun_at));
+                // An attempt that nobody answered has taken its wait already.
+                let retry_in = if took < wait / 2 { wait } else { wait.saturating_sub(took) };
                 threads.emit(LinkEvent::Failed { reason: format!("{address}: {e}"), retry_in });
                 retry_in
             }

@@ -88,26 +88,6 @@ fn a_slow_line_gets_the_newest_rather_than_all_in_order() {
 }
 
 #[test]
-fn a_stop_overtakes_the_commands_in_a_line_that_has_stalled() {
-    let (boat, _slave) = SerialPort::pair().unwrap();
-    let name = rustix::pty::ptsname(&boat, Vec::new()).unwrap();
-    let path = std::path::Path::new(OsStr::from_bytes(name.as_bytes()));
-    let (link, log) = connect(&format!("serial://{}?baud=115200", path.display()), patient());
-    log.up(0);
-    // The boat reads nothing of these.
-    for tag in 0..5 {
-        link.send(b"$PSEAC,T,0,40,0,*11\r\n".to_vec(), tag);
-        log.written(tag);
-    }
-    std::thread::sleep(Duration::from_millis(100));
-    link.send_stop(b"stop".to_vec(), 9);
-    log.written(9);
-    let mut read = [0; 64];
-    let count = boat.read(&mut read).unwrap();
-    assert_eq!(read[..count].escape_ascii().to_string(), "stop");
-}
-
-#[test]
 fn a_line_that_takes_nothing_for_two_seconds_is_opened_anew() {
     let (silent, _slave) = SerialPort::pair().unwrap();
     let name = rustix::pty::ptsname(&silent, Vec::new()).unwrap();
