@@ -22,7 +22,7 @@ const JUMP_MEMORY_S: f64 = 2.0;
 /// A reported velocity is used for this long; then it is computed from the change of position, s.
 const VELOCITY_AGE_MAX_S: f64 = 1.5;
 /// What a compass may show, degrees; anything else is as if it had said nothing.
-const HEADINGS_DEG: std::ops::RangeInclusive<f64> = -180.0..=360.0;
+pub(crate) const HEADINGS_DEG: std::ops::RangeInclusive<f64> = -180.0..=360.0;
 /// The boat counts as under thrust for this long after the last command with thrust, s.
 const THRUST_MEMORY_S: f64 = 0.5;
 /// From this speed on that a command should give the position must change, m/s.

@@ -155,7 +155,7 @@ impl Voyage {
         let mut gateway = load_file::<gateway::config::Gateway>(&scenarios.join("gateways").join(gateway))
             .unwrap_or_else(|e| panic!("{e}"));
         gateway.geofence.margin_m = 10_000.0;
-        let site = Site { field: game.field.clone(), length_m: 1.83, declination_rad: -0.2 };
+        let site = Site { field: game.field.clone(), length_m: 1.83, declination_rad: -0.2, coasting: None };
         let plan = |_| Plan {
             vehicle: "boat".to_owned(),
             gateway: gateway.clone(),

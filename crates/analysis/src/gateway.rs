@@ -64,6 +64,10 @@ pub fn gateway_of(bag: &Bag, boat: &str) -> Gateway {
         let Some(event) = gateway.damaged.sound(message.read_json::<Value>()) else { continue };
         if let Some(state) = event["event"]["state"]["to"].as_str() {
             gateway.state = Some(state.to_owned());
+            // It has no status in which they are listed.
+            if let Some(cause) = state.strip_prefix("failsafe: ").filter(|_| bag.kind() == Kind::Gateway) {
+                gateway.failsafes.push(FailsafeReport { at_s: message.at.as_s(), cause: cause.to_owned() });
+            }
         }
     }
     gateway

@@ -120,10 +120,14 @@ fn a_gateways_own_recording_begins_safed_and_tells_each_change() {
             writer.write(&entry, 1).expect("it is written");
         }
         let bytes = writer.end(Facts::new()).expect("it ends").into_inner();
-        gateway_of(&Bag::of(bytes).expect("a recording"), "blue_one").state
+        let gateway = gateway_of(&Bag::of(bytes).expect("a recording"), "blue_one");
+        (gateway.state.expect("it begins safed"), gateway.failsafes)
     };
-    assert_eq!(state_after(&[]).as_deref(), Some("safed"));
-    assert_eq!(state_after(&["armed", "e-stopped"]).as_deref(), Some("e-stopped"));
+    assert_eq!(state_after(&[]), ("safed".to_owned(), vec![]));
+    assert_eq!(state_after(&["armed", "e-stopped"]), ("e-stopped".to_owned(), vec![]));
+    let (state, failsafes) = state_after(&["armed", "failsafe: the link is down", "safed"]);
+    let causes: Vec<&str> = failsafes.iter().map(|failsafe| failsafe.cause.as_str()).collect();
+    assert_eq!((state.as_str(), causes), ("safed", vec!["the link is down"]));
 }
 
 #[test]

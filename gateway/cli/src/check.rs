@@ -11,10 +11,9 @@ use command_line::terminal;
 use gateway::config::{BoatProtocol, Gateway};
 use gateway::geofence::GeofenceArea;
 use gateway::link::{Link, LinkAddress, LinkEvent, LinkSettings};
-use gateway::nmea::date_and_time;
 use gateway::node::machine_checks;
 use gateway::preflight::{Report, Water, boat_checks};
-use gateway::sensor_check::SensorCheck;
+use gateway::sensor_check::{HostTime, SensorCheck};
 use primitives::SimTime;
 use recording::utc;
 use std::path::{Path, PathBuf};
@@ -73,16 +72,18 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     listener.listen(&mut |listener| listener.now().as_s() >= for_s);
     let check = &listener.check;
     if check.received().is_empty() {
-        let (reason, counts) = (&listener.reason, counted(check));
-        bail!("received nothing from {address} within {for_s} s: {reason} ({counts})");
+        let reason = listener.reason.clone().unwrap_or_else(|| check.unread());
+        bail!("received nothing readable from {address} within {for_s} s: {reason} ({})", counted(check));
     }
-    let host = date_and_time(utc::now_ns()).1;
-    terminal::print(&report(check, listener.now(), host));
+    // Before the search for the game, which takes time.
+    let host = HostTime { now: listener.now(), utc_ns: utc::now_ns() };
+    terminal::print(&report(check, host));
     let Some(vehicle) = &args.vehicle else {
-        return Ok(if check.missing().is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE });
+        let is_well = check.missing().is_empty() && check.clock_fault(host).is_none();
+        return Ok(if is_well { ExitCode::SUCCESS } else { ExitCode::FAILURE });
     };
     let water = water(args, vehicle, &gateway, &listener.stop)?;
-    let mut checks = boat_checks(check, (listener.now(), host), &gateway, water.as_ref());
+    let mut checks = boat_checks(check, host, &gateway, water.as_ref());
     let path = args.report.clone().unwrap_or_else(|| Path::new("runs").join(format!("preflight-{vehicle}.json")));
     let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
     std::fs::create_dir_all(folder).with_context(|| format!("cannot create the folder {}", folder.display()))?;
@@ -123,15 +124,15 @@ pub(super) struct Listener {
     events: Receiver<LinkEvent>,
     start: Instant,
     stop: Arc<AtomicBool>,
-    /// Why no data arrive.
-    reason: String,
+    /// Why the boat cannot be reached, while that is so.
+    reason: Option<String>,
     /// Message printed when it connects.
     hello: String,
 }
 
 impl Listener {
     fn new((link, events): (Link, Receiver<LinkEvent>), stop: Arc<AtomicBool>, gateway: &Gateway) -> Listener {
-        let (start, reason) = (bus::clock::now(), "no data received".to_owned());
+        let (start, reason) = (bus::clock::now(), None);
         Listener { check: SensorCheck::new(gateway), link, events, start, stop, reason, hello: String::new() }
     }
 
@@ -159,12 +160,15 @@ impl Listener {
             self.ask();
             match self.events.recv_timeout(Duration::from_millis(100)) {
                 Ok(LinkEvent::Bytes { at, bytes, .. }) => self.check.receive(self.at(at), &bytes),
-                Ok(LinkEvent::Up { name, .. }) => terminal::remark(&format!("connected to {name}; {}", self.hello)),
+                Ok(LinkEvent::Up { name, .. }) => {
+                    self.reason = None;
+                    terminal::remark(&format!("connected to {name}; {}", self.hello));
+                }
                 Ok(LinkEvent::Failed { reason: why, .. } | LinkEvent::Down { reason: why, .. }) => {
-                    if why != self.reason {
+                    if self.reason.as_ref() != Some(&why) {
                         terminal::remark(&why);
                     }
-                    self.reason = why;
+                    self.reason = Some(why);
                 }
                 Ok(LinkEvent::Written { .. }) | Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => break,
@@ -181,7 +185,7 @@ fn counted(check: &SensorCheck) -> String {
     check.counts().iter().map(|(name, count)| format!("{count} {name}")).collect::<Vec<_>>().join(", ")
 }
 
-fn report(check: &SensorCheck, now: SimTime, host: gateway::nmea::TimeOfDay) -> String {
+fn report(check: &SensorCheck, host: HostTime) -> String {
     let width = check.received().keys().map(String::len).max().unwrap_or(0).max(10);
     let mut lines = vec![format!("{:<width$} {:>7} {:>8}  last", "name", "count", "1/s")];
     for (name, received) in check.received() {
@@ -189,10 +193,13 @@ fn report(check: &SensorCheck, now: SimTime, host: gateway::nmea::TimeOfDay) -> 
         let note = if received.unreadable > 0 { "  (not read)" } else { "" };
         let last: String = received.last.chars().take(LAST_MAX).collect();
         lines.push(format!("{name:<width$} {:>7} {rate:>8}  {last}{note}", received.count));
+        let why = received.why_unreadable.as_ref();
+        lines.extend(why.map(|why| format!("{:<width$} {:>7} unreadable: {why}", "", received.unreadable)));
     }
     lines.push(format!("\n{}", counted(check)));
-    lines.extend(check.findings(now, host));
-    let missing = check.missing();
+    lines.extend(check.findings(host));
+    let mut missing = check.missing();
+    missing.extend(check.clock_fault(host).map(|fault| format!("a correct clock: {fault}")));
     if missing.is_empty() {
         lines.push("\nnothing is missing".to_owned());
     } else {

@@ -108,7 +108,9 @@ fn brief(status: &GatewayStatus) -> String {
     let alarms: String = status.alarms.iter().map(|alarm| format!("ALARM: {alarm} | ")).collect();
     let text = format!(
         "{} | {alarms}link {} | mode {mode} | {nav} | {battery}{}",
-        status.state, status.link, status.last_sent
+        status.state,
+        status.link,
+        status.would_send.as_ref().map_or(status.last_sent.clone(), |command| format!("dry run, would send {command}"))
     );
     text.chars().take(150).collect()
 }
@@ -157,6 +159,7 @@ pub fn full(status: &GatewayStatus) -> String {
         format!("  battery     {}", or_none(volts(status))),
         format!("  last sent   {}", status.last_sent),
     ];
+    lines.extend(status.would_send.iter().map(|command| format!("  dry run     would send {command}")));
     lines.extend(status.alarms.iter().map(|alarm| style::bad(&format!("  alarm       {alarm}"))));
     if !status.missing.is_empty() {
         lines.push(style::warning(&format!("  missing     {}", status.missing.join("; "))));

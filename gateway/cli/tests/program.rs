@@ -3,6 +3,8 @@
 #![allow(clippy::disallowed_methods, reason = "processes are waited for by the clock, with a limit")]
 
 use gateway::link::{Link, LinkAddress, LinkEvent, LinkSettings};
+use gateway::nmea::{Gga, Sentence, date_and_time};
+use primitives::LatLon;
 use std::process::{Child, Command, Output, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -74,6 +76,11 @@ struct Boat {
 
 impl Boat {
     fn new() -> Boat {
+        Boat::sending(|| b"$PSEAG,N*22\r\n".to_vec())
+    }
+
+    /// One that sends these bytes ten times a second.
+    fn sending(bytes: impl Fn() -> Vec<u8> + Send + 'static) -> Boat {
         let (sender, received) = channel();
         let take = move |event| {
             if let LinkEvent::Bytes { bytes, .. } = event {
@@ -87,7 +94,7 @@ impl Boat {
         let ended = Arc::clone(&is_gone);
         std::thread::spawn(move || {
             while !ended.load(Ordering::Relaxed) {
-                reporter.send(b"$PSEAG,N*22\r\n".to_vec(), 0);
+                reporter.send(bytes(), 0);
                 std::thread::sleep(Duration::from_millis(100));
             }
         });
@@ -139,6 +146,69 @@ fn a_boat_is_checked_by_a_gateway_file_inside_of_the_program() {
     let mut line = String::new();
     std::io::BufRead::read_line(&mut said, &mut line).expect("it says something");
     assert!(line.contains("listening for 60 s, sending nothing"), "{line}");
+}
+
+#[test]
+fn a_disk_that_fills_up_is_reported_at_once_and_in_the_end() {
+    let mut state = 1_u64;
+    let noise = move || {
+        // Without compression of the recording: numbers that do not repeat.
+        let mut next = || {
+            state ^= state << 13;
+            state ^= state >> 7;
+            state ^= state << 17;
+            state
+        };
+        (0..1000).map(|_| format!("{:x}", next())).collect::<String>().into_bytes()
+    };
+    let noise = std::sync::Mutex::new(noise);
+    let boat = Boat::sending(move || (noise.lock().expect("one sender"))());
+    let (folder, link) = (Folder::new(), boat.link.reach());
+    let gateway = folder.command(&["surveyor", "--vehicle", "blue_one", "--game", "nowhere", "--link", &link]);
+    // A file of 200 kB is this process's full disk.
+    let limited = "trap '' XFSZ; ulimit -f 400; exec \"$@\"";
+    let mut shell = Command::new("sh");
+    shell.current_dir(folder.0.path()).env("XDG_RUNTIME_DIR", folder.0.path()).args(["-c", limited, "sh"]);
+    shell.arg(gateway.get_program()).args(gateway.get_args()).args(["--record", "run.mcap", "--for-parent"]);
+    let shell = shell.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut running = Running(shell.spawn().expect("it starts"));
+    folder.run_until(&["tell", "blue_one", "status", "--game", "nowhere"], "nothing is recorded any more");
+    drop(running.0.stdin.take());
+    let code = running.0.wait().expect("it ends").code();
+    let (stdout, stderr) = (running.0.stdout.take().expect("piped"), running.0.stderr.take().expect("piped"));
+    let [log, error] =
+        [std::io::read_to_string(stdout), std::io::read_to_string(stderr)].map(|said| said.expect("text"));
+    assert!(log.contains("WARNING: nothing is recorded any more in run.mcap"), "{log}");
+    assert!(code == Some(1) && error.contains("nothing is recorded any more in run.mcap"), "{code:?}: {error}");
+}
+
+/// A GGA of this moment.
+fn gga() -> Vec<u8> {
+    let Sentence::Gga(blank) = Sentence::parse("GPGGA,,,,,,").expect("it is blank") else { panic!("no GGA") };
+    let at = Some(LatLon { lat_deg: 41.3, lon_deg: -74.0 });
+    let time = Some(date_and_time(recording::utc::now_ns()).1);
+    let mut bytes = vec![];
+    Sentence::Gga(Gga { time, at, quality: 1, ..blank }).write(&mut bytes);
+    bytes
+}
+
+#[test]
+fn the_search_for_a_game_is_no_error_of_the_boats_clock() {
+    let (folder, boat) = (Folder::new(), Boat::sending(gga));
+    let link = boat.link.reach();
+    let nobody = std::net::TcpListener::bind("127.0.0.1:0").and_then(|port| port.local_addr()).expect("a port");
+    let connect = format!("tcp/{nobody}");
+    let check = ["check", "--link", &link, "--for-s", "2", "--vehicle", "blue_one", "--game", "nosuch"];
+    // The search ends after five seconds.
+    let (_, said) = folder.run(&[check.as_slice(), &["--connect", &connect]].concat());
+    assert!(said.contains("passed  clock") && said.contains("without a game"), "{said}");
+}
+
+#[test]
+fn a_check_of_a_link_without_sentences_shows_a_line_and_what_is_wrong_with_it() {
+    let (folder, boat) = (Folder::new(), Boat::sending(|| b"$PSEAG,N\r\n".to_vec()));
+    let (output, said) = folder.run(&["check", "--link", &boat.link.reach(), "--for-s", "2"]);
+    assert!(!output.status.success() && said.contains("none a sentence: $PSEAG,N has no checksum"), "{said}");
 }
 
 #[test]

@@ -7,11 +7,17 @@ use crate::config::CurrentWatch;
 use crate::protocol::{Command, Power};
 use crate::set_point::SetPoint;
 use primitives::SimTime;
+use primitives::angle::wrap_pi;
 
 /// A thruster ordered to at least this thrust must draw a current, per cent.
 const ORDERED_MIN_PCT: f64 = 20.0;
 /// Index order of sides: port comes first everywhere.
 const SIDES: [&str; 2] = ["port", "starboard"];
+
+/// From this roll or pitch on a boat may have capsized, degrees: waves do not hold it there ...
+const TILT_MAX_DEG: f64 = 60.0;
+/// ... for this long, s.
+const TILT_S: f64 = 3.0;
 
 /// An abnormal thruster current.
 #[derive(Clone, Copy, Debug, Default)]
@@ -51,6 +57,8 @@ pub(super) struct Alarms {
     error: Option<String>,
     /// The last notice from the boat.
     notice: Option<String>,
+    /// Start of the present tilt, its size, degrees, and whether it has been reported.
+    tilt: Option<(SimTime, f64, bool)>,
     /// Current alarms by fault (order of `WRONGS`), then side (port first).
     currents: [[CurrentAlarm; 2]; 3],
 }
@@ -58,7 +66,7 @@ pub(super) struct Alarms {
 impl Alarms {
     /// No alarms: nothing has been received yet.
     pub(super) fn new(watch: CurrentWatch) -> Alarms {
-        Alarms { watch, error: None, notice: None, currents: Default::default() }
+        Alarms { watch, error: None, notice: None, tilt: None, currents: Default::default() }
     }
 
     /// Clears everything: another boat may be on the link now.
@@ -80,6 +88,21 @@ impl Alarms {
             events.push(Event::Warning(format!("the boat says {text:?}")));
             self.notice = Some(text);
         }
+    }
+
+    /// Checks roll and pitch, degrees.
+    pub(super) fn take_tilt(&mut self, now: SimTime, tilt_deg: [f64; 2], events: &mut Vec<Event>) {
+        let tilt_deg = tilt_deg.map(|deg| wrap_pi(deg.to_radians()).to_degrees().abs());
+        let tilt_deg = tilt_deg[0].max(tilt_deg[1]);
+        let (since, _, was_told) = self.tilt.unwrap_or((now, tilt_deg, false));
+        let is_told = was_told || (now - since).as_s() >= TILT_S;
+        let tilt = Some((since, tilt_deg, is_told)).filter(|_| tilt_deg >= TILT_MAX_DEG);
+        match (was_told, tilt) {
+            (false, Some((_, _, true))) => events.push(Event::Warning(tilt_text(tilt_deg))),
+            (true, None) => events.push(Event::Remark("over: the boat lay on its side".to_owned())),
+            _ => {}
+        }
+        self.tilt = tilt;
     }
 
     /// Checks the measured currents against the command that the boat follows.
@@ -138,7 +161,8 @@ impl Alarms {
             let CurrentAlarm { since, is_told } = self.currents[wrong as usize][side];
             since.filter(|_| is_told).map(|(_, amps)| text(wrong, side, amps))
         });
-        error.chain(currents).collect()
+        let tilt = self.tilt.filter(|(.., is_told)| *is_told).map(|(_, tilt_deg, _)| tilt_text(tilt_deg));
+        error.chain(tilt).chain(currents).collect()
     }
 }
 
@@ -150,6 +174,10 @@ fn ordered_pct(command: Command) -> Option<[f64; 2]> {
         }
         _ => None,
     }
+}
+
+fn tilt_text(tilt_deg: f64) -> String {
+    format!("the boat is tilted by {tilt_deg:.0} degrees: it may have capsized")
 }
 
 fn error_text(code: &str) -> String {
@@ -228,6 +256,30 @@ mod tests {
         assert_eq!(take(7.0, 0.8), (1, 1));
         assert_eq!(take(8.0, 0.9), (1, 1));
         assert_eq!(take(9.0, 0.0), (0, 2));
+    }
+
+    #[test]
+    fn a_boat_on_its_side_is_an_alarm_and_a_wave_is_none() {
+        for (tilt_deg, told) in [
+            ([170.0, 0.0], "the boat is tilted by 170 degrees: it may have capsized"),
+            ([-95.0, 3.0], "the boat is tilted by 95 degrees"),
+            ([190.0, 3.0], "the boat is tilted by 170 degrees"),
+            ([0.0, 80.0], "the boat is tilted by 80 degrees"),
+            ([40.0, -30.0], ""),
+            ([359.0, 0.0], ""),
+        ] {
+            let (mut alarms, mut events) = (Alarms::new(WATCH), vec![]);
+            let mut take = |s: f64, tilt_deg| {
+                alarms.take_tilt(SimTime::from_s(s), tilt_deg, &mut events);
+                (alarms.texts(), events.len())
+            };
+            assert_eq!(take(0.0, tilt_deg), (vec![], 0));
+            assert_eq!(take(2.9, tilt_deg), (vec![], 0));
+            let (texts, events) = take(3.0, tilt_deg);
+            assert_eq!((texts.len(), events), (usize::from(!told.is_empty()), texts.len()), "{texts:?}");
+            assert!(texts.iter().all(|text| text.starts_with(told)), "{texts:?}");
+            assert_eq!(take(4.0, [0.0; 2]).0, Vec::<String>::new());
+        }
     }
 
     #[test]

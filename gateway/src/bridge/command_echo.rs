@@ -104,6 +104,7 @@ impl CommandEcho {
     pub(super) fn observe(&mut self, now: SimTime, mut shown: Shown) {
         // A boat that has never echoed a nonzero heading of ours may report 0 for all of them.
         shown.heading_deg = shown.heading_deg.filter(|deg| *deg != 0.0 || self.has_shown_set_point);
+        let is_on_its_way = self.is_on_its_way(&shown);
         let is_new = self.last.replace(shown).is_none_or(|last| !last.agrees(&shown, self.watch.echo_thrust_pct));
         let was_ours = std::mem::take(&mut self.is_ours);
         if self.sent.iter().any(|(_, sent)| sent.agrees(&shown, self.watch.echo_thrust_pct)) {
@@ -122,7 +123,7 @@ impl CommandEcho {
         // the boat's own doing (a button, a failsafe), so it must repeat: a single fallback to
         // standby is caught by the mode mismatch.
         if shown.mode.is_set_point() {
-            if is_new && knows {
+            if is_new && knows && !is_on_its_way {
                 self.foreign_at = Some(now);
             }
         } else if was_ours {
@@ -132,6 +133,23 @@ impl CommandEcho {
                 self.foreign_at = Some(now);
             }
         }
+    }
+
+    /// Whether thrust and difference lie between what the boat showed last and what it was sent: so shows a boat that reports
+    /// the thrust that it applies, which follows with a lag, in place of its command. Another gateway's set-points jump.
+    fn is_on_its_way(&self, shown: &Shown) -> bool {
+        let Some(last) = self.last.filter(|last| last.mode == Mode::Thruster && shown.mode == Mode::Thruster) else {
+            return false;
+        };
+        let is_between = |of: fn(&Shown) -> Option<f64>| {
+            let sent = self.sent.iter().filter_map(|(_, sent)| of(sent));
+            let (low, high) = sent
+                .chain(of(&last))
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), pct| (low.min(pct), high.max(pct)));
+            let apart = self.watch.echo_thrust_pct;
+            of(shown).is_none_or(|pct| (low - apart..=high + apart).contains(&pct))
+        };
+        is_between(|shown| shown.thrust) && is_between(|shown| shown.difference)
     }
 
     /// Whether the boat has recently echoed a command that we have not sent.
@@ -144,5 +162,42 @@ impl CommandEcho {
         // A boat that has echoed our set-points has used up its grace period.
         let patience_s = if self.has_shown_set_point { 0.0 } else { self.watch.echo_s };
         self.unlike_since.is_some_and(|since| (now - since).as_s() >= patience_s)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use primitives::math;
+
+    fn thrust(thrust: f64) -> Shown {
+        Shown { mode: Mode::Thruster, heading_deg: None, thrust: Some(thrust), difference: Some(0.0) }
+    }
+
+    /// What is found when the boat shows these thrusts, ten a second, after 20 % and then 60 % were sent.
+    fn found(shows: &[f64]) -> (bool, bool) {
+        let mut echo = CommandEcho::new(crate::config::default_gateway().control);
+        let at = |tenth: usize| SimTime::from_s(0.1 * tenth as f64);
+        echo.note_sent(at(0), thrust(20.0));
+        echo.observe(at(1), thrust(20.0));
+        echo.note_sent(at(2), thrust(60.0));
+        for (i, pct) in shows.iter().enumerate() {
+            echo.note_sent(at(3 + i), thrust(60.0));
+            echo.observe(at(3 + i), thrust(*pct));
+        }
+        let now = at(3 + shows.len());
+        (echo.is_foreign(now), echo.is_deaf(now))
+    }
+
+    #[test]
+    fn a_boat_that_shows_its_applied_thrust_has_no_second_gateway() {
+        let lagging: Vec<f64> = (0..40).map(|i| (60.0 - 40.0 * math::exp(-0.1 * f64::from(i))).round()).collect();
+        assert_eq!(found(&lagging[..20]), (false, true), "it does not show what it was sent");
+        assert_eq!(found(&lagging), (false, false), "it does in the end");
+        let mut later = vec![60.0; 20];
+        later.push(30.0);
+        for another in [&[90.0][..], &[60.0, -40.0, 60.0], &later] {
+            assert!(found(another).0, "{another:?} is another one's thrust");
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! The interface of a bridge: its inputs and outputs.
 
 use crate::config::{CompassFrame, Gateway};
+use crate::geofence::Coasting;
 use messages::Order;
 use messages::external::{FleetCommand, OperatorCommand};
 use messages::picture::Nav;
@@ -61,6 +62,9 @@ pub struct Site {
     pub length_m: f64,
     /// Magnetic declination, east positive, rad.
     pub declination_rad: f64,
+    /// How the boat coasts, if its boat file is known.
+    #[serde(default)]
+    pub coasting: Option<Coasting>,
 }
 
 impl Site {
@@ -126,6 +130,8 @@ pub struct Output {
     pub refused: Option<String>,
     /// Whether the bytes carry an order for the first time.
     pub carries_order: bool,
+    /// Whether the bytes stop the boat.
+    pub stops: bool,
 }
 
 /// Navigation data for the sim.

@@ -8,6 +8,7 @@ mod alarms;
 mod battery;
 mod clock_watch;
 mod command_echo;
+mod conditions;
 mod control;
 mod interface;
 mod on_site;
@@ -20,9 +21,7 @@ mod stop;
 use crate::nmea::Mode;
 use crate::protocol::{Command, Protocol, Report, UploadStep};
 use crate::set_point::SetPoint;
-use crate::supervisor::{
-    Action, Conditions, Control, NavFault, OperatorRequest, Refusal, Scope, State, Step, Supervisor, Task,
-};
+use crate::supervisor::{Action, Conditions, Control, OperatorRequest, Refusal, Scope, State, Step, Supervisor, Task};
 pub use interface::{Event, Input, NavOut, Output, Plan, Preflight, Site};
 
 use crate::config::{Gateway, SwitchWord};
@@ -43,8 +42,6 @@ use std::collections::VecDeque;
 
 /// Minimum interval between two new orders, s.
 const GAP_MIN_S: f64 = 0.045;
-/// Positions of other boats expire after this time, s.
-const OTHERS_AGE_MAX_S: f64 = 2.0;
 /// A task that the boat does not report is sent again after this time, s.
 const TASK_AGAIN_S: f64 = 1.0;
 /// Interval between reports of invalid navigation, s.
@@ -244,6 +241,7 @@ impl Bridge {
                 let command = self.last_sent.map(|(_, command)| command);
                 self.alarms.take_power(now, &power, command, &mut out.events);
             }
+            Report::Tilt(tilt_deg) => self.alarms.take_tilt(now, tilt_deg, &mut out.events),
             Report::Error(error) => self.alarms.take_error(error, &mut out.events),
             Report::Notice(text) => self.alarms.take_notice(text, &mut out.events),
             Report::Clock(time) => {
@@ -403,6 +401,7 @@ impl Bridge {
             self.protocol.write(now, Command::Zero, &mut out.bytes);
         }
         self.under_way |= action == Action::Follow;
+        out.stops = matches!(action, Action::Standby | Action::Zero);
         self.protocol.write(now, command, &mut out.bytes);
         out.carries_order = action == Action::Follow && self.order_is_new;
         if out.carries_order {
@@ -425,7 +424,9 @@ impl Bridge {
         let set_point = site.set_points.map(now, order, &nav);
         // In a dry run the boat receives no set-points, so it need not move.
         if !self.plan.dry_run {
-            site.estimator.note_order(now, site.set_points.ordered(order, set_point));
+            let ordered = site.set_points.ordered(order, set_point);
+            site.estimator.note_order(now, ordered);
+            site.geofence.note_order(now, ordered.ahead_m_s, (nav.psi_rad, nav.velocity_m_s()));
         }
         Some(set_point)
     }
@@ -466,41 +467,6 @@ impl Bridge {
         if (is_new && valid) || valid != reported_valid || overdue {
             self.nav_reported = (now, valid);
             out.nav = Some(NavOut { nav, valid, age_s });
-        }
-    }
-
-    fn conditions_at(&mut self, now: SimTime) -> Conditions {
-        let (others_at, others) = &self.others;
-        let known: &[Ned] = if (now - *others_at).as_s() <= OTHERS_AGE_MAX_S { others } else { &[] };
-        let (mut nav_fault, mut thrust_fault) = (Some(NavFault::NoField), None);
-        let (mut inside, mut blocked, mut recovery_point) = (false, false, false);
-        if let Some(site) = &mut self.on_site {
-            recovery_point = self.recovery_point.taken().is_some_and(|erp| site.is_way_to(now, erp));
-            let OnSite { estimator, geofence, bow, .. } = site;
-            (nav_fault, thrust_fault) = (estimator.fault(now), estimator.thrust_fault(now));
-            if let Some((nav, _)) = estimator.nav(now) {
-                // Use the faster of reported and measured speed at once: a log stuck at zero would
-                // otherwise let the boat run into the fence before the instrument check finds it.
-                inside = geofence.is_inside(now, nav.at(), estimator.fastest_velocity_m_s());
-                blocked = bow.is_blocked(now, &nav, known);
-            }
-        }
-        // The age counts from arrival by our own clock: the clocks of sim and gateway are not
-        // synchronised.
-        let ttl_s = self.plan.gateway.order_ttl_s;
-        let order_fresh = self.order.is_some_and(|current| (now - current.came).as_s() <= ttl_s);
-        Conditions {
-            link: self.link_up,
-            hung_s: self.hung_s,
-            control: self.control.control(now),
-            nav: nav_fault,
-            thrust: thrust_fault,
-            recovery_point,
-            inside,
-            battery_low: self.battery.is_low(now),
-            blocked,
-            order_fresh,
-            may_rearm: self.rearm.is_allowed(now, order_fresh),
         }
     }
 }

@@ -33,7 +33,7 @@ impl OnSite {
         OnSite {
             set_points: SetPointMapper::new(gateway, compass_to_true_rad),
             estimator: NavEstimator::new(frame, *nav, compass_to_true_rad, limits.speed_max_m_s),
-            geofence: GeofenceWatch::new(&site.field, geofence),
+            geofence: GeofenceWatch::new(&site.field, geofence, site.coasting),
             bow: BowWatch::new(*halt, site.length_m),
         }
     }
@@ -82,8 +82,9 @@ impl OnSite {
     /// The geofence, for display.
     pub(super) fn geofence_report(&self, now: SimTime) -> GeofenceReport {
         let area = self.geofence.area();
-        let at = self.estimator.nav(now).map(|(nav, _)| nav.at());
-        let way = self.geofence.stopping_way(self.estimator.fastest_velocity_m_s());
+        let nav = self.estimator.nav(now).map(|(nav, _)| nav);
+        let (at, yaw_rate_rad_s) = (nav.map(|nav| nav.at()), nav.map_or(0.0, |nav| nav.yaw_rate_rad_s));
+        let way = self.geofence.stopping_way(now, (self.estimator.fastest_velocity_m_s(), yaw_rate_rad_s));
         GeofenceReport {
             outline: area.outline.clone(),
             keep_out: area.keep_out.clone(),

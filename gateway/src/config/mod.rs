@@ -228,16 +228,26 @@ pub struct Geofence {
     /// Margin around the field without a `polygon`, m.
     #[schemars(range(min = 0, max = 10000), extend("default" = 30))]
     pub margin_m: f64,
-    /// Deceleration of the boat at zero thrust, m/s².
+    /// Measured stopping distances at zero thrust: pairs of speed through water in m/s and distance in m. They replace
+    /// `deceleration_m_s2`.
+    #[schemars(with = "Vec<SpeedAndDistance>", length(max = 50), extend("default" = Vec::<f64>::new()))]
+    pub coast_m: Vec<(f64, f64)>,
+    /// Deceleration at zero thrust, m/s². The resistance in the boat file is used instead where it gives a longer distance.
     #[schemars(range(min = 0.01, max = 10), extend("default" = 0.25))]
     pub deceleration_m_s2: f64,
-    /// Time before deceleration starts, s.
+    /// Time before deceleration starts, s; at least `debounce_s` plus 0.5 s.
     #[schemars(range(min = 0, max = 10), extend("default" = 1))]
     pub reaction_s: f64,
     /// Duration of a violation before it counts, s.
     #[schemars(range(min = 0, max = 10), extend("default" = 0.5))]
     pub debounce_s: f64,
 }
+
+/// A speed, m/s, and the stopping distance from it, m.
+#[derive(JsonSchema)]
+#[schemars(inline)]
+#[expect(dead_code, reason = "the schema of a pair")]
+struct SpeedAndDistance(#[schemars(range(min = 0.1, max = 60))] f64, #[schemars(range(min = 0.1, max = 10000))] f64);
 
 /// A box ahead of the boat, its length proportional to speed, in which no other real boat may be.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -1,30 +1,76 @@
 //! The geofence: where a boat may be, and whether it can stop there.
 
 mod area;
+mod coasting;
 #[cfg(test)]
 mod tests;
 
 pub use area::{GeofenceArea, GeofenceError};
+pub use coasting::{Coasting, DriftEstimate, Glide, Leg};
 
 use crate::config::Geofence;
 use primitives::SimTime;
 use primitives::frame::Ned;
 use rules::field::Field;
 
+/// From the end of the debounce time to thrust zero at the boat, s: a tick, the link, the boat's own cycle.
+const COMMAND_S: f64 = 0.5;
+/// A breach by drift is over when the path has been free for longer than this, s.
+const BREACH_ENDS_S: f64 = 2.0;
+
 /// Watches that a boat is inside of the geofence and can stop there.
 #[derive(Clone, Debug)]
 pub struct GeofenceWatch {
     area: GeofenceArea,
     rules: Geofence,
-    /// Since when the boat is outside or about to be.
-    since: Option<SimTime>,
+    /// `None` where no boat file is known.
+    coasting: Option<Coasting>,
+    drift: DriftEstimate,
+    /// Whether the boat is outside or about to be: straight on, and as it drifts and turns.
+    straight: Breach,
+    drifting: Breach,
+}
+
+/// A breach, from its beginning.
+#[derive(Clone, Copy, Debug, Default)]
+struct Breach {
+    /// Since when, and when it was last seen.
+    between: Option<(SimTime, SimTime)>,
+}
+
+impl Breach {
+    /// Whether all is well or has not been amiss for as long as `debounce_s`. It must be sound for longer than `ends_s`
+    /// before a breach is over.
+    fn is_well(&mut self, now: SimTime, is_sound: bool, (debounce_s, ends_s): (f64, f64)) -> bool {
+        if is_sound {
+            self.between = self.between.filter(|(_, last)| (now - *last).as_s() <= ends_s);
+            return true;
+        }
+        let since = self.between.map_or(now, |(since, _)| since);
+        self.between = Some((since, now));
+        (now - since).as_s() < debounce_s
+    }
 }
 
 impl GeofenceWatch {
-    /// The geofence on this field.
+    /// The geofence on this field, for a boat that coasts like this.
     #[must_use]
-    pub fn new(field: &Field, rules: &Geofence) -> GeofenceWatch {
-        GeofenceWatch { area: GeofenceArea::new(field, rules), rules: rules.clone(), since: None }
+    pub fn new(field: &Field, rules: &Geofence, coasting: Option<Coasting>) -> GeofenceWatch {
+        let mut watch = GeofenceWatch::of_area(GeofenceArea::new(field, rules), rules);
+        watch.coasting = coasting.map(|coasting| coasting.as_measured(&rules.coast_m));
+        watch
+    }
+
+    fn of_area(area: GeofenceArea, rules: &Geofence) -> GeofenceWatch {
+        let (straight, drifting) = (Breach::default(), Breach::default());
+        GeofenceWatch {
+            area,
+            rules: rules.clone(),
+            coasting: None,
+            drift: DriftEstimate::default(),
+            straight,
+            drifting,
+        }
     }
 
     /// Where the boat may be.
@@ -33,26 +79,79 @@ impl GeofenceWatch {
         &self.area
     }
 
-    /// Whether a boat here with this velocity over the ground is inside and can stop inside. A breach counts after the
-    /// debounce time.
-    pub fn is_inside(&mut self, now: SimTime, at: Ned, velocity_m_s: Ned) -> bool {
-        // The whole way is checked and not its end: the end alone could lie beyond a keep-out
-        // or an inward corner.
-        if self.area.contains_way(at, at + self.stopping_way(velocity_m_s)) {
-            self.since = None;
-            return true;
+    /// The boat is sent a set-point of this steady speed ahead, m/s, at this heading and velocity over the ground.
+    pub fn note_order(&mut self, now: SimTime, ahead_m_s: f64, motion: (f64, Ned)) {
+        if let Some(coasting) = &self.coasting {
+            self.drift.observe(coasting, now, ahead_m_s, motion);
         }
-        let since = *self.since.get_or_insert(now);
-        // A fix that scatters across the line once is no breach.
-        (now - since).as_s() < self.rules.debounce_s
     }
 
-    /// The way to rest, m: reaction time at its speed, then v² / (2 a).
+    /// Whether a boat here with this velocity over the ground and rate of turn is inside and can stop inside. A breach
+    /// counts after the debounce time.
+    pub fn is_inside(&mut self, now: SimTime, at: Ned, motion: (Ned, f64)) -> bool {
+        // The whole way is checked and not its end: the end alone could lie beyond a keep-out
+        // or an inward corner.
+        let is_sound = |path: &Vec<Leg>| {
+            let mut from = at;
+            path.iter().all(|leg| {
+                let end = at + leg.end;
+                let is_inside = self.area.contains_way(from, end);
+                from = end;
+                is_inside && (leg.slack_m == 0.0 || self.area.clearance_m(end) >= leg.slack_m)
+            })
+        };
+        let is_straight_sound = self.area.contains(at) && self.straight_paths(motion.0).iter().all(is_sound);
+        let is_drift_sound = self.drifting_path(now, motion).iter().all(is_sound);
+        // A fix that scatters across the line once is no breach. In waves a boat yaws to and fro, and its path to rest
+        // with it: there, one that is free for a moment does not end a breach.
+        let is_well = [
+            self.straight.is_well(now, is_straight_sound, (self.rules.debounce_s, 0.0)),
+            self.drifting.is_well(now, is_drift_sound, (self.rules.debounce_s, BREACH_ENDS_S)),
+        ];
+        is_well == [true; 2]
+    }
+
+    /// The ways to rest that the boat must have free, from where it is: straight on as in still water, ...
+    fn straight_paths(&self, velocity_m_s: Ned) -> Vec<Vec<Leg>> {
+        let Geofence { deceleration_m_s2, coast_m, .. } = &self.rules;
+        let (speed_m_s, reaction_s) = (velocity_m_s.length(), self.reaction_s());
+        // v t + v²/2a: it holds without a boat file, and above all at high speed. The resistance of water
+        // falls with the speed, so that below 2 m/s boats coast farther than with any one deceleration.
+        let braked = velocity_m_s.scaled(reaction_s + speed_m_s / (2.0 * deceleration_m_s2));
+        let braked = Leg { end: braked, slack_m: 0.0 };
+        let Some(coasting) = &self.coasting else { return vec![vec![braked]] };
+        let still = Glide {
+            water_m_s: velocity_m_s,
+            drift_m_s: Ned::default(),
+            thrust_m_s: speed_m_s,
+            yaw_rate_rad_s: 0.0,
+            reaction_s,
+        };
+        let mut paths = vec![coasting.path(&still)];
+        if coast_m.is_empty() {
+            // What was measured is better than an assumption.
+            paths.push(vec![braked]);
+        }
+        paths
+    }
+
+    /// ... and with the drift and the turn that are observed.
+    fn drifting_path(&self, now: SimTime, (velocity_m_s, yaw_rate_rad_s): (Ned, f64)) -> Option<Vec<Leg>> {
+        let coasting = self.coasting.as_ref().filter(|_| self.drift.is_fresh(now))?;
+        let DriftEstimate { drift_m_s, thrust_m_s, .. } = self.drift;
+        let (water_m_s, thrust_m_s, reaction_s) = (velocity_m_s - drift_m_s, thrust_m_s.abs(), self.reaction_s());
+        Some(coasting.path(&Glide { water_m_s, drift_m_s, thrust_m_s, yaw_rate_rad_s, reaction_s }))
+    }
+
+    fn reaction_s(&self) -> f64 {
+        self.rules.reaction_s.max(self.rules.debounce_s + COMMAND_S)
+    }
+
+    /// Where the boat comes to rest, m from here, by the longest of the ways that are reckoned with.
     #[must_use]
-    pub fn stopping_way(&self, velocity_m_s: Ned) -> Ned {
-        let speed_m_s = velocity_m_s.length();
-        // v t + v²/2a. From 3 m/s a Surveyor needs some 18 m at the 0.25 m/s² that is estimated
-        // for it, which is more than most people expect.
-        velocity_m_s.scaled(self.rules.reaction_s + speed_m_s / (2.0 * self.rules.deceleration_m_s2))
+    pub fn stopping_way(&self, now: SimTime, motion: (Ned, f64)) -> Ned {
+        let paths = self.straight_paths(motion.0).into_iter().chain(self.drifting_path(now, motion));
+        let ends = paths.filter_map(|path| Some(path.last()?.end));
+        ends.max_by(|a, b| a.length().total_cmp(&b.length())).unwrap_or_default()
     }
 }

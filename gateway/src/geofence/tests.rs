@@ -33,21 +33,63 @@ fn a_boat_must_be_inside_and_able_to_stop_inside() {
         (190.1, 40.0, -3.0, false),
         (80.0, -30.1, 0.0, false),
     ] {
-        let mut geofence = GeofenceWatch::new(&field(), &rules());
+        let mut geofence = GeofenceWatch::new(&field(), &rules(), None);
         let velocity = Ned { north: 0.0, east: east_m_s };
-        geofence.is_inside(at(0.0), Ned::from_xy(x, y), velocity);
-        assert_eq!(geofence.is_inside(at(0.5), Ned::from_xy(x, y), velocity), inside, "{x}, {y} at {east_m_s}");
+        geofence.is_inside(at(0.0), Ned::from_xy(x, y), (velocity, 0.0));
+        assert_eq!(geofence.is_inside(at(0.5), Ned::from_xy(x, y), (velocity, 0.0)), inside, "{x}, {y} at {east_m_s}");
+    }
+}
+
+/// The Surveyor of the shipped boat files.
+fn surveyor() -> Coasting {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/boats/surveyor_m1_8.toml");
+    Coasting::of(&scenario::load_file(&path).unwrap_or_else(|problems| panic!("{problems}")))
+}
+
+/// M / q ln(1 + q v / l), which is how far a hull coasts from a speed.
+fn coasted_m(coasting: &Coasting, speed_m_s: f64) -> f64 {
+    let Coasting { mass_kg, linear_kg_s, quadratic_kg_m, .. } = *coasting;
+    mass_kg / quadratic_kg_m * (quadratic_kg_m * speed_m_s / linear_kg_s).ln_1p()
+}
+
+#[test]
+fn a_boat_coasts_as_far_as_its_file_says_or_as_was_measured() {
+    let surveyor = surveyor();
+    for (speed_m_s, glides_m) in [(0.5, 3.3), (1.0, 5.2), (1.5, 6.5), (3.0, 9.0)] {
+        let exact_m = coasted_m(&surveyor, speed_m_s);
+        assert!((exact_m - glides_m).abs() < 0.1, "{exact_m} m from {speed_m_s} m/s");
+        let found_m = surveyor.distance_m(speed_m_s);
+        assert!(found_m > exact_m - 0.1 && found_m < exact_m + 0.5, "{found_m} m from {speed_m_s} m/s, {exact_m}");
+    }
+    let measured = surveyor.as_measured(&[(0.5, 5.0), (2.0, 7.0)]);
+    assert!((measured.distance_m(0.5) - 5.0).abs() < 0.3 && measured.distance_m(2.0) > 7.0);
+    assert!(surveyor.as_measured(&[(1.0, 2.0)]).distance_m(1.0) < 2.5, "it is better than the file says");
+}
+
+#[test]
+fn a_slow_boat_keeps_the_distance_that_it_coasts() {
+    // The edge lies at x = 190 m. By v²/2a alone the first would need 1.0 m.
+    for (speed_m_s, least_m) in [(0.5, 3.5), (1.0, 6.0), (1.5, 8.0), (3.0, 21.0)] {
+        let mut geofence = GeofenceWatch::new(&field(), &rules(), Some(surveyor()));
+        let velocity = Ned { north: 0.0, east: speed_m_s };
+        let mut inside = |clearance_m: f64| {
+            geofence.straight = Breach::default();
+            let at_edge = Ned::from_xy(190.0 - clearance_m, 40.0);
+            geofence.is_inside(at(0.0), at_edge, (velocity, 0.0));
+            geofence.is_inside(at(0.5), at_edge, (velocity, 0.0))
+        };
+        assert!(!inside(least_m) && inside(least_m + 4.0), "{speed_m_s} m/s");
     }
 }
 
 #[test]
 fn one_fix_outside_is_not_enough() {
-    let mut geofence = GeofenceWatch::new(&field(), &rules());
+    let mut geofence = GeofenceWatch::new(&field(), &rules(), None);
     let (inside, outside) = (Ned::from_xy(80.0, 40.0), Ned::from_xy(80.0, 400.0));
     for (seconds, place, want) in
         [(0.0, outside, true), (0.4, outside, true), (0.45, inside, true), (0.6, outside, true), (1.2, outside, false)]
     {
-        assert_eq!(geofence.is_inside(at(seconds), place, Ned::default()), want, "{seconds}");
+        assert_eq!(geofence.is_inside(at(seconds), place, (Ned::default(), 0.0)), want, "{seconds}");
     }
 }
 
@@ -152,9 +194,9 @@ proptest! {
     ) {
         let rules = Geofence { debounce_s: 0.0, ..rules() };
         let Geofence { reaction_s, deceleration_m_s2, .. } = rules;
-        let mut watch = GeofenceWatch { area: area.clone(), rules, since: None };
+        let mut watch = GeofenceWatch::of_area(area.clone(), &rules);
         let toward = Ned::toward_deg(toward_deg);
-        prop_assume!(watch.is_inside(SimTime::ZERO, from, toward.scaled(speed_m_s)));
+        prop_assume!(watch.is_inside(SimTime::ZERO, from, (toward.scaled(speed_m_s), 0.0)));
         let brakes_for_s = speed_m_s / deceleration_m_s2;
         for tick in 0..=(20.0 * (reaction_s + brakes_for_s)) as u32 {
             let elapsed_s = f64::from(tick) / 20.0;
@@ -199,9 +241,9 @@ fn a_concave_geofence_and_a_keep_out_count_on_all_of_the_way_to_rest() {
         (122.0, 52.0, 0.0, false),
         (122.0, 48.0, 0.0, true),
     ] {
-        let mut geofence = GeofenceWatch::new(&field, &rules);
+        let mut geofence = GeofenceWatch::new(&field, &rules, None);
         let velocity = Ned { north: 0.0, east: east_m_s };
-        assert_eq!(geofence.is_inside(at(0.0), Ned::from_xy(x, y), velocity), inside, "{x}, {y} at {east_m_s}");
+        assert_eq!(geofence.is_inside(at(0.0), Ned::from_xy(x, y), (velocity, 0.0)), inside, "{x}, {y} at {east_m_s}");
     }
 }
 

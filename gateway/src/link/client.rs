@@ -14,8 +14,9 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Maximum time of an attempt to connect.
-const CONNECT: Duration = Duration::from_secs(2);
+/// Maximum time of an attempt to connect. The wait between attempts counts from the start of each, so a boat that
+/// becomes reachable is connected within a second.
+const CONNECT: Duration = Duration::from_secs(1);
 
 /// How often an attempt is polled.
 // A blocking connect cannot be interrupted: a gateway asked to exit would wait for an address that
@@ -33,6 +34,7 @@ pub(super) fn run(threads: &Arc<Threads>, address: &LinkAddress) {
     let mut backoff = Backoff::new(threads.settings.retry_first, threads.settings.retry_max);
     let mut seen = threads.reconnects();
     loop {
+        let begun_at = clock::now();
         let connection = connect(threads, address).and_then(|(port, name)| Connection::open(threads, port, name));
         let mut wait = match connection {
             Ok(connection) => {
@@ -41,7 +43,9 @@ pub(super) fn run(threads: &Arc<Threads>, address: &LinkAddress) {
             }
             Err(_) if threads.is_stopped() => return,
             Err(e) => {
-                let retry_in = backoff.wait();
+                let (wait, took) = (backoff.wait(), clock::since(begun_at));
+                // An attempt that nobody answered has taken its wait already.
+                let retry_in = if took < wait / 2 { wait } else { wait.saturating_sub(took) };
                 threads.emit(LinkEvent::Failed { reason: format!("{address}: {e}"), retry_in });
                 retry_in
             }

@@ -2,6 +2,7 @@
 
 use super::LinkEvent;
 use super::clock::{self, TICK};
+use super::outbox::Priority;
 use super::peer::{End, Peer};
 use super::port::{Port, Received, Wrote};
 use super::threads::Threads;
@@ -12,6 +13,9 @@ use std::time::{Duration, Instant};
 
 /// Maximum bytes per event; a datagram fits.
 pub(super) const CHUNK: usize = 64 * 1024;
+
+/// A serial adapter forwards bytes within this time.
+const SETTLED: Duration = Duration::from_millis(30);
 
 /// A connection to a peer that is up. Dropping it ends it; [`Connection::close`] also emits [`LinkEvent::Down`].
 pub(super) struct Connection {
@@ -115,7 +119,12 @@ impl Drop for Connection {
 
 /// Writes queued bytes until the connection ends.
 fn write_on(peer: &Peer, threads: &Threads) {
+    let mut settled_at = clock::now();
     while let Some(request) = peer.outbox.next() {
+        // Bytes that should have left long ago are waiting in a stalled line.
+        if request.priority() != Priority::Normal && clock::since(settled_at) >= SETTLED {
+            peer.port.discard_unsent();
+        }
         let (begun_at, transit) = (clock::now(), peer.port.transit(request.bytes().len()));
         match peer.port.write(request.bytes(), || peer.is_over()) {
             Ok(Wrote::All) => {
@@ -132,5 +141,6 @@ fn write_on(peer: &Peer, threads: &Threads) {
         while clock::since(begun_at) < transit && !peer.is_over() {
             threads.sleep(transit.saturating_sub(clock::since(begun_at)).min(TICK));
         }
+        settled_at = clock::now();
     }
 }

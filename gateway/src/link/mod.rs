@@ -156,6 +156,12 @@ pub trait BoatLink {
     /// Queues bytes without blocking. Displaces queued bytes whose write has not begun.
     fn send(&self, bytes: Vec<u8>, tag: u64);
 
+    /// Like [`BoatLink::send`], for a command that stops the boat: discards earlier commands that wait in a stalled line,
+    /// where possible.
+    fn send_stop(&self, bytes: Vec<u8>, tag: u64) {
+        self.send(bytes, tag);
+    }
+
     /// The number of displaced writes so far.
     fn displaced(&self) -> u64;
 
@@ -216,6 +222,11 @@ impl Link {
         drop(self.threads.enqueue(bytes, Some(tag), Priority::Normal));
     }
 
+    /// Like [`Link::send`], for a command that stops the boat: discards what a serial line still holds of earlier commands.
+    pub fn send_stop(&self, bytes: Vec<u8>, tag: u64) {
+        drop(self.threads.enqueue(bytes, Some(tag), Priority::Stop));
+    }
+
     /// The number of displaced writes so far, over all peers.
     #[must_use]
     pub fn displaced(&self) -> u64 {
@@ -238,6 +249,10 @@ impl Link {
 impl BoatLink for Link {
     fn send(&self, bytes: Vec<u8>, tag: u64) {
         Link::send(self, bytes, tag);
+    }
+
+    fn send_stop(&self, bytes: Vec<u8>, tag: u64) {
+        Link::send_stop(self, bytes, tag);
     }
 
     fn displaced(&self) -> u64 {

@@ -8,6 +8,8 @@ use std::time::Duration;
 pub(super) enum Priority {
     /// Displaced by any later request.
     Normal,
+    /// Like normal, but first discards what the system still holds of earlier requests.
+    Stop,
     /// Not displaced by normal requests: a stop must not lose the race against a set-point.
     Shutdown,
 }
@@ -78,6 +80,10 @@ impl WriteRequest {
         &self.bytes
     }
 
+    pub(super) fn priority(&self) -> Priority {
+        self.priority
+    }
+
     /// Notes that the peer accepted the bytes. Returns the tag after the last peer.
     pub(super) fn settle(mut self) -> Option<u64> {
         self.taken = true;
@@ -104,7 +110,7 @@ impl Outbox {
         if state.shut {
             return false;
         }
-        if request.priority == Priority::Normal
+        if request.priority != Priority::Shutdown
             && state.queued.as_ref().is_some_and(|queued| queued.priority == Priority::Shutdown)
         {
             // Nothing may displace the final message to a boat.

@@ -161,6 +161,14 @@ impl Port {
         }
     }
 
+    /// Discards what a serial line has accepted but not sent. No test covers it: pseudo-terminals hold nothing back.
+    pub(super) fn discard_unsent(&self) {
+        if let Port::Serial { line, .. } = self {
+            // If it cannot be discarded, it is sent as before.
+            drop(line.discard_output_buffer());
+        }
+    }
+
     /// The time to transmit so many bytes, where it is long. A serial driver accepts 4 KiB at once, which at
     /// 4800 baud are 8 s of old commands.
     pub(super) fn transit(&self, count: usize) -> Duration {

@@ -97,9 +97,19 @@ impl Date {
     /// Whether the calendar has this date.
     #[must_use]
     pub fn is_valid(self) -> bool {
-        Month::try_from(self.month)
-            .and_then(|month| time::Date::from_calendar_date(i32::from(self.year), month, self.day))
-            .is_ok()
+        self.in_calendar().is_some()
+    }
+
+    /// The days from `other` to this date, negative if this one is earlier.
+    #[must_use]
+    pub fn days_since(self, other: Date) -> i64 {
+        let day = |date: Date| date.in_calendar().map_or(0, |date| i64::from(date.to_julian_day()));
+        day(self) - day(other)
+    }
+
+    fn in_calendar(self) -> Option<time::Date> {
+        let month = Month::try_from(self.month).ok()?;
+        time::Date::from_calendar_date(i32::from(self.year), month, self.day).ok()
     }
 }
 

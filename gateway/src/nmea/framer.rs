@@ -27,8 +27,17 @@ pub struct Counts {
     pub overlong: u64,
     /// Bytes outside of sentences, CR and LF not counted. The rest of a sentence that was given up is outside.
     pub garbage: u64,
-    /// A `$` that no well-formed end followed: another `$`, a control or non-ASCII byte, or a missing checksum.
+    /// A `$` that no well-formed end followed: a control or non-ASCII byte, or a missing checksum.
     pub broken: u64,
+}
+
+/// A line that began like a sentence and was none.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Rejected {
+    /// The line from its `$` on, as far as it was kept.
+    pub line: String,
+    /// What is wrong with it.
+    pub why: &'static str,
 }
 
 /// Cuts a byte stream into sentences.
@@ -38,6 +47,7 @@ pub struct Framer {
     /// How much of `content` is filled; none outside of a sentence.
     filled: Option<usize>,
     counts: Counts,
+    rejected: Option<Rejected>,
 }
 
 impl Default for Framer {
@@ -50,20 +60,21 @@ impl Framer {
     /// A framer that waits for its first `$`.
     #[must_use]
     pub fn new() -> Framer {
-        Framer { content: [0; CONTENT_MAX], filled: None, counts: Counts::default() }
+        Framer { content: [0; CONTENT_MAX], filled: None, counts: Counts::default(), rejected: None }
     }
 
     /// Takes bytes as they come (any split, any garbage); calls `take` with the body (between `$` and `*`, ASCII)
     /// of each sentence with a right checksum, in order.
     ///
-    /// A sentence ends with CR or LF, whichever comes first, so a peer that sends only one of them is read too.
+    /// A sentence ends with CR, LF or the next `$`, whichever comes first, so a peer that sends only one of them is read
+    /// too. Blanks and NULs after the checksum are padding.
     pub fn push(&mut self, bytes: &[u8], take: &mut dyn FnMut(&str)) {
         for &byte in bytes {
             match (byte, self.filled) {
                 // The start may be in the middle of a sentence that was cut off: gpsd, for
                 // example, writes probes and binary bytes into the stream of a boat.
                 (b'$', filled) => {
-                    self.counts.broken += u64::from(filled.is_some());
+                    filled.into_iter().for_each(|filled| self.end(filled, take));
                     self.filled = Some(0);
                 }
                 (b'\r' | b'\n', None) => {}
@@ -73,7 +84,9 @@ impl Framer {
                     self.content[filled] = byte;
                     self.filled = Some(filled + 1);
                 }
-                (_, filled) => self.stray(byte, filled.is_some()),
+                // Records of a fixed length are padded with it.
+                (0, Some(filled)) if split(&self.content[..filled]).is_some() => {}
+                (_, filled) => self.stray(byte, filled),
             }
         }
     }
@@ -84,15 +97,29 @@ impl Framer {
         self.counts
     }
 
+    /// The last line that was no sentence, for people who look for the reason.
+    #[must_use]
+    pub fn rejected(&self) -> Option<&Rejected> {
+        self.rejected.as_ref()
+    }
+
+    fn reject(&mut self, filled: usize, why: &'static str) {
+        let line = format!("${}", String::from_utf8_lossy(&self.content[..filled]));
+        self.rejected = Some(Rejected { line, why });
+    }
+
     /// A byte that belongs to no sentence: the one under way is given up with it.
-    fn stray(&mut self, byte: u8, under_way: bool) {
+    fn stray(&mut self, byte: u8, filled: Option<usize>) {
         self.counts.garbage += 1;
-        if under_way && (b' '..=b'~').contains(&byte) {
-            self.counts.overlong += 1;
-        } else if under_way {
-            self.counts.broken += 1;
-        }
         self.filled = None;
+        let Some(filled) = filled else { return };
+        if (b' '..=b'~').contains(&byte) {
+            self.counts.overlong += 1;
+            self.reject(filled, "is too long");
+        } else {
+            self.counts.broken += 1;
+            self.reject(filled, "is cut off by a byte that is no text");
+        }
     }
 
     /// The line's end after `filled` bytes of content.
@@ -100,10 +127,12 @@ impl Framer {
         self.filled = None;
         let Some((body, stated)) = split(&self.content[..filled]) else {
             self.counts.broken += 1;
+            self.reject(filled, "has no checksum");
             return;
         };
         if checksum(body) != stated {
             self.counts.bad_checksum += 1;
+            self.reject(filled, "has a wrong checksum");
             return;
         }
         self.counts.sentences += 1;
@@ -111,10 +140,10 @@ impl Framer {
     }
 }
 
-/// The body and the checksum stated after it; nothing if `*` and two digits of either case are not the end, or
-/// a second `*` stands in the body.
+/// The body and the checksum stated after it; nothing if `*` and two digits of either case are not the end but for blanks,
+/// or a second `*` stands in the body.
 fn split(content: &[u8]) -> Option<(&[u8], u8)> {
-    let (body, [b'*', high, low]) = content.split_last_chunk::<3>()? else { return None };
+    let (body, [b'*', high, low]) = content.trim_ascii_end().split_last_chunk::<3>()? else { return None };
     let digit = |byte: u8| char::from(byte).to_digit(16).and_then(|digit| u8::try_from(digit).ok());
     let stated = digit(*high)? * 16 + digit(*low)?;
     (!body.contains(&b'*')).then_some((body, stated))

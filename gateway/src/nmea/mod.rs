@@ -24,7 +24,7 @@ mod writer;
 
 pub use date_time::{Date, TimeOfDay, date_and_time};
 pub use fix_quality::FixQuality;
-pub use framer::{ACCEPTED_MAX, Counts, Framer};
+pub use framer::{ACCEPTED_MAX, Counts, Framer, Rejected};
 pub use mode::Mode;
 pub use operator::Operator;
 pub use standard::{Gga, Gll, Hdg, Hdt, Mwv, Rmc, Vhw, Vtg, Zda};

@@ -47,7 +47,7 @@ impl Command {
     }
 
     /// As it is written: percents are whole numbers.
-    pub(super) fn rounded(mut self) -> Command {
+    pub(crate) fn rounded(mut self) -> Command {
         round_percents(self.mode, &mut self.thrust, &mut self.difference);
         if self.mode == Mode::FileDownload {
             for number in [&mut self.heading_deg, &mut self.thrust, &mut self.difference] {

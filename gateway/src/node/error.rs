@@ -33,6 +33,9 @@ pub enum NodeError {
     /// Another gateway has the link.
     #[error(transparent)]
     Locked(#[from] LinkLockError),
+    /// The recording is incomplete.
+    #[error("{0}")]
+    Recording(String),
     /// The declination is not known.
     #[error("{0}; set declination_deg in the gateway's file")]
     Declination(#[from] DeclinationError),

@@ -7,7 +7,7 @@ use super::loop_input::{Call, LoopInput};
 use super::settings::Settings;
 use crate::bridge::Site;
 use crate::config::Gateway;
-use crate::geofence::GeofenceArea;
+use crate::geofence::{Coasting, GeofenceArea};
 use bus::game_search::{self, GameSearch};
 use bus::{NodeThread, Place};
 use messages::Role;
@@ -62,7 +62,9 @@ impl Wanted {
         // boat on the water.
         area.check(&info.scenario, vehicle).map_err(|source| NodeError::Geofence { file, source })?;
         let declination_rad = declination_rad(self.gateway.declination_rad, field.plan.datum)?;
-        let site = Site { length_m: info.scenario.boat_of(vehicle).length_m, field, declination_rad };
+        let boat = info.scenario.boat_of(vehicle);
+        let coasting = Some(Coasting::of(boat));
+        let site = Site { length_m: boat.length_m, field, declination_rad, coasting };
         // The thread that keeps it joined asks again, and gets it again.
         let names = [self.vehicle.clone()];
         let all = (&game, &info.scenario);

@@ -97,6 +97,8 @@ pub(super) struct Counters {
     /// When the machine last came back from a suspension, or the gateway began.
     awake_since: Instant,
     remarked: (Instant, String),
+    /// What is wrong with the recording, as already reported.
+    pub(super) recording_fault: Option<String>,
 }
 
 impl Counters {
@@ -115,6 +117,7 @@ impl Counters {
             status_at: now,
             awake_since: now,
             remarked: (now, String::new()),
+            recording_fault: None,
         }
     }
 }
@@ -143,6 +146,7 @@ impl GatewayLoop<'_> {
             }
             if clock::now() >= self.counters.status_at {
                 self.counters.status_at = clock::now() + STATUS_EVERY;
+                self.check_recording();
                 let status = self.full_status();
                 self.report_status(&status)?;
                 (self.notify)(NodeEvent::Status(&status));
@@ -190,7 +194,7 @@ impl GatewayLoop<'_> {
         clock::since(came) > WAITED_MAX || came < self.counters.awake_since
     }
 
-    fn warn(&mut self, text: &str) {
+    pub(super) fn warn(&mut self, text: &str) {
         let (at, event) = (self.clock.now(), Event::Warning(text.to_owned()));
         (self.notify)(NodeEvent::Event { at_s: at.as_s(), event: &event });
         if let Some(recorder) = &self.recorder {
@@ -428,7 +432,8 @@ impl GatewayLoop<'_> {
                 self.counters.writing.drain(..surplus);
             }
             // Sent before anything is published or recorded, which may be slow.
-            self.link.send(out.bytes.clone(), self.counters.tag);
+            let send = if out.stops { BoatLink::send_stop } else { BoatLink::send };
+            send(&*self.link, out.bytes.clone(), self.counters.tag);
         }
         if let Some(nav) = &out.nav {
             self.report(nav)?;

@@ -50,7 +50,7 @@ use loop_input::{Call, LoopInput, LoopOutput, loop_input};
 use machine_check::SPACE_MIN_MIB;
 use payload::Payloads;
 use primitives::SimTime;
-use recording::{NewFile, Recorder, utc};
+use recording::{Facts, NewFile, Recorder, utc};
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::process::Command;
@@ -210,14 +210,19 @@ fn connect(
     }
     let status = gateway_loop.full_status();
     // The boat is stopped before the network closes.
-    let in_game = gateway_loop.in_game.take();
+    let (in_game, recorder) = (gateway_loop.in_game.take(), gateway_loop.recorder.take());
     drop(gateway_loop);
+    let recorded = recorder.map(|recorder| recorder.end(Facts::new()));
     // It ends however it came to that; who looks for a game does so too.
     settings.stop.store(true, Ordering::Relaxed);
     drop((port, finder, payloads));
     notify(NodeEvent::Ended(&status));
     in_game.into_iter().for_each(InGame::leave);
-    result
+    // What was wrong with the boat or the game comes first.
+    result.and(match recorded.as_ref().and_then(report::recording_fault) {
+        Some(fault) => Err(NodeError::Recording(fault)),
+        None => Ok(()),
+    })
 }
 
 /// The recording. A boat is not left alone since it cannot begin.

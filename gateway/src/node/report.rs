@@ -5,9 +5,19 @@ use super::gateway_loop::GatewayLoop;
 use crate::bridge::{Input, NavOut, Output};
 use bus::Publisher;
 use messages::external::{GatewayStatus, LinkBytes, NavReport, Reported};
+use messages::run_state::RecordingState;
 use messages::{Message, Stamp};
 use primitives::SimTime;
 use recording::Entry;
+
+/// What is wrong with a recording, if anything.
+pub(super) fn recording_fault(state: &RecordingState) -> Option<String> {
+    match (&state.failed, state.dropped) {
+        (Some(why), _) => Some(format!("nothing is recorded any more in {}: {why}", state.file)),
+        (None, 0) => None,
+        (None, _) => Some("the recording is incomplete: the disk is too slow".to_owned()),
+    }
+}
 
 impl GatewayLoop<'_> {
     /// The status of core and shell.
@@ -28,8 +38,20 @@ impl GatewayLoop<'_> {
             ("messages not recorded", lost[0]),
             ("messages of payloads not recorded", lost[1]),
         ];
+        status.alarms.extend(self.counters.recording_fault.clone());
         status.counts.extend(more.into_iter().chain(rest).map(|(name, count)| (name.to_owned(), count)));
         status
+    }
+
+    /// Warns once when the recording ends before the gateway does, or loses entries.
+    pub(super) fn check_recording(&mut self) {
+        let Some(fault) = self.recorder.as_ref().and_then(|recorder| recording_fault(&recorder.state())) else {
+            return;
+        };
+        if self.counters.recording_fault.as_ref() != Some(&fault) {
+            self.warn(&fault);
+            self.counters.recording_fault = Some(fault);
+        }
     }
 
     /// Reports the status to the sim, which passes it on.

@@ -5,9 +5,8 @@ use super::fix_scatter::FixScatter;
 use crate::config::Gateway;
 use crate::geodesy::LocalFrame;
 use crate::geofence::GeofenceArea;
-use crate::nmea::{Mode, Operator, TimeOfDay};
-use crate::sensor_check::SensorCheck;
-use primitives::SimTime;
+use crate::nmea::{Mode, Operator};
+use crate::sensor_check::{HostTime, SensorCheck};
 use primitives::frame::LatLon;
 use rules::Field;
 
@@ -15,11 +14,6 @@ use rules::Field;
 const SCATTER_MAX_M: f64 = 2.5;
 /// For how long they are looked at, s.
 const SCATTER_S: f64 = 25.0;
-/// The boat's clock may be off by so much from this machine's, s: fixes are told a moment after their time.
-// Latencies of half a minute are no latencies: then one of the clocks is wrong, and recordings
-// cannot be laid side by side.
-const CLOCK_BEHIND_S: std::ops::RangeInclusive<f64> = -1.0..=5.0;
-
 /// Where the boat is to play.
 pub struct Water {
     /// The field.
@@ -28,14 +22,9 @@ pub struct Water {
     pub area: GeofenceArea,
 }
 
-/// The checks of what a boat has sent until `now`, which on this machine is the time of day `host`.
+/// The checks of what a boat has sent until now, by the host's clock.
 #[must_use]
-pub fn boat_checks(
-    seen: &SensorCheck,
-    (now, host): (SimTime, TimeOfDay),
-    gateway: &Gateway,
-    water: Option<&Water>,
-) -> Vec<Check> {
+pub fn boat_checks(seen: &SensorCheck, host: HostTime, gateway: &Gateway, water: Option<&Water>) -> Vec<Check> {
     let missing = seen.missing();
     let sentences = if missing.is_empty() { "nothing is missing".to_owned() } else { missing.join("; ") };
     vec![
@@ -47,7 +36,7 @@ pub fn boat_checks(
         control(seen, gateway),
         battery(seen, gateway),
         bilge(seen, gateway),
-        clock(seen, now, host),
+        clock(seen, host),
         error(seen),
     ]
 }
@@ -150,13 +139,14 @@ fn bilge(seen: &SensorCheck, gateway: &Gateway) -> Check {
     }
 }
 
-fn clock(seen: &SensorCheck, now: SimTime, host: TimeOfDay) -> Check {
-    match seen.clock_behind_s(now, host) {
-        Some(behind_s) => {
+fn clock(seen: &SensorCheck, host: HostTime) -> Check {
+    match (seen.clock_fault(host), seen.clock_behind_s(host)) {
+        (Some(fault), _) => Check::of("clock", false, fault),
+        (None, Some(behind_s)) => {
             let found = format!("fixes are {behind_s:.2} s behind this machine's clock, expected -1 to 5");
-            Check::of("clock", CLOCK_BEHIND_S.contains(&behind_s), found)
+            Check::of("clock", true, found)
         }
-        None => Check::not_done("clock", "no time of day came"),
+        (None, None) => Check::not_done("clock", "no time of day came"),
     }
 }
 
@@ -172,6 +162,7 @@ mod tests {
     use super::*;
     use crate::nmea::checksum;
     use crate::preflight::Verdict;
+    use primitives::SimTime;
     use primitives::frame::Ned;
 
     fn water() -> Water {
@@ -252,8 +243,8 @@ mod tests {
             ([80.0, 40.0], fix, sound(3, "PSEAG,E"), "error", "error \"E\""),
         ] {
             let seen = seen(&water, place, fix, &more);
-            let now = (SimTime::from_s(59.5), TimeOfDay(54_360_000));
-            let checks = boat_checks(&seen, now, &crate::config::default_gateway(), Some(&water));
+            let host = HostTime { now: SimTime::from_s(59.5), utc_ns: 54_360_000_000_000 };
+            let checks = boat_checks(&seen, host, &crate::config::default_gateway(), Some(&water));
             let wrong: Vec<_> = checks.iter().filter(|check| check.verdict != Verdict::Passed).collect();
             if failed.is_empty() {
                 assert!(wrong.is_empty(), "{wrong:?}");
@@ -270,8 +261,8 @@ mod tests {
     fn what_a_short_look_cannot_tell_is_not_checked() {
         let mut check = SensorCheck::new(&crate::config::default_gateway());
         check.receive(SimTime::ZERO, b"$GPGGA,150502.00,4221.50616,N,07105.24688,W,2,11,0.98,5.5,M,-33.2,M,,*62\r\n");
-        let now = (SimTime::ZERO, TimeOfDay(54_302_400));
-        let checks = boat_checks(&check, now, &crate::config::default_gateway(), None);
+        let host = HostTime { now: SimTime::ZERO, utc_ns: 54_302_400_000_000 };
+        let checks = boat_checks(&check, host, &crate::config::default_gateway(), None);
         let not_checked = checks.iter().filter(|check| check.verdict == Verdict::NotChecked);
         let names: Vec<&str> = not_checked.map(|check| check.name.as_str()).collect();
         assert_eq!(names, ["scatter", "geofence", "compass", "battery", "bilge"], "{checks:?}");

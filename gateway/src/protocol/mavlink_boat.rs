@@ -191,7 +191,8 @@ impl Boat {
             }
             MavMessage::GPS_RAW_INT(gps) => self.fix = Some((now, fix(gps))),
             MavMessage::GLOBAL_POSITION_INT(position) => self.take_position(now, position, take),
-            MavMessage::ATTITUDE(ATTITUDE_DATA { yaw, yawspeed, .. }) => {
+            MavMessage::ATTITUDE(ATTITUDE_DATA { roll, pitch, yaw, yawspeed, .. }) => {
+                take(Report::Tilt([*roll, *pitch].map(|angle| f64::from(angle).to_degrees())));
                 self.attitude_at = now;
                 let (deg, yaw_rate) = (f64::from(*yaw).to_degrees(), f64::from(*yawspeed).to_degrees());
                 take(Report::Heading(Heading { deg, north: North::True, yaw_rate_deg_s: Some(yaw_rate) }));

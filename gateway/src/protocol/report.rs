@@ -13,6 +13,8 @@ pub enum Report {
     Velocity(Ned),
     /// Its heading.
     Heading(Heading),
+    /// How it lies, roll and pitch in degrees.
+    Tilt([f64; 2]),
     /// The receiver's time of day.
     Clock(TimeOfDay),
     /// What it does, and who commands it.

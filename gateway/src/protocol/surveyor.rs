@@ -120,6 +120,7 @@ fn report(sentence: &Sentence, take: &mut dyn FnMut(Report)) {
             let yaw_rate_deg_s = attitude.yaw_rate_deg_s;
             let heading = attitude.heading_deg.map(|deg| Heading { deg, north: North::Compass, yaw_rate_deg_s });
             heading.into_iter().for_each(|heading| take(Report::Heading(heading)));
+            take(Report::Tilt([attitude.roll_deg, attitude.pitch_deg].map(Option::unwrap_or_default)));
         }
         Sentence::Hdt(hdt) => {
             let heading = hdt.heading_deg.map(|deg| Heading { deg, north: North::True, yaw_rate_deg_s: None });
@@ -205,7 +206,8 @@ pub(super) fn write(command: Command, out: &mut Vec<u8>) {
 }
 
 pub(super) fn shown(command: Command) -> Shown {
-    let nmea::Command { mode, heading_deg, thrust, difference, .. } = sentence(command);
+    // What is compared is what was sent: whole percents.
+    let nmea::Command { mode, heading_deg, thrust, difference, .. } = sentence(command).rounded();
     Shown { mode, heading_deg, thrust, difference }
 }
 
@@ -220,4 +222,22 @@ pub(super) fn stop_message() -> Vec<u8> {
     write(Command::Zero, &mut bytes);
     write(Command::Standby, &mut bytes);
     bytes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_boat_should_show_is_what_it_was_sent() {
+        for (thrust_pct, difference_pct) in [(40.4, -9.6), (12.5, 0.49), (-33.3, 66.7)] {
+            let command = Command::SetPoint(SetPoint::Thrust { thrust_pct, difference_pct });
+            let (mut bytes, mut sent) = (vec![], None);
+            write(command, &mut bytes);
+            Framer::new().push(&bytes, &mut |body| sent = Sentence::parse(body).ok());
+            let Some(Sentence::Command(sent)) = sent else { panic!("no command: {bytes:?}") };
+            let shown = shown(command);
+            assert_eq!((shown.thrust, shown.difference), (sent.thrust, sent.difference));
+        }
+    }
 }

@@ -60,7 +60,12 @@ pub(crate) fn plan(file: &str, arms_itself: bool) -> Plan {
     Plan {
         vehicle: "blue_one".to_owned(),
         gateway: scenario::load_file::<gateway::config::Gateway>(&gateway).unwrap_or_else(|e| panic!("{e}")),
-        site: Some(Site { length_m: 1.83, field: game.field, declination_rad: (-12.5_f64).to_radians() }),
+        site: Some(Site {
+            length_m: 1.83,
+            field: game.field,
+            declination_rad: (-12.5_f64).to_radians(),
+            coasting: None,
+        }),
         arms_itself,
         dry_run: false,
         preflight: Preflight::NotRequired,

@@ -4,11 +4,10 @@ use crate::boat::Boat;
 use crate::rig::plan;
 use gateway::emulator::{ArduPilot, SYSTEM};
 use gateway::geofence::GeofenceArea;
-use gateway::mavlink::dialect::{HEARTBEAT_DATA, MavAutopilot, MavCmd, MavMessage, MavType};
+use gateway::mavlink::dialect::{GLOBAL_POSITION_INT_DATA, HEARTBEAT_DATA, MavAutopilot, MavCmd, MavMessage, MavType};
 use gateway::mavlink::{AUTOPILOT, Framer, RoverMode, Writer};
-use gateway::nmea::date_and_time;
 use gateway::preflight::{Check, Verdict, Water, boat_checks};
-use gateway::sensor_check::SensorCheck;
+use gateway::sensor_check::{HostTime, SensorCheck};
 use primitives::SimTime;
 use primitives::frame::Ned;
 
@@ -32,9 +31,9 @@ fn checked(place: Ned, change: impl Fn(&mut ArduPilot)) -> (SensorCheck, Vec<Che
         ardupilot.telemetry(now, &mut from_boat);
         seen.receive(now, &from_boat);
     }
-    let (_, host) = date_and_time(BEGAN_UTC_NS + 29_900_000_000);
+    let host = HostTime { now, utc_ns: BEGAN_UTC_NS + 29_900_000_000 };
     let area = GeofenceArea::new(&site.field, &plan.gateway.geofence);
-    let checks = boat_checks(&seen, (now, host), &plan.gateway, Some(&Water { field: site.field.clone(), area }));
+    let checks = boat_checks(&seen, host, &plan.gateway, Some(&Water { field: site.field.clone(), area }));
     (seen, checks)
 }
 
@@ -53,7 +52,7 @@ fn a_sound_boat_passes_and_each_thing_that_is_wrong_fails_its_own_check() {
     let (seen, checks) = checked(inside, |_| {});
     assert_eq!(wrong(&checks), [pumps], "{checks:?}");
     assert!(
-        seen.findings(SimTime::from_s(29.9), date_and_time(BEGAN_UTC_NS).1)
+        seen.findings(HostTime { now: SimTime::from_s(29.9), utc_ns: BEGAN_UTC_NS })
             .iter()
             .any(|line| line == "heading: 57.3 true")
     );
@@ -98,4 +97,29 @@ fn it_asks_for_what_it_needs_and_says_what_does_not_come() {
         assert!(missing.contains(name), "{missing}");
     }
     assert!(!missing.contains("HEARTBEAT"), "{missing}");
+}
+
+#[test]
+fn a_vehicle_that_is_no_boat_is_named_and_a_heading_that_is_unknown_is_missing() {
+    let mut seen = SensorCheck::new(&plan().gateway);
+    let mut writer = Writer::new(SYSTEM, AUTOPILOT);
+    let copter = HEARTBEAT_DATA {
+        mavtype: MavType::MAV_TYPE_QUADROTOR,
+        autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
+        ..HEARTBEAT_DATA::default()
+    };
+    let boat = HEARTBEAT_DATA { mavtype: MavType::MAV_TYPE_SURFACE_BOAT, ..copter.clone() };
+    let mut send = |seen: &mut SensorCheck, heartbeat, s: u32| {
+        let mut bytes = vec![];
+        writer.write(&MavMessage::HEARTBEAT(heartbeat), &mut bytes);
+        let position =
+            GLOBAL_POSITION_INT_DATA { time_boot_ms: s, lat: 1, lon: 1, hdg: u16::MAX, ..Default::default() };
+        writer.write(&MavMessage::GLOBAL_POSITION_INT(position), &mut bytes);
+        seen.receive(SimTime::from_s(f64::from(s)), &bytes);
+    };
+    (0..9).for_each(|s| send(&mut seen, copter.clone(), s));
+    assert_eq!(seen.missing(), ["a boat: all messages are of other systems (a QUADROTOR is system 1)"]);
+    (10..20).for_each(|s| send(&mut seen, boat.clone(), s));
+    let missing = seen.missing().join("\n");
+    assert!(missing.contains("a heading: GLOBAL_POSITION_INT comes without it"), "{missing}");
 }

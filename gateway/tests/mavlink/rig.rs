@@ -44,7 +44,12 @@ pub(crate) fn plan() -> Plan {
         vehicle: "blue_one".to_owned(),
         gateway: gateway.unwrap_or_else(|e| panic!("{e}")),
         // A declination large enough to show if it were used.
-        site: Some(Site { length_m: 1.2, field: game.field, declination_rad: (-40.0_f64).to_radians() }),
+        site: Some(Site {
+            length_m: 1.2,
+            field: game.field,
+            declination_rad: (-40.0_f64).to_radians(),
+            coasting: None,
+        }),
         arms_itself: false,
         dry_run: false,
         preflight: Preflight::NotRequired,

@@ -15,11 +15,15 @@ fn model(bytes: &[u8]) -> (Vec<String>, Counts) {
     let mut parts = bytes.split(|byte| *byte == b'$').peekable();
     counts.garbage += noise(parts.next().expect("a split has a first part"));
     while let Some(part) = parts.next() {
+        // NULs after a whole checksum are padding.
+        let is_padding = |at: usize| part[at] == 0 && is_whole(&part[..at]);
+        let part: Vec<u8> = (0..part.len()).filter(|at| !is_padding(*at)).map(|at| part[at]).collect();
         let end = part.iter().position(|byte| !(b' '..=b'~').contains(byte)).unwrap_or(part.len());
         let (content, rest) = part.split_at(end.min(ACCEPTED_MAX - 3));
         counts.garbage += noise(rest);
         match rest.first() {
-            None => counts.broken += u64::from(parts.peek().is_some()),
+            None if parts.peek().is_some() => judge(content, &mut found, &mut counts),
+            None => {}
             Some(b'\r' | b'\n') => judge(content, &mut found, &mut counts),
             Some(b' '..=b'~') => counts.overlong += 1,
             Some(_) => counts.broken += 1,
@@ -28,8 +32,19 @@ fn model(bytes: &[u8]) -> (Vec<String>, Counts) {
     (found, counts)
 }
 
+/// Whether text, with padding, ends with a checksum.
+fn is_whole(part: &[u8]) -> bool {
+    let mut counts = Counts::default();
+    let content: Vec<u8> = part.iter().copied().filter(|byte| *byte != 0).collect();
+    if content.iter().all(|byte| (b' '..=b'~').contains(byte)) && content.len() <= ACCEPTED_MAX - 3 {
+        judge(&content, &mut vec![], &mut counts);
+    }
+    counts.sentences + counts.bad_checksum > 0
+}
+
 fn judge(content: &[u8], found: &mut Vec<String>, counts: &mut Counts) {
     let text = String::from_utf8(content.to_vec()).expect("only ASCII is left");
+    let text = text.trim_end_matches(' ');
     let stated = text.split_once('*').filter(|(_, digits)| digits.len() == 2 && !digits.contains('+'));
     match stated.and_then(|(body, digits)| Some((body, u8::from_str_radix(digits, 16).ok()?))) {
         None => counts.broken += 1,
@@ -138,7 +153,7 @@ fn lines_end_with_cr_or_lf_or_both() {
 #[test]
 fn each_fault_has_its_count() {
     let nothing = Counts::default();
-    let cases: [(&[u8], Counts); 13] = [
+    let cases: [(&[u8], Counts); 14] = [
         (b"$PSEAG,N*23\r\n", Counts { bad_checksum: 1, ..nothing }),
         (b"$PSEAG,N\r\n", Counts { broken: 1, ..nothing }),
         (b"$PSEAG,N*2\r\n", Counts { broken: 1, ..nothing }),
@@ -146,6 +161,7 @@ fn each_fault_has_its_count() {
         (b"$PSEAG,N*2G\r\n", Counts { broken: 1, ..nothing }),
         (b"$PSEAG,N*+2\r\n", Counts { broken: 1, ..nothing }),
         (b"$PSEAG*N*22\r\n", Counts { broken: 1, ..nothing }),
+        (b"$PSEAG,N*22\x00x\r\n", Counts { broken: 1, ..nothing }),
         (b"$\r\n", Counts { broken: 1, ..nothing }),
         (b"$PSE$PSEAG,N*22\r\n", Counts { sentences: 1, broken: 1, ..nothing }),
         (b"$PSE\x00AG,N*22\r\n", Counts { broken: 1, garbage: 8, ..nothing }),
@@ -156,6 +172,30 @@ fn each_fault_has_its_count() {
     for (bytes, want) in cases {
         assert_eq!(framed([bytes]).1, want, "{}", bytes.escape_ascii());
         assert_eq!(model(bytes).1, want, "the model of {}", bytes.escape_ascii());
+    }
+}
+
+#[test]
+fn padding_after_the_checksum_and_a_missing_line_end_do_no_harm() {
+    for end in [" \r\n", "\0\r\n", " \0\0 \n", "", " ", "\0"] {
+        let stream = format!("$PSEAG,N*22{end}$PSEAG,N*22{end}$");
+        assert_eq!(framed([&stream]), framed(["$PSEAG,N*22\r\n$PSEAG,N*22\r\n$"]), "{end:?}");
+        assert_eq!(framed([&stream]).1.sentences, 2, "{end:?}");
+    }
+}
+
+#[test]
+fn the_last_rejected_line_is_kept_with_the_reason() {
+    for (stream, line, why) in [
+        ("$PSEAG,N\r\n$PSEAG,N*22\r\n", "$PSEAG,N", "has no checksum"),
+        ("$PSEAG,N*2$", "$PSEAG,N*2", "has no checksum"),
+        ("$PSEAG,N*23\r\n", "$PSEAG,N*23", "has a wrong checksum"),
+        ("$PSE\0AG,N*22\r\n", "$PSE", "is cut off by a byte that is no text"),
+    ] {
+        let mut framer = Framer::new();
+        framer.push(stream.as_bytes(), &mut |_| {});
+        let rejected = framer.rejected().expect("a line was rejected");
+        assert_eq!((rejected.line.as_str(), rejected.why), (line, why));
     }
 }
 

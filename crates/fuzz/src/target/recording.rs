@@ -58,7 +58,7 @@ fn gateway_recording() -> Vec<u8> {
     let (scenario, vehicle) = (mixed(), "blue_one".to_owned());
     let gateway = gateway::config::default_gateway();
     let field = scenario.field.clone();
-    let site = Some(Site { field, length_m: 2.0, declination_rad: 0.1 });
+    let site = Some(Site { field, length_m: 2.0, declination_rad: 0.1, coasting: None });
     let plan = Plan { vehicle, gateway, site, arms_itself: true, dry_run: false, preflight: Preflight::NotRequired };
     let began_utc_ns = 1_700_000_000_000_000_000;
     let opening = gateway::record::opening(&plan, began_utc_ns, "c0ffee");

@@ -123,7 +123,7 @@ fn accepted(kind: Kind, path: &Path) {
             let gateway = scenario::load_file::<Gateway>(path).expect("the file was accepted");
             let field = scenario::load_field(&scenarios().join("fields/open_800x400.toml")).expect("a field");
             let vehicle = "blue_one".to_owned();
-            let site = Some(Site { field, length_m: 2.0, declination_rad: 0.1 });
+            let site = Some(Site { field, length_m: 2.0, declination_rad: 0.1, coasting: None });
             let plan =
                 Plan { vehicle, gateway, site, arms_itself: false, dry_run: false, preflight: Preflight::NotRequired };
             drop(Bridge::new(plan));

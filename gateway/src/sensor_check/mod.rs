@@ -1,18 +1,22 @@
 //! The sensor check before arming: what a boat sends, how often, who commands it, and what is missing.
 
+mod need;
+#[cfg(test)]
+mod tests;
+
 use crate::config::{BoatProtocol, Gateway};
 use crate::mavlink;
-use crate::mavlink::dialect::MavMessage;
-use crate::nmea::{self, Date, FixQuality, Mode, Operator, Sentence, TimeOfDay, date_and_time};
+use crate::mavlink::dialect::{HEARTBEAT_DATA, MavMessage};
+use crate::nav_estimate::HEADINGS_DEG;
+use crate::nmea::{self, Date, FixQuality, Mode, Operator, ParseError, Sentence, TimeOfDay, date_and_time};
 use crate::protocol::{ControlReport, Fix, Heading, North, Power, Protocol, Report};
 use ::mavlink::Message;
+use need::Usable;
 use primitives::angle::{compass_deg_from_rad, wrap_pi};
 use primitives::frame::LatLon;
 use primitives::{SimTime, math};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-/// Below this rate something comes too seldom to drive a boat, 1/s: what comes once a second may come a little late.
-const RATE_MIN_HZ: f64 = 0.9;
 /// Compass and true heading that are nearer than this are the same, rad.
 const SAME_HEADING_RAD: f64 = 0.02;
 /// The course of a slower boat is not where it points, m/s.
@@ -21,27 +25,32 @@ const COURSE_MIN_M_S: f64 = 1.0;
 const FIXES_MAX: usize = 20_000;
 /// The most names that are counted.
 const NAMES_MAX: usize = 64;
+/// The most vehicles that are told apart when none is the boat.
+const HEARD_MAX: usize = 8;
 
-/// What driving a boat needs: one of these sentences or messages, and why.
-type Need = (&'static [&'static str], &'static str);
+/// The boat's clock may be off by so much from this machine's, s: fixes are told a moment after their time.
+// Latencies of half a minute are no latencies: then one of the clocks is wrong, and recordings
+// cannot be laid side by side.
+const CLOCK_BEHIND_S: std::ops::RangeInclusive<f64> = -1.0..=5.0;
+/// The days of 1024 weeks, less one for the time of day.
+const GPS_WEEKS_DAYS: i64 = 7167;
 
-const FOR_A_FIX: &str = "without a fix it cannot be driven";
-const FOR_A_HEADING: &str = "without a heading it cannot be driven";
-const FOR_ITS_BATTERY: &str = "its battery would not be monitored";
-const SURVEYOR_NEEDS: [Need; 5] = [
-    (&["GGA", "RMC"], FOR_A_FIX),
-    (&["PSEAA", "HDT"], FOR_A_HEADING),
-    (&["PSEAD"], "it is not known who commands it: it can only be armed with control.assumed = true"),
-    (&["VTG", "RMC"], "its velocity would be computed from its positions"),
-    (&["PSEAB"], FOR_ITS_BATTERY),
-];
-const MAVLINK_NEEDS: [Need; 5] = [
-    (&["GLOBAL_POSITION_INT"], FOR_A_FIX),
-    (&["GPS_RAW_INT"], "without the quality of its fix it cannot be driven"),
-    (&["ATTITUDE", "GLOBAL_POSITION_INT"], FOR_A_HEADING),
-    (&["HEARTBEAT"], "it is not known who commands it"),
-    (&["SYS_STATUS", "BATTERY_STATUS"], FOR_ITS_BATTERY),
-];
+/// A moment by the check's clock and by the host's: the two belong together, or what lies between them looks like a fault
+/// of the boat's clock.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct HostTime {
+    /// The moment, by the check's clock.
+    pub now: SimTime,
+    /// The same moment by the host's clock, UTC in ns since 1970.
+    pub utc_ns: u64,
+}
+
+impl HostTime {
+    /// The host's time at an earlier moment.
+    fn utc_ns_at(self, came: SimTime) -> u64 {
+        self.utc_ns.saturating_add_signed(came.0.saturating_sub(self.now.0))
+    }
+}
 
 /// The sentences or messages of one name.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -50,6 +59,8 @@ pub struct Received {
     pub count: u64,
     /// Of those, how many could not be read; all, where the sentence is unknown.
     pub unreadable: u64,
+    /// Why the first of these could not be read, where that is not for its name.
+    pub why_unreadable: Option<String>,
     /// When first and last.
     pub between: Option<(SimTime, SimTime)>,
     /// The last of them: a sentence as received, of a message its fields.
@@ -65,6 +76,12 @@ impl Received {
         // Intervals, not messages: of two that came within a second there is one interval.
         (span_s > 0.0).then(|| (self.count - 1) as f64 / span_s)
     }
+
+    fn note(&mut self, now: SimTime) {
+        self.count += 1;
+        let first = self.between.map_or(now, |(first, _)| first);
+        self.between = Some((first, now));
+    }
 }
 
 /// Cuts what a boat sends into what has a name.
@@ -79,15 +96,24 @@ enum Framer {
 pub struct SensorCheck {
     framer: Framer,
     received: BTreeMap<String, Received>,
+    /// How many bytes came.
+    bytes: usize,
+    /// What of it the gateway could use.
+    usable: BTreeMap<Usable, Received>,
+    /// The MAVLink vehicles whose heartbeats came, in words.
+    heard: BTreeSet<String>,
     protocol: Protocol,
     fix: Option<Fix>,
+    /// Time of the last position, by the receiver.
+    time_of_position: Option<TimeOfDay>,
     /// Its positions, and when they came.
     fixes: Vec<(SimTime, LatLon)>,
     /// Course and speed over the ground, degrees and m/s.
     track: Option<(f64, f64)>,
     /// Time of day by the boat, and when it came.
     clock: Option<(SimTime, TimeOfDay)>,
-    date: Option<Date>,
+    /// Date by the boat, and when it came.
+    date: Option<(SimTime, Date)>,
     compass_deg: Option<f64>,
     true_deg: Option<f64>,
     control: Option<ControlReport>,
@@ -106,8 +132,12 @@ impl SensorCheck {
         SensorCheck {
             framer,
             received: BTreeMap::new(),
+            bytes: 0,
+            usable: BTreeMap::new(),
+            heard: BTreeSet::new(),
             protocol: Protocol::new(gateway),
             fix: None,
+            time_of_position: None,
             fixes: vec![],
             track: None,
             clock: None,
@@ -124,6 +154,7 @@ impl SensorCheck {
     pub fn receive(&mut self, now: SimTime, bytes: &[u8]) {
         // Counted by name with a framer of its own; what is reported comes from the gateway's
         // codec, so that the check goes by what the gateway would.
+        self.bytes += bytes.len();
         self.count(now, bytes);
         let mut reports = vec![];
         self.protocol.read(now, bytes, &mut |report| reports.push(report));
@@ -198,15 +229,36 @@ impl SensorCheck {
         self.error.as_deref()
     }
 
-    /// How far the boat's clock is behind the host's, s; `host` is the host's time of day at `now`.
+    /// How far the boat's time of day is behind the host's, s.
     #[must_use]
-    pub fn clock_behind_s(&self, now: SimTime, host: TimeOfDay) -> Option<f64> {
-        self.clock.map(|(came, time)| host.later(came - now).since_s(time))
+    pub fn clock_behind_s(&self, host: HostTime) -> Option<f64> {
+        self.clock.map(|(came, time)| date_and_time(host.utc_ns_at(came)).1.since_s(time))
     }
 
-    /// What the boat reports of itself, in words; `host` is the host's time of day at `now`.
+    /// What is wrong with the boat's clock or date, or with the host's, if anything.
     #[must_use]
-    pub fn findings(&self, now: SimTime, host: TimeOfDay) -> Vec<String> {
+    pub fn clock_fault(&self, host: HostTime) -> Option<String> {
+        let off = self.clock_behind_s(host).filter(|behind_s| !CLOCK_BEHIND_S.contains(behind_s));
+        let days = self.date.map_or(0, |(came, date)| {
+            let at = host.utc_ns_at(came);
+            let ns = |s: f64| (s * 1e9) as u64;
+            // About midnight the date of a fix may be that of the day before.
+            let about = [at.saturating_sub(ns(*CLOCK_BEHIND_S.end())), at + ns(-CLOCK_BEHIND_S.start())];
+            if about.iter().any(|at| date_and_time(*at).0 == date) { 0 } else { date_and_time(at).0.days_since(date) }
+        });
+        let side = |is_ahead| if is_ahead { "AHEAD of" } else { "behind" };
+        if days != 0 {
+            // A receiver counts weeks modulo 1024, and is off by these after its rollover.
+            let rollover = if days >= GPS_WEEKS_DAYS { ", as after a GPS week rollover (7168 days)" } else { "" };
+            let (days, side) = (days.abs(), side(days < 0));
+            return Some(format!("the date is {days} days {side} this host's{rollover}: one of the two is wrong"));
+        }
+        off.map(|s| format!("fixes are {:.2} s {} this host's clock: one of the two is wrong", s.abs(), side(s < 0.0)))
+    }
+
+    /// What the boat reports of itself, in words.
+    #[must_use]
+    pub fn findings(&self, host: HostTime) -> Vec<String> {
         let mut found = Vec::new();
         if let Some(Fix { at, quality: Some(quality), hdop, .. }) = self.fix {
             let place = at.map_or("no position".to_owned(), |at| format!("{:.6}, {:.6}", at.lat_deg, at.lon_deg));
@@ -221,17 +273,15 @@ impl SensorCheck {
         }
         found.extend(self.power.volts.map(|volts| format!("battery: {volts} V")));
         found.extend(self.error.as_ref().map(|error| format!("error: {error}")));
-        if let Some(behind_s) = self.clock_behind_s(now, host) {
+        if let Some(behind_s) = self.clock_behind_s(host) {
             let date = self
                 .date
-                .map_or("it sends no date".to_owned(), |d| format!("date {}-{:02}-{:02}", d.year, d.month, d.day));
+                .map_or("it sends no date".to_owned(), |(_, d)| format!("date {}-{:02}-{:02}", d.year, d.month, d.day));
             let side = if behind_s < 0.0 { "AHEAD of" } else { "behind" };
-            // A fix is some time on its way, so a little behind is as it should be; ahead can
-            // only be a clock that is wrong.
-            let note = if (-1.0..=5.0).contains(&behind_s) { "" } else { ": one of the two is wrong" };
-            let off_s = behind_s.abs();
-            found.push(format!("clock: fixes are {off_s:.2} s {side} this host's clock{note}; {date}"));
+            found.push(format!("clock: fixes are {:.2} s {side} this host's clock; {date}", behind_s.abs()));
         }
+        found.extend(self.clock_fault(host).map(|fault| format!("clock: {fault}")));
+        found.extend(self.rejected());
         found
     }
 
@@ -265,11 +315,7 @@ impl SensorCheck {
     /// What is missing for driving the boat.
     #[must_use]
     pub fn missing(&self) -> Vec<String> {
-        let needs = match self.framer {
-            Framer::Nmea(_) => &SURVEYOR_NEEDS,
-            Framer::Mavlink(_) => &MAVLINK_NEEDS,
-        };
-        let mut missing: Vec<String> = needs.iter().filter_map(|need| self.lacks(*need)).collect();
+        let mut missing = self.unmet();
         if let Some(operator) = self.control.as_ref().and_then(|control| control.operator)
             // Everything else may be there: a boat that somebody else commands follows nothing
             // that we send.
@@ -282,53 +328,93 @@ impl SensorCheck {
                 }
             });
         }
-        // A receiver without a fix still sends its sentences, at the full rate.
-        if let Some(Fix { at, quality: Some(quality), .. }) = self.fix
-            && (at.is_none() || !quality.is_fix())
-        {
-            missing.push(format!("a position: its fix is of quality {quality}"));
-        }
+        let no_fix = self.no_fix();
+        missing.extend(no_fix.map(|quality| format!("a position: its fix is of quality {quality}")));
         missing
     }
 
-    fn lacks(&self, (kinds, why): Need) -> Option<String> {
-        // By the ending, for talkers differ (GPGGA, GNGGA).
-        let best = self.received.iter().filter(|(name, _)| kinds.iter().any(|kind| name.ends_with(kind)));
-        let rate_hz = best.filter_map(|(_, received)| received.rate_hz()).fold(0.0, f64::max);
-        let name = kinds.join(" or ");
-        match rate_hz {
-            0.0 => Some(format!("{name}: {why}")),
-            _ if rate_hz < RATE_MIN_HZ => Some(format!("{name} comes only {rate_hz:.2} times a second: {why}")),
-            _ => None,
+    /// The quality of the last fix, if it is no fix: a receiver without one still sends its sentences, at the full rate.
+    fn no_fix(&self) -> Option<FixQuality> {
+        let Fix { at, quality, .. } = self.fix?;
+        quality.filter(|quality| at.is_none() || !quality.is_fix())
+    }
+
+    /// What came if nothing of it could be read, with the reason.
+    #[must_use]
+    pub fn unread(&self) -> String {
+        let lines = match &self.framer {
+            Framer::Nmea(framer) => framer.rejected().map(|last| {
+                let nmea::Counts { bad_checksum, overlong, broken, .. } = framer.counts();
+                let count = bad_checksum + overlong + broken;
+                format!("{count} lines came, none a sentence: {} {}", last.line, last.why)
+            }),
+            Framer::Mavlink(_) => None,
+        };
+        match lines {
+            Some(lines) => lines,
+            None if self.bytes == 0 => "nothing came".to_owned(),
+            None => format!("{} bytes came, none of them readable: check the protocol and the baud rate", self.bytes),
         }
+    }
+
+    /// The last line that was rejected, if any were, with the reason.
+    fn rejected(&self) -> Option<String> {
+        let Framer::Nmea(framer) = &self.framer else { return None };
+        framer.rejected().map(|last| format!("rejected: {} {}", last.line, last.why))
     }
 
     /// Counts sentences or messages by name.
     fn count(&mut self, now: SimTime, bytes: &[u8]) {
-        let SensorCheck { framer, received, date, .. } = self;
+        let SensorCheck { framer, received, date, heard, .. } = self;
         match framer {
             Framer::Nmea(framer) => framer.push(bytes, &mut |body| {
                 let sentence = Sentence::parse(body);
                 let name = body.split(',').next().unwrap_or_default();
-                note(received, now, name, (body.to_owned(), sentence.is_ok()));
-                *date = match sentence {
-                    Ok(Sentence::Rmc(rmc)) => rmc.date.or(*date),
-                    Ok(Sentence::Zda(zda)) => zda.date.or(*date),
-                    _ => *date,
+                note(received, now, name, (body.to_owned(), sentence.as_ref().err()));
+                let sent = match sentence {
+                    Ok(Sentence::Rmc(rmc)) => rmc.date,
+                    Ok(Sentence::Zda(zda)) => zda.date,
+                    _ => None,
                 };
+                *date = sent.map(|date| (now, date)).or(*date);
             }),
-            Framer::Mavlink(framer) => framer.push(bytes, &mut |mavlink::Received { message, .. }| {
-                note(received, now, message.message_name(), (mavlink::message_text(&message), true));
-                if let MavMessage::SYSTEM_TIME(time) = &message
-                    && time.time_unix_usec > 0
-                {
-                    *date = Some(date_and_time(time.time_unix_usec.saturating_mul(1000)).0);
+            Framer::Mavlink(framer) => framer.push(bytes, &mut |mavlink::Received { system, message, .. }| {
+                note(received, now, message.message_name(), (mavlink::message_text(&message), None));
+                match &message {
+                    MavMessage::SYSTEM_TIME(time) if time.time_unix_usec > 0 => {
+                        *date = Some((now, date_and_time(time.time_unix_usec.saturating_mul(1000)).0));
+                    }
+                    MavMessage::HEARTBEAT(heartbeat) if heard.len() < HEARD_MAX => {
+                        heard.insert(vehicle_in_words(system, heartbeat));
+                    }
+                    _ => {}
                 }
             }),
         }
     }
 
+    /// Notes that something came in a form that the gateway can use.
+    fn note_usable(&mut self, now: SimTime, report: &Report) {
+        let usable = match report {
+            Report::Fix(Fix { time, at: Some(at), .. }) if (at.lat_deg, at.lon_deg) != (0.0, 0.0) => {
+                let is_new = time.is_none() || *time != self.time_of_position;
+                self.time_of_position = *time;
+                is_new.then_some(Usable::Position)
+            }
+            Report::Velocity(_) => Some(Usable::Velocity),
+            Report::Heading(heading) => HEADINGS_DEG.contains(&heading.deg).then_some(Usable::Heading),
+            Report::Control(_) => Some(Usable::Control),
+            Report::Power(power) => power.volts.map(|_| Usable::Voltage),
+            _ => None,
+        };
+        let is_fix = matches!(report, Report::Fix(Fix { quality: Some(quality), .. }) if quality.is_fix());
+        for usable in usable.into_iter().chain(is_fix.then_some(Usable::Quality)) {
+            self.usable.entry(usable).or_default().note(now);
+        }
+    }
+
     fn apply(&mut self, now: SimTime, report: Report) {
+        self.note_usable(now, &report);
         match report {
             // RMC says no more than whether there is one.
             Report::Fix(fix) if fix.quality.is_some() => {
@@ -353,73 +439,36 @@ impl SensorCheck {
             Report::Power(power) => self.power = Power { volts: power.volts.or(self.power.volts), ..power },
             Report::Error(error) => self.error = error,
             Report::Notice(text) => self.error = Some(text),
-            Report::Fix(_) | Report::Home(_) | Report::ForeignOrder | Report::Station(_) => {}
+            Report::Fix(_) | Report::Tilt(_) | Report::Home(_) | Report::ForeignOrder | Report::Station(_) => {}
         }
     }
 }
 
-/// Notes something that came: its text, and whether it could be read.
-fn note(received: &mut BTreeMap<String, Received>, now: SimTime, name: &str, (text, is_readable): (String, bool)) {
+/// Notes something that came: its text, and why it could not be read.
+fn note(
+    received: &mut BTreeMap<String, Received>,
+    now: SimTime,
+    name: &str,
+    (text, error): (String, Option<&ParseError>),
+) {
     let room = received.len() < NAMES_MAX || received.contains_key(name);
     let received = received.entry(if room { name } else { "others" }.to_owned()).or_default();
-    received.count += 1;
-    received.unreadable += u64::from(!is_readable);
-    let first = received.between.map_or(now, |(first, _)| first);
-    received.between = Some((first, now));
+    received.note(now);
+    received.unreadable += u64::from(error.is_some());
+    if let (None, Some(error @ (ParseError::Field { .. } | ParseError::TooFew { .. }))) =
+        (&received.why_unreadable, error)
+    {
+        received.why_unreadable = Some(error.to_string());
+    }
     received.last = text;
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const TELEMETRY: &str = "$GPGGA,150502.00,4221.50616,N,07105.24688,W,2,11,0.98,5.5,M,-33.2,M,,*62\r\n\
-        $PSEAA,-2.2,0.7,222.6,,47.8,-0.04,-0.01,-1.00,-0.01*7A\r\n\
-        $PSEAD,T,58.7,20,-10,,T,2,1*7A\r\n\
-        $PTQM0,1*35\r\n";
-
-    fn checked(text: &str, hz: f64) -> SensorCheck {
-        let mut check = SensorCheck::new(&crate::config::default_gateway());
-        for i in 0..10 {
-            check.receive(SimTime::from_s(f64::from(i) / hz), text.as_bytes());
-        }
-        check
-    }
-
-    #[test]
-    fn sentences_are_counted_and_missing_ones_are_named() {
-        let check = checked(TELEMETRY, 10.0);
-        let gga = &check.received()["GPGGA"];
-        assert_eq!((gga.count, gga.unreadable), (10, 0));
-        assert!((gga.rate_hz().unwrap_or(0.0) - 10.0).abs() < 1e-9);
-        assert_eq!(check.received()["PTQM0"].unreadable, 10);
-        let missing = check.missing().join("\n");
-        for want in ["VTG or RMC", "PSEAB", "the operator ashore has to enable it"] {
-            assert!(missing.contains(want), "{missing}");
-        }
-        assert!(!missing.contains("GGA") && !missing.contains("PSEAA"), "{missing}");
-    }
-
-    #[test]
-    fn findings_are_in_words() {
-        let host = TimeOfDay(54_302_400);
-        let findings = checked(TELEMETRY, 10.0).findings(SimTime::ZERO, host).join("\n");
-        for want in [
-            "position: 42.358436, -71.087448, fix quality 2 (DGPS), dilution 0.98",
-            "heading: 222.6 by its compass; nothing true",
-            "control: mode T (Thruster), commanded by Primary",
-            "clock: fixes are 1.30 s behind this host's clock; it sends no date",
-        ] {
-            assert!(findings.contains(want), "{want} is not in\n{findings}");
-        }
-        let with_true = format!("{TELEMETRY}$GPHDT,209.1,T*3F\r\n");
-        assert!(
-            checked(&with_true, 10.0).findings(SimTime::ZERO, host).join("\n").contains("counts from magnetic north")
-        );
-    }
-
-    #[test]
-    fn a_low_rate_is_reported() {
-        assert!(checked(TELEMETRY, 0.5).missing().join("\n").contains("GGA or RMC comes only 0.50 times a second"));
+/// What kind of vehicle a heartbeat is of, as in `a QUADROTOR is system 1`.
+fn vehicle_in_words(system: u8, heartbeat: &HEARTBEAT_DATA) -> String {
+    let [kind, autopilot] = [format!("{:?}", heartbeat.mavtype), format!("{:?}", heartbeat.autopilot)];
+    let kind = kind.trim_start_matches("MAV_TYPE_");
+    match autopilot.trim_start_matches("MAV_AUTOPILOT_") {
+        "ARDUPILOTMEGA" => format!("a {kind} is system {system}"),
+        autopilot => format!("a {kind} with autopilot {autopilot} is system {system}"),
     }
 }

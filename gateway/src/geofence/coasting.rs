@@ -1,0 +1,249 @@
+//! How a boat coasts to rest with its thrusters at zero, by its boat file or by measured distances.
+
+use primitives::frame::Ned;
+use primitives::{SimTime, math};
+use scenario::boat::{Boat, Drive};
+use serde::{Deserialize, Serialize};
+
+/// Below this speed through the water a boat is at rest and only drifts, m/s.
+const REST_M_S: f64 = 0.1;
+/// Time step of the prediction, s.
+const STEP_S: f64 = 0.25;
+/// Steps of one straight leg of it.
+const STEPS_PER_LEG: u32 = 4;
+/// Drift counts for this long at least, s: that long after it was stopped, a boat is still inside.
+const DRIFT_S: f64 = 20.0;
+/// Shares of drift and turn by which the boat may miss the prediction: at these, no approach of `tests/geofence` crosses.
+const DRIFT_SLACK: f64 = 0.8;
+const TURN_SLACK: f64 = 0.7;
+/// A hull that nobody steers veers by this, rad.
+const VEER_RAD: f64 = 0.1;
+/// Drift that is not seen under way, m/s.
+const LEEWAY_M_S: f64 = 0.2;
+/// Speed falls more slowly than the thruster's setting, by this factor at most.
+const SLEW_SHARE: f64 = 0.75;
+/// The longest prediction, s.
+const LONGEST_S: f64 = 60.0;
+/// The drift is a mean over about this time, s.
+const DRIFT_MEMORY_S: f64 = 5.0;
+/// After a longer gap between orders the estimate begins anew, s.
+const GAP_MAX_S: f64 = 1.5;
+/// A boat turns by no more than this while it coasts, rad.
+const TURN_MAX_RAD: f64 = std::f64::consts::FRAC_PI_2;
+
+/// What coasting depends on: resistance ahead, thrusters, and resistance to turning.
+// M du/dt = F - l u - q |u| u (Fossen 2021, ch. 6), where F is what keeps the steady speed of the present thrust.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Coasting {
+    /// Mass and added mass in surge M, kg.
+    pub mass_kg: f64,
+    /// Linear resistance l, kg/s.
+    pub linear_kg_s: f64,
+    /// Quadratic resistance q, kg/m.
+    pub quadratic_kg_m: f64,
+    /// What a boat without such resistance slows down by, m/s².
+    pub deceleration_m_s2: f64,
+    /// The steady speed of full thrust, m/s.
+    pub speed_max_m_s: f64,
+    /// How fast thrust falls, in shares of all a second, and how long until it begins to, s.
+    pub slew_per_s: f64,
+    /// See `slew_per_s`.
+    pub lag_s: f64,
+    /// Time constant of turning, s.
+    pub yaw_s: f64,
+}
+
+impl Coasting {
+    /// By the boat file.
+    #[must_use]
+    pub fn of(boat: &Boat) -> Coasting {
+        let hull = &boat.hull;
+        match &boat.drive {
+            Drive::Thrusters { thruster, .. } => Coasting {
+                mass_kg: hull.mass_kg + hull.added_surge_kg,
+                linear_kg_s: hull.surge_linear_kg_s,
+                quadratic_kg_m: hull.surge_quadratic_kg_m,
+                deceleration_m_s2: 0.0,
+                speed_max_m_s: boat.speed_max_m_s(),
+                slew_per_s: SLEW_SHARE * thruster.slew_per_s,
+                lag_s: thruster.lag_s + thruster.flaws.latency_s,
+                yaw_s: (hull.yaw_inertia_kg_m2 + hull.added_yaw_kg_m2) / hull.yaw_linear_kg_m2_s.max(1e-6),
+            },
+            // It does half of its limit (see `sim::kinematic`); 0 is none.
+            Drive::Kinematic(kinematic) => Coasting {
+                mass_kg: 1.0,
+                linear_kg_s: 0.0,
+                quadratic_kg_m: 0.0,
+                deceleration_m_s2: match 0.5 * kinematic.deceleration_max_m_s2 {
+                    limit if limit > 0.0 => limit,
+                    _ => 100.0,
+                },
+                speed_max_m_s: kinematic.speed_max_m_s,
+                slew_per_s: 100.0,
+                lag_s: 0.0,
+                yaw_s: 0.0,
+            },
+        }
+    }
+
+    /// The same boat, but so that it coasts at least as far as was measured from each of these speeds: m/s and m.
+    #[must_use]
+    pub fn as_measured(self, measured: &[(f64, f64)]) -> Coasting {
+        let longer = |(speed_m_s, distance_m): &(f64, f64)| distance_m / self.distance_m(*speed_m_s).max(1e-3);
+        // Time and distance of coasting are proportional to the mass.
+        let factor = measured.iter().map(longer).fold(0.0, f64::max);
+        match factor {
+            0.0 => self,
+            _ => {
+                Coasting { mass_kg: self.mass_kg * factor, deceleration_m_s2: self.deceleration_m_s2 / factor, ..self }
+            }
+        }
+    }
+
+    /// How far it coasts from this speed when its thrusters stop at once, m.
+    #[must_use]
+    pub fn distance_m(&self, speed_m_s: f64) -> f64 {
+        let at_once = Coasting { lag_s: 0.0, slew_per_s: f64::INFINITY, ..*self };
+        let toward = Ned { north: 1.0, east: 0.0 };
+        at_once
+            .path(&Glide { water_m_s: toward.scaled(speed_m_s), ..Glide::default() })
+            .last()
+            .map_or(0.0, |leg| leg.end.north)
+    }
+
+    /// How far it still coasts from a low speed, where the resistance is linear, m.
+    fn tail_m(&self, speed_m_s: f64) -> f64 {
+        if self.linear_kg_s > 0.0 { speed_m_s * self.mass_kg / self.linear_kg_s } else { 0.0 }
+    }
+
+    /// Deceleration by resistance alone, m/s², with its sign.
+    fn resistance_m_s2(&self, speed_m_s: f64) -> f64 {
+        (self.linear_kg_s + self.quadratic_kg_m * speed_m_s.abs()) * speed_m_s / self.mass_kg
+    }
+
+    fn fallen_thrust(&self, thrust_m_s: f64, toward_m_s: f64, step_s: f64) -> f64 {
+        let change = self.speed_max_m_s * self.slew_per_s * step_s;
+        thrust_m_s + (toward_m_s - thrust_m_s).clamp(-change, change)
+    }
+
+    /// The way to rest from the boat on, in straight legs.
+    #[must_use]
+    pub fn path(&self, glide: &Glide) -> Vec<Leg> {
+        let Glide { water_m_s, drift_m_s, yaw_rate_rad_s, reaction_s, .. } = *glide;
+        let (mut speed_m_s, mut thrust_m_s) = (water_m_s.length(), glide.thrust_m_s.min(self.speed_max_m_s));
+        let course_rad = math::atan2(water_m_s.east, water_m_s.north);
+        let until_fall_s = reaction_s + self.lag_s;
+        let (mut at, mut t_s, mut legs) = (Ned::default(), 0.0_f64, vec![]);
+        for step in 1.. {
+            let turned_s = t_s.min(reaction_s)
+                + self.yaw_s * (1.0 - math::exp((reaction_s - t_s).min(0.0) / self.yaw_s.max(1e-6)));
+            let turned_rad = (yaw_rate_rad_s * turned_s).clamp(-TURN_MAX_RAD, TURN_MAX_RAD);
+            let (sin, cos) = math::sin_cos(course_rad + turned_rad);
+            at = at + (Ned { north: cos, east: sin }.scaled(speed_m_s) + drift_m_s).scaled(STEP_S);
+            t_s += STEP_S;
+            if t_s > until_fall_s {
+                thrust_m_s = self.fallen_thrust(thrust_m_s, 0.0, STEP_S);
+                let change = self.resistance_m_s2(thrust_m_s) - self.resistance_m_s2(speed_m_s);
+                // A boat that is slower than its thrust gains speed for a while.
+                let decelerated = if thrust_m_s > 0.0 { 0.0 } else { self.deceleration_m_s2 };
+                speed_m_s = (speed_m_s + (change - decelerated) * STEP_S).max(0.0);
+            }
+            let is_at_rest = speed_m_s < REST_M_S && t_s > until_fall_s;
+            let is_over = is_at_rest && (t_s >= DRIFT_S || drift_m_s == Ned::default()) || t_s >= LONGEST_S;
+            if is_over {
+                at = at + Ned { north: cos, east: sin }.scaled(self.tail_m(speed_m_s));
+            }
+            if is_over || step % STEPS_PER_LEG == 0 {
+                let slack_m = if drift_m_s == Ned::default() { 0.0 } else { slack_m(&drift_m_s, t_s, turned_rad, at) };
+                legs.push(Leg { end: at, slack_m });
+            }
+            if is_over {
+                break;
+            }
+        }
+        legs
+    }
+}
+
+/// How far a boat may be beside its predicted place.
+fn slack_m(drift_m_s: &Ned, t_s: f64, turned_rad: f64, at: Ned) -> f64 {
+    (LEEWAY_M_S + DRIFT_SLACK * drift_m_s.length()) * t_s + (VEER_RAD + TURN_SLACK * turned_rad.abs()) * at.length()
+}
+
+/// A part of the way to rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Leg {
+    /// Its end, m from the boat.
+    pub end: Ned,
+    /// How far beside that the boat may come, m: leeway grows as the boat slows down, and a turn may go on.
+    pub slack_m: f64,
+}
+
+/// A boat's motion when it begins to coast.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Glide {
+    /// Velocity through the water, m/s.
+    pub water_m_s: Ned,
+    /// Velocity of the water and of what the wind adds, m/s.
+    pub drift_m_s: Ned,
+    /// The steady speed of its present thrust, m/s.
+    pub thrust_m_s: f64,
+    /// Rate of turn, rad/s.
+    pub yaw_rate_rad_s: f64,
+    /// How long it goes on as before, s.
+    pub reaction_s: f64,
+}
+
+/// The drift of a boat under orders: what its velocity over the ground has beyond the one that its thrust explains.
+// A boat that coasts farther than its file says drifts by this estimate, too: it then counts on a longer way.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct DriftEstimate {
+    at: Option<SimTime>,
+    /// How long it has been estimated, s.
+    lasted_s: f64,
+    /// Surge through the water by the boat file, and the steady speed of the thrust, m/s.
+    surge_m_s: f64,
+    /// The steady speed of the present thrust, m/s.
+    pub thrust_m_s: f64,
+    /// The estimate, m/s.
+    pub drift_m_s: Ned,
+}
+
+impl DriftEstimate {
+    /// Takes the steady speed ahead of the present set-point, m/s, and the boat's heading and velocity over the ground.
+    pub fn observe(
+        &mut self,
+        coasting: &Coasting,
+        now: SimTime,
+        ordered_m_s: f64,
+        (psi_rad, velocity_m_s): (f64, Ned),
+    ) {
+        let (sin, cos) = math::sin_cos(psi_rad);
+        let ahead = Ned { north: cos, east: sin };
+        let Some(at) = self.at.replace(now).filter(|at| (now - *at).as_s() <= GAP_MAX_S) else {
+            let surge_m_s = velocity_m_s.dot(ahead);
+            let (thrust_m_s, drift_m_s) = (ordered_m_s, Ned::default());
+            *self = DriftEstimate { at: Some(now), lasted_s: 0.0, surge_m_s, thrust_m_s, drift_m_s };
+            return;
+        };
+        let step_s = (now - at).as_s();
+        // Steps that keep the equation stable.
+        for _ in 0..6 {
+            let step_s = step_s / 6.0;
+            self.thrust_m_s = coasting.fallen_thrust(self.thrust_m_s, ordered_m_s, step_s);
+            let change = coasting.resistance_m_s2(self.thrust_m_s) - coasting.resistance_m_s2(self.surge_m_s);
+            self.surge_m_s += change * step_s;
+        }
+        let rest = velocity_m_s - ahead.scaled(self.surge_m_s);
+        // A plain mean at first.
+        self.lasted_s += step_s;
+        let share = step_s / self.lasted_s.clamp(1e-3, DRIFT_MEMORY_S);
+        self.drift_m_s = self.drift_m_s + (rest - self.drift_m_s).scaled(share.min(1.0));
+    }
+
+    /// Whether orders have been observed until now.
+    #[must_use]
+    pub fn is_fresh(&self, now: SimTime) -> bool {
+        self.at.is_some_and(|at| (now - at).as_s() <= GAP_MAX_S)
+    }
+}
