@@ -20,7 +20,7 @@ const COMMANDS: [&str; 21] = [
     "sweep storm --find out_of_bounds --search-games 10000 --jobs 1 --out DIR/storm",
     "train options --jobs 1 --out DIR/options",
     "log --quality RECORDINGS",
-    "trial surveyor_m1_8 --manoeuvre zigzag --duration-s 86000 --csv DIR/track.csv",
+    "trial surveyor_m1_8 --manoeuvre zigzag --duration-s 86000 --csv DIR/track.csv --plot DIR/track.svg",
     "identify surveyor_m1_8 --log DIR/zigzag.csv --out DIR/fit.toml",
     "replay RECORDING --listen 127.0.0.1:0",
     "view --listen 127.0.0.1:0 GAME",
@@ -51,7 +51,8 @@ fn sigterm_ends_every_command_within_two_seconds() {
     let dir = temporary();
     let folder = dir.path().display().to_string();
     let log = format!("{folder}/zigzag.csv");
-    let args = ["trial", "surveyor_m1_8", "--manoeuvre", "zigzag", "--with-orders", "--csv", &log];
+    let plot = format!("{folder}/zigzag.svg");
+    let args = ["trial", "surveyor_m1_8", "--manoeuvre", "zigzag", "--with-orders", "--csv", &log, "--plot", &plot];
     assert!(run(&args).status.success());
     let recording = format!("{folder}/game.mcap");
     assert!(run(&["sim", "attack_1v1", "--join-s", "0", "--record", &recording]).status.success());

@@ -229,9 +229,10 @@ mod tests {
     #[test]
     fn a_link_to_a_folder_is_not_followed_and_a_relative_folder_not_used() {
         let dir = tempfile::tempdir().expect("a folder");
-        let link = dir.path().join("squall");
-        std::os::unix::fs::symlink(dir.path(), &link).expect("a link");
-        assert!(is_private(dir.path()) && !is_private(&link));
+        let (own, link) = (dir.path().join("own"), dir.path().join("squall"));
+        make_private(&own).expect("it is new");
+        std::os::unix::fs::symlink(&own, &link).expect("a link");
+        assert!(!is_private(&link));
         let refused = make_private(&link).expect_err("it is refused").to_string();
         assert!(refused.contains("squall is a link, or belongs or is open to others"), "{refused}");
         assert_eq!(folder_in(Some("/run/user/7".into())), Path::new("/run/user/7/squall"));
