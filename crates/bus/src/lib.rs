@@ -56,7 +56,7 @@ pub use link_lock::{LinkLock, LinkLockError};
 pub use local_registry::{
     Entry, GatewayEntry, Registration, gateways as local_gateways, list as local_registry, register, register_gateway,
 };
-pub use net::{DEFAULT_PORT, Net, free_port, is_loopback};
+pub use net::{DEFAULT_PORT, Net, free_port, is_loopback, is_same_place};
 pub use parcel::Parcel;
 pub use place::{Place, PlacedSession};
 pub use query::Query;

@@ -245,6 +245,15 @@ pub fn is_loopback(endpoint: &str) -> bool {
     }
 }
 
+/// Whether two endpoints have the same host and port. All names of the loopback interface are one
+/// host, whatever the protocol.
+#[must_use]
+pub fn is_same_place(one: &str, other: &str) -> bool {
+    let port = |endpoint| address(endpoint).rsplit_once(':').map(|(_, port)| port);
+    let is_same_host = is_loopback(one) && is_loopback(other) && port(one) == port(other);
+    is_same_host || address(one) == address(other)
+}
+
 /// The range of [`free_port`]: registered ports that systems do not give to outgoing connections
 /// (Linux starts at 32768, others at 49152; RFC 6335). A port in those ranges can be taken between
 /// the check and `listen`, even by a client that retries to reach that very port.
@@ -287,6 +296,17 @@ mod tests {
         ] {
             assert_eq!(is_loopback(endpoint), is_ours, "{endpoint}");
         }
+    }
+
+    #[test]
+    fn places_are_compared_by_host_and_port() {
+        for other in ["tcp/localhost:7447", "tcp/[::1]:7447", "quic/127.0.0.1:7447", "udp/127.0.0.1:7447?rel=1"] {
+            assert!(is_same_place("tcp/127.0.0.1:7447", other), "{other}");
+        }
+        for other in ["tcp/127.0.0.1:7448", "tcp/192.168.1.5:7447", "tcp/localhost"] {
+            assert!(!is_same_place("tcp/127.0.0.1:7447", other), "{other}");
+        }
+        assert!(is_same_place("tcp/boat.local:7447", "quic/boat.local:7447#iface=wlan0"));
     }
 
     /// A client whose own port is its target port connects to itself, and blocks the port for

@@ -157,7 +157,7 @@ impl LeafArgs {
         if connect.is_empty() && !self.lan {
             connect.push(local_endpoint(&known)?);
         }
-        known.retain(|entry| connect.contains(&entry.endpoint));
+        known.retain(|entry| connect.iter().any(|given| bus::is_same_place(given, &entry.endpoint)));
         let shown = || known.first().and_then(|entry| entry.token.as_ref()?.parse().ok());
         let token = self.token.token()?.or_else(shown);
         Ok(Net { listen: vec![], connect, lan: self.lan, config_file: self.zenoh_config.clone(), token, keys })
