@@ -63,7 +63,13 @@ fn seeds() -> Vec<Vec<u8>> {
     seeds.extend([bytes_of(&Water { waves }), bytes_of(&game.ending.outcome), bytes_of(&game.ending.outcome.events)]);
     seeds.push(bytes_of(&HelmQuestion::default()));
     let (endpoint, control) = ("tcp/127.0.0.1:7447".to_owned(), "127.0.0.1:7001".parse().expect("an address"));
-    seeds.push(bytes_of(&Entry { game: "pav01".to_owned(), endpoint, pid: 1, token: Some(TOKEN.hex()), is_water: false }));
+    seeds.push(bytes_of(&Entry {
+        game: "pav01".to_owned(),
+        endpoint,
+        pid: 1,
+        token: Some(TOKEN.hex()),
+        is_water: false,
+    }));
     seeds.push(bytes_of(&GatewayEntry { vehicle: "blue_one".to_owned(), game: None, control, pid: 1, token: None }));
     seeds.push(br#"{"kind":"waiting","agents":["blue_one"],"gateways":[]}"#.to_vec());
     seeds.push(bytes_of(&game.info()));
