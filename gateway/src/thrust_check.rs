@@ -21,7 +21,7 @@ pub struct Ordered {
 pub enum ThrustFault {
     /// Its heading does not follow the thrust difference: it turns by this many degrees a second under half of all.
     #[error(
-        "the thrusters: its heading does not follow the thrust difference: {0:.0} degrees a second under half of it"
+        "the thrusters: its heading does not respond to differential thrust: {0:.0} degrees/s at half of full difference"
     )]
     NoTurn(f64),
     /// It makes this little way ahead, m/s, under the thrust for 40 s.

@@ -282,7 +282,7 @@ impl Bridge {
         let outside = self.on_site.as_ref().and_then(|site| site.outside(now, mission));
         let begun = match (self.supervisor.state(), outside) {
             (State::EStopped, _) => Err(self.e_stop_in_force()),
-            _ if self.plan.dry_run => Err("a dry run sends the boat nothing but standby, and so no mission".to_owned()),
+            _ if self.plan.dry_run => Err("a dry run sends only standby, so it cannot upload a mission".to_owned()),
             _ if !unfit.is_empty() => Err(Refusal::NotReady(unfit).to_string()),
             (_, Some(outside)) => Err(outside),
             // A disarm request leaves the change of state to the supervisor: the boat must rest
@@ -450,7 +450,8 @@ impl Bridge {
         let ignored =
             action == Action::Standby && ours && self.control.mode_mismatch(now).is_some_and(Mode::is_set_point);
         if ignored && !self.standby_ignored {
-            out.events.push(Event::Warning("the boat is sent standby and reports that it is driven".to_owned()));
+            out.events
+                .push(Event::Warning("the boat is being sent standby but reports that it is being driven".to_owned()));
         }
         self.standby_ignored = ignored;
     }

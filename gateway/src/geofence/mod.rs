@@ -18,7 +18,7 @@ const COMMAND_S: f64 = 0.5;
 /// A breach by drift is over when the path has been free for longer than this, s.
 const BREACH_ENDS_S: f64 = 2.0;
 
-/// Watches that a boat is inside of the geofence and can stop there.
+/// Watches that a boat is inside the geofence and can stop there.
 #[derive(Clone, Debug)]
 pub struct GeofenceWatch {
     area: GeofenceArea,

@@ -100,7 +100,7 @@ impl Port {
                 // The beginning was discarded, so the rest would be an incomplete sentence.
                 Err(_) if self.flushes() != flushes => return Ok(Wrote::Dropped),
                 Err(_) if clock::since(progress_at) >= STALL => {
-                    return Err(io::Error::new(ErrorKind::TimedOut, format!("nothing taken for {STALL:?}")));
+                    return Err(io::Error::new(ErrorKind::TimedOut, format!("no data accepted for {STALL:?}")));
                 }
                 Err(_) => {}
             }

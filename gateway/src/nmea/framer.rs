@@ -118,7 +118,7 @@ impl Framer {
             self.reject(filled, "is too long");
         } else {
             self.counts.broken += 1;
-            self.reject(filled, "is cut off by a byte that is no text");
+            self.reject(filled, "is interrupted by a non-text byte");
         }
     }
 

@@ -81,7 +81,7 @@ pub enum Sentence {
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum ParseError {
     /// No sentence of ours has this address.
-    #[error("{address}: not a sentence that is read here")]
+    #[error("{address}: unsupported sentence")]
     Unknown {
         /// What stands before the first comma.
         address: String,

@@ -116,9 +116,7 @@ impl Server {
                     (token::answer(&self.execute(command, is_running)), false)
                 }
                 Checked::Challenged(challenge) => (challenge, false),
-                Checked::Garbage(e) => {
-                    (token::answer(&self.refusal(&format!("the request is not understood: {e}"))), true)
-                }
+                Checked::Garbage(e) => (token::answer(&self.refusal(&format!("cannot parse the request: {e}"))), true),
             };
             answer.push(b'\n');
             stream.write_all(&answer)?;
@@ -302,8 +300,8 @@ mod tests {
         };
         // A browser can be made to send this, by any page.
         let post = b"POST / HTTP/1.1\r\n\r\n{\"body\":{\"fleet\":\"e_stop\"}}\n";
-        assert!(said(post).contains("not understood") && !output.take_stop(Stop::EStop(Scope::Fleet)));
-        assert!(said(&[b'['; 1000].iter().chain(b"\n").copied().collect::<Vec<u8>>()).contains("not understood"));
+        assert!(said(post).contains("cannot parse") && !output.take_stop(Stop::EStop(Scope::Fleet)));
+        assert!(said(&[b'['; 1000].iter().chain(b"\n").copied().collect::<Vec<u8>>()).contains("cannot parse"));
         assert_eq!(said(&vec![b'x'; 10 * REQUEST_MAX as usize]), "");
     }
 }

@@ -181,7 +181,7 @@ impl GatewayLoop<'_> {
             guarded.stop_with(&self.bridge.guard_message());
         }
         if self.guarded.as_ref().is_some_and(|guarded| !guarded.beat()) {
-            self.warn("the guard has died: if the gateway is killed, nobody stops the boat");
+            self.warn("the guard has died: if the gateway is killed, nothing stops the boat");
         }
         if gap >= HUNG && (self.guarded.is_some() || suspended.is_some()) {
             self.step(Input::Hung(gap.as_secs_f64()), None)?;
@@ -298,7 +298,7 @@ impl GatewayLoop<'_> {
             }
             // The ticket would be another boat's: its reports would move that one.
             Call::Joined(_) => {
-                Err(NodeError::Refused("the sim let another boat in than the one that asked".to_owned()))
+                Err(NodeError::Refused("the sim admitted a different boat from the one that asked".to_owned()))
             }
             Call::SimGone => {
                 // No error: the boat is stopped by stale orders, and the next sim of the game
@@ -323,7 +323,7 @@ impl GatewayLoop<'_> {
             }
             // A position that waited would be taken for where the boat is now.
             LinkEvent::Bytes { at, .. } if self.is_too_old(at) => {
-                self.remark("what the boat sent has waited for too long: it is not used");
+                self.remark("discarded data from the boat: it waited too long");
                 self.step(Input::Tick, None)
             }
             LinkEvent::Bytes { at, bytes, .. } => self.step(Input::Bytes(bytes), Some(at)),
@@ -394,7 +394,7 @@ impl GatewayLoop<'_> {
                 query.answer_as(challenge, token.as_ref());
                 return Ok(());
             }
-            Checked::Garbage(e) => Some(format!("the command is not understood: {e}")),
+            Checked::Garbage(e) => Some(format!("cannot parse the command: {e}")),
         };
         let reply = OperatorReply { refused, status: self.full_status() };
         query.answer_as(token::answer(&reply), token.as_ref());

@@ -153,7 +153,7 @@ pub fn guard(socket: impl AsFd, remark: &mut dyn FnMut(&str)) -> io::Result<()> 
                 if let Some(link) = &link {
                     write(link, &stop);
                     if !is_hung {
-                        remark("the gateway hangs: its boat is sent thrust zero and standby");
+                        remark("the gateway hangs: its boat is sent zero thrust and standby");
                     }
                 }
                 // Without a link there is nothing to say, and nobody to tell that the gateway
@@ -163,7 +163,7 @@ pub fn guard(socket: impl AsFd, remark: &mut dyn FnMut(&str)) -> io::Result<()> 
             Heard::Died => {
                 let Some(link) = &link else { return Ok(()) };
                 write(link, &stop);
-                remark("the gateway has died: its boat is sent thrust zero and standby");
+                remark("the gateway has died: its boat is sent zero thrust and standby");
                 // Again, for links that lose bytes, and against whatever the dead gateway had
                 // queued in the kernel.
                 for _ in 1..LAST_WORDS {

@@ -36,16 +36,16 @@ fn sleep(inhibitors: &Path) -> Check {
     let Ok(entries) = std::fs::read_dir(inhibitors) else {
         return Check::not_done(
             "sleep",
-            format!("there is no {}: see that this machine stays awake", inhibitors.display()),
+            format!("{} does not exist: make sure that this machine stays awake", inhibitors.display()),
         );
     };
     let texts = entries.flatten().filter_map(|entry| std::fs::read_to_string(entry.path()).ok());
     let holders: Vec<String> = texts.filter_map(|text| sleep_inhibitor(&text)).collect();
     if holders.is_empty() {
-        let found = "nothing keeps this machine from sleeping, expected systemd-inhibit --what=sleep, or the unit";
+        let found = "nothing prevents this machine from sleeping; use systemd-inhibit --what=sleep, or the unit";
         return Check::of("sleep", false, found.to_owned());
     }
-    Check::of("sleep", true, format!("kept off by {}", holders.join(", ")))
+    Check::of("sleep", true, format!("prevented by {}", holders.join(", ")))
 }
 
 /// Who holds off sleep by this entry, if it does.
@@ -72,7 +72,7 @@ mod tests {
         entry("desktop", "handle-lid-switch:idle", "block");
         assert_eq!(sleep(folder.path()).verdict, Verdict::Failed);
         entry("squall", "idle:sleep", "block");
-        assert_eq!(sleep(folder.path()), Check::of("sleep", true, "kept off by squall".to_owned()));
+        assert_eq!(sleep(folder.path()), Check::of("sleep", true, "prevented by squall".to_owned()));
         assert_eq!(sleep(&folder.path().join("none")).verdict, Verdict::NotChecked);
     }
 

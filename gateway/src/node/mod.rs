@@ -131,7 +131,7 @@ fn start_guard(settings: &Settings, outside: &Outside, notify: &mut dyn FnMut(No
     command.args(args).env_clear();
     let started = Guarded::start(command, &Protocol::new(&settings.gateway).guard_message());
     if let Err(e) = &started {
-        let text = format!("there is no guard, so if the gateway is killed, nobody stops the boat: {e}");
+        let text = format!("there is no guard: if the gateway is killed, nothing stops the boat: {e}");
         notify(NodeEvent::Event { at_s: 0.0, event: &Event::Warning(text) });
     }
     started.ok()
@@ -203,7 +203,7 @@ fn connect(
     port.iter().for_each(ControlPort::begin);
     let result = match &finder {
         Ok(_) => gateway_loop.run(&settings.stop),
-        Err(e) => Err(NodeError::Refused(format!("no thread to look for the game: {e}"))),
+        Err(e) => Err(NodeError::Refused(format!("cannot start a thread to look for the game: {e}"))),
     };
     if result.is_err() {
         gateway_loop.await_boat();

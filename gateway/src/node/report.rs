@@ -13,7 +13,7 @@ use recording::Entry;
 /// What is wrong with a recording, if anything.
 pub(super) fn recording_fault(state: &RecordingState) -> Option<String> {
     match (&state.failed, state.dropped) {
-        (Some(why), _) => Some(format!("nothing is recorded any more in {}: {why}", state.file)),
+        (Some(why), _) => Some(format!("recording to {} has stopped: {why}", state.file)),
         (None, 0) => None,
         (None, _) => Some("the recording is incomplete: the disk is too slow".to_owned()),
     }

@@ -34,7 +34,7 @@ pub enum Exo2Port {
     Http,
 }
 
-/// A payload's port that is not understood.
+/// An invalid payload port.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{text:?}: {found}, allowed: {allowed}")]
 pub struct PayloadPortError {
@@ -96,7 +96,7 @@ fn parse(text: &str) -> Result<PayloadPort, Fault> {
     parts.try_for_each(|option| set(&mut port, option))?;
     match (&port.address, port.exo2) {
         (LinkAddress::Tcp(..), _) | (_, None | Some(Exo2Port::Lines)) => Ok(port),
-        _ => Err(("exo2=http is over no TCP port".to_owned(), "exo2=http with tcp://HOST:PORT".to_owned())),
+        _ => Err(("exo2=http requires a TCP address".to_owned(), "exo2=http with tcp://HOST:PORT".to_owned())),
     }
 }
 
@@ -149,7 +149,7 @@ mod tests {
             ("cam=tcp://1.2.3.4:5,exo=1", "an option is \"exo=1\"", "exo2=http"),
             ("cam=tcp://1.2.3.4:5,exo2=", "an option is \"exo2=\"", "exo2=http"),
             ("cam=tcp://1.2.3.4:5,", "an option is \"\"", "listen=HOST:PORT"),
-            ("cam=udp://1.2.3.4:5,exo2=http", "over no TCP port", "tcp://"),
+            ("cam=udp://1.2.3.4:5,exo2=http", "requires a TCP address", "tcp://"),
         ] {
             let error = text.parse::<PayloadPort>().expect_err(text);
             assert!(error.found.contains(found) && error.allowed.contains(allowed), "{text}: {error}");

@@ -42,7 +42,7 @@ pub fn boat_checks(seen: &SensorCheck, host: HostTime, gateway: &Gateway, water:
 }
 
 fn fix(seen: &SensorCheck, gateway: &Gateway) -> Check {
-    let Some(fix) = seen.fix() else { return Check::not_done("fix", "none came that tells its quality") };
+    let Some(fix) = seen.fix() else { return Check::not_done("fix", "no fix with a quality was received") };
     let nav = &gateway.nav;
     let satellites = fix.satellites.map_or("unknown".to_owned(), |count| count.to_string());
     let hdop = fix.hdop.map_or("unknown".to_owned(), |hdop| hdop.to_string());
@@ -63,10 +63,10 @@ fn scatter(seen: &SensorCheck) -> Check {
     let places: Vec<LatLon> = fixes.iter().map(|(_, at)| *at).collect();
     // Drift of a fix shows over tens of seconds; a few good fixes say nothing of it.
     match FixScatter::of(&places).filter(|_| lasted_s >= SCATTER_S) {
-        None => Check::not_done("scatter", format!("{lasted_s:.0} s of fixes, expected {SCATTER_S}: --for-s 30")),
+        None => Check::not_done("scatter", format!("{lasted_s:.0} s of fixes, expected {SCATTER_S}: use --for-s 30")),
         Some(FixScatter { radius_95_m, drift_m }) => {
             let found = format!(
-                "95 % within {radius_95_m:.2} m, drift {drift_m:.2} m in {lasted_s:.0} s; expected up to {SCATTER_MAX_M} m of a boat at rest"
+                "95 % within {radius_95_m:.2} m, drift {drift_m:.2} m in {lasted_s:.0} s; expected up to {SCATTER_MAX_M} m for a boat at rest"
             );
             Check::of("scatter", radius_95_m <= SCATTER_MAX_M && drift_m <= SCATTER_MAX_M, found)
         }
@@ -75,9 +75,9 @@ fn scatter(seen: &SensorCheck) -> Check {
 
 fn geofence(seen: &SensorCheck, water: Option<&Water>) -> Check {
     let Some(water) = water else {
-        return Check::not_done("geofence", "no game says where the field is: --vehicle NAME, with --game");
+        return Check::not_done("geofence", "the field is unknown without a game: use --vehicle NAME with --game");
     };
-    let Some((_, at)) = seen.fixes().last() else { return Check::not_done("geofence", "no position came") };
+    let Some((_, at)) = seen.fixes().last() else { return Check::not_done("geofence", "received no position") };
     let place = LocalFrame::new(water.field.plan.datum).ned(*at);
     let clearance_m = water.area.clearance_m(place);
     let on_field = if water.field.contains(place) { "on the field" } else { "off the field" };
@@ -86,7 +86,7 @@ fn geofence(seen: &SensorCheck, water: Option<&Water>) -> Check {
         place.east,
         place.north,
         clearance_m.abs(),
-        if clearance_m > 0.0 { "inside of" } else { "OUTSIDE of" }
+        if clearance_m > 0.0 { "inside" } else { "OUTSIDE" }
     );
     Check::of("geofence", clearance_m > 0.0, found)
 }
@@ -97,19 +97,19 @@ fn compass(seen: &SensorCheck) -> Check {
             Check::of("compass", true, seen.heading().unwrap_or_default())
         }
         Some(heading_deg) => Check::of("compass", false, format!("heading {heading_deg}, expected 0 to 360")),
-        None => Check::not_done("compass", "no heading came"),
+        None => Check::not_done("compass", "received no heading"),
     }
 }
 
 fn control(seen: &SensorCheck, gateway: &Gateway) -> Check {
     let Some(control) = seen.control() else {
-        let found = "the boat does not say who commands it";
+        let found = "the boat does not report who commands it";
         // The file may vouch for it, for boats without such a sentence: then it is a person who
         // answers for who has control.
         return Check::of("control", gateway.control.assumed, format!("{found}; expected PSEAD, or control.assumed"));
     };
     let (mode, is_ours) = (control.shown.mode, control.operator.is_none_or(|operator| operator == Operator::Secondary));
-    let operator = control.operator.map_or("nobody named".to_owned(), |operator| format!("{operator:?}"));
+    let operator = control.operator.map_or("nobody identified".to_owned(), |operator| format!("{operator:?}"));
     let found = format!(
         "mode {}, commanded by {operator}; expected {}, and Secondary",
         seen.mode_in_words(mode),
@@ -135,7 +135,7 @@ fn bilge(seen: &SensorCheck, gateway: &Gateway) -> Check {
             let found = format!("pumps draw {amps:.1} A, expected less than {most_a}: more is a leak");
             Check::of("bilge", amps < most_a, found)
         }
-        _ => Check::not_done("bilge", "the boat does not report its pumps, or they are not watched"),
+        _ => Check::not_done("bilge", "the boat does not report its pumps, or they are not monitored"),
     }
 }
 
@@ -146,7 +146,7 @@ fn clock(seen: &SensorCheck, host: HostTime) -> Check {
             let found = format!("fixes are {behind_s:.2} s behind this machine's clock, expected -1 to 5");
             Check::of("clock", true, found)
         }
-        (None, None) => Check::not_done("clock", "no time of day came"),
+        (None, None) => Check::not_done("clock", "received no time of day"),
     }
 }
 
@@ -216,7 +216,7 @@ mod tests {
             ([80.0, 40.0], "8,11,0.98", SOUND, "fix", "simulator"),
             ([80.0, 40.0], "9,11,0.98", SOUND, "fix", "an unknown quality"),
             ([80.0, 40.0], "5,4,7.50", SOUND, "fix", "RTK float, 4 satellites, dilution 7.5"),
-            ([80.0, 400.0], fix, SOUND, "geofence", "off the field, 290.0 m OUTSIDE of"),
+            ([80.0, 400.0], fix, SOUND, "geofence", "off the field, 290.0 m OUTSIDE"),
             (
                 [80.0, 40.0],
                 fix,

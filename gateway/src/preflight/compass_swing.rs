@@ -72,7 +72,7 @@ impl CompassSwing {
             }
         }
         let solved = solve_positive_definite(normal, right);
-        let mut found = solved.ok_or_else(|| "the headings do not tell a curve".to_owned())?;
+        let mut found = solved.ok_or_else(|| "the headings do not determine a deviation curve".to_owned())?;
         found[0] = wrap_pi(found[0] + mean_rad);
         let value = |psi_rad: f64| basis(psi_rad).iter().zip(found).map(|(base, factor)| base * factor).sum::<f64>();
         let squares = self.pairs.iter().map(|(psi_rad, off)| wrap_pi(off - value(*psi_rad))).map(|rest| rest * rest);

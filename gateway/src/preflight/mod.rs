@@ -86,7 +86,7 @@ impl Report {
             return Err(format!("it has not passed: {}", faults.join("; ")));
         }
         if (self.vehicle.as_str(), self.link.as_str()) != (vehicle, link) {
-            return Err(format!("it is of {} at {}, expected {vehicle} at {link}", self.vehicle, self.link));
+            return Err(format!("it is for {} at {}, expected {vehicle} at {link}", self.vehicle, self.link));
         }
         let age_h = (now_unix_s as f64 - self.at_unix_s as f64) / 3600.0;
         // One from the future comes from a machine with another clock, and says nothing about
@@ -135,7 +135,7 @@ mod tests {
             ("blue_one", "tcp://a:1", 10_800, ""),
             ("blue_one", "tcp://a:1", 11_000, "it is 1.1 h old, expected 0 to 1"),
             ("blue_one", "tcp://a:1", 7000, "it is -0.1 h old"),
-            ("red_one", "tcp://a:1", 7200, "it is of blue_one at tcp://a:1, expected red_one at tcp://a:1"),
+            ("red_one", "tcp://a:1", 7200, "it is for blue_one at tcp://a:1, expected red_one at tcp://a:1"),
             ("blue_one", "tcp://b:1", 7200, "expected blue_one at tcp://b:1"),
         ] {
             let refused = report.admits(vehicle, link, now_s, 1.0).err().unwrap_or_default();

@@ -392,7 +392,7 @@ impl Mavlink {
             ("bad checksums", framed.bad_checksum),
             ("bytes of garbage", framed.garbage),
             ("unreadable", framed.unreadable),
-            ("messages of other systems", self.boat.others),
+            ("messages from other systems", self.boat.others),
         ];
         let unknown = framed.unknown.iter().map(|(id, count)| (format!("unknown message {id}"), *count));
         [known.into_iter().map(|(name, count)| (name.to_owned(), count)).collect(), unknown.collect()]

@@ -91,7 +91,11 @@ impl Upload {
             Phase::Home | Phase::Items => {}
         }
         if self.tries == TRIES_MAX {
-            let what = if self.phase == Phase::Home { "does not show the home it is sent" } else { "asks for no item" };
+            let what = if self.phase == Phase::Home {
+                "does not report the home position that it was sent"
+            } else {
+                "requests no item"
+            };
             return Next::Failed(format!("the boat {what}"));
         }
         self.tries += 1;

@@ -29,8 +29,8 @@ const NAMES_MAX: usize = 64;
 const HEARD_MAX: usize = 8;
 
 /// The boat's clock may be off by so much from this machine's, s: fixes are told a moment after their time.
-// Latencies of half a minute are no latencies: then one of the clocks is wrong, and recordings
-// cannot be laid side by side.
+// An offset of half a minute is not latency: one of the clocks is wrong, and recordings cannot be
+// compared.
 const CLOCK_BEHIND_S: std::ops::RangeInclusive<f64> = -1.0..=5.0;
 /// The days of 1024 weeks, less one for the time of day.
 const GPS_WEEKS_DAYS: i64 = 7167;
@@ -267,8 +267,9 @@ impl SensorCheck {
         }
         found.extend(self.heading());
         if let Some(ControlReport { shown, operator }) = &self.control {
-            let who = operator
-                .map_or("it does not report by whom".to_owned(), |operator| format!("commanded by {operator:?}"));
+            let who = operator.map_or("it does not report who commands it".to_owned(), |operator| {
+                format!("commanded by {operator:?}")
+            });
             found.push(format!("control: mode {}, {who}", self.mode_in_words(shown.mode)));
         }
         found.extend(self.power.volts.map(|volts| format!("battery: {volts} V")));
@@ -299,7 +300,7 @@ impl SensorCheck {
             return self.true_deg.map(|true_deg| format!("heading: {true_deg:.1} true"));
         };
         Some(match self.true_deg {
-            None => format!("heading: {compass_deg:.1} by its compass; nothing true to compare it with"),
+            None => format!("heading: {compass_deg:.1} by its compass; no true heading to compare it with"),
             Some(true_deg) => {
                 let apart_rad = wrap_pi((true_deg - compass_deg).to_radians());
                 let frame = if apart_rad.abs() < SAME_HEADING_RAD {
@@ -324,12 +325,12 @@ impl SensorCheck {
             missing.push(match self.framer {
                 Framer::Nmea(_) => "secondary control: the operator ashore has to enable it".to_owned(),
                 Framer::Mavlink(_) => {
-                    format!("control: {operator:?} has the boat, in a mode that is not GUIDED or HOLD")
+                    format!("control: {operator:?} has control, and the mode is neither GUIDED nor HOLD")
                 }
             });
         }
         let no_fix = self.no_fix();
-        missing.extend(no_fix.map(|quality| format!("a position: its fix is of quality {quality}")));
+        missing.extend(no_fix.map(|quality| format!("a position: its fix has quality {quality}")));
         missing
     }
 
@@ -339,21 +340,23 @@ impl SensorCheck {
         quality.filter(|quality| at.is_none() || !quality.is_fix())
     }
 
-    /// What came if nothing of it could be read, with the reason.
+    /// What was received if none of it could be read, with the reason.
     #[must_use]
     pub fn unread(&self) -> String {
         let lines = match &self.framer {
             Framer::Nmea(framer) => framer.rejected().map(|last| {
                 let nmea::Counts { bad_checksum, overlong, broken, .. } = framer.counts();
                 let count = bad_checksum + overlong + broken;
-                format!("{count} lines came, none a sentence: {} {}", last.line, last.why)
+                format!("received {count} lines, none of them a valid sentence: {} {}", last.line, last.why)
             }),
             Framer::Mavlink(_) => None,
         };
         match lines {
             Some(lines) => lines,
-            None if self.bytes == 0 => "nothing came".to_owned(),
-            None => format!("{} bytes came, none of them readable: check the protocol and the baud rate", self.bytes),
+            None if self.bytes == 0 => "received nothing".to_owned(),
+            None => {
+                format!("received {} bytes, none of them readable: check the protocol and the baud rate", self.bytes)
+            }
         }
     }
 

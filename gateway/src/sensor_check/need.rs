@@ -84,13 +84,13 @@ impl SensorCheck {
             (Some((name, _)), _) if !self.usable.contains_key(usable) => {
                 format!("{what}: {name} comes without it: {without}")
             }
-            _ => format!("{names} comes only {rate_hz:.2} times a second with new data: {without}"),
+            _ => format!("{names} arrive only {rate_hz:.2} times a second with new data: {without}"),
         })
     }
 
     fn no_boat(&self) -> String {
         let heard: Vec<String> = self.heard.iter().cloned().collect();
-        let heard = if heard.is_empty() { "no HEARTBEAT came".to_owned() } else { heard.join(", ") };
-        format!("a boat: all messages are of other systems ({heard})")
+        let heard = if heard.is_empty() { "received no HEARTBEAT".to_owned() } else { heard.join(", ") };
+        format!("a boat: all messages are from other systems ({heard})")
     }
 }

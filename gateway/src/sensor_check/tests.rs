@@ -70,10 +70,10 @@ fn what_came_but_cannot_be_used_is_missing_with_the_reason() {
             "GPGGA,150503.00,4121.2880,N,07403.3060,W,1,12,.9,12.0,M,-33.2,M,,",
             "a position: GPGGA field 8 is \".9\", expected a number or nothing",
         ),
-        ("GPGGA,150503.00,,,,,1,12,0.9,12.0,M,-33.2,M,,", "a position: its fix is of quality 1"),
+        ("GPGGA,150503.00,,,,,1,12,0.9,12.0,M,-33.2,M,,", "a position: its fix has quality 1"),
         ("GPGGA,150503.00,0000.00000,N,00000.00000,E,1,12,0.9,1,M,1,M,,", "a position: GPGGA comes without it"),
         // The receiver's time stands still.
-        ("GPGGA,150503.00,4121.2880,N,07403.3060,W,1,12,0.9,12.0,M,-33.2,M,,", "GGA or RMC comes only 0.00 times"),
+        ("GPGGA,150503.00,4121.2880,N,07403.3060,W,1,12,0.9,12.0,M,-33.2,M,,", "GGA or RMC arrive only 0.00 times"),
         ("PSEAA,-2.2,0.7,,,47.8,-0.04,-0.01,-1.00,-0.01", "a heading: PSEAA comes without it"),
         ("PSEAA,-2.2,0.7,400,,47.8,-0.04,-0.01,-1.00,-0.01", "a heading: PSEAA comes without it"),
         ("GPVTG,,T,,M,,N,,K", "a velocity: GPVTG comes without it"),
@@ -87,10 +87,10 @@ fn what_came_but_cannot_be_used_is_missing_with_the_reason() {
 #[test]
 fn a_link_without_sentences_says_what_came() {
     for (stream, want) in [
-        ("$PSEAG,N\r\n", "10 lines came, none a sentence: $PSEAG,N has no checksum"),
-        ("$PSEAG,N*23\r\n", "10 lines came, none a sentence: $PSEAG,N*23 has a wrong checksum"),
-        ("\u{1}\u{2}", "20 bytes came, none of them readable: check the protocol and the baud rate"),
-        ("", "nothing came"),
+        ("$PSEAG,N\r\n", "received 10 lines, none of them a valid sentence: $PSEAG,N has no checksum"),
+        ("$PSEAG,N*23\r\n", "received 10 lines, none of them a valid sentence: $PSEAG,N*23 has a wrong checksum"),
+        ("\u{1}\u{2}", "received 20 bytes, none of them readable: check the protocol and the baud rate"),
+        ("", "received nothing"),
     ] {
         let check = checked(stream, 10.0);
         assert!(check.received().is_empty() && check.unread() == want, "{}", check.unread());
@@ -121,5 +121,5 @@ fn a_date_that_is_not_the_hosts_is_a_fault_and_midnight_is_none() {
 
 #[test]
 fn a_low_rate_is_reported() {
-    assert!(checked(TELEMETRY, 0.5).missing().join("\n").contains("GGA or RMC comes only 0.50 times a second"));
+    assert!(checked(TELEMETRY, 0.5).missing().join("\n").contains("GGA or RMC arrive only 0.50 times a second"));
 }

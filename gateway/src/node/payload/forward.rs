@@ -38,7 +38,7 @@ pub(super) fn serve(payload: &Payload, at: &HostPort, slot: &Slot, client: &TcpS
     });
     let upstream = match connected {
         Ok(upstream) => upstream,
-        Err(e) => return payload.remark(&format!("a client finds nothing at {}: {e}", payload.port.address)),
+        Err(e) => return payload.remark(&format!("cannot connect a client to {}: {e}", payload.port.address)),
     };
     let (number, tap) = payload.taps.open();
     let forward = Forward { payload, slot, client, upstream, number, tap, ended: Default::default() };
@@ -46,7 +46,7 @@ pub(super) fn serve(payload: &Payload, at: &HostPort, slot: &Slot, client: &TcpS
         let thread = std::thread::Builder::new().name(format!("payload {}", payload.port.name));
         match thread.spawn_scoped(scope, || forward.pass(false)) {
             Ok(_) => forward.pass(true),
-            Err(e) => payload.remark(&format!("no thread for a client: {e}")),
+            Err(e) => payload.remark(&format!("cannot start a thread for a client: {e}")),
         }
     });
 }
@@ -122,8 +122,8 @@ impl Forward<'_> {
     /// Logs whoever was waited for too long.
     fn tell_stall(&self, outward: bool, error: &io::Error) {
         if is_pause(error) {
-            let whoever = if outward { "the payload" } else { "a client" };
-            self.payload.remark(&format!("{whoever} took nothing for {WRITE_MAX:?}: disconnected"));
+            let receiver = if outward { "the payload" } else { "a client" };
+            self.payload.remark(&format!("{receiver} accepted no data for {WRITE_MAX:?}: disconnected"));
         }
     }
 

@@ -42,7 +42,7 @@ pub(super) fn run(payload: &Payload, way: &Way, exo2: Exo2Port) {
             (Way::Shared(line), _) => over_line(line, &mut questions, &turn),
         };
         if let Err(e) = asked {
-            payload.remark(&format!("the sonde at {} cannot be asked: {e}", payload.port.address));
+            payload.remark(&format!("cannot query the sonde at {}: {e}", payload.port.address));
         }
         // A client that connects has the sonde at once: people come before the recording.
         turn.is_wanted_within(EVERY);

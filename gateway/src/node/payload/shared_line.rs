@@ -74,7 +74,7 @@ impl SharedLine {
         let payload = &self.ends.payload;
         let Some(_turn) = payload.turn.client() else { return };
         if !self.is_up() {
-            return payload.remark(&format!("a client finds nothing at {}", payload.port.address));
+            return payload.remark(&format!("cannot connect a client to {}", payload.port.address));
         }
         let (number, _) = payload.taps.open();
         let (sender, pieces) = sync_channel(WAITING_MAX);
@@ -86,7 +86,7 @@ impl SharedLine {
             let thread = std::thread::Builder::new().name(format!("payload {}", payload.port.name));
             match thread.spawn_scoped(scope, move || write(stream, &pieces)) {
                 Ok(_) => self.read(number, slot, stream),
-                Err(e) => payload.remark(&format!("no thread for a client: {e}")),
+                Err(e) => payload.remark(&format!("cannot start a thread for a client: {e}")),
             }
             // Its queue is closed with it, and that ends the thread.
             self.ends.clients.lock().retain(|client| client.number != number);
@@ -107,7 +107,7 @@ impl SharedLine {
                 Ok(count) => {
                     slot.touch();
                     if !self.send(number, &piece[..count]) {
-                        return self.ends.payload.remark(&format!("the line took nothing for {WRITE_LIMIT:?}"));
+                        return self.ends.payload.remark(&format!("the line accepted no data for {WRITE_LIMIT:?}"));
                     }
                 }
                 Err(e) if is_pause(&e) => {}
