@@ -216,7 +216,7 @@ impl Bridge {
         self.alarms.forget();
         self.recovery_point = RecoveryPoint::default();
         self.last_sent = None;
-        // The boat may still follow its previous master's last command: send thrust zero first,
+        // The boat may still follow its previous master's last command: send zero thrust first,
         // then standby.
         self.under_way = true;
     }
@@ -375,7 +375,7 @@ impl Bridge {
                 Action::Task(task) => {
                     let command = Command::Task(self.on_site.as_ref().map_or(task, |site| site.by_compass(task)));
                     let is_reported = self.control.mode() == Some(self.protocol.shown(command).mode);
-                    // Sent again, this task would start anew.
+                    // If sent again, this task would restart.
                     if self.last_sent.as_ref().is_some_and(|(at, last)| {
                         *last == command && (is_reported || (now - *at).as_s() < TASK_AGAIN_S)
                     }) {

@@ -1,4 +1,4 @@
-//! A gateway file, checked.
+//! Checks a gateway file.
 
 use super::{BoatProtocol, Gateway};
 use primitives::angle::wrap_pi;
@@ -6,10 +6,10 @@ use primitives::{Ned, math};
 use rules::field::{distance_to_line, sides};
 use scenario::{Diagnostics, Document, check_corners, check_thrust_map};
 
-/// The farthest that a corner of a geofence may be from its first, m: farther ones have latitude and longitude exchanged, or a
-/// digit too many.
+/// Maximum distance of a geofence corner from the first, m: farther ones have latitude and
+/// longitude exchanged, or an extra digit.
 const EXTENT_MAX_M: f64 = 50_000.0;
-/// A sphere is enough to see whether sides cross.
+/// A sphere is accurate enough to detect crossing sides.
 const EARTH_RADIUS_M: f64 = 6_371_000.0;
 
 /// Checks a gateway.
@@ -41,7 +41,7 @@ fn check_geofence(diagnostics: &mut Diagnostics, document: &Document<Gateway>) {
     }
 }
 
-/// The corners of a polygon in metres from `origin`, if it is one.
+/// The corners of a polygon in metres from `origin`, if it is valid.
 fn polygon(
     diagnostics: &mut Diagnostics,
     document: &Document<Gateway>,
@@ -65,7 +65,8 @@ fn polygon(
     checked.map_err(|(corner, message)| diagnostics.note(at(corner), message)).ok().map(|()| corners)
 }
 
-/// A place on a sphere laid flat: good for the order of its corners, not for distances of its sides.
+/// Projects a position on a sphere to a plane: good for the order of corners, not for distances of
+/// sides.
 fn metres_from([lat_deg, lon_deg]: [f64; 2], place: [f64; 2]) -> Ned {
     let (_, shrink) = math::sin_cos_deg(lat_deg);
     let [north, east] = [place[0] - lat_deg, place[1] - lon_deg].map(|angle_deg| wrap_pi(angle_deg.to_radians()));

@@ -169,7 +169,7 @@ impl Port {
         }
     }
 
-    /// The time to transmit so many bytes, where it is long. A serial driver accepts 4 KiB at once, which at
+    /// The time to transmit this many bytes, if it is long. A serial driver accepts 4 KiB at once, which at
     /// 4800 baud are 8 s of old commands.
     pub(super) fn transit(&self, count: usize) -> Duration {
         // Eight data bits, a start bit and a stop bit.

@@ -23,7 +23,7 @@ pub struct Counts {
     pub sentences: u64,
     /// Well-formed sentences with a wrong checksum.
     pub bad_checksum: u64,
-    /// Sentences given up because they went past [`ACCEPTED_MAX`].
+    /// Sentences discarded because they exceeded [`ACCEPTED_MAX`].
     pub overlong: u64,
     /// Bytes outside sentences, not counting CR and LF. The rest of an abandoned sentence is
     /// outside.

@@ -56,8 +56,8 @@ struct Inner {
 }
 
 impl Guarded {
-    /// Starts the guard with a command that calls [`guard`] on its standard input; `stop` stops the
-    /// boat.
+    /// Starts the guard with a command that calls [`guard`] on its standard input; the message
+    /// `stop` stops the boat.
     pub(super) fn start(mut command: Command, stop: &[u8]) -> io::Result<Guarded> {
         // Packets keep their boundaries, can carry descriptors, and the kernel notifies the other
         // end when a process dies.

@@ -1,4 +1,4 @@
-//! What a boat's own sentences tell before it is armed.
+//! Pre-flight checks of a boat's own sentences.
 
 use super::Check;
 use super::fix_scatter::FixScatter;
@@ -10,11 +10,12 @@ use crate::sensor_check::{HostTime, SensorCheck};
 use primitives::frame::LatLon;
 use rules::Field;
 
-/// Fixes of a boat at rest may be so far from their mean, 95 of 100, and their mean may drift so far, m.
+/// Maximum distance of 95 of 100 fixes of a boat at rest from their mean, and maximum drift of that
+/// mean, m.
 const SCATTER_MAX_M: f64 = 2.5;
-/// For how long they are looked at, s.
+/// How long fixes are collected, s.
 const SCATTER_S: f64 = 25.0;
-/// Where the boat is to play.
+/// The water on which the boat will play.
 pub struct Water {
     /// The field.
     pub field: Field,
@@ -22,7 +23,7 @@ pub struct Water {
     pub area: GeofenceArea,
 }
 
-/// The checks of what a boat has sent until now, by the host's clock.
+/// The checks of what a boat has sent so far, by the host's clock.
 #[must_use]
 pub fn boat_checks(seen: &SensorCheck, host: HostTime, gateway: &Gateway, water: Option<&Water>) -> Vec<Check> {
     let missing = seen.missing();
@@ -61,7 +62,7 @@ fn scatter(seen: &SensorCheck) -> Check {
     let fixes = seen.fixes();
     let lasted_s = fixes.first().zip(fixes.last()).map_or(0.0, |(first, last)| (last.0 - first.0).as_s());
     let places: Vec<LatLon> = fixes.iter().map(|(_, at)| *at).collect();
-    // Drift of a fix shows over tens of seconds; a few good fixes say nothing of it.
+    // Drift of a fix shows over tens of seconds; a few good fixes do not reveal it.
     match FixScatter::of(&places).filter(|_| lasted_s >= SCATTER_S) {
         None => Check::not_done("scatter", format!("{lasted_s:.0} s of fixes, expected {SCATTER_S}: use --for-s 30")),
         Some(FixScatter { radius_95_m, drift_m }) => {
@@ -115,7 +116,7 @@ fn control(seen: &SensorCheck, gateway: &Gateway) -> Check {
         seen.mode_in_words(mode),
         seen.mode_in_words(Mode::Standby)
     );
-    // A boat under way is not to be taken over by a check.
+    // A check must not take over a moving boat.
     Check::of("control", is_ours && mode == Mode::Standby, found)
 }
 

@@ -7,7 +7,7 @@ const TELEMETRY: &str = "$GPGGA,150502.00,4221.50616,N,07105.24688,W,2,11,0.98,5
     $PSEAD,T,58.7,20,-10,,T,2,1*7A\r\n\
     $PTQM0,1*35\r\n";
 
-/// Ten times these sentences; the time of a GGA goes on with each.
+/// Ten times these sentences; the time of a GGA advances with each.
 fn checked(text: &str, hz: f64) -> SensorCheck {
     let mut check = SensorCheck::new(&crate::config::default_gateway());
     for i in 0..10 {
@@ -72,7 +72,7 @@ fn what_came_but_cannot_be_used_is_missing_with_the_reason() {
         ),
         ("GPGGA,150503.00,,,,,1,12,0.9,12.0,M,-33.2,M,,", "a position: its fix has quality 1"),
         ("GPGGA,150503.00,0000.00000,N,00000.00000,E,1,12,0.9,1,M,1,M,,", "a position: GPGGA comes without it"),
-        // The receiver's time stands still.
+        // The receiver's time does not advance.
         ("GPGGA,150503.00,4121.2880,N,07403.3060,W,1,12,0.9,12.0,M,-33.2,M,,", "GGA or RMC arrive only 0.00 times"),
         ("PSEAA,-2.2,0.7,,,47.8,-0.04,-0.01,-1.00,-0.01", "a heading: PSEAA comes without it"),
         ("PSEAA,-2.2,0.7,400,,47.8,-0.04,-0.01,-1.00,-0.01", "a heading: PSEAA comes without it"),
@@ -111,7 +111,7 @@ fn a_date_that_is_not_the_hosts_is_a_fault_and_midnight_is_none() {
         let found = fault(date, host(20)).unwrap_or_default();
         assert!(found.starts_with(want), "{found}");
     }
-    // Two seconds after midnight a fix of the evening before has only been on its way.
+    // Two seconds after midnight, a fix from the evening before is merely delayed.
     let midnight = HostTime { utc_ns: host(21).utc_ns - 54_303_300_000_000 + 2_000_000_000, ..host(21) };
     assert_eq!(fault("20,11,2026", midnight), None);
     let gga = checked(TELEMETRY, 10.0);
