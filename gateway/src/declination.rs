@@ -21,7 +21,7 @@ const YEARS: (u16, u16) = (2025, 2029);
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum DeclinationError {
     /// The model does not cover this date.
-    #[error("the magnetic model does not know {}-{:02}-{:02}, expected a date from 2025 to 2029", .0.year, .0.month, .0.day)]
+    #[error("the magnetic model does not cover {}-{:02}-{:02}, expected a date from 2025 to 2029", .0.year, .0.month, .0.day)]
     Date(Date),
     /// The position is not on the globe.
     #[error("{}, {} is not on the globe, expected latitude -90 to 90 and longitude -180 to 180", .0.lat_deg, .0.lon_deg)]

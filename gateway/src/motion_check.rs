@@ -1,8 +1,9 @@
 //! Checks a boat's instruments against each other: its compass against its course, its reported
 //! speed against its positions.
 //!
-//! What is checked cannot be so on any sea: a compass that shows the same to the last digit while the boat's course turns far, and
-//! positions that go away faster than the speed that is reported with them. Leeway and current cause neither.
+//! The checked faults are impossible on any sea: a compass that does not change in any digit while
+//! the course turns far, and positions that move faster than the reported speed. Leeway and current
+//! cause neither.
 
 use crate::supervisor::NavFault;
 use primitives::angle::wrap_pi;

@@ -21,9 +21,7 @@ pub struct Ordered {
 pub enum ThrustFault {
     /// Its heading does not respond to the thrust difference: its rate of turn in degrees/s at half
     /// of the full difference.
-    #[error(
-        "the thrusters: its heading does not respond to differential thrust: {0:.0} degrees/s at half of full difference"
-    )]
+    #[error("the thrusters: its heading does not respond to differential thrust: {0:.0} degrees/s at half difference")]
     NoTurn(f64),
     /// Its speed ahead, m/s, after 40 s under thrust, is too low.
     #[error("the thrusters: it makes no way under thrust: {0:.1} m/s ahead in {WAY_S} s")]

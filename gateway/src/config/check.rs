@@ -36,7 +36,7 @@ fn check_geofence(diagnostics: &mut Diagnostics, document: &Document<Gateway>) {
     for (i, keep_out) in keep_out.iter().enumerate() {
         let (Some(outline), Some(keep_out)) = (&outline, keep_out) else { continue };
         if sides(keep_out).all(|side| distance_to_line(outline, side) > 0.0) {
-            diagnostics.note(document.at(&path(i)), "keep_out lies outside of the polygon, expected it inside");
+            diagnostics.note(document.at(&path(i)), "keep_out lies outside the polygon, expected it inside");
         }
     }
 }

@@ -1,6 +1,7 @@
 //! MAVLink as ArduPilot's boats speak it: bytes to messages and back, without ports or clocks.
 //!
-//! The messages themselves are those of the crate `mavlink`, dialect `common`. Frames of version 2 are written; 1 and 2 are read.
+//! The messages are those of the crate `mavlink`, dialect `common`. Writes frames of version 2; reads
+//! versions 1 and 2.
 //! Signatures are neither written nor checked.
 
 mod framer;

@@ -156,7 +156,7 @@ impl Server {
         let (reply, replied) = sync_channel(1);
         self.input.request((ask, reply));
         let reply = replied.recv_timeout(REPLY_MAX);
-        reply.unwrap_or_else(|_| self.refusal("the gateway is ending, or does not answer"))
+        reply.unwrap_or_else(|_| self.refusal("the gateway is shutting down, or does not answer"))
     }
 
     /// The stop of this boat that a command requests, if any.
@@ -193,7 +193,7 @@ impl Server {
     /// The status while the loop is not running.
     fn status_before(&self) -> GatewayStatus {
         let is_stopped = self.input.has_e_stop();
-        let state = if is_stopped { "e-stopped, as soon as there is a link" } else { "no link to the boat yet" };
+        let state = if is_stopped { "e-stopped once there is a link" } else { "no link to the boat yet" };
         let link = "no link yet: looking for the game".to_owned();
         GatewayStatus { vehicle: self.vehicle.clone(), link, state: state.to_owned(), ..GatewayStatus::default() }
     }

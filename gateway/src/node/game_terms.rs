@@ -28,7 +28,7 @@ pub(super) fn pace_factor(pace: &str, at_game_pace: bool) -> Result<f64, NodeErr
             .and_then(|factor| factor.parse().ok())
             .ok_or_else(|| NodeError::Refused(format!("the game's pace is {pace}, expected realtime or a factor"))),
         (pace, false) => Err(NodeError::Refused(format!(
-            "the game's pace is {pace}, expected realtime: a real boat sails in real time (--at-game-pace is for emulated ones)"
+            "the game's pace is {pace}, expected realtime: a real boat runs in real time (--at-game-pace is for emulated ones)"
         ))),
     }
 }

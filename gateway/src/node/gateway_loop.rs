@@ -42,7 +42,7 @@ const WRITING_MAX: usize = 64;
 /// processor.
 const WAITED_MAX: Duration = Duration::from_millis(500);
 /// The refusal of a request that a disarm has overtaken.
-const DISARMED: &str = "the boat was disarmed meanwhile: ask again";
+const DISARMED: &str = "the boat has been disarmed since: repeat the request";
 /// A message that recurs within this time is not logged again.
 const REMARK_AGAIN: Duration = Duration::from_secs(10);
 
@@ -299,7 +299,7 @@ impl GatewayLoop<'_> {
                     }
                     (self.notify)(NodeEvent::ControlPort { address: *address, token: token.get() });
                 }
-                self.remark("joined: the sim takes reports of the boat");
+                self.remark("joined: the sim accepts the boat's reports");
                 self.step(Input::Joined, None)
             }
             // The ticket would be another boat's: its reports would move that one.

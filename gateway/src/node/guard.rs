@@ -150,7 +150,7 @@ pub fn guard(socket: impl AsFd, remark: &mut dyn FnMut(&str)) -> io::Result<()> 
             Heard::Told(NO_LINK, _) => link = None,
             Heard::Told(..) if is_hung => {
                 is_hung = false;
-                remark("the gateway runs again");
+                remark("the gateway is running again");
             }
             Heard::Told(..) => {}
             Heard::Nothing => {

@@ -37,7 +37,7 @@ impl GatewayLoop<'_> {
         let rest = [
             ("calls dropped", self.input.calls.dropped()),
             ("messages not recorded", lost[0]),
-            ("messages of payloads not recorded", lost[1]),
+            ("payload messages not recorded", lost[1]),
         ];
         status.alarms.extend(self.counters.recording_fault.clone());
         status.counts.extend(more.into_iter().chain(rest).map(|(name, count)| (name.to_owned(), count)));

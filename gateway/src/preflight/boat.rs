@@ -105,8 +105,8 @@ fn compass(seen: &SensorCheck) -> Check {
 fn control(seen: &SensorCheck, gateway: &Gateway) -> Check {
     let Some(control) = seen.control() else {
         let found = "the boat does not report who commands it";
-        // The file may vouch for it, for boats without such a sentence: then it is a person who
-        // answers for who has control.
+        // For boats without such a sentence the file may state it: then a person takes
+        // responsibility for who has control.
         return Check::of("control", gateway.control.assumed, format!("{found}; expected PSEAD, or control.assumed"));
     };
     let (mode, is_ours) = (control.shown.mode, control.operator.is_none_or(|operator| operator == Operator::Secondary));

@@ -324,7 +324,7 @@ impl SensorCheck {
             && operator != Operator::Secondary
         {
             missing.push(match self.framer {
-                Framer::Nmea(_) => "secondary control: the operator ashore has to enable it".to_owned(),
+                Framer::Nmea(_) => "secondary control: the operator ashore must enable it".to_owned(),
                 Framer::Mavlink(_) => {
                     format!("control: {operator:?} has control, and the mode is neither GUIDED nor HOLD")
                 }

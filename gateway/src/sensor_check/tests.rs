@@ -32,7 +32,7 @@ fn sentences_are_counted_and_missing_ones_are_named() {
     assert!((gga.rate_hz().unwrap_or(0.0) - 10.0).abs() < 1e-9);
     assert_eq!(check.received()["PTQM0"].unreadable, 10);
     let missing = check.missing().join("\n");
-    for want in ["VTG or RMC", "PSEAB", "the operator ashore has to enable it"] {
+    for want in ["VTG or RMC", "PSEAB", "the operator ashore must enable it"] {
         assert!(missing.contains(want), "{missing}");
     }
     assert!(!missing.contains("GGA") && !missing.contains("PSEAA"), "{missing}");
@@ -44,7 +44,7 @@ fn findings_are_in_words() {
     let findings = checked(TELEMETRY, 10.0).findings(host).join("\n");
     for want in [
         "position: 42.358436, -71.087448, fix quality 2 (DGPS), dilution 0.98",
-        "heading: 222.6 by its compass; nothing true",
+        "heading: 222.6 by its compass; no true heading",
         "control: mode T (Thruster), commanded by Primary",
         "clock: fixes are 1.30 s behind this host's clock; it sends no date",
     ] {

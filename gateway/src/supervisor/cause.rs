@@ -31,10 +31,10 @@ pub enum Cause {
     #[error("the boat no longer reports who commands it")]
     ControlUnknown,
     /// The boat did not enter the mode that it was sent; it reported this one.
-    #[error("the boat does not follow the commands it is sent: it is in mode {0}")]
+    #[error("the boat does not follow its commands: it is in mode {0}")]
     Disobeyed(char),
     /// The boat still echoes an outdated command: it transmits but does not listen.
-    #[error("the boat does not follow the commands it is sent: it still shows an older command")]
+    #[error("the boat does not follow its commands: it still shows an older command")]
     Deaf,
     /// The boat echoes a command that we have not sent.
     #[error("the boat receives orders that are not ours: another gateway may be at work")]
@@ -143,7 +143,7 @@ fn operator(number: u8) -> String {
         1 => "the primary operator".to_owned(),
         3 => "the primary operator's backup link".to_owned(),
         5 => "the remote control".to_owned(),
-        6 => "the obstacle avoidance".to_owned(),
+        6 => "obstacle avoidance".to_owned(),
         other => format!("operator {other}"),
     }
 }

@@ -229,7 +229,7 @@ fn a_boat_that_leaves_guided_for_hold_is_not_taken_back() {
     rig.ardupilot.set_mode(RoverMode::Hold);
     rig.run(2.0);
     assert_eq!(rig.mode().0, RoverMode::Hold);
-    rig.run_until(2.0, |rig| rig.state().contains("does not follow the commands"));
+    rig.run_until(2.0, |rig| rig.state().contains("does not follow its commands"));
     rig.run(10.0);
     assert_eq!(rig.mode(), HOLD);
 }
@@ -394,5 +394,5 @@ fn arming_that_the_boat_refuses_is_a_failsafe_with_its_own_words() {
     // From now on it replies but receives nothing.
     rig.open.0 = false;
     rig.operator(OperatorCommand::Arm);
-    rig.run_until(4.0, |rig| rig.state().contains("does not follow the commands it is sent"));
+    rig.run_until(4.0, |rig| rig.state().contains("does not follow its commands"));
 }
