@@ -153,7 +153,8 @@ mod tests {
         for turn_deg_s in [5.0, -5.0, 30.0] {
             assert!(is_frozen(circle(2.6, turn_deg_s, |_| 90.0, Some)), "{turn_deg_s}");
         }
-        // One that is off by much and turns is not, nor one of a boat that goes straight, nor of one that lies still.
+        // A compass with a large offset that turns is not stuck, nor that of a boat that goes
+        // straight or lies still.
         assert_eq!(circle(2.6, 20.0, |course_deg| course_deg + 70.0, Some), None);
         assert_eq!(circle(2.6, 0.0, |_| 90.0, Some), None);
         assert_eq!(circle(0.3, 20.0, |_| 90.0, Some), None);

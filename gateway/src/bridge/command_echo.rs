@@ -175,7 +175,8 @@ mod tests {
         Shown { mode: Mode::Thruster, heading_deg: None, thrust: Some(thrust), difference: Some(0.0) }
     }
 
-    /// What is found when the boat shows these thrusts, ten a second, after 20 % and then 60 % were sent.
+    /// The verdict when the boat shows these thrusts, ten a second, after 20 % and then 60 % were
+    /// sent.
     fn found(shows: &[f64]) -> (bool, bool) {
         let mut echo = CommandEcho::new(crate::config::default_gateway().control);
         let at = |tenth: usize| SimTime::from_s(0.1 * tenth as f64);

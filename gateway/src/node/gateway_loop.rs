@@ -424,7 +424,8 @@ impl GatewayLoop<'_> {
         self.step_core(input, read).map(drop)
     }
 
-    /// One step of the core; returns why a request was refused. `read` is when the bytes were read from the link.
+    /// Runs one step of the core; returns why a request was refused. `read` is when the bytes were
+    /// read from the link.
     fn step_core(&mut self, input: Input, read: Option<Instant>) -> Result<Option<String>, NodeError> {
         let now = self.clock.now();
         let mut out = Output::default();

@@ -173,7 +173,8 @@ mod tests {
         Water { field, area }
     }
 
-    /// A minute of a boat about this place of the field, with its GGA from the fifth field on and what else it says.
+    /// A minute of a boat around this point of the field: its GGA from the fifth field on, and its
+    /// other sentences.
     fn seen(water: &Water, [x, y]: [f64; 2], fix: &str, more: &[&str]) -> SensorCheck {
         let frame = LocalFrame::new(water.field.plan.datum);
         let mut check = SensorCheck::new(&crate::config::default_gateway());
